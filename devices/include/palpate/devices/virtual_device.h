@@ -1,0 +1,32 @@
+#pragma once
+/// A hand that follows a path exactly, whatever the force: deterministic, for tests and traces.
+
+#include "palpate/devices/device.h"
+#include "palpate/devices/path.h"
+
+namespace palpate::devices {
+
+/// One read() is one row of the path. The velocity is the backward difference of the rows (0 at the
+/// first), the time is the row's. After the last row read() answers kEnd.
+class VirtualDevice final : public Device {
+ public:
+  /// @throws Error (kInput) for an empty path or times that do not rise.
+  explicit VirtualDevice(Path path);
+
+  void open() override;
+  void close() noexcept override;
+  [[nodiscard]] const DeviceInfo& info() const noexcept override;
+  [[nodiscard]] DeviceStatus read(DeviceState& out) noexcept override;
+  [[nodiscard]] DeviceStatus write(const Vec3& force) noexcept override;
+
+  /// The last force written [N]; zero before the first and after close().
+  [[nodiscard]] const Vec3& lastForce() const noexcept { return force_; }
+
+ private:
+  DeviceInfo info_;
+  Path path_;
+  std::size_t next_ = 0;
+  Vec3 force_{0.0, 0.0, 0.0};
+};
+
+}  // namespace palpate::devices

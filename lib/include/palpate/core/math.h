@@ -1,0 +1,86 @@
+#pragma once
+/// Vectors, boxes and rigid motions: the few geometric value types that everything shares.
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+
+namespace palpate {
+
+using Vec3 = glm::dvec3;  ///< Point, displacement or force; the comment beside it names unit, frame.
+using Mat3 = glm::dmat3;  ///< Column major, as GLM has it: m[column][row].
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// True if no component is NaN or infinite.
+[[nodiscard]] inline bool isFinite(const Vec3& v) noexcept {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// `v` scaled to length 1, or `fallback` where `v` has no direction.
+[[nodiscard]] inline Vec3 unitOr(const Vec3& v, const Vec3& fallback) noexcept {
+  const double length = glm::length(v);
+  return length > 0.0 && std::isfinite(length) ? v / length : fallback;
+}
+
+/// The matrix a b^T.
+[[nodiscard]] inline Mat3 outer(const Vec3& a, const Vec3& b) noexcept {
+  return Mat3(a * b.x, a * b.y, a * b.z);
+}
+
+/// Axis-aligned box [m]. A default box is empty; a box may be infinite in any direction.
+struct Box3 {
+  Vec3 lo{kInfinity, kInfinity, kInfinity};     ///< [m] lower corner
+  Vec3 hi{-kInfinity, -kInfinity, -kInfinity};  ///< [m] upper corner
+
+  [[nodiscard]] static Box3 everything() noexcept {
+    return {Vec3(-kInfinity, -kInfinity, -kInfinity), Vec3(kInfinity, kInfinity, kInfinity)};
+  }
+  [[nodiscard]] bool isEmpty() const noexcept {
+    return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z);
+  }
+  [[nodiscard]] bool isBounded() const noexcept {
+    return !isEmpty() && palpate::isFinite(lo) && palpate::isFinite(hi);
+  }
+  [[nodiscard]] Vec3 center() const noexcept { return 0.5 * (lo + hi); }
+  [[nodiscard]] Vec3 size() const noexcept { return hi - lo; }
+  [[nodiscard]] bool contains(const Vec3& p) const noexcept {
+    return p.x >= lo.x && p.x <= hi.x && p.y >= lo.y && p.y <= hi.y && p.z >= lo.z && p.z <= hi.z;
+  }
+  void include(const Vec3& p) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      lo[i] = std::fmin(lo[i], p[i]);
+      hi[i] = std::fmax(hi[i], p[i]);
+    }
+  }
+  [[nodiscard]] Box3 unitedWith(const Box3& other) const noexcept;
+  [[nodiscard]] Box3 intersectedWith(const Box3& other) const noexcept;
+  [[nodiscard]] Box3 grownBy(double margin) const noexcept;  ///< margin [m]; empty stays empty
+  /// Distance [m] from `p` to the box, 0 inside.
+  [[nodiscard]] double distanceTo(const Vec3& p) const noexcept;
+};
+
+/// Rigid motion x -> rotation * x + translation. `X_AB` maps coordinates in B to coordinates in A.
+struct Pose {
+  Mat3 rotation{1.0};
+  Vec3 translation{0.0, 0.0, 0.0};  ///< [m]
+
+  [[nodiscard]] Vec3 apply(const Vec3& p) const noexcept { return rotation * p + translation; }
+  [[nodiscard]] Vec3 applyInverse(const Vec3& p) const noexcept {
+    return glm::transpose(rotation) * (p - translation);
+  }
+  [[nodiscard]] Vec3 rotate(const Vec3& v) const noexcept { return rotation * v; }
+  [[nodiscard]] Pose after(const Pose& first) const noexcept {
+    return {rotation * first.rotation, rotation * first.translation + translation};
+  }
+  /// Box around the moved `box`.
+  [[nodiscard]] Box3 apply(const Box3& box) const noexcept;
+};
+
+/// Rotation about `axis` (any length but zero) by `radians`.
+[[nodiscard]] Mat3 rotationAbout(const Vec3& axis, double radians) noexcept;
+
+}  // namespace palpate

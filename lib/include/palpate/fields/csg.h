@@ -1,0 +1,24 @@
+#pragma once
+/// Boolean combinations. Values are min / max / negation of the operands' values: exact sign
+/// everywhere, a bound on the distance if the operands are exact or bounds (DESIGN.md section 2).
+/// The operands stay visible through Field::structure(), so contact can hold each smooth leaf.
+
+#include <vector>
+
+#include "palpate/fields/field.h"
+
+namespace palpate {
+
+/// Inside any operand. @throws Error (kInput) if there is none, or one is null; same below.
+[[nodiscard]] FieldPtr unite(std::vector<FieldPtr> operands);
+
+/// Inside all operands.
+[[nodiscard]] FieldPtr intersect(std::vector<FieldPtr> operands);
+
+/// Inside the first and outside all the others: intersect(first, complement(second), ...).
+[[nodiscard]] FieldPtr subtract(std::vector<FieldPtr> operands);
+
+/// The object turned inside out: -S.
+[[nodiscard]] FieldPtr complement(FieldPtr operand);
+
+}  // namespace palpate

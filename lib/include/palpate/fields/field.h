@@ -1,0 +1,85 @@
+#pragma once
+/// Field: the one interface through which every shape, analytic or from a grid, is felt.
+
+#include <memory>
+#include <span>
+
+#include "palpate/core/math.h"
+
+namespace palpate {
+
+/// One evaluation of a scalar field. Value and gradient come together because contact always needs
+/// both, and because a narrow-band grid reads the same voxels for either.
+struct FieldSample {
+  double value = 0.0;              ///< [m] negative inside, zero on the surface, positive outside
+  Vec3 gradient{0.0, 0.0, 0.0};    ///< [-] of `value` by position, in the frame of the query
+  bool in_band = true;             ///< false: |value| is only a lower bound of the distance with the
+                                   ///< right sign, and the gradient is zero (grids, far away)
+};
+
+/// A sample with its curvature.
+struct FieldJet {
+  double value = 0.0;            ///< [m]
+  Vec3 gradient{0.0, 0.0, 0.0};  ///< [-]
+  Mat3 hessian{0.0};             ///< [1/m] symmetric
+  bool in_band = true;           ///< as in FieldSample; out of band the Hessian is zero too
+};
+
+/// What |value| means. Contact reads this once, when the scene is compiled.
+enum class Metric {
+  kExact,     ///< Euclidean distance to the surface; |gradient| = 1 almost everywhere
+  kBound,     ///< never more than the distance (min and max of exact fields)
+  kImplicit,  ///< only sign and zero set count; the distance is about |value| / |gradient|
+};
+
+class Field;
+using FieldPtr = std::shared_ptr<const Field>;  ///< shared and unchanging, never null in a scene
+
+/// How a field is put together, so that CSG can be taken apart into its smooth leaves.
+struct FieldStructure {
+  enum class Kind { kLeaf, kUnion, kIntersection, kComplement, kTransform };
+  Kind kind = Kind::kLeaf;
+  std::span<const FieldPtr> operands{};  ///< none for a leaf; one for complement and transform
+  Pose pose{};                           ///< transform only: operand frame -> this field's frame
+};
+
+/// A closed solid as a scalar field: S < 0 inside, S > 0 outside, S = 0 on the surface.
+///
+/// Thread safety: immutable after construction; any number of threads may sample one field.
+/// Real time:     the const noexcept members never allocate, lock, throw or block.
+class Field {
+ public:
+  virtual ~Field() = default;
+
+  /// Value and gradient at `p` [m, the field's frame]. Where the gradient is not defined (a sphere's
+  /// centre, a box's edge) it is one fixed unit vector of the generalised gradient; never NaN for
+  /// finite `p`. For a non-finite `p` the value is NaN or infinite and must not be used.
+  [[nodiscard]] virtual FieldSample sample(const Vec3& p) const noexcept = 0;
+
+  /// Value alone [m]. Override where it is cheaper than sample().
+  [[nodiscard]] virtual double value(const Vec3& p) const noexcept { return sample(p).value; }
+
+  /// Value, gradient and Hessian. The base version differences the gradient over a step that is a
+  /// small share of featureSize().
+  [[nodiscard]] virtual FieldJet jet(const Vec3& p) const noexcept;
+
+  /// A box that holds every point with value <= 0 [m]; may be infinite.
+  [[nodiscard]] virtual Box3 bounds() const noexcept = 0;
+
+  [[nodiscard]] virtual Metric metric() const noexcept = 0;
+
+  /// L with |S(a) - S(b)| <= L |a - b| for a, b in lipschitzDomain(). 1 for exact and bound fields.
+  [[nodiscard]] virtual double lipschitz() const noexcept = 0;
+
+  /// Where lipschitz() holds [m]; everything unless a field says otherwise.
+  [[nodiscard]] virtual Box3 lipschitzDomain() const noexcept { return Box3::everything(); }
+
+  /// Length [m] to which tolerances are relative: the smallest radius of curvature or thickness of
+  /// the shape, or the voxel size of a grid. Positive and finite.
+  [[nodiscard]] virtual double featureSize() const noexcept = 0;
+
+  /// The default is a leaf.
+  [[nodiscard]] virtual FieldStructure structure() const noexcept { return {}; }
+};
+
+}  // namespace palpate

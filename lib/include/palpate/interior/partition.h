@@ -1,0 +1,90 @@
+#pragma once
+/// Space cut into regions. Each layer is a Boolean expression over smooth leaf fields; the leaves' signs
+/// at a point say which layers hold it, and the last of those is its region (DESIGN.md section 2).
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "palpate/fields/field.h"
+
+namespace palpate {
+
+using RegionId = std::uint16_t;  ///< 0 is `outside`; layer i (from 0, outermost first) is region i + 1
+using LeafId = std::uint16_t;
+
+inline constexpr RegionId kOutside = 0;
+
+/// One smooth field of the partition, in world coordinates, never complemented or combined.
+struct Leaf {
+  FieldPtr field;
+  std::string name;        ///< of the scene's `fields` or layer it comes from; for people
+  double lipschitz = 1.0;  ///< Field::lipschitz()
+  double feature = 1.0;    ///< [m] Field::featureSize(): the unit of tolerances at this leaf
+};
+
+/// One bit for each leaf: true is inside (negative). Its size is fixed at set-up.
+class Signs {
+ public:
+  Signs() = default;
+  explicit Signs(std::size_t leaves) : words_((leaves + 63) / 64) {}
+
+  [[nodiscard]] bool inside(LeafId leaf) const noexcept {
+    return ((words_[leaf >> 6U] >> (leaf & 63U)) & 1U) != 0;
+  }
+  void set(LeafId leaf, bool inside) noexcept {
+    const std::uint64_t bit = std::uint64_t{1} << (leaf & 63U);
+    words_[leaf >> 6U] = inside ? (words_[leaf >> 6U] | bit) : (words_[leaf >> 6U] & ~bit);
+  }
+  void flip(LeafId leaf) noexcept { words_[leaf >> 6U] ^= std::uint64_t{1} << (leaf & 63U); }
+  friend bool operator==(const Signs&, const Signs&) = default;
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
+/// Leaves and the layers' expressions over them. Immutable; every const member is real-time safe.
+class Partition {
+ public:
+  /// Takes each layer's field apart along its CSG structure. `names` label the leaves that are layers
+  /// themselves. @throws Error (kInput) for more leaves or layers than the id types hold.
+  Partition(std::span<const FieldPtr> layers, std::span<const std::string> names);
+
+  [[nodiscard]] std::span<const Leaf> leaves() const noexcept { return leaves_; }
+  [[nodiscard]] std::size_t regionCount() const noexcept { return programs_.size() + 1; }
+
+  /// The leaves that `part`, a field met while a layer was taken apart, came to be; empty if it was
+  /// not met. This is how `on: brim` finds its facet.
+  [[nodiscard]] std::vector<LeafId> leavesOf(const Field* part) const;
+
+  /// Leaves of one layer's expression, without repetition.
+  [[nodiscard]] std::span<const LeafId> leavesOfRegion(RegionId region) const noexcept;
+
+  /// True if `region`'s own layer (later layers not looked at) holds the cell `signs`; true for outside.
+  [[nodiscard]] bool layerHolds(RegionId region, const Signs& signs) const noexcept;
+
+  /// The last layer that holds the cell, or outside.
+  [[nodiscard]] RegionId regionOf(const Signs& signs) const noexcept;
+
+  /// Signs of all leaves at `p` [m]; zero counts as outside. `out` must have room for all leaves.
+  void signsAt(const Vec3& p, Signs& out) const noexcept;
+
+ private:
+  /// Postfix: a leaf index pushes its sign; the operators take `count` operands off the stack.
+  struct Step {
+    enum class Op : std::uint8_t { kLeaf, kAnd, kOr, kNot } op;
+    std::uint16_t argument;  ///< leaf id, or operand count
+  };
+  struct Program {
+    std::vector<Step> steps;
+    std::vector<LeafId> leaves;
+  };
+  struct Builder;
+
+  std::vector<Leaf> leaves_;
+  std::vector<Program> programs_;
+  std::vector<std::pair<const Field*, std::vector<LeafId>>> parts_;
+};
+
+}  // namespace palpate

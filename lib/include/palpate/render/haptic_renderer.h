@@ -1,0 +1,58 @@
+#pragma once
+/// HapticRenderer: HIP in, force out, one tick at a time. The scene is shared and const; every mutable
+/// bit of haptic rendering is owned here.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "palpate/scene/scene.h"
+
+namespace palpate {
+
+/// What the device says at one tick.
+struct HipState {
+  Vec3 position{0.0, 0.0, 0.0};  ///< [m, world] the haptic interface point P
+  Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s, world] by whatever estimator the caller names
+};
+
+/// What one tick came to.
+struct TickResult {
+  static constexpr std::size_t kMaxEvents = 8;
+
+  Vec3 force{0.0, 0.0, 0.0};  ///< [N, world] on the hand; always finite
+  Vec3 proxy{0.0, 0.0, 0.0};  ///< [m, world] the tip held in its region
+  RegionId region = kOutside;
+  bool contact = false;            ///< a closed wall is pressed
+  std::uint8_t event_count = 0;    ///< crossings of this tick that passed a port, in path order
+  std::array<PortId, kMaxEvents> events{};
+};
+
+struct RendererSettings {
+  std::optional<RendererKind> kind = {};  ///< not given: as the scene says
+};
+
+/// One algorithm of section 3 of DESIGN.md. Construction may throw and allocate; update() and reset()
+/// never allocate, lock, throw or block.
+class HapticRenderer {
+ public:
+  virtual ~HapticRenderer() = default;
+  HapticRenderer(const HapticRenderer&) = delete;
+  HapticRenderer& operator=(const HapticRenderer&) = delete;
+
+  /// One tick. A non-finite position or velocity gives zero force and changes no state.
+  [[nodiscard]] virtual TickResult update(const HipState& hip) noexcept = 0;
+
+  /// Back to the start region; the next update() is a first tick.
+  virtual void reset() noexcept = 0;
+
+ protected:
+  HapticRenderer() = default;
+};
+
+/// @throws Error (kInput) if the scene is null or asks the paper's renderer for what it cannot do.
+[[nodiscard]] std::unique_ptr<HapticRenderer> makeRenderer(ScenePtr scene,
+                                                           RendererSettings settings = {});
+
+}  // namespace palpate

@@ -1,0 +1,117 @@
+#pragma once
+/// What an author says about a scene: plain data, from a scene file or from code, not yet checked
+/// against geometry. compile() turns it into a Scene.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "palpate/core/progress.h"
+#include "palpate/fields/field.h"
+#include "palpate/interior/port.h"
+#include "palpate/materials/material.h"
+
+namespace palpate {
+
+/// Where in a file something was said, so that later errors can point at it. Line 0: nowhere.
+struct SourcePlace {
+  std::string file = {};
+  int line = 0;
+  int column = 0;
+  std::string excerpt = {};
+};
+
+/// An error about something said at `place`.
+[[nodiscard]] Error errorAt(const SourcePlace& place, std::string code, std::string message,
+                            std::string hint = {});
+
+/// A field that is ready, or that costs work (a mesh, a scan) and is made when first asked for, so that
+/// what a scene does not need is never made. Set-up thread only.
+class FieldSource {
+ public:
+  using Maker = std::function<FieldPtr(const Progress&)>;
+
+  explicit FieldSource(FieldPtr ready) : made_(std::move(ready)) {}
+  FieldSource(std::string summary, Maker maker)
+      : summary_(std::move(summary)), maker_(std::move(maker)) {}
+
+  /// The field, made now if need be. The same pointer every time.
+  [[nodiscard]] const FieldPtr& get(const Progress& progress = {}) const;
+  [[nodiscard]] bool isMade() const noexcept { return made_ != nullptr; }
+  /// What it is made from ("mesh bone.stl"); empty for analytic fields.
+  [[nodiscard]] const std::string& summary() const noexcept { return summary_; }
+
+ private:
+  std::string summary_;
+  Maker maker_;
+  mutable FieldPtr made_;
+};
+using FieldSourcePtr = std::shared_ptr<const FieldSource>;
+
+struct NamedField {
+  std::string name;
+  FieldSourcePtr source;
+};
+
+/// What stands between a layer and its surroundings.
+struct WallDescription {
+  bool absent = false;
+  std::string material = {};  ///< name; empty (and not absent): the documented default wall
+};
+
+struct LayerDescription {
+  std::string name;
+  FieldSourcePtr inside;
+  std::string content = {};  ///< material name; empty: nothing is felt inside
+  WallDescription wall = {};
+  /// Layers with the same non-empty group come from one label image: where they meet, the one whose
+  /// field is smallest has the point (DESIGN.md section 2, "Regions").
+  std::string label_group = {};
+  SourcePlace place = {};
+};
+
+/// Overrides the wall between two regions. Globs allowed.
+struct WallOverride {
+  std::string a;
+  std::string b;
+  WallDescription wall;
+  std::string felt_from = {};  ///< empty: from both sides; else `a` or `b`
+  SourcePlace place = {};
+};
+
+struct PortDescription {
+  std::string name;
+  std::string from;         ///< region name or glob
+  std::string to;           ///< region name or glob
+  FieldSourcePtr on = {};     ///< null: any facet
+  std::string on_name = {};   ///< how the author called it
+  FieldSourcePtr where = {};  ///< null: everywhere
+  PortDirection direction = PortDirection::kBoth;
+  std::vector<std::string> after = {};
+  double opens_at = 0.0;               ///< [N]
+  std::optional<double> back = {};  ///< [N]; not given: as opens_at
+  SourcePlace place = {};
+};
+
+/// Which renderer a scene asks for.
+enum class RendererKind { kConstraint, kPaper };
+
+struct SceneDescription {
+  std::string file = {};
+  std::string length_unit = "m";  ///< as named in the file, for output that people read
+  double metres_per_unit = 1.0;   ///< [m]
+  std::vector<Material> materials = {};
+  std::vector<NamedField> fields = {};
+  std::vector<LayerDescription> layers = {};
+  std::vector<WallOverride> walls = {};
+  std::vector<PortDescription> ports = {};
+  std::string start_region = "outside";
+  SourcePlace start_place = {};
+  bool keep_memory = false;  ///< `memory: keep`: reaching outside does not clear the passed ports
+  RendererKind renderer = RendererKind::kConstraint;
+};
+
+}  // namespace palpate

@@ -1,0 +1,90 @@
+#pragma once
+/// Scene: what compile() makes of a description. Immutable, shared, and all that the loop reads.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "palpate/interior/partition.h"
+#include "palpate/interior/port.h"
+#include "palpate/materials/material.h"
+#include "palpate/scene/description.h"
+
+namespace palpate {
+
+/// A region as the loop and the reports see it.
+struct Region {
+  std::string name;
+  int content = -1;   ///< index into Scene::materials(); -1: nothing is felt
+  int wall = -1;      ///< own wall's material; -1 where absent (and for outside)
+  bool wall_absent = false;
+  bool reachable = true;  ///< by ports and absent walls from the start region
+  FieldPtr field;         ///< the layer's whole field (label group share applied); null for outside
+  std::string source;     ///< what it was made from; empty if analytic
+};
+
+/// What stands between two regions, seen from the first.
+struct Wall {
+  bool absent = false;
+  int material = -1;  ///< index into Scene::materials()
+};
+
+class Scene {
+ public:
+  [[nodiscard]] const Partition& partition() const noexcept { return partition_; }
+  [[nodiscard]] std::span<const Region> regions() const noexcept { return regions_; }
+  [[nodiscard]] std::span<const Material> materials() const noexcept { return materials_; }
+  [[nodiscard]] std::span<const Port> ports() const noexcept { return ports_; }
+
+  /// The ports that lead out of `region`: all that a tick tests.
+  [[nodiscard]] std::span<const PortId> portsOf(RegionId region) const noexcept {
+    return ports_of_[region];
+  }
+  /// The wall between neighbours as felt from `from`. `from` and `to` differ.
+  [[nodiscard]] const Wall& wall(RegionId from, RegionId to) const noexcept {
+    return walls_[from * regions_.size() + to];
+  }
+  [[nodiscard]] RegionId startRegion() const noexcept { return start_; }
+  [[nodiscard]] bool keepsMemory() const noexcept { return keep_memory_; }
+  [[nodiscard]] RendererKind renderer() const noexcept { return renderer_; }
+  [[nodiscard]] const std::string& lengthUnit() const noexcept { return length_unit_; }
+  [[nodiscard]] double metresPerUnit() const noexcept { return metres_per_unit_; }
+  /// The named fields of the description that were made, with their names, for `query`.
+  [[nodiscard]] std::span<const NamedField> fields() const noexcept { return fields_; }
+
+  /// Region at `p` [m]. Allocates a scratch of signs: for set-up, queries and pictures.
+  [[nodiscard]] RegionId regionAt(const Vec3& p) const;
+  /// Region by name; throws Error (kInput) with a suggestion if there is none.
+  [[nodiscard]] RegionId regionNamed(const std::string& name) const;
+  /// Box around all bounded layers [m]; empty if there is none.
+  [[nodiscard]] Box3 bounds() const;
+
+ private:
+  friend class SceneCompiler;
+  Scene(Partition partition) : partition_(std::move(partition)) {}
+
+  Partition partition_;
+  std::vector<Region> regions_;
+  std::vector<Material> materials_;
+  std::vector<Port> ports_;
+  std::vector<std::vector<PortId>> ports_of_;
+  std::vector<Wall> walls_;
+  std::vector<NamedField> fields_;
+  RegionId start_ = kOutside;
+  bool keep_memory_ = false;
+  RendererKind renderer_ = RendererKind::kConstraint;
+  std::string length_unit_ = "m";
+  double metres_per_unit_ = 1.0;
+};
+
+using ScenePtr = std::shared_ptr<const Scene>;
+
+/// Checks a description against itself and its geometry, makes the fields that the start region can
+/// reach through the ports, and builds the scene. Layers that can never be entered keep their walls
+/// only where these can be touched.
+/// @throws Error (kInput) pointing at the offending place: unknown layer or material, a port between
+/// regions that do not touch, `on` not a leaf of either region, a cycle in `after`, ...
+[[nodiscard]] ScenePtr compile(const SceneDescription& description, const Progress& progress = {});
+
+}  // namespace palpate

@@ -1,0 +1,99 @@
+#pragma once
+/// Scene files: YAML -> SceneDescription, strictly (DESIGN.md section 6). What reads other files (meshes,
+/// grids, scans) is not known here; it comes through a SceneRegistry that the vdb module fills.
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "palpate/scene/document.h"
+#include "palpate/scene/units.h"
+
+namespace palpate {
+
+class SceneLoader;
+
+/// A map node being read: every key must be asked for, and what is left over is an error with a
+/// suggestion (finish()). All getters throw Error (kInput) at the offending place.
+class MapReader {
+ public:
+  MapReader(const SceneLoader& loader, const Node& map, std::string what);
+
+  [[nodiscard]] bool has(std::string_view key) const noexcept;
+  [[nodiscard]] const Node& require(std::string_view key);
+  [[nodiscard]] const Node* optional(std::string_view key);
+  [[nodiscard]] std::string requireText(std::string_view key);
+  [[nodiscard]] std::string textOr(std::string_view key, std::string fallback);
+  [[nodiscard]] double requireNumber(std::string_view key);
+  [[nodiscard]] double numberOr(std::string_view key, double fallback);
+  [[nodiscard]] bool boolOr(std::string_view key, bool fallback);  ///< only true and false
+  /// A bare number in the file's length unit, or a text with a unit; in [m].
+  [[nodiscard]] double requireLength(std::string_view key);
+  [[nodiscard]] double lengthOr(std::string_view key, double fallback_metres);
+  [[nodiscard]] Vec3 requirePoint(std::string_view key);      ///< lengths, in [m]
+  [[nodiscard]] Vec3 requireDirection(std::string_view key);  ///< unitless, not zero
+  [[nodiscard]] double quantityOr(std::string_view key, Dimension dimension, double fallback);
+  /// Error at the key's value (or at the map if the key is not there).
+  [[nodiscard]] Error errorAt(std::string_view key, std::string code, std::string message,
+                              std::string hint = {}) const;
+  /// Throws if a key was not asked for.
+  void finish();
+
+  [[nodiscard]] const SceneLoader& loader() const noexcept { return *loader_; }
+  [[nodiscard]] const Node& node() const noexcept { return *map_; }
+
+ private:
+  const SceneLoader* loader_;
+  const Node* map_;
+  std::string what_;
+  std::vector<std::string> known_;
+};
+
+/// What a loader extension needs to know of the file that is being read.
+class SceneLoader {
+ public:
+  virtual ~SceneLoader() = default;
+  [[nodiscard]] virtual const Document& document() const noexcept = 0;
+  [[nodiscard]] virtual double metresPerUnit() const noexcept = 0;
+  [[nodiscard]] virtual std::string lengthUnit() const = 0;
+  /// A path written in the scene, made relative to the scene file's folder.
+  [[nodiscard]] virtual std::string resolvePath(const std::string& path) const = 0;
+  /// A field written as a name, or inline as {kind: {...}}.
+  [[nodiscard]] virtual FieldSourcePtr field(const Node& node) const = 0;
+  /// What the registry's image reader made of images.<name>; error at `place` if there is none.
+  [[nodiscard]] virtual std::shared_ptr<void> image(const std::string& name, Mark place) const = 0;
+};
+
+/// Kinds that other modules add. Names are the YAML keys.
+struct SceneRegistry {
+  /// `fields: {x: {mesh: {...}}}`: makes the source of a field; must not do heavy work itself.
+  using FieldKind = std::function<FieldSourcePtr(MapReader&)>;
+  /// One entry of `images:`; opaque to lib.
+  using ImageKind = std::function<std::shared_ptr<void>(MapReader&)>;
+  /// `layers: [{name, labels: {...}}]`: what the layer's field comes from, and its label group.
+  struct LayerSurface {
+    FieldSourcePtr inside;
+    std::string label_group = {};
+  };
+  using LayerKind = std::function<LayerSurface(MapReader&, const std::string& layer_name)>;
+
+  std::map<std::string, FieldKind> fields = {};
+  std::map<std::string, LayerKind> layers = {};
+  ImageKind image = {};
+};
+
+/// @throws Error (kInput) for the first problem found, with file:line:column, the line and a remedy.
+[[nodiscard]] SceneDescription parseScene(std::string_view text, const std::string& file,
+                                          const SceneRegistry& registry = {});
+[[nodiscard]] SceneDescription readScene(const std::string& path,
+                                         const SceneRegistry& registry = {});
+
+/// The closest of `candidates` to `word` if it is close enough to be a slip; else empty.
+[[nodiscard]] std::string suggest(std::string_view word,
+                                  std::span<const std::string_view> candidates);
+
+/// True if `name` matches `glob` ('*' any run, '?' any one; everything else literal).
+[[nodiscard]] bool matchesGlob(std::string_view glob, std::string_view name) noexcept;
+
+}  // namespace palpate

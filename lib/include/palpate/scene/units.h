@@ -1,0 +1,41 @@
+#pragma once
+/// Physical quantities written with their unit ("1500 N/m"), and length units.
+
+#include <optional>
+#include <string_view>
+
+namespace palpate {
+
+enum class Dimension {
+  kLength,       ///< m
+  kForce,        ///< N
+  kStiffness,    ///< N/m
+  kDamping,      ///< N.s/m
+  kVelocity,     ///< m/s
+  kTime,         ///< s
+  kFrequency,    ///< Hz
+  kStiffness2,   ///< N/m^2
+  kDamping2,     ///< N.s/m^2
+};
+
+/// Metres in one `unit` ("mm", "cm", "m", "um", "in"); nothing if the unit is not known.
+[[nodiscard]] std::optional<double> metresPer(std::string_view unit) noexcept;
+
+/// What became of a quantity's text.
+struct Quantity {
+  enum class Status { kOk, kNotANumber, kMissingUnit, kUnknownUnit, kWrongDimension };
+  Status status = Status::kNotANumber;
+  double si = 0.0;             ///< value in SI
+  std::string_view unit = {};  ///< as written
+};
+
+/// "1500 N/m", "1.5 N/mm", "4 N.s/m", "0.5 Ns/m", "2.8 N", "3 mm", "30 um".
+[[nodiscard]] Quantity parseQuantity(std::string_view text, Dimension dimension) noexcept;
+
+/// Plain decimal number, the whole text, finite, no octal, hex or inf; else nothing.
+[[nodiscard]] std::optional<double> parseNumber(std::string_view text) noexcept;
+
+/// The SI unit and some that are understood, for messages: "N/m (also N/mm, N/cm, kN/m)".
+[[nodiscard]] std::string_view unitHelp(Dimension dimension) noexcept;
+
+}  // namespace palpate

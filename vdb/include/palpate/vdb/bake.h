@@ -1,0 +1,32 @@
+#pragma once
+/// Fields and meshes -> narrow-band level sets, in parallel (TBB).
+
+#include <optional>
+#include <string>
+
+#include "palpate/vdb/level_set.h"
+#include "palpate/vdb/mesh.h"
+
+namespace palpate::vdb {
+
+struct BakeOptions {
+  double voxel_size = 0.0;   ///< [m] must be positive
+  double half_width = 4.0;   ///< [voxels] at least 2
+  std::optional<Box3> box;   ///< [m] where to bake; needed for unbounded fields
+  std::string name = "surface";
+  std::string length_unit = "mm";  ///< unit that the grid's world coordinates are stored in
+  std::uint64_t max_memory = 0;    ///< [bytes] 0: 80 % of the machine's
+  std::map<std::string, std::string> metadata = {};
+};
+
+/// Values are the field's own if it is exact; S / |grad S| otherwise.
+/// @throws Error: kInput for options or an empty result (a shape the voxels cannot hold), kOperation
+/// for memory, kCancelled.
+[[nodiscard]] LevelSet bake(const Field& field, const BakeOptions& options,
+                            const Progress& progress = {});
+
+/// `mesh` must be closed (checkMesh()); an open one is refused, naming its boundary edges.
+[[nodiscard]] LevelSet bakeMesh(const Mesh& mesh, const BakeOptions& options,
+                                const Progress& progress = {});
+
+}  // namespace palpate::vdb

@@ -1,0 +1,30 @@
+#pragma once
+/// .vdb files in and out, with the metadata of DESIGN.md section 6.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "palpate/vdb/level_set.h"
+
+namespace palpate::vdb {
+
+/// Writes beside `path` and renames; nothing is left behind on failure. Replaces an existing file only if
+/// `overwrite`. @throws Error (kOperation).
+void writeVdb(const std::string& path, std::span<const LevelSet> grids, bool overwrite);
+
+/// One grid of a file as `info` reports it; level sets and others alike.
+struct VdbGridSummary {
+  std::string name;
+  std::string type;        ///< "FloatGrid", ...
+  std::string grid_class;  ///< "level set", "fog volume", "unknown"
+  LevelSetInfo info;       ///< as far as it applies
+};
+[[nodiscard]] std::vector<VdbGridSummary> listVdb(const std::string& path);
+
+/// Reads a float level set; `name` may be empty if the file holds exactly one. A file without a length
+/// unit in its metadata needs `unit_if_missing`. @throws Error (kInput) with the reason and remedy.
+[[nodiscard]] LevelSet readVdb(const std::string& path, const std::string& name,
+                               const std::string& unit_if_missing);
+
+}  // namespace palpate::vdb

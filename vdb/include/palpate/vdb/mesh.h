@@ -1,0 +1,38 @@
+#pragma once
+/// Triangle meshes and their checks.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "palpate/core/math.h"
+
+namespace palpate::vdb {
+
+struct Mesh {
+  std::string source;  ///< file name, for messages
+  std::vector<Vec3> vertices;  ///< [m]
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// What a look at a mesh showed.
+struct MeshReport {
+  Box3 bounds;                         ///< [m]
+  std::size_t degenerate_triangles = 0;
+  std::size_t boundary_edges = 0;      ///< with one triangle
+  std::size_t non_manifold_edges = 0;  ///< with three or more
+  std::size_t flipped_edges = 0;       ///< with two triangles that run along it the same way
+  std::size_t components = 0;
+  double volume = 0.0;                 ///< [m^3] signed; positive if triangles wind outwards
+  Vec3 first_boundary{0.0, 0.0, 0.0};  ///< [m] middle of one boundary edge, if there is any
+  [[nodiscard]] bool isClosed() const noexcept { return boundary_edges == 0; }
+};
+
+/// Reads STL, OBJ, PLY, glTF / GLB with Assimp; welds identical vertices; drops zero-area triangles.
+/// @throws Error (kInput): missing, unreadable, no faces, NaN or infinite vertices, bad indices.
+[[nodiscard]] Mesh readMesh(const std::string& path, double metres_per_unit);
+
+[[nodiscard]] MeshReport checkMesh(const Mesh& mesh);
+
+}  // namespace palpate::vdb
