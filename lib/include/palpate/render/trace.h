@@ -11,10 +11,10 @@
 namespace palpate {
 
 struct TraceRow {
-  double t = 0.0;                ///< [s]
-  Vec3 hip{0.0, 0.0, 0.0};       ///< [m]
+  double t = 0.0;           ///< [s]
+  Vec3 hip{0.0, 0.0, 0.0};  ///< [m]
   TickResult result = {};
-  std::int64_t tick_ns = 0;      ///< [ns] of the renderer's update alone
+  std::int64_t tick_ns = 0;  ///< [ns] of the renderer's update alone
 };
 
 /// Fixed capacity, so that adding a row never allocates.
