@@ -29,7 +29,8 @@ elapsed() { printf '%d s' "$SECONDS"; }
 
 missing_packages() { # NAME...: those that are not installed, one a line
   local installed
-  installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null |
+  # dpkg-query fails when it does not know a name, which only means that it is missing.
+  installed=$({ dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' "$@" 2> /dev/null || true; } |
     sed -n 's/^installed //p')
   printf '%s\n' "$@" | grep --line-regexp --fixed-strings --invert-match "$installed" || true
 }
@@ -74,8 +75,7 @@ use_ccache() { # what was compiled once, here or in another clone of this projec
 }
 
 configure() { # PRESET [-D...]: only when there is something new to configure
-  local preset=$1 dir=$root/build/$1
-  local wanted="$*"
+  local dir=$root/build/$1 wanted="$*"
   if [ -f "$dir/build.ninja" ] && [ "$dir/build.ninja" -nt "$root/CMakePresets.json" ] &&
     [ "$(cat "$dir/.configured" 2> /dev/null)" = "$wanted" ]; then
     return 0 # ninja itself sees changes of CMakeLists.txt
