@@ -66,8 +66,8 @@ TEST(Nifti, AffinesOfTheSharedScansAreNibabels) {
 }
 
 TEST(Nifti, AffinesOfMricronsTemplatesAreNibabels) {
-  // Two of them (JHU-WhiteMatter 1 mm, natbrainlab) have an sform and a qform that contradict each
-  // other: just what must not be guessed.
+  // Most of them that set both forms let them contradict each other (a qform without its offset, a
+  // mirrored axis): just what must not be guessed.
   std::vector<std::string> agreeing;
   const std::vector<std::string> files = niftiFilesBelow(kMricron);
   const auto conflicts = test::askPython("conflict", files);
