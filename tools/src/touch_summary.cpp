@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "json_parts.h"
+
 namespace palpate::tools {
 namespace {
 
@@ -13,8 +15,6 @@ double quantile(const std::vector<std::int64_t>& sorted, double share) {
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
   return static_cast<double>(sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1]);
 }
-
-Json vectorJson(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 
 }  // namespace
 
