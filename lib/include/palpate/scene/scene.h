@@ -16,8 +16,8 @@ namespace palpate {
 /// A region as the loop and the reports see it.
 struct Region {
   std::string name;
-  int content = -1;   ///< index into Scene::materials(); -1: nothing is felt
-  int wall = -1;      ///< own wall's material; -1 where absent (and for outside)
+  int content = -1;  ///< index into Scene::materials(); -1: nothing is felt
+  int wall = -1;     ///< own wall's material; -1 where absent (and for outside)
   bool wall_absent = false;
   bool reachable = true;  ///< by ports and absent walls from the start region
   FieldPtr field;         ///< the layer's whole field (label group share applied); null for outside
