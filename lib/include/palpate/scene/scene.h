@@ -33,6 +33,10 @@ class Scene {
   [[nodiscard]] std::span<const Material> materials() const noexcept { return materials_; }
   [[nodiscard]] const Passages& passages() const noexcept { return passages_; }
   [[nodiscard]] std::span<const Port> ports() const noexcept { return passages_.ports(); }
+  /// True if the two regions were found to have a wall (or an absent one) between them.
+  [[nodiscard]] bool touches(RegionId a, RegionId b) const {
+    return a != b && touch_[a * regions_.size() + b];
+  }
   [[nodiscard]] RegionId startRegion() const noexcept { return start_; }
   [[nodiscard]] bool keepsMemory() const noexcept { return keep_memory_; }
   [[nodiscard]] RendererKind renderer() const noexcept { return renderer_; }
@@ -56,6 +60,7 @@ class Scene {
   std::vector<Region> regions_;
   std::vector<Material> materials_;
   Passages passages_;
+  std::vector<bool> touch_;  ///< [a * regions + b], symmetric
   std::vector<NamedField> fields_;
   RegionId start_ = kOutside;
   bool keep_memory_ = false;
