@@ -72,6 +72,7 @@ class SceneCompiler {
     std::vector<Wall> walls = makeWalls();
     scene_->passages_ = Passages(count(), std::move(walls), makePorts());
     scene_->start_ = start();
+    scene_->touch_ = survey_.touch;
     markReachable();
     scene_->keep_memory_ = description_.keep_memory;
     scene_->renderer_ = description_.renderer;
