@@ -77,7 +77,8 @@ struct Partition::Builder {
       case FieldStructure::Kind::kUnion:
       case FieldStructure::Kind::kIntersection: {
         // Folding each operand in as it comes keeps the stack as deep as the tree, not as wide.
-        const auto op = structure.kind == FieldStructure::Kind::kUnion ? Step::Op::kOr : Step::Op::kAnd;
+        const auto op =
+            structure.kind == FieldStructure::Kind::kUnion ? Step::Op::kOr : Step::Op::kAnd;
         bool is_first = true;
         for (const FieldPtr& operand : structure.operands) {
           append(program, operand, pose, depth + (is_first ? 0 : 1));

@@ -84,7 +84,8 @@ Facet Passages::facet(const Partition& partition, RegionId from, const Signs& th
       continue;
     }
     // The mask's own leaves are not among those crossed, so the far cell tells its state as well.
-    if (port.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(port.mask), there)) continue;
+    if (port.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(port.mask), there))
+      continue;
     if (!std::all_of(port.after.begin(), port.after.end(),
                      [&](PortId before) { return passed.contains(before); })) {
       continue;

@@ -72,6 +72,7 @@ class SceneCompiler {
     std::vector<Wall> walls = makeWalls();
     scene_->passages_ = Passages(count(), std::move(walls), makePorts());
     scene_->start_ = start();
+    scene_->touch_ = survey_.touch;
     markReachable();
     scene_->keep_memory_ = description_.keep_memory;
     scene_->renderer_ = description_.renderer;
@@ -121,8 +122,9 @@ class SceneCompiler {
     std::vector<std::string_view> names;
     for (const Material& m : description_.materials) names.push_back(m.name);
     const std::string near = suggest(name, names);
-    throw errorAt(place, "scene.unknown_material", "there is no material " + quoted(name),
-                  near.empty() ? "define it below `materials:`" : "did you mean " + quoted(near) + "?");
+    throw errorAt(
+        place, "scene.unknown_material", "there is no material " + quoted(name),
+        near.empty() ? "define it below `materials:`" : "did you mean " + quoted(near) + "?");
   }
 
   Wall wall(const WallDescription& given, const SourcePlace& place) {
@@ -171,8 +173,9 @@ class SceneCompiler {
     std::vector<std::string_view> names;
     for (const Region& region : scene_->regions_) names.push_back(region.name);
     const std::string near = suggest(name, names);
-    return errorAt(place, "scene.unknown_layer", "there is no layer " + quoted(name),
-                   near.empty() ? "name a layer, or 'outside'" : "did you mean " + quoted(near) + "?");
+    return errorAt(
+        place, "scene.unknown_layer", "there is no layer " + quoted(name),
+        near.empty() ? "name a layer, or 'outside'" : "did you mean " + quoted(near) + "?");
   }
 
   std::vector<Wall> makeWalls() {
@@ -231,11 +234,12 @@ class SceneCompiler {
       });
     };
     if (leaves.empty() || !(bounds(port.from) || bounds(port.to))) {
-      throw errorAt(given.place, "scene.port_face",
-                    "port " + quoted(given.name) + " is on " + quoted(given.on_name) +
-                        ", which is no part of " + quoted(given.from) + " or " + quoted(given.to),
-                    "name a field that the layer's `inside` is made from, or use `where:` for an opening "
-                    "of any shape");
+      throw errorAt(
+          given.place, "scene.port_face",
+          "port " + quoted(given.name) + " is on " + quoted(given.on_name) +
+              ", which is no part of " + quoted(given.from) + " or " + quoted(given.to),
+          "name a field that the layer's `inside` is made from, or use `where:` for an opening "
+          "of any shape");
     }
     return leaves;
   }
@@ -319,7 +323,8 @@ class SceneCompiler {
       for (std::size_t a = 0; a < count(); ++a) {
         if (!scene_->regions_[a].reachable) continue;
         for (std::size_t b = 0; b < count(); ++b) {
-          if (a == b || !survey_.touches(static_cast<RegionId>(a), static_cast<RegionId>(b))) continue;
+          if (a == b || !survey_.touches(static_cast<RegionId>(a), static_cast<RegionId>(b)))
+            continue;
           changed |= spread(static_cast<RegionId>(a), static_cast<RegionId>(b), passable);
         }
       }

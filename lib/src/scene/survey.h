@@ -10,9 +10,9 @@ namespace palpate {
 
 struct Survey {
   std::size_t regions = 0;
-  std::vector<bool> touch;      ///< [a * regions + b], symmetric
-  std::vector<bool> has_seed;   ///< region was met
-  std::vector<Vec3> seed;       ///< [m] a point of it, as deep inside it as the walk saw
+  std::vector<bool> touch;     ///< [a * regions + b], symmetric
+  std::vector<bool> has_seed;  ///< region was met
+  std::vector<Vec3> seed;      ///< [m] a point of it, as deep inside it as the walk saw
 
   [[nodiscard]] bool touches(RegionId a, RegionId b) const { return touch[a * regions + b]; }
 };

@@ -11,10 +11,10 @@ namespace palpate {
 /// One evaluation of a scalar field. Value and gradient come together because contact always needs
 /// both, and because a narrow-band grid reads the same voxels for either.
 struct FieldSample {
-  double value = 0.0;              ///< [m] negative inside, zero on the surface, positive outside
-  Vec3 gradient{0.0, 0.0, 0.0};    ///< [-] of `value` by position, in the frame of the query
-  bool in_band = true;             ///< false: |value| is only a lower bound of the distance with the
-                                   ///< right sign, and the gradient is zero (grids, far away)
+  double value = 0.0;            ///< [m] negative inside, zero on the surface, positive outside
+  Vec3 gradient{0.0, 0.0, 0.0};  ///< [-] of `value` by position, in the frame of the query
+  bool in_band = true;           ///< false: |value| is only a lower bound of the distance with the
+                                 ///< right sign, and the gradient is zero (grids, far away)
 };
 
 /// A sample with its curvature.

@@ -11,7 +11,8 @@
 
 namespace palpate {
 
-using RegionId = std::uint16_t;  ///< 0 is `outside`; layer i (from 0, outermost first) is region i + 1
+using RegionId =
+    std::uint16_t;  ///< 0 is `outside`; layer i (from 0, outermost first) is region i + 1
 using LeafId = std::uint16_t;
 
 inline constexpr RegionId kOutside = 0;

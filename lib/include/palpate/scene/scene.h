@@ -16,8 +16,8 @@ namespace palpate {
 /// A region as the loop and the reports see it.
 struct Region {
   std::string name;
-  int content = -1;   ///< index into Scene::materials(); -1: nothing is felt
-  int wall = -1;      ///< own wall's material; -1 where absent (and for outside)
+  int content = -1;  ///< index into Scene::materials(); -1: nothing is felt
+  int wall = -1;     ///< own wall's material; -1 where absent (and for outside)
   bool wall_absent = false;
   bool reachable = true;  ///< by ports and absent walls from the start region
   FieldPtr field;         ///< the layer's whole field (label group share applied); null for outside
@@ -33,6 +33,10 @@ class Scene {
   [[nodiscard]] std::span<const Material> materials() const noexcept { return materials_; }
   [[nodiscard]] const Passages& passages() const noexcept { return passages_; }
   [[nodiscard]] std::span<const Port> ports() const noexcept { return passages_.ports(); }
+  /// True if the two regions were found to have a wall (or an absent one) between them.
+  [[nodiscard]] bool touches(RegionId a, RegionId b) const {
+    return a != b && touch_[a * regions_.size() + b];
+  }
   [[nodiscard]] RegionId startRegion() const noexcept { return start_; }
   [[nodiscard]] bool keepsMemory() const noexcept { return keep_memory_; }
   [[nodiscard]] RendererKind renderer() const noexcept { return renderer_; }
@@ -56,6 +60,7 @@ class Scene {
   std::vector<Region> regions_;
   std::vector<Material> materials_;
   Passages passages_;
+  std::vector<bool> touch_;  ///< [a * regions + b], symmetric
   std::vector<NamedField> fields_;
   RegionId start_ = kOutside;
   bool keep_memory_ = false;
