@@ -43,6 +43,16 @@ SlideStep onSurface(const Vec3& pull, const HeldWall& wall, const Mat3& bend) no
   const double a = 1.0 - glm::dot(t1, b1);
   const double b = -glm::dot(t2, b1);
   const double c = 1.0 - glm::dot(t2, bend * t2);
+  SlideStep out;
+  // Far from the centres of curvature the matrix is safely positive: solve it as it is.
+  const double det = a * c - b * b;
+  const double trace = a + c;
+  if (trace > 0.0 && det > kSmallestEigenvalue * (trace - kSmallestEigenvalue)) {
+    const double p1 = glm::dot(t1, pull);
+    const double p2 = glm::dot(t2, pull);
+    out.step = t1 * ((c * p1 - b * p2) / det) + t2 * ((a * p2 - b * p1) / det);
+    return out;
+  }
   // Eigenvalues and vectors of [[a, b], [b, c]].
   const double mean = 0.5 * (a + c);
   const double half = 0.5 * (a - c);
@@ -56,7 +66,6 @@ SlideStep onSurface(const Vec3& pull, const HeldWall& wall, const Mat3& bend) no
     e_high = std::cos(angle) * t1 + std::sin(angle) * t2;
     e_low = -std::sin(angle) * t1 + std::cos(angle) * t2;
   }
-  SlideStep out;
   out.step = e_high * (glm::dot(e_high, pull) / bounded(high)) +
              e_low * (glm::dot(e_low, pull) / bounded(low));
   out.is_saddle = low < -1e-9;
@@ -82,6 +91,16 @@ Vec3 tangentialPart(const Vec3& v, std::span<const HeldWall> walls) noexcept {
   }
 }
 
+bool mayBeSaddle(std::span<const HeldWall> walls) noexcept {
+  double norm = 0.0;
+  for (const HeldWall& wall : walls) {
+    const Mat3& h = wall.jet.hessian;
+    const double square = glm::dot(h[0], h[0]) + glm::dot(h[1], h[1]) + glm::dot(h[2], h[2]);
+    norm += wall.multiplier * std::sqrt(square / glm::dot(wall.jet.gradient, wall.jet.gradient));
+  }
+  return norm >= 1.0;
+}
+
 SlideStep slideStep(const Vec3& pull, std::span<const HeldWall> walls) noexcept {
   SlideStep out;
   if (walls.empty() || walls.size() > 2) return out;
@@ -99,8 +118,9 @@ SlideStep slideStep(const Vec3& pull, std::span<const HeldWall> walls) noexcept 
   return out;
 }
 
-bool pullBack(Vec3& x, std::span<const HeldWall> walls) noexcept {
+bool pullBack(Vec3& x, std::span<const HeldWall> walls, bool& began_free) noexcept {
   const std::size_t count = std::min<std::size_t>(walls.size(), 3);
+  began_free = true;
   for (int iteration = 0; iteration < 8; ++iteration) {
     std::array<FieldSample, 3> s{};
     bool on_all = true;
@@ -108,6 +128,7 @@ bool pullBack(Vec3& x, std::span<const HeldWall> walls) noexcept {
       s[i] = walls[i].field->sample(x);
       if (!s[i].in_band) return false;
       on_all = on_all && std::fabs(s[i].value) <= walls[i].tolerance;
+      if (iteration == 0 && walls[i].side * s[i].value < -walls[i].tolerance) began_free = false;
     }
     if (on_all) return true;
     // Smallest correction that puts the linearised values to zero: x -= J^T (J J^T)^-1 s.

@@ -30,7 +30,8 @@ CellWalker::CellWalker(const Scene& scene)
       signs_(leaves_.size()),
       beyond_(leaves_.size()),
       due_(leaves_.size()),
-      hot_(leaves_.size()) {
+      hot_(leaves_.size()),
+      known_(leaves_.size()) {
   for (std::size_t i = 0; i < leaves_.size(); ++i) {
     tolerance_[i] = kOnSurface * leaves_[i].feature * leaves_[i].lipschitz;
   }
@@ -50,6 +51,7 @@ void CellWalker::place(const Vec3& p) noexcept {
   }
   region_ = scene_.partition().regionOf(signs_);
   mouth_ = -1;
+  ++state_;
 }
 
 void CellWalker::beginTick() noexcept {
@@ -167,16 +169,21 @@ void CellWalker::gather(LeafId leaf) noexcept {
 
 Facet CellWalker::facetAt(LeafId leaf) noexcept {
   gather(leaf);
+  Known& known = known_[leaf];
+  if (crossing_count_ == 1 && known.state == state_) return known.facet;
   beyond_ = signs_;  // same size: copies words, allocates nothing
   for (std::size_t i = 0; i < crossing_count_; ++i) beyond_.flip(crossing_[i]);
-  return scene_.passages().facet(scene_.partition(), region_, beyond_,
-                                 std::span(crossing_.data(), crossing_count_), passed_);
+  const Facet facet = scene_.passages().facet(
+      scene_.partition(), region_, beyond_, std::span(crossing_.data(), crossing_count_), passed_);
+  if (crossing_count_ == 1) known = {facet, state_};
+  return facet;
 }
 
 void CellWalker::cross(LeafId leaf, const Facet& facet) noexcept {
   gather(leaf);
   for (std::size_t i = 0; i < crossing_count_; ++i) signs_.flip(crossing_[i]);
   --crossings_left_;
+  ++state_;
   if (facet.beyond == region_) return;
   const bool keep = scene_.keepsMemory();
   const bool by_port = facet.kind == Facet::Kind::kOpen || facet.opens_at > 0.0;

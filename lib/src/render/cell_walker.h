@@ -27,7 +27,10 @@ class CellWalker {
   /// Puts the point at `p` [m] as if it had always been there: signs and region are taken from `p`.
   void place(const Vec3& p) noexcept;
   /// Forgets ports passed.
-  void forget() noexcept { passed_.clear(); }
+  void forget() noexcept {
+    passed_.clear();
+    ++state_;
+  }
   /// A new tick: no events yet, fresh budgets.
   void beginTick() noexcept;
 
@@ -99,6 +102,14 @@ class CellWalker {
   std::vector<LeafId> hot_;
   std::size_t hot_count_ = 0;
   double cold_due_ = 0.0;
+
+  /// A facet looked up in the present state, valid while nothing was crossed.
+  struct Known {
+    Facet facet;
+    std::uint32_t state = 0;
+  };
+  std::vector<Known> known_;  ///< by leaf, where no other leaf coincides
+  std::uint32_t state_ = 1;   ///< counts crossings and placements
 
   std::array<LeafId, 8> crossing_{};  ///< scratch of gather()
   std::size_t crossing_count_ = 0;

@@ -76,9 +76,10 @@ void ConstraintRenderer::track(const Vec3& hip) noexcept {
     if (puncture()) continue;
     if (isSettled(hip)) {
       // At rest by the first order; by the second it may still be able to come closer.
+      if (sticking_ || !mayBeSaddle(contact_.walls())) return;
       const SlideStep rest = slideStep(contact_.pull, contact_.walls());
       const double length = 1e-3 * walker_.leaf(contact_.leaf[contact_.index[0]]).feature;
-      if (!rest.is_saddle || sticking_ || !slideBy(hip, length * rest.downhill, true)) return;
+      if (!rest.is_saddle || !slideBy(hip, length * rest.downhill, true)) return;
       continue;
     }
     if (!slide(hip)) break;
@@ -209,7 +210,8 @@ bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_impr
   const Vec3 x = walker_.position();
   const Vec3 ahead = x + by;
   Vec3 landed = ahead;
-  if (!pullBack(landed, c.walls())) return false;
+  bool above = true;
+  if (!pullBack(landed, c.walls(), above)) return false;
   if (must_improve) {
     // With friction the aim is not P but the point that lags behind it by what the cone holds.
     const Vec3 aim = hip - c.lag;
@@ -221,10 +223,6 @@ bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_impr
     }
     const double limit = glm::dot(before, before) + 4.0 * sunk * glm::length(before);
     if (glm::dot(after, after) > limit * (1.0 + 1e-13)) return false;
-  }
-  bool above = true;
-  for (const HeldWall& wall : c.walls()) {
-    above = above && wall.side * wall.field->value(ahead) >= -wall.tolerance;
   }
   const std::span<const LeafId> sliding(c.sliding.data(), c.sliding_count);
   // Over a bulge the tangent runs in the open and comes down; in a hollow the chord is the open way.

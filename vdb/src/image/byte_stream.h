@@ -30,6 +30,8 @@ class ByteStream {
   void verifyEnd();
 
   [[nodiscard]] bool isGzip() const noexcept { return gzip_; }
+  /// True once reading came to where gzip data end before their proper end.
+  [[nodiscard]] bool brokeOff() const noexcept { return broken_off_; }
   [[nodiscard]] std::uint64_t fileSize() const noexcept { return file_size_; }
   /// The most bytes that the content can have (a deflate stream grows by less than 1032 times).
   [[nodiscard]] std::uint64_t contentLimit() const noexcept {

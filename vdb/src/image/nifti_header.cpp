@@ -348,7 +348,10 @@ NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path, std::ui
     return header_size == static_cast<std::int32_t>(size) ||
            other_order == static_cast<std::int32_t>(size);
   };
-  if (!is(kNifti1Size) && !is(kNifti2Size)) throw notNifti(path);
+  if (!is(kNifti1Size) && !is(kNifti2Size)) {
+    if (consumed < sizeof header_size && stream.brokeOff()) stream.verifyEnd();
+    throw notNifti(path);
+  }
   const std::size_t wanted = is(kNifti1Size) ? kNifti1Size : kNifti2Size;
   if (consumed == kNifti1Size && wanted > consumed) {
     consumed += stream.read(std::span(bytes).subspan(kNifti1Size));

@@ -33,7 +33,12 @@ struct SlideStep {
 /// min |x - P|^2 on S = 0.
 [[nodiscard]] SlideStep slideStep(const Vec3& pull, std::span<const HeldWall> walls) noexcept;
 
-/// Gauss-Newton onto all walls from `x` [m]; false if it did not come within the tolerances.
-[[nodiscard]] bool pullBack(Vec3& x, std::span<const HeldWall> walls) noexcept;
+/// Cheap test before slideStep() at rest: false if no direction along the walls can have a negative
+/// curvature (the walls bend too little for the depth).
+[[nodiscard]] bool mayBeSaddle(std::span<const HeldWall> walls) noexcept;
+
+/// Gauss-Newton onto all walls from `x` [m]; false if it did not come within the tolerances. `began_free`
+/// tells whether `x` was on the free side of all of them.
+[[nodiscard]] bool pullBack(Vec3& x, std::span<const HeldWall> walls, bool& began_free) noexcept;
 
 }  // namespace palpate

@@ -1,0 +1,79 @@
+#include <algorithm>
+
+#include "fields/checks.h"
+#include "fields/vector.h"
+#include "palpate/fields/primitives.h"
+
+namespace palpate {
+namespace {
+
+class Box final : public Field {
+ public:
+  Box(const Vec3& center, const Vec3& half_size)
+      : center_(center), half_(half_size), feature_(2.0 * smallest(half_size)) {}
+
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    const Vec3 d = p - center_;
+    const Vec3 q = glm::abs(d) - half_;
+    if (isInside(q)) {
+      const int axis = nearestFace(q);
+      FieldSample out{q[axis], Vec3(0.0)};
+      out.gradient[axis] = fields::side(d[axis]);
+      return out;
+    }
+    const fields::Polar away = fields::polar(glm::max(q, Vec3(0.0)), Vec3(1.0, 0.0, 0.0));
+    return {away.length, signedLike(away.direction, d)};
+  }
+
+  [[nodiscard]] double value(const Vec3& p) const noexcept override {
+    const Vec3 q = glm::abs(p - center_) - half_;
+    if (isInside(q)) return q[nearestFace(q)];
+    return fields::length(glm::max(q, Vec3(0.0)));
+  }
+
+  [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
+    const FieldSample here = sample(p);
+    FieldJet out{here.value, here.gradient, Mat3(0.0)};
+    const Vec3 q = glm::abs(p - center_) - half_;
+    if (isInside(q) || !(here.value > 1e-100)) return out;
+    // Beyond a face nothing bends; beyond an edge or corner the distance grows from a line or point.
+    const double curvature = 1.0 / here.value;
+    out.hessian = outer(here.gradient, here.gradient) * -curvature;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (q[axis] > 0.0) out.hessian[axis][axis] += curvature;
+    }
+    return out;
+  }
+
+  [[nodiscard]] Box3 bounds() const noexcept override { return {center_ - half_, center_ + half_}; }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kExact; }
+  [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
+  [[nodiscard]] double featureSize() const noexcept override { return feature_; }
+
+ private:
+  static double smallest(const Vec3& v) { return std::min({v.x, v.y, v.z}); }
+  static bool isInside(const Vec3& q) noexcept { return q.x <= 0.0 && q.y <= 0.0 && q.z <= 0.0; }
+  static int nearestFace(const Vec3& q) noexcept {
+    int axis = 0;
+    if (q.y > q[axis]) axis = 1;
+    if (q.z > q[axis]) axis = 2;
+    return axis;
+  }
+  static Vec3 signedLike(const Vec3& v, const Vec3& d) noexcept {
+    return {v.x * fields::side(d.x), v.y * fields::side(d.y), v.z * fields::side(d.z)};
+  }
+
+  Vec3 center_;
+  Vec3 half_;
+  double feature_;
+};
+
+}  // namespace
+
+FieldPtr box(const Vec3& center, const Vec3& size) {
+  fields::checkPoint("box", "center", center);
+  fields::checkLengths("box", "size", size);
+  return std::make_shared<Box>(center, 0.5 * size);
+}
+
+}  // namespace palpate

@@ -1,0 +1,108 @@
+#include "fields/checks.h"
+
+#include <charconv>
+#include <string>
+#include <utility>
+
+#include "fields/vector.h"
+#include "palpate/core/error.h"
+
+namespace palpate::fields {
+namespace {
+
+std::string text(double value) {
+  char buffer[32];
+  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
+  return {buffer, result.ptr};
+}
+
+std::string text(const Vec3& v) {
+  return "[" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + "]";
+}
+
+std::string place(std::string_view shape, std::string_view parameter) {
+  return std::string(shape) + ": " + std::string(parameter);
+}
+
+bool isLength(double value) { return value >= kSmallestLength && value <= kLargestLength; }
+
+std::string lengthRange() {
+  return "from " + text(kSmallestLength) + " to " + text(kLargestLength) + " m";
+}
+
+}  // namespace
+
+void checkLength(std::string_view shape, std::string_view parameter, double value) {
+  if (isLength(value)) return;
+  throw inputError(
+      "field.bad_length",
+      place(shape, parameter) + " is " + text(value) + ", permitted is " + lengthRange(),
+      "lengths are positive and in meters");
+}
+
+void checkNonNegative(std::string_view shape, std::string_view parameter, double value) {
+  checkRange(shape, parameter, value, 0.0, kLargestLength);
+}
+
+void checkRange(std::string_view shape, std::string_view parameter, double value, double lowest,
+                double highest) {
+  if (value >= lowest && value <= highest) return;
+  throw inputError("field.out_of_range", place(shape, parameter) + " is " + text(value) +
+                                             ", permitted is from " + text(lowest) + " to " +
+                                             text(highest));
+}
+
+void checkFinite(std::string_view shape, std::string_view parameter, double value) {
+  if (std::isfinite(value)) return;
+  throw inputError("field.not_finite", place(shape, parameter) + " is " + text(value) +
+                                           ", permitted is a finite number");
+}
+
+void checkPoint(std::string_view shape, std::string_view parameter, const Vec3& value) {
+  if (isFinite(value)) return;
+  throw inputError("field.not_finite", place(shape, parameter) + " is " + text(value) +
+                                           ", permitted are three finite numbers");
+}
+
+void checkLengths(std::string_view shape, std::string_view parameter, const Vec3& value) {
+  if (isLength(value.x) && isLength(value.y) && isLength(value.z)) return;
+  throw inputError("field.bad_length",
+                   place(shape, parameter) + " is " + text(value) + ", permitted is " +
+                       lengthRange() + " for each of the three",
+                   "lengths are positive and in meters");
+}
+
+Vec3 checkedDirection(std::string_view shape, std::string_view parameter, const Vec3& value) {
+  checkPoint(shape, parameter, value);
+  const Polar direction = polar(value, Vec3(0.0, 0.0, 0.0));
+  if (direction.length > 0.0) {
+    // Once more: the first quotient is off by an ulp or two, and every query would inherit it.
+    return direction.direction / glm::length(direction.direction);
+  }
+  throw inputError("field.zero_direction",
+                   place(shape, parameter) + " is " + text(value) + " and has no direction",
+                   "permitted is any vector but zero; its length does not matter");
+}
+
+FieldPtr checkedOperand(std::string_view shape, FieldPtr value) {
+  if (value) return value;
+  throw inputError("field.null_operand",
+                   std::string(shape) + ": the operand is null, permitted is a field");
+}
+
+void checkOperands(std::string_view shape, const std::vector<FieldPtr>& operands,
+                   std::size_t fewest) {
+  if (operands.size() < fewest) {
+    throw inputError("field.too_few_operands",
+                     std::string(shape) + ": there are " + std::to_string(operands.size()) +
+                         " operands, permitted is " + std::to_string(fewest) + " or more");
+  }
+  for (std::size_t i = 0; i < operands.size(); ++i) {
+    if (operands[i]) continue;
+    throw inputError("field.null_operand",
+                     std::string(shape) + ": operand " + std::to_string(i + 1) + " of " +
+                         std::to_string(operands.size()) + " is null, permitted is a field");
+  }
+}
+
+}  // namespace palpate::fields

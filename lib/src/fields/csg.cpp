@@ -1,0 +1,191 @@
+#include "palpate/fields/csg.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "fields/checks.h"
+
+namespace palpate {
+namespace {
+
+using Kind = FieldStructure::Kind;
+
+/// Properties that min and max of fields have alike.
+struct Shared {
+  Metric metric = Metric::kBound;
+  double lipschitz = 0.0;
+  Box3 lipschitz_domain = Box3::everything();
+  double feature = kInfinity;
+};
+
+Shared sharedBy(std::span<const FieldPtr> operands) {
+  Shared out;
+  for (const FieldPtr& operand : operands) {
+    if (operand->metric() == Metric::kImplicit) out.metric = Metric::kImplicit;
+    out.lipschitz = std::max(out.lipschitz, operand->lipschitz());
+    out.lipschitz_domain = out.lipschitz_domain.intersectedWith(operand->lipschitzDomain());
+    out.feature = std::min(out.feature, operand->featureSize());
+  }
+  return out;
+}
+
+/// Disjoint boxes meet in a box turned inside out; a plain empty one can safely be united again.
+Box3 tidy(const Box3& box) { return box.isEmpty() ? Box3{} : box; }
+
+/// Box around S >= 0, as small as the structure of the field tells.
+Box3 boundsOfComplement(const Field& field) {
+  const FieldStructure structure = field.structure();
+  switch (structure.kind) {
+    case Kind::kUnion: {
+      Box3 box = Box3::everything();
+      for (const FieldPtr& operand : structure.operands) {
+        box = box.intersectedWith(boundsOfComplement(*operand));
+      }
+      return tidy(box);
+    }
+    case Kind::kIntersection: {
+      Box3 box;
+      for (const FieldPtr& operand : structure.operands) {
+        box = box.unitedWith(boundsOfComplement(*operand));
+      }
+      return box;
+    }
+    case Kind::kComplement:
+      return structure.operands.front()->bounds();
+    case Kind::kTransform:
+      return structure.pose.apply(boundsOfComplement(*structure.operands.front()));
+    case Kind::kLeaf:
+      break;
+  }
+  return Box3::everything();
+}
+
+/// min (union) or max (intersection) of the operands; where several are equal the first one counts.
+template <Kind kKind>
+class Extremum final : public Field {
+ public:
+  explicit Extremum(std::vector<FieldPtr> operands)
+      : operands_(std::move(operands)),
+        shared_(sharedBy(operands_)),
+        bounds_(boundsOf(operands_)) {}
+
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    FieldSample best = operands_.front()->sample(p);
+    for (std::size_t i = 1; i < operands_.size(); ++i) {
+      const FieldSample next = operands_[i]->sample(p);
+      if (wins(next.value, best.value)) best = next;
+    }
+    return best;
+  }
+
+  [[nodiscard]] double value(const Vec3& p) const noexcept override {
+    double best = operands_.front()->value(p);
+    for (std::size_t i = 1; i < operands_.size(); ++i) {
+      const double next = operands_[i]->value(p);
+      if (wins(next, best)) best = next;
+    }
+    return best;
+  }
+
+  [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
+    std::size_t active = 0;
+    double best = operands_.front()->value(p);
+    for (std::size_t i = 1; i < operands_.size(); ++i) {
+      const double next = operands_[i]->value(p);
+      if (!wins(next, best)) continue;
+      best = next;
+      active = i;
+    }
+    return operands_[active]->jet(p);
+  }
+
+  [[nodiscard]] Box3 bounds() const noexcept override { return bounds_; }
+  [[nodiscard]] Metric metric() const noexcept override { return shared_.metric; }
+  [[nodiscard]] double lipschitz() const noexcept override { return shared_.lipschitz; }
+  [[nodiscard]] Box3 lipschitzDomain() const noexcept override { return shared_.lipschitz_domain; }
+  [[nodiscard]] double featureSize() const noexcept override { return shared_.feature; }
+  [[nodiscard]] FieldStructure structure() const noexcept override {
+    return {kKind, operands_, {}};
+  }
+
+ private:
+  static bool wins(double next, double best) noexcept {
+    return kKind == Kind::kUnion ? next < best : next > best;
+  }
+  static Box3 boundsOf(const std::vector<FieldPtr>& operands) {
+    Box3 box = kKind == Kind::kUnion ? Box3{} : Box3::everything();
+    for (const FieldPtr& operand : operands) {
+      const Box3 other = operand->bounds();
+      box = kKind == Kind::kUnion ? box.unitedWith(other) : box.intersectedWith(other);
+    }
+    return tidy(box);
+  }
+
+  std::vector<FieldPtr> operands_;
+  Shared shared_;
+  Box3 bounds_;
+};
+
+class Complement final : public Field {
+ public:
+  explicit Complement(FieldPtr operand)
+      : operands_{std::move(operand)}, bounds_(boundsOfComplement(*operands_.front())) {}
+
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    FieldSample out = operand().sample(p);
+    out.value = -out.value;
+    out.gradient = -out.gradient;
+    return out;
+  }
+  [[nodiscard]] double value(const Vec3& p) const noexcept override { return -operand().value(p); }
+  [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
+    FieldJet out = operand().jet(p);
+    out.value = -out.value;
+    out.gradient = -out.gradient;
+    out.hessian = -out.hessian;
+    return out;
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return bounds_; }
+  [[nodiscard]] Metric metric() const noexcept override { return operand().metric(); }
+  [[nodiscard]] double lipschitz() const noexcept override { return operand().lipschitz(); }
+  [[nodiscard]] Box3 lipschitzDomain() const noexcept override {
+    return operand().lipschitzDomain();
+  }
+  [[nodiscard]] double featureSize() const noexcept override { return operand().featureSize(); }
+  [[nodiscard]] FieldStructure structure() const noexcept override {
+    return {Kind::kComplement, operands_, {}};
+  }
+
+ private:
+  [[nodiscard]] const Field& operand() const noexcept { return *operands_.front(); }
+
+  std::array<FieldPtr, 1> operands_;
+  Box3 bounds_;
+};
+
+}  // namespace
+
+FieldPtr unite(std::vector<FieldPtr> operands) {
+  fields::checkOperands("union", operands, 1);
+  if (operands.size() == 1) return operands.front();
+  return std::make_shared<Extremum<Kind::kUnion>>(std::move(operands));
+}
+
+FieldPtr intersect(std::vector<FieldPtr> operands) {
+  fields::checkOperands("intersection", operands, 1);
+  if (operands.size() == 1) return operands.front();
+  return std::make_shared<Extremum<Kind::kIntersection>>(std::move(operands));
+}
+
+FieldPtr subtract(std::vector<FieldPtr> operands) {
+  fields::checkOperands("difference", operands, 1);
+  for (std::size_t i = 1; i < operands.size(); ++i) operands[i] = complement(operands[i]);
+  return intersect(std::move(operands));
+}
+
+FieldPtr complement(FieldPtr operand) {
+  return std::make_shared<Complement>(fields::checkedOperand("complement", std::move(operand)));
+}
+
+}  // namespace palpate

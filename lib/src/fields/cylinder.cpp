@@ -1,0 +1,54 @@
+#include <algorithm>
+
+#include "fields/checks.h"
+#include "fields/revolved.h"
+#include "palpate/fields/primitives.h"
+
+namespace palpate {
+namespace {
+
+/// A rectangle: the wall at `radius`, the caps at +-`half_height`.
+struct CylinderProfile {
+  double radius = 0.0;
+  double half_height = 0.0;
+
+  [[nodiscard]] fields::ProfileSample sample(double rho, double height) const noexcept {
+    const double up = fields::side(height);
+    const double beyond_wall = rho - radius;
+    const double beyond_cap = std::fabs(height) - half_height;
+    if (beyond_cap > 0.0 && beyond_wall > 0.0) {
+      const fields::Polar2 q = fields::polar2(beyond_wall, beyond_cap);
+      return {q.length, q.a, q.b * up};
+    }
+    if (beyond_cap > beyond_wall) return {beyond_cap, 0.0, up};
+    return {beyond_wall, 1.0, 0.0};
+  }
+
+  [[nodiscard]] fields::ProfileJet jet(double rho, double height) const noexcept {
+    const fields::ProfileSample at = sample(rho, height);
+    const double beyond_wall = rho - radius;
+    const double beyond_cap = std::fabs(height) - half_height;
+    if (!(beyond_cap > 0.0 && beyond_wall > 0.0)) return {at};
+    return fields::profileAround(at, {at.value, at.by_rho, at.by_height});
+  }
+
+  [[nodiscard]] Box3 bounds(const Vec3& center, const Vec3& axis) const noexcept {
+    const Vec3 extent = fields::discExtent(axis, radius) + glm::abs(axis) * half_height;
+    return {center - extent, center + extent};
+  }
+
+  [[nodiscard]] double featureSize() const noexcept { return std::min(radius, 2.0 * half_height); }
+};
+
+}  // namespace
+
+FieldPtr cylinder(const Vec3& center, const Vec3& axis, double radius, double height) {
+  fields::checkPoint("cylinder", "center", center);
+  const Vec3 unit = fields::checkedDirection("cylinder", "axis", axis);
+  fields::checkLength("cylinder", "radius", radius);
+  fields::checkLength("cylinder", "height", height);
+  return std::make_shared<fields::Revolved<CylinderProfile>>(center, unit,
+                                                             CylinderProfile{radius, 0.5 * height});
+}
+
+}  // namespace palpate
