@@ -1,6 +1,5 @@
 # OpenVDB, TBB, libnifti and Assimp as Debian 12 has them. Debian's FindOpenVDB.cmake is not used: it sets
 # BUILD_SHARED_LIBS in its caller and asks for libboost-iostreams-dev.
-include_guard(GLOBAL)
 include(CMakeFindDependencyMacro)
 find_dependency(TBB)
 find_dependency(assimp)

@@ -17,8 +17,8 @@ struct DeviceState {
 
 enum class DeviceStatus : std::uint8_t {
   kOk,
-  kEnd,           ///< a recorded or generated path is over; the loop ends
-  kStale,         ///< nothing new since the last call; the previous reading was returned
+  kEnd,    ///< a recorded or generated path is over; the loop ends
+  kStale,  ///< nothing new since the last call; the previous reading was returned
   kTimeout,
   kDisconnected,  ///< will not recover without open()
   kFault,         ///< the device reported an error and has cut its motors

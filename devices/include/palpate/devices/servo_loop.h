@@ -14,8 +14,9 @@ using ServoTick = std::function<Vec3(const DeviceState&)>;
 
 struct ServoSettings {
   bool realtime = false;  ///< false: as fast as possible, one reading after the other
-  double rate = 1000.0;   ///< [Hz] if realtime
-  /// Try for a real-time priority and locked memory; what was refused is in the report.
+  double rate = 1000.0;   ///< [Hz] if realtime; 1 to 1e5
+  /// Try for a real-time priority of the calling thread (SCHED_FIFO) and for locked memory, for as
+  /// long as the loop runs; what was refused is in the report.
   bool elevate = false;
 };
 
@@ -23,16 +24,28 @@ enum class ServoExit : std::uint8_t { kEnd, kStopped, kTimeout, kDisconnected, k
 
 struct ServoReport {
   ServoExit exit = ServoExit::kEnd;
-  std::uint64_t ticks = 0;
+  std::uint64_t ticks = 0;         ///< times the tick function was called
   std::uint64_t overruns = 0;      ///< ticks that ended after the next was due (realtime only)
   double worst_lateness = 0.0;     ///< [s] of a tick's start (realtime only)
-  bool elevated = false;
+  bool has_priority = false;       ///< ran with a real-time priority because of `elevate`
+  bool has_locked_memory = false;  ///< ran with locked memory because of `elevate`
+  bool elevated = false;           ///< both
+  std::uint64_t zeroed = 0;        ///< forces that were not finite and were written as zero
 };
 
 /// Runs the loop on the calling thread until the path ends, the device fails or `stop` becomes true.
-/// Opens the device first and closes it last; whatever ends the loop, the last thing written to the device
-/// is zero force. A force that is not finite is written as zero.
-/// @throws Error (kDevice) from opening only.
+/// Opens the device first and closes it last; whatever ends the loop (a tick that throws against its
+/// contract, too), the last thing written to the device is zero force.
+///
+/// - A force that is not finite, or that answers a position or velocity that is not finite, is written
+///   as zero.
+/// - kStale: the tick gets the previous reading again; before the first reading it is not called.
+/// - kTimeout, kDisconnected, kFault and kEnd, from read() or write(), end the loop.
+/// - realtime: tick k is due at start + k / rate by the monotonic clock. After an overrun the ticks
+///   that were missed are skipped, never made up for.
+///
+/// The loop itself never allocates, locks or throws.
+/// @throws Error (kDevice) from opening; Error (kUsage) for an empty `tick` or a bad rate.
 [[nodiscard]] ServoReport runServo(Device& device, const ServoTick& tick,
                                    const ServoSettings& settings, const std::atomic<bool>& stop);
 

@@ -7,10 +7,13 @@
 namespace palpate::devices {
 
 /// One read() is one row of the path. The velocity is the backward difference of the rows (0 at the
-/// first), the time is the row's. After the last row read() answers kEnd.
+/// first), the time is the row's. After the last row read() answers kEnd and leaves its argument alone.
+/// While it is not open, read() and write() answer kDisconnected. open() starts the path anew.
+/// Its maximum force is infinite, its workspace the box of the path.
 class VirtualDevice final : public Device {
  public:
-  /// @throws Error (kInput) for an empty path or times that do not rise.
+  /// @throws Error (kInput) for an empty path or times that do not rise. Positions are taken as they
+  /// are, so that a NaN from a broken sensor can be played.
   explicit VirtualDevice(Path path);
 
   void open() override;
@@ -26,6 +29,7 @@ class VirtualDevice final : public Device {
   DeviceInfo info_;
   Path path_;
   std::size_t next_ = 0;
+  bool is_open_ = false;
   Vec3 force_{0.0, 0.0, 0.0};
 };
 

@@ -18,12 +18,12 @@ enum class ErrorKind {
 
 /// One problem, told so that the reader can mend it: where, what, and the remedy.
 struct Problem {
-  std::string code;       ///< stable, for scripts: "scene.unknown_key", "mesh.open", ...
-  std::string message;    ///< what is wrong, with the offending value
-  std::string hint = {};  ///< what to do about it; may be empty
-  std::string file = {};  ///< may be empty
-  int line = 0;           ///< from 1; 0 if unknown
-  int column = 0;         ///< from 1; 0 if unknown
+  std::string code;          ///< stable, for scripts: "scene.unknown_key", "mesh.open", ...
+  std::string message;       ///< what is wrong, with the offending value
+  std::string hint = {};     ///< what to do about it; may be empty
+  std::string file = {};     ///< may be empty
+  int line = 0;              ///< from 1; 0 if unknown
+  int column = 0;            ///< from 1; 0 if unknown
   std::string excerpt = {};  ///< the offending source line, if there is one
 };
 

@@ -11,10 +11,10 @@ namespace palpate {
 /// One evaluation of a scalar field. Value and gradient come together because contact always needs
 /// both, and because a narrow-band grid reads the same voxels for either.
 struct FieldSample {
-  double value = 0.0;              ///< [m] negative inside, zero on the surface, positive outside
-  Vec3 gradient{0.0, 0.0, 0.0};    ///< [-] of `value` by position, in the frame of the query
-  bool in_band = true;             ///< false: |value| is only a lower bound of the distance with the
-                                   ///< right sign, and the gradient is zero (grids, far away)
+  double value = 0.0;            ///< [m] negative inside, zero on the surface, positive outside
+  Vec3 gradient{0.0, 0.0, 0.0};  ///< [-] of `value` by position, in the frame of the query
+  bool in_band = true;           ///< false: |value| is only a lower bound of the distance with the
+                                 ///< right sign, and the gradient is zero (grids, far away)
 };
 
 /// A sample with its curvature.
@@ -38,7 +38,15 @@ using FieldPtr = std::shared_ptr<const Field>;  ///< shared and unchanging, neve
 /// How a field is put together, so that CSG can be taken apart into its smooth leaves. The operands
 /// are a view into the field that was asked, and live as long as it.
 struct FieldStructure {
-  enum class Kind { kLeaf, kUnion, kIntersection, kComplement, kTransform };
+  enum class Kind {
+    kLeaf,          ///< smooth, or to be taken as it is
+    kUnion,         ///< min of the operands
+    kIntersection,  ///< max of the operands
+    kComplement,    ///< minus the operand
+    kTransform,     ///< the operand, moved
+    kFaces,  ///< inside where inside all operands, which are smooth; the value itself is better
+             ///< than their max (a box: its exact distance, and six half-spaces)
+  };
   Kind kind = Kind::kLeaf;
   std::span<const FieldPtr> operands{};  ///< none for a leaf; one for complement and transform
   Pose pose{};                           ///< transform only: operand frame -> this field's frame

@@ -4,14 +4,15 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "palpate/fields/field.h"
 
 namespace palpate {
 
-using RegionId = std::uint16_t;  ///< 0 is `outside`; layer i (from 0, outermost first) is region i + 1
+using RegionId =
+    std::uint16_t;  ///< 0 is `outside`; layer i (from 0, outermost first) is region i + 1
 using LeafId = std::uint16_t;
 
 inline constexpr RegionId kOutside = 0;
@@ -19,7 +20,6 @@ inline constexpr RegionId kOutside = 0;
 /// One smooth field of the partition, in world coordinates, never complemented or combined.
 struct Leaf {
   FieldPtr field;
-  std::string name;        ///< of the scene's `fields` or layer it comes from; for people
   double lipschitz = 1.0;  ///< Field::lipschitz()
   double feature = 1.0;    ///< [m] Field::featureSize(): the unit of tolerances at this leaf
 };
@@ -47,12 +47,14 @@ class Signs {
 /// Leaves and the layers' expressions over them. Immutable; every const member is real-time safe.
 class Partition {
  public:
-  /// Takes each layer's field apart along its CSG structure. `names` label the leaves that are layers
-  /// themselves. @throws Error (kInput) for more leaves or layers than the id types hold.
-  Partition(std::span<const FieldPtr> layers, std::span<const std::string> names);
+  /// Takes each layer's field apart along its CSG structure, and each mask's likewise. A mask is the
+  /// extent of a port or sheet: its leaves cut cells, but it holds no region. A leaf that several of
+  /// them use (the same field at the same place) is one leaf. @throws Error (kInput) for more
+  /// leaves or layers than the id types hold.
+  explicit Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr> masks = {});
 
   [[nodiscard]] std::span<const Leaf> leaves() const noexcept { return leaves_; }
-  [[nodiscard]] std::size_t regionCount() const noexcept { return programs_.size() + 1; }
+  [[nodiscard]] std::size_t regionCount() const noexcept { return layer_count_ + 1; }
 
   /// The leaves that `part`, a field met while a layer was taken apart, came to be; empty if it was
   /// not met. This is how `on: brim` finds its facet.
@@ -63,6 +65,9 @@ class Partition {
 
   /// True if `region`'s own layer (later layers not looked at) holds the cell `signs`; true for outside.
   [[nodiscard]] bool layerHolds(RegionId region, const Signs& signs) const noexcept;
+
+  /// True if the cell `signs` lies within mask `index` (of the constructor's list).
+  [[nodiscard]] bool maskHolds(std::size_t index, const Signs& signs) const noexcept;
 
   /// The last layer that holds the cell, or outside.
   [[nodiscard]] RegionId regionOf(const Signs& signs) const noexcept;
@@ -82,8 +87,11 @@ class Partition {
   };
   struct Builder;
 
+  [[nodiscard]] static bool evaluate(const Program& program, const Signs& signs) noexcept;
+
   std::vector<Leaf> leaves_;
-  std::vector<Program> programs_;
+  std::vector<Program> programs_;  ///< the layers', then the masks'
+  std::size_t layer_count_ = 0;
   std::vector<std::pair<const Field*, std::vector<LeafId>>> parts_;
 };
 

@@ -17,15 +17,14 @@ enum class PortDirection : std::uint8_t { kBoth, kIn, kOut };
 /// One opening. Regions may be several on each side (globs). Immutable after set-up.
 struct Port {
   std::string name;
-  std::vector<RegionId> from;      ///< the first of `between`, resolved
-  std::vector<RegionId> to;        ///< the second of `between`, resolved
-  std::vector<LeafId> on;          ///< open only on facets of these leaves; empty: on any facet
-  FieldPtr where;                  ///< open only where this field is negative; null: everywhere
-  double where_feature = 1.0;      ///< [m] featureSize() of `where`
+  std::vector<RegionId> from;  ///< the first of `between`, resolved
+  std::vector<RegionId> to;    ///< the second of `between`, resolved
+  std::vector<LeafId> on;      ///< open only on facets of these leaves; empty: on any facet
+  int mask = -1;               ///< open only within this mask of the partition; -1: everywhere
   PortDirection direction = PortDirection::kBoth;
-  std::vector<PortId> after;       ///< ports that must have been passed before
-  double opens_at = 0.0;           ///< [N] elastic normal force at which it opens; 0: always open
-  double back = 0.0;               ///< [N] the same for coming back
+  std::vector<PortId> after;  ///< ports that must have been passed before
+  double opens_at = 0.0;      ///< [N] elastic normal force at which it opens; 0: always open
+  double back = 0.0;          ///< [N] the same for coming back
 
   /// True if the port joins `a` to `b` in this direction of travel.
   [[nodiscard]] bool leads(RegionId a, RegionId b) const noexcept;

@@ -20,7 +20,7 @@ struct Material {
   double stiffness = 0.0;  ///< [N/m] 0: cannot be a wall
   double damping = 0.0;    ///< [N s/m] against the probe's velocity while a wall is touched
   Friction friction = {};
-  double viscosity = 0.0;  ///< [N s/m] Bv of the drag -Bv V while inside
+  double viscosity = 0.0;    ///< [N s/m] Bv of the drag -Bv V while inside
   Vec3 flow{0.0, 0.0, 0.0};  ///< [m/s] velocity of the medium: drag is -Bv (V - flow)
 };
 

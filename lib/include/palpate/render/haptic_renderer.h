@@ -24,13 +24,22 @@ struct TickResult {
   Vec3 force{0.0, 0.0, 0.0};  ///< [N, world] on the hand; always finite
   Vec3 proxy{0.0, 0.0, 0.0};  ///< [m, world] the tip held in its region
   RegionId region = kOutside;
-  bool contact = false;            ///< a closed wall is pressed
-  std::uint8_t event_count = 0;    ///< crossings of this tick that passed a port, in path order
+  bool contact = false;          ///< a closed wall is pressed
+  std::uint8_t event_count = 0;  ///< crossings of this tick that passed a port, in path order
   std::array<PortId, kMaxEvents> events{};
 };
 
+/// How the paper's algorithms nudge the contact point back onto the surface (its alpha term).
+enum class AlphaForm {
+  kByMetric,  ///< kLength for distances (exact and bound fields), kNewton for implicit ones
+  kLength,    ///< alpha S N / |N|, as printed: its strength depends on the field's scale
+  kNewton,    ///< alpha S N / (N . N)
+};
+
 struct RendererSettings {
-  std::optional<RendererKind> kind = {};  ///< not given: as the scene says
+  std::optional<RendererKind> kind = {};        ///< not given: as the scene says
+  AlphaForm alpha_form = AlphaForm::kByMetric;  ///< paper's renderer only
+  double alpha = 1.0;                           ///< [-] paper's renderer only
 };
 
 /// One algorithm of section 3 of DESIGN.md. Construction may throw and allocate; update() and reset()

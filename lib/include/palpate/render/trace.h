@@ -11,10 +11,10 @@
 namespace palpate {
 
 struct TraceRow {
-  double t = 0.0;                ///< [s]
-  Vec3 hip{0.0, 0.0, 0.0};       ///< [m]
+  double t = 0.0;           ///< [s]
+  Vec3 hip{0.0, 0.0, 0.0};  ///< [m]
   TickResult result = {};
-  std::int64_t tick_ns = 0;      ///< [ns] of the renderer's update alone
+  std::int64_t tick_ns = 0;  ///< [ns] of the renderer's update alone
 };
 
 /// Fixed capacity, so that adding a row never allocates.
@@ -39,7 +39,14 @@ class Trace {
 
 /// The CSV of DESIGN.md section 6: header
 /// t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_ns
-/// with shortest numbers that read back exactly. Names come from the scene.
+/// with shortest numbers that read back exactly (`nan`, `inf` for a broken sensor's position). A name
+/// with a comma, quote or line end is quoted as RFC 4180 says. Names come from the scene.
 [[nodiscard]] std::string traceCsv(std::span<const TraceRow> rows, const Scene& scene);
+
+/// The same with names given: `regions` by RegionId, `ports` by PortId.
+/// @throws Error (kInput) for an id that has no name.
+[[nodiscard]] std::string traceCsv(std::span<const TraceRow> rows,
+                                   std::span<const std::string> regions,
+                                   std::span<const std::string> ports);
 
 }  // namespace palpate

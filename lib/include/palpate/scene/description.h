@@ -84,14 +84,14 @@ struct WallOverride {
 
 struct PortDescription {
   std::string name;
-  std::string from;         ///< region name or glob
-  std::string to;           ///< region name or glob
+  std::string from;           ///< region name or glob
+  std::string to;             ///< region name or glob
   FieldSourcePtr on = {};     ///< null: any facet
   std::string on_name = {};   ///< how the author called it
   FieldSourcePtr where = {};  ///< null: everywhere
   PortDirection direction = PortDirection::kBoth;
   std::vector<std::string> after = {};
-  double opens_at = 0.0;               ///< [N]
+  double opens_at = 0.0;            ///< [N]
   std::optional<double> back = {};  ///< [N]; not given: as opens_at
   SourcePlace place = {};
 };

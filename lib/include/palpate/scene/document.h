@@ -26,7 +26,7 @@ struct Node {
   std::string text = {};  ///< scalar: as written
   bool quoted = false;    ///< scalar: "..." or '...': text, never a number
   std::vector<Node> items = {};
-  std::vector<Entry> entries = {};  ///< map: in the order of the file
+  std::vector<Entry> entries;  ///< map: in the order of the file (no "= {}": Entry is incomplete)
 
   [[nodiscard]] const Node* find(std::string_view key) const noexcept;
 };

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "palpate/interior/partition.h"
-#include "palpate/interior/port.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/materials/material.h"
 #include "palpate/scene/description.h"
 
@@ -16,18 +16,14 @@ namespace palpate {
 /// A region as the loop and the reports see it.
 struct Region {
   std::string name;
-  int content = -1;   ///< index into Scene::materials(); -1: nothing is felt
-  int wall = -1;      ///< own wall's material; -1 where absent (and for outside)
+  int content = -1;  ///< index into Scene::materials(); -1: nothing is felt
+  int wall = -1;     ///< own wall's material; -1 where absent (and for outside)
   bool wall_absent = false;
   bool reachable = true;  ///< by ports and absent walls from the start region
   FieldPtr field;         ///< the layer's whole field (label group share applied); null for outside
   std::string source;     ///< what it was made from; empty if analytic
-};
-
-/// What stands between two regions, seen from the first.
-struct Wall {
-  bool absent = false;
-  int material = -1;  ///< index into Scene::materials()
+  Vec3 seed{0.0, 0.0, 0.0};  ///< [m] a point of the region; meaningless unless has_seed
+  bool has_seed = false;     ///< false: no point of it was found (an empty or dropped region)
 };
 
 class Scene {
@@ -35,15 +31,11 @@ class Scene {
   [[nodiscard]] const Partition& partition() const noexcept { return partition_; }
   [[nodiscard]] std::span<const Region> regions() const noexcept { return regions_; }
   [[nodiscard]] std::span<const Material> materials() const noexcept { return materials_; }
-  [[nodiscard]] std::span<const Port> ports() const noexcept { return ports_; }
-
-  /// The ports that lead out of `region`: all that a tick tests.
-  [[nodiscard]] std::span<const PortId> portsOf(RegionId region) const noexcept {
-    return ports_of_[region];
-  }
-  /// The wall between neighbours as felt from `from`. `from` and `to` differ.
-  [[nodiscard]] const Wall& wall(RegionId from, RegionId to) const noexcept {
-    return walls_[from * regions_.size() + to];
+  [[nodiscard]] const Passages& passages() const noexcept { return passages_; }
+  [[nodiscard]] std::span<const Port> ports() const noexcept { return passages_.ports(); }
+  /// True if the two regions were found to have a wall (or an absent one) between them.
+  [[nodiscard]] bool touches(RegionId a, RegionId b) const {
+    return a != b && touch_[a * regions_.size() + b];
   }
   [[nodiscard]] RegionId startRegion() const noexcept { return start_; }
   [[nodiscard]] bool keepsMemory() const noexcept { return keep_memory_; }
@@ -67,9 +59,8 @@ class Scene {
   Partition partition_;
   std::vector<Region> regions_;
   std::vector<Material> materials_;
-  std::vector<Port> ports_;
-  std::vector<std::vector<PortId>> ports_of_;
-  std::vector<Wall> walls_;
+  Passages passages_;
+  std::vector<bool> touch_;  ///< [a * regions + b], symmetric
   std::vector<NamedField> fields_;
   RegionId start_ = kOutside;
   bool keep_memory_ = false;

@@ -5,7 +5,10 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "palpate/scene/document.h"
 #include "palpate/scene/units.h"

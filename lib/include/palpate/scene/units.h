@@ -7,15 +7,15 @@
 namespace palpate {
 
 enum class Dimension {
-  kLength,       ///< m
-  kForce,        ///< N
-  kStiffness,    ///< N/m
-  kDamping,      ///< N.s/m
-  kVelocity,     ///< m/s
-  kTime,         ///< s
-  kFrequency,    ///< Hz
-  kStiffness2,   ///< N/m^2
-  kDamping2,     ///< N.s/m^2
+  kLength,      ///< m
+  kForce,       ///< N
+  kStiffness,   ///< N/m
+  kDamping,     ///< N.s/m
+  kVelocity,    ///< m/s
+  kTime,        ///< s
+  kFrequency,   ///< Hz
+  kStiffness2,  ///< N/m^2
+  kDamping2,    ///< N.s/m^2
 };
 
 /// Metres in one `unit` ("mm", "cm", "m", "um", "in"); nothing if the unit is not known.

@@ -11,14 +11,15 @@
 namespace palpate::vdb {
 
 struct Mesh {
-  std::string source;  ///< file name, for messages
+  std::string source;          ///< file name, for messages
   std::vector<Vec3> vertices;  ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::size_t dropped_triangles = 0;  ///< by readMesh(): two corners in one point
 };
 
 /// What a look at a mesh showed.
 struct MeshReport {
-  Box3 bounds;                         ///< [m]
+  Box3 bounds;  ///< [m]
   std::size_t degenerate_triangles = 0;
   std::size_t boundary_edges = 0;      ///< with one triangle
   std::size_t non_manifold_edges = 0;  ///< with three or more
@@ -29,10 +30,12 @@ struct MeshReport {
   [[nodiscard]] bool isClosed() const noexcept { return boundary_edges == 0; }
 };
 
-/// Reads STL, OBJ, PLY, glTF / GLB with Assimp; welds identical vertices; drops zero-area triangles.
+/// Reads STL, OBJ, PLY, glTF / GLB (and what else Assimp reads, each part where its nodes put it); cuts polygons into
+/// triangles; welds vertices in the same place; drops triangles with two corners in one point.
 /// @throws Error (kInput): missing, unreadable, no faces, NaN or infinite vertices, bad indices.
 [[nodiscard]] Mesh readMesh(const std::string& path, double metres_per_unit);
 
+/// Half-edges counted, components by shared vertices. Every index must be in range.
 [[nodiscard]] MeshReport checkMesh(const Mesh& mesh);
 
 }  // namespace palpate::vdb

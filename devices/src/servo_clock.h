@@ -1,0 +1,36 @@
+#pragma once
+// What the servo loop asks of the operating system.
+
+#include <atomic>
+#include <cstdint>
+
+namespace palpate::devices {
+
+/// Monotonic clock [ns].
+[[nodiscard]] std::int64_t monotonicNs() noexcept;
+
+/// Sleeps until `due` [ns, monotonic], spinning over the last stretch, because a sleeping thread wakes
+/// tens of microseconds late. Returns early if `stop` is set when a signal wakes it.
+void sleepUntil(std::int64_t due, const std::atomic<bool>& stop) noexcept;
+
+/// Real-time priority, locked memory and exact timers for the calling thread while this lives.
+class Elevation {
+ public:
+  /// `elevate`: try for priority and memory. `timers`: let the thread's sleeps end on time.
+  Elevation(bool elevate, bool timers) noexcept;
+  ~Elevation();
+  Elevation(const Elevation&) = delete;
+  Elevation& operator=(const Elevation&) = delete;
+
+  [[nodiscard]] bool hasPriority() const noexcept { return has_priority_; }
+  [[nodiscard]] bool hasLockedMemory() const noexcept { return has_locked_memory_; }
+
+ private:
+  bool has_priority_ = false;
+  bool has_locked_memory_ = false;
+  int old_policy_ = 0;
+  int old_priority_ = 0;
+  int old_slack_ = -1;  // [ns]; below 0: not changed
+};
+
+}  // namespace palpate::devices

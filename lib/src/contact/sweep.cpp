@@ -1,0 +1,100 @@
+#include "palpate/contact/sweep.h"
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+/// The motion along one segment.
+struct Motion {
+  const SweepSurface& surface;
+  Vec3 from;
+  Vec3 by;
+  double length;
+  int budget;
+
+  [[nodiscard]] double valueAt(double t) noexcept {
+    --budget;
+    return surface.side * surface.field->value(from + t * by);
+  }
+};
+
+/// Narrows a change of side down to the tolerance: secant steps kept inside the bracket, halving where
+/// they stall. Returns the near end.
+double narrow(Motion& motion, double near, double near_value, double far,
+              double far_value) noexcept {
+  const double tolerance = motion.surface.tolerance;
+  const double shortest = 1e-15;
+  for (int i = 0; i < 60 && near_value > tolerance && far - near > shortest; ++i) {
+    double t = near + (far - near) * near_value / (near_value - far_value);
+    if (i % 3 == 2) t = 0.5 * (near + far);
+    t = std::clamp(t, near, far);
+    const double value = motion.valueAt(t);
+    if (value > 0.0) {
+      near = t;
+      near_value = value;
+    } else {
+      far = t;
+      far_value = value;
+    }
+  }
+  return near;
+}
+
+}  // namespace
+
+SweepResult sweep(const SweepSurface& surface, const Vec3& a, const Vec3& b, double start,
+                  int budget) noexcept {
+  Motion motion{surface, a, b - a, glm::length(b - a), budget};
+  SweepResult out;
+  if (motion.length <= 0.0) {
+    out.end_value = start;
+    return out;
+  }
+  const double reach = surface.lipschitz * motion.length;
+  if (start > reach) {
+    out.end_value = start - reach;
+    return out;
+  }
+  const double end = motion.valueAt(1.0);
+  // Two ends that together outreach the segment leave no room for a passage between them.
+  if (start > surface.tolerance && end > surface.tolerance && start + end >= reach) {
+    out.end_value = end;
+    return out;
+  }
+
+  double t = 0.0;
+  double value = start;
+  double stride = surface.graze;
+  if (start <= surface.tolerance) {
+    const double slope = surface.side * glm::dot(surface.field->sample(a).gradient, motion.by);
+    --motion.budget;
+    if (slope < 0.0) return {SweepResult::Kind::kHit, 0.0, start};
+    // Leaving the surface: tiny steps at first, so that a fold close by is not jumped.
+    stride = std::min(surface.graze, 8.0 * surface.tolerance / surface.lipschitz);
+  }
+  const double shortest_share = 1.0 / motion.length;
+  while (motion.budget > 0) {
+    const double step = std::max(value / reach, stride * shortest_share);
+    stride = std::min(2.0 * stride, surface.graze);
+    const double next = std::min(1.0, t + step);
+    const double ahead = next >= 1.0 ? end : motion.valueAt(next);
+    // A start slightly beyond the surface is on its way back: only going deeper is a hit there.
+    const double deeper = std::min(0.0, value) - surface.tolerance;
+    if (ahead <= 0.0 && (value > surface.tolerance || ahead < deeper)) {
+      out.kind = SweepResult::Kind::kHit;
+      out.at = value > surface.tolerance ? narrow(motion, t, value, next, ahead) : t;
+      out.end_value = 0.0;
+      return out;
+    }
+    t = next;
+    value = ahead;
+    if (t >= 1.0) {
+      out.end_value = end;
+      return out;
+    }
+  }
+  return {SweepResult::Kind::kUnsure, t, value};
+}
+
+}  // namespace palpate

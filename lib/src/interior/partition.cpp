@@ -1,0 +1,192 @@
+#include "palpate/interior/partition.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "palpate/core/error.h"
+#include "palpate/fields/transform.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kMaxLeaves = std::numeric_limits<LeafId>::max();
+constexpr std::size_t kMaxLayers = std::numeric_limits<RegionId>::max() - 1;
+/// Depth of the evaluation stack; the builder refuses deeper trees, so evaluate() needs no check.
+constexpr std::size_t kMaxDepth = 64;
+
+bool isIdentity(const Pose& pose) {
+  return pose.rotation == Mat3(1.0) && pose.translation == Vec3(0.0);
+}
+
+/// A leaf's identity: the same field object at the same place is the same leaf.
+struct Placed {
+  const Field* field;
+  Pose pose;
+
+  [[nodiscard]] bool operator<(const Placed& other) const {
+    if (field != other.field) return field < other.field;
+    for (int c = 0; c < 3; ++c) {
+      for (int r = 0; r < 3; ++r) {
+        const double a = pose.rotation[c][r];
+        const double b = other.pose.rotation[c][r];
+        if (a != b) return a < b;
+      }
+      if (pose.translation[c] != other.pose.translation[c]) {
+        return pose.translation[c] < other.pose.translation[c];
+      }
+    }
+    return false;
+  }
+};
+
+}  // namespace
+
+struct Partition::Builder {
+  explicit Builder(Partition& target) : partition(target) {}
+
+  Program build(const FieldPtr& root) {
+    Program program;
+    append(program, root, Pose{}, 1);
+    std::sort(program.leaves.begin(), program.leaves.end());
+    program.leaves.erase(std::unique(program.leaves.begin(), program.leaves.end()),
+                         program.leaves.end());
+    return program;
+  }
+
+  void append(Program& program, const FieldPtr& field, const Pose& pose, std::size_t depth) {
+    if (depth >= kMaxDepth) {
+      throw inputError("scene.csg_depth", "a field's CSG tree is nested deeper than 62 levels",
+                       "flatten nested unions and intersections into one list");
+    }
+    const std::size_t first = program.leaves.size();
+    const FieldStructure structure = field->structure();
+    switch (structure.kind) {
+      case FieldStructure::Kind::kLeaf:
+        program.leaves.push_back(leaf(field, pose));
+        program.steps.push_back({Step::Op::kLeaf, program.leaves.back()});
+        break;
+      case FieldStructure::Kind::kTransform:
+        append(program, structure.operands.front(), pose.after(structure.pose), depth);
+        break;
+      case FieldStructure::Kind::kComplement:
+        append(program, structure.operands.front(), pose, depth);
+        program.steps.push_back({Step::Op::kNot, 1});
+        break;
+      case FieldStructure::Kind::kUnion:
+      case FieldStructure::Kind::kIntersection:
+      case FieldStructure::Kind::kFaces: {
+        // Folding each operand in as it comes keeps the stack as deep as the tree, not as wide.
+        const auto op =
+            structure.kind == FieldStructure::Kind::kUnion ? Step::Op::kOr : Step::Op::kAnd;
+        bool is_first = true;
+        for (const FieldPtr& operand : structure.operands) {
+          append(program, operand, pose, depth + (is_first ? 0 : 1));
+          if (!is_first) program.steps.push_back({op, 2});
+          is_first = false;
+        }
+        break;
+      }
+    }
+    remember(field.get(), program.leaves.begin() + static_cast<std::ptrdiff_t>(first),
+             program.leaves.end());
+  }
+
+  LeafId leaf(const FieldPtr& field, const Pose& pose) {
+    const auto known = ids.find({field.get(), pose});
+    if (known != ids.end()) return known->second;
+    if (partition.leaves_.size() >= kMaxLeaves) {
+      throw inputError("scene.too_many_leaves", "the scene has more than 65535 smooth leaf fields",
+                       "combine some into one grid with `palpate bake`");
+    }
+    Leaf made;
+    made.field = isIdentity(pose) ? field : place(field, pose);
+    made.lipschitz = field->lipschitz();
+    made.feature = field->featureSize();
+    const auto id = static_cast<LeafId>(partition.leaves_.size());
+    partition.leaves_.push_back(std::move(made));
+    ids.emplace(Placed{field.get(), pose}, id);
+    return id;
+  }
+
+  template <typename Iterator>
+  void remember(const Field* part, Iterator begin, Iterator end) {
+    std::vector<LeafId>& leaves = parts[part];
+    for (auto it = begin; it != end; ++it) {
+      if (std::find(leaves.begin(), leaves.end(), *it) == leaves.end()) leaves.push_back(*it);
+    }
+  }
+
+  Partition& partition;
+  std::map<Placed, LeafId> ids;
+  std::map<const Field*, std::vector<LeafId>> parts;
+};
+
+Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr> masks)
+    : layer_count_(layers.size()) {
+  if (layers.size() > kMaxLayers) {
+    throw inputError("scene.too_many_layers", "the scene has more than 65534 layers");
+  }
+  Builder builder(*this);
+  for (const FieldPtr& layer : layers) programs_.push_back(builder.build(layer));
+  for (const FieldPtr& mask : masks) programs_.push_back(builder.build(mask));
+  parts_.assign(builder.parts.begin(), builder.parts.end());
+}
+
+std::vector<LeafId> Partition::leavesOf(const Field* part) const {
+  for (const auto& [field, leaves] : parts_) {
+    if (field == part) return leaves;
+  }
+  return {};
+}
+
+std::span<const LeafId> Partition::leavesOfRegion(RegionId region) const noexcept {
+  if (region == kOutside) return {};
+  return programs_[region - 1U].leaves;
+}
+
+bool Partition::evaluate(const Program& program, const Signs& signs) noexcept {
+  // One bit a stack entry: kMaxDepth of them fit a word.
+  std::uint64_t stack = 0;
+  for (const Step& step : program.steps) {
+    switch (step.op) {
+      case Step::Op::kLeaf:
+        stack = (stack << 1U) | (signs.inside(step.argument) ? 1U : 0U);
+        break;
+      case Step::Op::kNot:
+        stack ^= 1U;
+        break;
+      case Step::Op::kAnd:
+        stack = (stack >> 1U) & (stack | ~std::uint64_t{1});
+        break;
+      case Step::Op::kOr:
+        stack = (stack >> 1U) | (stack & 1U);
+        break;
+    }
+  }
+  return (stack & 1U) != 0;
+}
+
+bool Partition::layerHolds(RegionId region, const Signs& signs) const noexcept {
+  return region == kOutside || evaluate(programs_[region - 1U], signs);
+}
+
+bool Partition::maskHolds(std::size_t index, const Signs& signs) const noexcept {
+  return evaluate(programs_[layer_count_ + index], signs);
+}
+
+RegionId Partition::regionOf(const Signs& signs) const noexcept {
+  for (std::size_t i = layer_count_; i > 0; --i) {
+    if (evaluate(programs_[i - 1], signs)) return static_cast<RegionId>(i);
+  }
+  return kOutside;
+}
+
+void Partition::signsAt(const Vec3& p, Signs& out) const noexcept {
+  for (std::size_t i = 0; i < leaves_.size(); ++i) {
+    out.set(static_cast<LeafId>(i), leaves_[i].field->value(p) < 0.0);
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,200 @@
+#include "cell_walker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "palpate/contact/sweep.h"
+
+namespace palpate {
+namespace {
+
+/// Share of the feature size that counts as on the surface. Far above rounding (1e-16 of coordinates of
+/// a hundred feature sizes), far below what a force can show (1e-6 of a millimetre's depth).
+constexpr double kOnSurface = 1e-9;
+/// Sweeps let go of grazes shorter than this share of the feature size.
+constexpr double kGraze = 0.02;
+/// Leaves are one facet where both are on the surface and their normals are parallel to this.
+constexpr double kParallel = 1e-6;
+constexpr int kCrossingsPerTick = 32;
+constexpr int kEvaluationsPerTick = 4096;
+constexpr int kEvaluationsPerSweep = 256;
+/// The hot list reaches this many times as far as the motion that made it.
+constexpr double kHorizon = 16.0;
+
+}  // namespace
+
+CellWalker::CellWalker(const Scene& scene)
+    : scene_(scene),
+      leaves_(scene.partition().leaves()),
+      tolerance_(leaves_.size()),
+      signs_(leaves_.size()),
+      beyond_(leaves_.size()),
+      due_(leaves_.size()),
+      hot_(leaves_.size()),
+      known_(leaves_.size()) {
+  for (std::size_t i = 0; i < leaves_.size(); ++i) {
+    tolerance_[i] = kOnSurface * leaves_[i].feature * leaves_[i].lipschitz;
+  }
+  place(Vec3(0.0));
+}
+
+void CellWalker::place(const Vec3& p) noexcept {
+  x_ = p;
+  travel_ = 0.0;
+  cold_due_ = 0.0;
+  hot_count_ = 0;
+  for (std::size_t i = 0; i < leaves_.size(); ++i) {
+    const auto id = static_cast<LeafId>(i);
+    const double value = leaves_[i].field->value(p);
+    signs_.set(id, value < 0.0);
+    due_[i] = std::fabs(value) / leaves_[i].lipschitz;
+  }
+  region_ = scene_.partition().regionOf(signs_);
+  mouth_ = -1;
+  ++state_;
+}
+
+void CellWalker::beginTick() noexcept {
+  event_count_ = 0;
+  crossings_left_ = kCrossingsPerTick;
+  evaluations_left_ = kEvaluationsPerTick;
+  // The odometer starts again now and then, so that its rounding stays below every tolerance.
+  if (travel_ > 1.0) {
+    for (double& due : due_) due -= travel_;
+    cold_due_ -= travel_;
+    travel_ = 0.0;
+  }
+}
+
+double CellWalker::measure(LeafId leaf) noexcept {
+  const double value = leaves_[leaf].field->value(x_);
+  due_[leaf] = travel_ + std::fabs(value) / leaves_[leaf].lipschitz;
+  return value;
+}
+
+void CellWalker::refresh(double length) noexcept {
+  if (travel_ + length < cold_due_) return;
+  const double horizon = travel_ + kHorizon * length;
+  hot_count_ = 0;
+  cold_due_ = kInfinity;
+  for (std::size_t i = 0; i < leaves_.size(); ++i) {
+    const auto id = static_cast<LeafId>(i);
+    if (due_[i] <= travel_ + length) measure(id);
+    if (due_[i] <= horizon) {
+      hot_[hot_count_++] = id;
+    } else {
+      cold_due_ = std::min(cold_due_, due_[i]);
+    }
+  }
+}
+
+void CellWalker::jump(const Vec3& x) noexcept {
+  travel_ += glm::length(x - x_);
+  x_ = x;
+}
+
+CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sliding,
+                                  bool stop_at_crossing) noexcept {
+  for (;;) {
+    const double length = glm::length(target - x_);
+    if (!(length > 0.0)) return Stop::kArrived;
+    refresh(length);
+    double nearest = 1.0;
+    bool hit = false;
+    bool unsure = false;
+    LeafId hit_leaf = 0;
+    for (std::size_t k = 0; k < hot_count_; ++k) {
+      const LeafId leaf = hot_[k];
+      if (due_[leaf] > travel_ + nearest * length) continue;
+      if (std::find(sliding.begin(), sliding.end(), leaf) != sliding.end()) continue;
+      SweepSurface surface;
+      surface.field = leaves_[leaf].field.get();
+      surface.side = side(leaf);
+      surface.lipschitz = leaves_[leaf].lipschitz;
+      surface.tolerance = tolerance_[leaf];
+      surface.graze = kGraze * leaves_[leaf].feature;
+      const Vec3 end = nearest < 1.0 ? x_ + nearest * (target - x_) : target;
+      const double start = surface.side * measure(leaf);
+      const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
+      if (budget <= 8) return Stop::kSpent;
+      const SweepResult result = sweep(surface, x_, end, start, budget);
+      if (result.kind == SweepResult::Kind::kFree) continue;
+      evaluations_left_ -= 8;
+      nearest *= result.at;
+      hit = result.kind == SweepResult::Kind::kHit;
+      unsure = !hit;
+      if (unsure) evaluations_left_ -= budget;
+      hit_leaf = leaf;
+    }
+    if (!hit && !unsure) {
+      jump(target);
+      return Stop::kArrived;
+    }
+    jump(x_ + nearest * (target - x_));
+    if (unsure) return Stop::kSpent;
+    const Facet facet = facetAt(hit_leaf);
+    if (facet.isClosed()) {
+      blocked_by_ = hit_leaf;
+      return Stop::kBlocked;
+    }
+    if (crossings_left_ <= 0) return Stop::kSpent;
+    cross(hit_leaf, facet);
+    if (stop_at_crossing) return Stop::kCrossed;
+  }
+}
+
+void CellWalker::gather(LeafId leaf) noexcept {
+  crossing_[0] = leaf;
+  crossing_count_ = 1;
+  if (leaves_.size() == 1) return;
+  refresh(0.0);
+  bool measured = false;
+  Vec3 normal(0.0);
+  for (std::size_t k = 0; k < hot_count_ && crossing_count_ < crossing_.size(); ++k) {
+    const LeafId other = hot_[k];
+    if (other == leaf) continue;
+    const double near = 4.0 * (tolerance_[other] / leaves_[other].lipschitz +
+                               tolerance_[leaf] / leaves_[leaf].lipschitz);
+    if (due_[other] - travel_ > near) continue;
+    if (std::fabs(measure(other)) > near * leaves_[other].lipschitz) continue;
+    if (!measured) {
+      normal = side(leaf) * unitOr(leaves_[leaf].field->sample(x_).gradient, Vec3(0.0));
+      measured = true;
+    }
+    const Vec3 theirs = side(other) * unitOr(leaves_[other].field->sample(x_).gradient, Vec3(0.0));
+    // Going against `normal`, the other changes side too where its own side lies the same way.
+    if (glm::dot(normal, theirs) > 1.0 - kParallel) crossing_[crossing_count_++] = other;
+  }
+}
+
+Facet CellWalker::facetAt(LeafId leaf) noexcept {
+  gather(leaf);
+  Known& known = known_[leaf];
+  if (crossing_count_ == 1 && known.state == state_) return known.facet;
+  beyond_ = signs_;  // same size: copies words, allocates nothing
+  for (std::size_t i = 0; i < crossing_count_; ++i) beyond_.flip(crossing_[i]);
+  const Facet facet = scene_.passages().facet(
+      scene_.partition(), region_, beyond_, std::span(crossing_.data(), crossing_count_), passed_);
+  if (crossing_count_ == 1) known = {facet, state_};
+  return facet;
+}
+
+void CellWalker::cross(LeafId leaf, const Facet& facet) noexcept {
+  gather(leaf);
+  for (std::size_t i = 0; i < crossing_count_; ++i) signs_.flip(crossing_[i]);
+  --crossings_left_;
+  ++state_;
+  if (facet.beyond == region_) return;
+  const bool keep = scene_.keepsMemory();
+  const bool by_port = facet.kind == Facet::Kind::kOpen || facet.opens_at > 0.0;
+  if (by_port) {
+    passed_.pass(facet.port, region_, facet.beyond, keep);
+    if (event_count_ < events_.size()) events_[event_count_++] = facet.port;
+  } else {
+    passed_.arrive(facet.beyond, keep);
+  }
+  region_ = facet.beyond;
+  mouth_ = leaf;
+}
+
+}  // namespace palpate

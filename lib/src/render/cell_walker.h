@@ -1,0 +1,118 @@
+#pragma once
+/// CellWalker: a point that moves through sign cells and never passes a closed facet. It owns where the
+/// proxy is, on which side of every leaf it stands, its region, and the ports passed.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "palpate/interior/port_machine.h"
+#include "palpate/render/haptic_renderer.h"
+#include "palpate/scene/scene.h"
+
+namespace palpate {
+
+class CellWalker {
+ public:
+  enum class Stop : std::uint8_t {
+    kArrived,  ///< at the target
+    kBlocked,  ///< on a closed facet, see blockedBy()
+    kCrossed,  ///< just through a facet (only if asked to stop there)
+    kSpent,    ///< out of budget, at the last point known to be free
+  };
+
+  explicit CellWalker(const Scene& scene);
+
+  /// Puts the point at `p` [m] as if it had always been there: signs and region are taken from `p`.
+  void place(const Vec3& p) noexcept;
+  /// Forgets ports passed.
+  void forget() noexcept {
+    passed_.clear();
+    ++state_;
+  }
+  /// A new tick: no events yet, fresh budgets.
+  void beginTick() noexcept;
+
+  [[nodiscard]] const Vec3& position() const noexcept { return x_; }
+  [[nodiscard]] RegionId region() const noexcept { return region_; }
+  [[nodiscard]] const PassedPorts& passed() const noexcept { return passed_; }
+  [[nodiscard]] double side(LeafId leaf) const noexcept { return signs_.inside(leaf) ? -1.0 : 1.0; }
+  [[nodiscard]] const Leaf& leaf(LeafId id) const noexcept { return leaves_[id]; }
+  [[nodiscard]] double tolerance(LeafId leaf) const noexcept { return tolerance_[leaf]; }
+
+  /// Straight to `target` [m], through what is open. Facets of the leaves in `sliding` are not looked at:
+  /// they hold the point already.
+  Stop move(const Vec3& target, std::span<const LeafId> sliding, bool stop_at_crossing) noexcept;
+  [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }
+
+  /// Calls f(leaf, value, facet) for each leaf within `reach` tolerances of the point, or beyond it.
+  template <typename F>
+  void forNear(double reach, F&& f) noexcept {
+    refresh(0.0);
+    for (std::size_t k = 0; k < hot_count_; ++k) {
+      const LeafId leaf = hot_[k];
+      const double far = reach * tolerance_[leaf];
+      if (due_[leaf] - travel_ > far / leaves_[leaf].lipschitz) continue;
+      const double value = side(leaf) * measure(leaf);
+      if (value <= far) f(leaf, value, facetAt(leaf));
+    }
+  }
+
+  /// What the facet of `leaf` at the point is, seen from here.
+  [[nodiscard]] Facet facetAt(LeafId leaf) noexcept;
+  /// Goes through the facet of `leaf` where the point stands, whatever it is; a port is recorded.
+  void cross(LeafId leaf, const Facet& facet) noexcept;
+
+  [[nodiscard]] std::uint8_t eventCount() const noexcept { return event_count_; }
+  [[nodiscard]] const std::array<PortId, TickResult::kMaxEvents>& events() const noexcept {
+    return events_;
+  }
+  /// The leaf whose facet the region was last entered through; -1 if it was not entered.
+  [[nodiscard]] int mouth() const noexcept { return mouth_; }
+
+ private:
+  /// S of the leaf at the point, and until where that keeps it out of reach.
+  double measure(LeafId leaf) noexcept;
+  /// Sees to it that every leaf that a motion of `length` could reach is in the hot list.
+  void refresh(double length) noexcept;
+  /// The leaves that change side together with `leaf` where they coincide at the point.
+  void gather(LeafId leaf) noexcept;
+  void jump(const Vec3& x) noexcept;
+
+  const Scene& scene_;
+  std::span<const Leaf> leaves_;
+  std::vector<double> tolerance_;  ///< of |S| by leaf: 1e-9 of the feature size, in units of S
+  Vec3 x_{0.0, 0.0, 0.0};
+  Signs signs_;
+  Signs beyond_;  ///< scratch of facetAt()
+  RegionId region_ = kOutside;
+  PassedPorts passed_;
+  int mouth_ = -1;
+  LeafId blocked_by_ = 0;
+  std::uint8_t event_count_ = 0;
+  std::array<PortId, TickResult::kMaxEvents> events_{};
+  int crossings_left_ = 0;
+  int evaluations_left_ = 0;
+
+  // A leaf whose |S| was measured cannot be met before the point has travelled |S| / L. `due_` is the
+  // odometer reading at which it could; leaves that are not hot are all due after cold_due_.
+  double travel_ = 0.0;
+  std::vector<double> due_;
+  std::vector<LeafId> hot_;
+  std::size_t hot_count_ = 0;
+  double cold_due_ = 0.0;
+
+  /// A facet looked up in the present state, valid while nothing was crossed.
+  struct Known {
+    Facet facet;
+    std::uint32_t state = 0;
+  };
+  std::vector<Known> known_;  ///< by leaf, where no other leaf coincides
+  std::uint32_t state_ = 1;   ///< counts crossings and placements
+
+  std::array<LeafId, 8> crossing_{};  ///< scratch of gather()
+  std::size_t crossing_count_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,64 @@
+#pragma once
+/// The `constraint` renderer (DESIGN.md section 3): the proxy minimises |x - P|^2 over its region along
+/// a connected path; the wall pushes the hand back to it.
+
+#include <array>
+
+#include "cell_walker.h"
+#include "palpate/contact/planes.h"
+#include "palpate/contact/slide.h"
+#include "palpate/render/haptic_renderer.h"
+
+namespace palpate {
+
+class ConstraintRenderer final : public HapticRenderer {
+ public:
+  explicit ConstraintRenderer(ScenePtr scene);
+
+  [[nodiscard]] TickResult update(const HipState& hip) noexcept override;
+  void reset() noexcept override;
+
+ private:
+  /// The closed walls at the proxy: what the local problem is made of, and which of them hold it.
+  struct Contact {
+    std::array<LeafId, kMaxPlanes> leaf{};
+    std::array<Facet, kMaxPlanes> facet{};
+    std::array<FieldJet, kMaxPlanes> jet{};
+    std::array<Plane, kMaxPlanes> plane{};
+    std::size_t planes = 0;
+    std::array<HeldWall, 3> held{};      ///< the working set
+    std::array<std::size_t, 3> index{};  ///< of held walls among the planes
+    std::size_t count = 0;
+    std::array<LeafId, kMaxPlanes>
+        sliding{};  ///< leaves that motion along the held walls must not see
+    std::size_t sliding_count = 0;
+    Vec3 step{0.0, 0.0, 0.0};  ///< [m] of the local problem
+    Vec3 pull{0.0, 0.0, 0.0};  ///< [m] tangential rest of it, after friction
+    Vec3 lag{0.0, 0.0, 0.0};   ///< [m] tangential rest of it that friction holds
+
+    [[nodiscard]] std::span<const HeldWall> walls() const noexcept { return {held.data(), count}; }
+    [[nodiscard]] double load() const noexcept;  ///< [m] length of the sum of multiplier * normal
+  };
+
+  void start(const Vec3& hip) noexcept;
+  void track(const Vec3& hip) noexcept;
+  void findContact(const Vec3& hip) noexcept;
+  void holdByFriction() noexcept;
+  [[nodiscard]] bool puncture() noexcept;
+  [[nodiscard]] bool slide(const Vec3& hip) noexcept;
+  [[nodiscard]] bool slideBy(const Vec3& hip, const Vec3& by, bool must_improve) noexcept;
+  [[nodiscard]] bool isSettled(const Vec3& hip) const noexcept;
+  [[nodiscard]] Vec3 force(const HipState& hip) const noexcept;
+  [[nodiscard]] double contentShare() const noexcept;
+  [[nodiscard]] const Material& wallMaterial(const Facet& facet) const noexcept {
+    return scene_->materials()[static_cast<std::size_t>(facet.material)];
+  }
+
+  ScenePtr scene_;
+  CellWalker walker_;
+  Contact contact_;
+  bool started_ = false;
+  bool sticking_ = false;
+};
+
+}  // namespace palpate

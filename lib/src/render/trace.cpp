@@ -1,0 +1,105 @@
+#include "palpate/render/trace.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string_view>
+
+namespace palpate {
+namespace {
+
+constexpr std::string_view kHeader =
+    "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,"
+    "region,contact,event,tick_ns\n";
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
+/// A few numbers, each with a comma behind it, printed on the stack and appended at once: the text is
+/// written once, and not first filled with zeros. The longest shortest double has 24 characters
+/// (-2.2250738585072014e-308), an int64 has 20.
+template <std::size_t kCount>
+class Numbers {
+ public:
+  template <typename Number>
+  void add(Number value) {
+    at_ = std::to_chars(at_, buffer_.data() + buffer_.size(), value).ptr;
+    *at_++ = ',';
+  }
+  void add(const Vec3& v) {
+    for (int i = 0; i < 3; ++i) add(v[i]);
+  }
+  [[nodiscard]] std::string_view text() const {
+    return {buffer_.data(), static_cast<std::size_t>(at_ - buffer_.data())};
+  }
+
+ private:
+  std::array<char, 32 * kCount> buffer_;
+  char* at_ = buffer_.data();
+};
+
+const std::string& nameOf(std::span<const std::string> names, std::size_t id, const char* what) {
+  if (id < names.size()) return names[id];
+  throw inputError("trace.name", std::string("the trace has the ") + what + " number " +
+                                     std::to_string(id) + ", but only " +
+                                     std::to_string(names.size()) + " have a name");
+}
+
+/// The ports of one tick as one field.
+std::string events(const TickResult& result, std::span<const std::string> ports) {
+  const auto count = std::min<std::size_t>(result.event_count, TickResult::kMaxEvents);
+  std::string joined;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0) joined += ';';
+    joined += nameOf(ports, result.events[i], "port");
+  }
+  return quoted(joined);
+}
+
+}  // namespace
+
+std::string traceCsv(std::span<const TraceRow> rows, std::span<const std::string> regions,
+                     std::span<const std::string> ports) {
+  std::vector<std::string> region_fields;
+  region_fields.reserve(regions.size());
+  for (const std::string& name : regions) region_fields.push_back(quoted(name));
+
+  constexpr std::size_t kTypicalRow = 220;  // of numbers that use all their digits
+  std::string out;
+  out.reserve(kHeader.size() + kTypicalRow * rows.size());
+  out += kHeader;
+  for (const TraceRow& row : rows) {
+    Numbers<10> numbers;
+    numbers.add(row.t);
+    numbers.add(row.hip);
+    numbers.add(row.result.proxy);
+    numbers.add(row.result.force);
+    out += numbers.text();
+    out += nameOf(region_fields, row.result.region, "region");
+    out += row.result.contact ? ",1," : ",0,";
+    if (row.result.event_count > 0) out += events(row.result, ports);
+    out += ',';
+    Numbers<1> time;
+    time.add(row.tick_ns);
+    out += time.text();
+    out.back() = '\n';
+  }
+  return out;
+}
+
+std::string traceCsv(std::span<const TraceRow> rows, const Scene& scene) {
+  std::vector<std::string> regions;
+  for (const Region& region : scene.regions()) regions.push_back(region.name);
+  std::vector<std::string> ports;
+  for (const Port& port : scene.ports()) ports.push_back(port.name);
+  return traceCsv(rows, regions, ports);
+}
+
+}  // namespace palpate

@@ -1,0 +1,61 @@
+#pragma once
+/// The `fields` of a scene: named and inline, analytic, combined, and of the registry's kinds.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "palpate/scene/scene_file.h"
+
+namespace palpate {
+
+/// Makes field sources of nodes. A named field is made once, so that all its users share one object:
+/// ports find their facet by identity.
+class FieldReader {
+ public:
+  FieldReader(const SceneLoader& loader, const SceneRegistry& registry)
+      : loader_(loader), registry_(registry) {}
+
+  /// Takes note of what is named, then makes each; names may be used before they are defined.
+  void define(const Node& fields);
+
+  /// A name, or an inline map of one kind.
+  [[nodiscard]] FieldSourcePtr read(const Node& node) { return build(node).source; }
+  /// A name only: for what must be the same object elsewhere.
+  [[nodiscard]] FieldSourcePtr readName(const Node& node, const std::string& what);
+
+  /// All named fields, in the order of the file.
+  [[nodiscard]] std::vector<NamedField> all() const;
+
+ private:
+  struct Built {
+    FieldSourcePtr source;
+    std::size_t leaves = 1;  // of its tree; shared parts count each time, as they are evaluated
+    int height = 1;
+  };
+  struct Named {
+    const Node::Entry* entry = nullptr;
+    bool under_way = false;
+    Built built = {};
+  };
+  using Combine = FieldPtr (*)(std::vector<FieldPtr>);
+
+  [[nodiscard]] Built build(const Node& node);
+  [[nodiscard]] const Built& buildNamed(const std::string& name, Mark mark);
+  [[nodiscard]] Built buildKind(const Node::Entry& kind);
+  [[nodiscard]] Built buildTransform(const Node::Entry& kind);
+  [[nodiscard]] Built buildRegistered(const Node::Entry& kind);
+  [[nodiscard]] FieldSourcePtr buildPrimitive(const Node::Entry& kind);
+  [[nodiscard]] Built combine(const Node::Entry& kind, const std::vector<const Node*>& operands,
+                              Combine operation);
+  [[nodiscard]] std::vector<std::string_view> names() const;
+
+  const SceneLoader& loader_;
+  const SceneRegistry& registry_;
+  std::map<std::string, Named, std::less<>> named_ = {};
+  std::vector<std::string> order_ = {};
+  std::vector<std::string> path_ = {};  // names under way, to show a cycle
+  int depth_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,21 @@
+#pragma once
+/// How values of a file are shown in messages.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate {
+
+/// `text` in single quotes, on one line and not too long.
+[[nodiscard]] std::string inQuotes(std::string_view text);
+
+/// "a, b, c": for hints that list what there is; cut after 16.
+[[nodiscard]] std::string listed(const std::vector<std::string_view>& names);
+
+/// "did you mean 'x'?" if one of the names is close; else `lead` and the names; "" without names.
+[[nodiscard]] std::string suggestOrList(std::string_view word,
+                                        const std::vector<std::string_view>& names,
+                                        std::string_view lead);
+
+}  // namespace palpate

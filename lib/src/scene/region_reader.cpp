@@ -1,0 +1,288 @@
+#include "scene/region_reader.h"
+
+#include <algorithm>
+
+#include "scene/messages.h"
+#include "scene/values.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::string_view kOutsideName = "outside";
+constexpr std::string_view kAbsent = "absent";
+// Layer kinds of palpate::vdb, as kKindsOfGrids of the fields.
+constexpr std::string_view kSurfacesOfImages[] = {"labels", "threshold"};
+
+template <typename Items>
+std::vector<std::string_view> namesOf(const Items& items) {
+  std::vector<std::string_view> names;
+  names.reserve(items.size());
+  for (const auto& item : items) names.push_back(item.name);
+  return names;
+}
+
+std::vector<std::string_view> regionNames(const SceneDescription& scene) {
+  std::vector<std::string_view> names = namesOf(scene.layers);
+  names.insert(names.begin(), kOutsideName);
+  return names;
+}
+
+bool isGlob(std::string_view text) { return text.find_first_of("*?") != std::string_view::npos; }
+
+}  // namespace
+
+// Names go into traces, grid names and globs, so they must not hold what separates there.
+std::string RegionReader::readName(MapReader& reader, std::string_view what) const {
+  const std::string name = reader.requireText("name");
+  const auto bad = std::find_if(name.begin(), name.end(), [](char c) {
+    return std::string_view("*?;,/\"\\").find(c) != std::string_view::npos ||
+           static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+  });
+  if (bad != name.end()) {
+    throw reader.errorAt("name", "scene.name",
+                         "the name of a " + std::string(what) + " must not hold " +
+                             inQuotes(std::string_view(&*bad, 1)),
+                         "letters, digits, spaces and _ - . ( ) are safe");
+  }
+  if (name.front() == ' ' || name.back() == ' ') {
+    throw reader.errorAt("name", "scene.name",
+                         "the name of a " + std::string(what) + " begins or ends with a space");
+  }
+  return name;
+}
+
+const Material& RegionReader::material(const Node& node, const std::string& what) const {
+  const std::string name = readText(loader_.document(), node, what);
+  const auto found = std::find_if(scene_.materials.begin(), scene_.materials.end(),
+                                  [&](const Material& m) { return m.name == name; });
+  if (found == scene_.materials.end()) {
+    std::string hint = suggestOrList(name, namesOf(scene_.materials), "materials: ");
+    if (hint.empty()) hint = "define it in `materials`";
+    throw loader_.document().error(node.mark, "scene.unknown_material",
+                                   "there is no material " + inQuotes(name), std::move(hint));
+  }
+  return *found;
+}
+
+WallDescription RegionReader::readWall(const Node& node) const {
+  if (node.kind == Node::Kind::kScalar && node.text == kAbsent) return {true, {}};
+  const Material& wall = material(node, "'wall'");
+  if (!(wall.stiffness > 0.0)) {
+    throw loader_.document().error(node.mark, "scene.range",
+                                   "the material " + inQuotes(wall.name) + " cannot be a wall",
+                                   "give it a stiffness, such as 1000 N/m, or write wall: absent");
+  }
+  return {false, wall.name};
+}
+
+void RegionReader::readSurface(MapReader& reader, LayerDescription& layer) const {
+  const Document& document = loader_.document();
+  const Node* inside = reader.optional("inside");
+  const Node::Entry* surface = nullptr;
+  std::vector<std::string_view> kinds(std::begin(kSurfacesOfImages), std::end(kSurfacesOfImages));
+  for (const auto& [kind, make] : registry_.layers) kinds.push_back(kind);
+  for (const std::string_view kind : kinds) (void)reader.optional(kind);
+  for (const Node::Entry& entry : reader.node().entries) {
+    const bool is_kind = std::find(kinds.begin(), kinds.end(), entry.key) != kinds.end();
+    if (!is_kind && entry.key != "inside") continue;
+    if (surface != nullptr) {
+      throw document.error(
+          entry.key_mark, "scene.kind",
+          "the layer has both " + inQuotes(surface->key) + " and " + inQuotes(entry.key),
+          "a layer comes from one of them");
+    }
+    surface = &entry;
+  }
+  if (surface == nullptr) {
+    reader.finish();  // perhaps the key is there, with a slip in it
+    throw document.error(reader.node().mark, "scene.missing_key",
+                         "the layer " + inQuotes(layer.name) + " does not say where it is",
+                         "add inside: FIELD, labels: {...} or threshold: {...}");
+  }
+  if (inside != nullptr) {
+    layer.inside = loader_.field(*inside);
+    return;
+  }
+  const auto kind = registry_.layers.find(surface->key);
+  if (kind == registry_.layers.end()) {
+    throw document.error(surface->key_mark, "scene.no_reader",
+                         "this program reads no images, so no " + inQuotes(surface->key),
+                         "palpate::vdb reads them, and is not part of this program");
+  }
+  MapReader values(loader_, surface->value, inQuotes(surface->key));
+  SceneRegistry::LayerSurface made = kind->second(values, layer.name);
+  values.finish();
+  if (!made.inside) {
+    throw document.error(surface->key_mark, "scene.no_reader",
+                         "nothing came of this " + inQuotes(surface->key));
+  }
+  layer.inside = std::move(made.inside);
+  layer.label_group = std::move(made.label_group);
+}
+
+void RegionReader::readLayers(const Node& layers) {
+  const Document& document = loader_.document();
+  for (const Node& node : readList(document, layers, "'layers'", 1, 0)) {
+    MapReader reader(loader_, node, "a layer");
+    LayerDescription layer;
+    layer.name = readName(reader, "layer");
+    layer.place = document.place(node.find("name")->mark);
+    if (layer.name == kOutsideName) {
+      throw errorAt(layer.place, "scene.name", "a layer cannot be called 'outside'",
+                    "that is the region in no layer");
+    }
+    for (const LayerDescription& other : scene_.layers) {
+      if (other.name != layer.name) continue;
+      throw errorAt(layer.place, "scene.duplicate_name",
+                    "a second layer is called " + inQuotes(layer.name),
+                    "the first is in line " + std::to_string(other.place.line));
+    }
+    const Node* content = reader.optional("content");
+    const Node* wall = reader.optional("wall");
+    readSurface(reader, layer);
+    reader.finish();
+    if (content != nullptr) layer.content = material(*content, "'content'").name;
+    if (wall != nullptr) layer.wall = readWall(*wall);
+    scene_.layers.push_back(std::move(layer));
+  }
+}
+
+void RegionReader::requireRegion(const Node& node, bool globs) const {
+  const std::vector<std::string_view> regions = regionNames(scene_);
+  const std::string& name = node.text;
+  if (isGlob(name)) {
+    if (!globs) {
+      throw loader_.document().error(node.mark, "scene.kind", "one region is wanted, not a glob",
+                                     "regions: " + listed(regions));
+    }
+    const bool matches = std::any_of(regions.begin(), regions.end(),
+                                     [&](std::string_view r) { return matchesGlob(name, r); });
+    if (!matches) {
+      throw loader_.document().error(node.mark, "scene.unknown_region",
+                                     "the glob " + inQuotes(name) + " matches no region",
+                                     "regions: " + listed(regions));
+    }
+    return;
+  }
+  if (std::find(regions.begin(), regions.end(), name) == regions.end()) {
+    throw loader_.document().error(node.mark, "scene.unknown_region",
+                                   "there is no region " + inQuotes(name),
+                                   suggestOrList(name, regions, "regions: "));
+  }
+}
+
+RegionReader::Between RegionReader::readBetween(MapReader& reader) const {
+  const Document& document = loader_.document();
+  const Node& node = reader.require("between");
+  const auto& items = readList(document, node, "'between'", 2, 2);
+  const Between between{readText(document, items[0], "a region"),
+                        readText(document, items[1], "a region")};
+  requireRegion(items[0], true);
+  requireRegion(items[1], true);
+  if (between.a == between.b && !isGlob(between.a)) {
+    throw document.error(items[1].mark, "scene.kind",
+                         "between " + inQuotes(between.a) + " and itself there is no wall");
+  }
+  return between;
+}
+
+void RegionReader::readWalls(const Node& walls) {
+  const Document& document = loader_.document();
+  for (const Node& node : readList(document, walls, "'walls'", 1, 0)) {
+    MapReader reader(loader_, node, "a wall");
+    const Between between = readBetween(reader);
+    WallOverride wall{between.a,
+                      between.b,
+                      readWall(reader.require("wall")),
+                      {},
+                      document.place(node.find("between")->mark)};
+    if (const Node* from = reader.optional("felt_from")) {
+      const std::size_t side = readChoice(document, *from, "'felt_from'", {between.a, between.b});
+      wall.felt_from = side == 0 ? between.a : between.b;
+      if (wall.wall.absent) {
+        throw document.error(from->mark, "scene.kind", "an absent wall is absent from both sides",
+                             "a port with a direction lets through one way");
+      }
+    }
+    reader.finish();
+    scene_.walls.push_back(std::move(wall));
+  }
+}
+
+double RegionReader::readForce(MapReader& reader, std::string_view key, double fallback) const {
+  const double force = reader.quantityOr(key, Dimension::kForce, fallback);
+  if (force < 0.0) {
+    throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be 0 N or more");
+  }
+  return force;
+}
+
+void RegionReader::readPorts(const Node& ports) {
+  const Document& document = loader_.document();
+  const auto& nodes = readList(document, ports, "'ports'", 1, 0);
+  for (const Node& node : nodes) {
+    MapReader reader(loader_, node, "a port");
+    PortDescription port;
+    port.name = readName(reader, "port");
+    port.place = document.place(node.find("name")->mark);
+    for (const PortDescription& other : scene_.ports) {
+      if (other.name != port.name) continue;
+      throw errorAt(port.place, "scene.duplicate_name",
+                    "a second port is called " + inQuotes(port.name),
+                    "the first is in line " + std::to_string(other.place.line));
+    }
+    const Between between = readBetween(reader);
+    port.from = between.a;
+    port.to = between.b;
+    if (const Node* on = reader.optional("on")) {
+      port.on = fields_.readName(*on, "'on'");
+      port.on_name = on->text;
+    }
+    if (const Node* where = reader.optional("where")) port.where = loader_.field(*where);
+    if (const Node* direction = reader.optional("direction")) {
+      constexpr PortDirection kDirections[] = {PortDirection::kBoth, PortDirection::kIn,
+                                               PortDirection::kOut};
+      port.direction =
+          kDirections[readChoice(document, *direction, "'direction'", {"both", "in", "out"})];
+    }
+    (void)reader.optional("after");  // when all ports are known
+    port.opens_at = readForce(reader, "opens_at", 0.0);
+    if (reader.optional("back") != nullptr) port.back = readForce(reader, "back", 0.0);
+    reader.finish();
+    scene_.ports.push_back(std::move(port));
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (const Node* after = nodes[i].find("after")) readAfter(*after, scene_.ports[i]);
+  }
+}
+
+void RegionReader::readAfter(const Node& after, PortDescription& port) const {
+  const Document& document = loader_.document();
+  const std::vector<std::string_view> names = namesOf(scene_.ports);
+  for (const Node& item : readList(document, after, "'after'", 1, 0)) {
+    const std::string name = readText(document, item, "a port");
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      throw document.error(item.mark, "scene.unknown_port", "there is no port " + inQuotes(name),
+                           suggestOrList(name, names, "ports: "));
+    }
+    if (name == port.name) {
+      throw document.error(item.mark, "scene.cycle",
+                           "the port " + inQuotes(name) + " cannot come after itself");
+    }
+    if (std::find(port.after.begin(), port.after.end(), name) != port.after.end()) {
+      throw document.error(item.mark, "scene.duplicate_name", inQuotes(name) + " is listed twice");
+    }
+    port.after.push_back(name);
+  }
+}
+
+void RegionReader::readStart(const Node& start) {
+  MapReader reader(loader_, start, "'start'");
+  scene_.start_region = reader.requireText("region");
+  const Node& region = *start.find("region");
+  reader.finish();
+  requireRegion(region, false);
+  scene_.start_place = loader_.document().place(region.mark);
+}
+
+}  // namespace palpate

@@ -1,0 +1,43 @@
+#pragma once
+/// Layers, walls, ports and start of a scene: all that names regions and materials.
+
+#include "palpate/scene/scene_file.h"
+#include "scene/field_reader.h"
+
+namespace palpate {
+
+/// Fills a description whose materials are known already. Call in the order of declaration: each
+/// refers to what those before it defined.
+class RegionReader {
+ public:
+  RegionReader(const SceneLoader& loader, const SceneRegistry& registry, FieldReader& fields,
+               SceneDescription& scene)
+      : loader_(loader), registry_(registry), fields_(fields), scene_(scene) {}
+
+  void readLayers(const Node& layers);
+  void readWalls(const Node& walls);
+  void readPorts(const Node& ports);
+  void readStart(const Node& start);
+
+ private:
+  struct Between {
+    std::string a;
+    std::string b;
+  };
+
+  [[nodiscard]] std::string readName(MapReader& layer, std::string_view what) const;
+  void readSurface(MapReader& reader, LayerDescription& layer) const;
+  [[nodiscard]] const Material& material(const Node& node, const std::string& what) const;
+  [[nodiscard]] WallDescription readWall(const Node& node) const;
+  [[nodiscard]] Between readBetween(MapReader& reader) const;
+  void requireRegion(const Node& node, bool globs) const;
+  void readAfter(const Node& after, PortDescription& port) const;
+  [[nodiscard]] double readForce(MapReader& reader, std::string_view key, double fallback) const;
+
+  const SceneLoader& loader_;
+  const SceneRegistry& registry_;
+  FieldReader& fields_;
+  SceneDescription& scene_;
+};
+
+}  // namespace palpate

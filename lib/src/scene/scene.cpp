@@ -1,0 +1,34 @@
+#include "palpate/scene/scene.h"
+
+#include "palpate/scene/scene_file.h"
+
+namespace palpate {
+
+RegionId Scene::regionAt(const Vec3& p) const {
+  Signs signs(partition_.leaves().size());
+  partition_.signsAt(p, signs);
+  return partition_.regionOf(signs);
+}
+
+RegionId Scene::regionNamed(const std::string& name) const {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    if (regions_[i].name == name) return static_cast<RegionId>(i);
+    names.push_back(regions_[i].name);
+  }
+  const std::string near = suggest(name, names);
+  throw inputError("scene.unknown_layer", "there is no region '" + name + "'",
+                   near.empty() ? "" : "did you mean '" + near + "'?");
+}
+
+Box3 Scene::bounds() const {
+  Box3 all;
+  for (const Region& region : regions_) {
+    if (region.field && region.field->bounds().isBounded()) {
+      all = all.unitedWith(region.field->bounds());
+    }
+  }
+  return all;
+}
+
+}  // namespace palpate

@@ -1,0 +1,194 @@
+#include "palpate/scene/scene_file.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "scene/file_loader.h"
+#include "scene/messages.h"
+#include "scene/region_reader.h"
+#include "scene/unit_table.h"
+#include "scene/values.h"
+
+namespace palpate {
+namespace {
+
+// Every key of a scene's top level. The keys of what lies below are where they are read.
+constexpr std::string_view kSections[] = {"palpate", "length", "renderer",  "description",
+                                          "fields",  "images", "materials", "layers",
+                                          "walls",   "ports",  "start",     "memory"};
+
+double notNegative(MapReader& reader, std::string_view key, Dimension dimension) {
+  const double value = reader.quantityOr(key, dimension, 0.0);
+  if (value < 0.0) throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be 0 or more");
+  return value;
+}
+
+}  // namespace
+
+std::string FileLoader::resolvePath(const std::string& path) const {
+  const std::filesystem::path written(path);
+  if (written.is_absolute()) return path;
+  return (std::filesystem::path(document_.file).parent_path() / written).string();
+}
+
+std::shared_ptr<void> FileLoader::image(const std::string& name, Mark place) const {
+  const auto found = images_.find(name);
+  if (found != images_.end()) return found->second;
+  std::vector<std::string_view> names;
+  for (const auto& [known, image] : images_) names.push_back(known);
+  std::string hint = suggestOrList(name, names, "images: ");
+  if (hint.empty()) hint = "define it in `images`";
+  throw document_.error(place, "scene.unknown_image", "there is no image " + inQuotes(name),
+                        std::move(hint));
+}
+
+// Before all else: a later format may change what everything below means.
+void FileLoader::readVersion(const Node& root) const {
+  if (root.kind != Node::Kind::kMap) {
+    throw document_.error(root.mark, "scene.kind", "a scene is a map of keys and values",
+                          "it begins with palpate: 1");
+  }
+  for (const Node::Entry& entry : root.entries) {
+    if (entry.key != "palpate") continue;
+    refuseEmpty(document_, entry);
+    const double version = readNumber(document_, entry.value, "'palpate'");
+    if (entry.value.text != "1") {
+      throw document_.error(
+          entry.value.mark, "scene.version",
+          "this is scene format " + inQuotes(entry.value.text) + ", and this program reads 1",
+          version > 1.0 ? "a newer program may read it" : "write palpate: 1");
+    }
+    return;
+  }
+  for (const Node::Entry& entry : root.entries) {
+    if (suggest(entry.key, std::vector{kSections[0]}).empty()) continue;
+    throw document_.error(entry.key_mark, "scene.unknown_key",
+                          "unknown key " + inQuotes(entry.key) + " in a scene",
+                          "did you mean 'palpate'?");
+  }
+  throw document_.error({1, 1}, "scene.version", "the file does not say that it is a scene",
+                        "begin it with palpate: 1");
+}
+
+void FileLoader::readImages(const Node& images) {
+  requireMap(document_, images, "'images'");
+  for (const Node::Entry& entry : images.entries) {
+    refuseEmpty(document_, entry);
+    if (!registry_.image) {
+      throw document_.error(entry.key_mark, "scene.no_reader", "this program reads no images",
+                            "palpate::vdb reads them, and is not part of this program");
+    }
+    MapReader reader(*this, entry.value, "the image " + inQuotes(entry.key));
+    images_[entry.key] = registry_.image(reader);
+    reader.finish();
+  }
+}
+
+Friction FileLoader::readFriction(const Node& node) const {
+  MapReader reader(*this, node, "'friction'");
+  Friction friction;
+  friction.static_ratio = reader.requireNumber("static");
+  friction.kinetic_ratio = reader.numberOr("kinetic", friction.static_ratio);
+  reader.finish();
+  if (friction.static_ratio < 0.0) {
+    throw reader.errorAt("static", "scene.range", "'static' must be 0 or more");
+  }
+  if (friction.kinetic_ratio < 0.0) {
+    throw reader.errorAt("kinetic", "scene.range", "'kinetic' must be 0 or more");
+  }
+  if (friction.kinetic_ratio > friction.static_ratio) {
+    throw reader.errorAt("kinetic", "scene.range", "'kinetic' must not be more than 'static'",
+                         "what slides is held less than what sticks");
+  }
+  return friction;
+}
+
+std::vector<Material> FileLoader::readMaterials(const Node& materials) const {
+  requireMap(document_, materials, "'materials'");
+  std::vector<Material> all;
+  for (const Node::Entry& entry : materials.entries) {
+    refuseEmpty(document_, entry);
+    if (entry.key == "absent") {
+      throw document_.error(entry.key_mark, "scene.name", "a material cannot be called 'absent'",
+                            "wall: absent means no wall");
+    }
+    MapReader reader(*this, entry.value, "the material " + inQuotes(entry.key));
+    Material material;
+    material.name = entry.key;
+    material.stiffness = notNegative(reader, "stiffness", Dimension::kStiffness);
+    material.damping = notNegative(reader, "damping", Dimension::kDamping);
+    if (const Node* friction = reader.optional("friction")) {
+      material.friction = readFriction(*friction);
+    }
+    material.viscosity = notNegative(reader, "viscosity", Dimension::kDamping);
+    if (const Node* flow = reader.optional("flow")) {
+      const auto& items = readList(document_, *flow, "'flow'", 3, 3);
+      for (int i = 0; i < 3; ++i) {
+        material.flow[i] = readQuantity(document_, items[static_cast<std::size_t>(i)],
+                                        Dimension::kVelocity, "a component of 'flow'");
+      }
+    }
+    reader.finish();
+    all.push_back(std::move(material));
+  }
+  return all;
+}
+
+SceneDescription FileLoader::read() {
+  readVersion(document_.root);
+  SceneDescription scene;
+  scene.file = document_.file;
+
+  MapReader top(*this, document_.root, "a scene");
+  for (const std::string_view key : kSections) (void)top.optional(key);
+  top.finish();
+
+  const Node& length = top.require("length");
+  const std::vector<std::string_view> units = unitNames(Dimension::kLength);
+  length_unit_ = units[readChoice(document_, length, "'length'", units)];
+  metres_per_unit_ = *metresPer(length_unit_);
+  scene.length_unit = length_unit_;
+  scene.metres_per_unit = metres_per_unit_;
+
+  if (top.has("description")) (void)top.requireText("description");
+  if (const Node* renderer = top.optional("renderer")) {
+    scene.renderer = readChoice(document_, *renderer, "'renderer'", {"constraint", "paper"}) == 0
+                         ? RendererKind::kConstraint
+                         : RendererKind::kPaper;
+  }
+  if (const Node* memory = top.optional("memory")) {
+    scene.keep_memory = readChoice(document_, *memory, "'memory'", {"clear", "keep"}) == 1;
+  }
+  if (const Node* images = top.optional("images")) readImages(*images);
+  if (const Node* materials = top.optional("materials"))
+    scene.materials = readMaterials(*materials);
+  if (const Node* fields = top.optional("fields")) fields_.define(*fields);
+  scene.fields = fields_.all();
+
+  RegionReader regions(*this, registry_, fields_, scene);
+  if (const Node* layers = top.optional("layers")) regions.readLayers(*layers);
+  if (const Node* walls = top.optional("walls")) regions.readWalls(*walls);
+  if (const Node* ports = top.optional("ports")) regions.readPorts(*ports);
+  if (const Node* start = top.optional("start")) regions.readStart(*start);
+  return scene;
+}
+
+namespace {
+
+SceneDescription sceneOf(const Document& document, const SceneRegistry& registry) {
+  FileLoader loader(document, registry);
+  return loader.read();
+}
+
+}  // namespace
+
+SceneDescription parseScene(std::string_view text, const std::string& file,
+                            const SceneRegistry& registry) {
+  return sceneOf(*parseDocument(text, file), registry);
+}
+
+SceneDescription readScene(const std::string& path, const SceneRegistry& registry) {
+  return sceneOf(*readDocument(path), registry);
+}
+
+}  // namespace palpate

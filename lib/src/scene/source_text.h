@@ -1,0 +1,21 @@
+#pragma once
+/// The text of a document before it is parsed.
+
+#include <string>
+#include <string_view>
+
+#include "palpate/scene/document.h"
+
+namespace palpate {
+
+inline constexpr std::size_t kLargestDocument = std::size_t{16} << 20U;  ///< [bytes]
+inline constexpr int kDeepestNesting = 64;  ///< of lists and maps; more is a mistake or an attack
+
+/// `text` without byte order mark and with "\n" line ends; fills document.lines.
+/// @throws Error at the first byte that is no UTF-8 text, or a tab where YAML could take it for layout.
+[[nodiscard]] std::string acceptText(std::string_view text, Document& document);
+
+/// Reads `text` (from acceptText) into document.root. The only user of yaml-cpp.
+void readYaml(const std::string& text, Document& document);
+
+}  // namespace palpate

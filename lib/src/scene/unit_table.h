@@ -1,0 +1,21 @@
+#pragma once
+/// What the scene reader needs to know of units beyond palpate/scene/units.h.
+
+#include <string_view>
+#include <vector>
+
+#include "palpate/scene/units.h"
+
+namespace palpate {
+
+/// `value` in units of `factor`, in SI. Divides where the factor is one over a whole number, because
+/// 1/1000 is not a binary fraction: 40.1 mm then is the double nearest to 0.0401, as typed in SI.
+[[nodiscard]] double scaledTo(double value, double factor) noexcept;
+
+/// Every spelling of a unit of `dimension`, the SI unit first.
+[[nodiscard]] std::vector<std::string_view> unitNames(Dimension dimension);
+
+/// "a stiffness", "a length", ...
+[[nodiscard]] std::string_view dimensionName(Dimension dimension) noexcept;
+
+}  // namespace palpate

@@ -1,0 +1,220 @@
+#include "scene/values.h"
+
+#include <algorithm>
+
+#include "scene/messages.h"
+#include "scene/unit_table.h"
+
+namespace palpate {
+namespace {
+
+std::string shown(const Node& node) {
+  switch (node.kind) {
+    case Node::Kind::kNull:
+      return "nothing";
+    case Node::Kind::kSequence:
+      return "a list";
+    case Node::Kind::kMap:
+      return "a map";
+    case Node::Kind::kScalar:
+      return inQuotes(node.text);
+  }
+  return "nothing";
+}
+
+Error wrongKind(const Document& document, const Node& node, const std::string& what,
+                std::string_view wanted, std::string hint = {}) {
+  return document.error(node.mark, node.kind == Node::Kind::kNull ? "scene.empty" : "scene.kind",
+                        what + " wants " + std::string(wanted) + ", not " + shown(node),
+                        std::move(hint));
+}
+
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+
+// What to write instead of a text that is no number; empty if nobody knows.
+std::string numberHint(std::string_view text) {
+  if (text.find("\xC2\xA0") != std::string_view::npos) {
+    return "there is a no-break space in it; write a plain one";
+  }
+  std::string_view digits = text;
+  const bool negative = !digits.empty() && digits[0] == '-';
+  if (negative || (!digits.empty() && digits[0] == '+')) digits.remove_prefix(1);
+  std::string lower(digits);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (lower == ".inf" || lower == "inf" || lower == "infinity" || lower == ".nan" ||
+      lower == "nan") {
+    return "write a finite number";
+  }
+  if (digits.size() > 1 && digits[0] == '0') {
+    if (lower[1] == 'x' || lower[1] == 'o' || lower[1] == 'b') return "write a decimal number";
+    const std::size_t first = digits.find_first_not_of('0');
+    if (isDigit(digits[1]) && first != std::string_view::npos) {
+      return "a leading zero means octal to some readers; write " +
+             std::string(negative ? "-" : "") +
+             std::string(digits.substr(isDigit(digits[first]) ? first : first - 1));
+    }
+  }
+  if (!digits.empty() && isDigit(digits[0])) {
+    if (digits.find(',') != std::string_view::npos) return "write a decimal point, not a comma";
+    if (digits.find('_') != std::string_view::npos) return "write the digits without '_'";
+  }
+  return {};
+}
+
+Error notANumber(const Document& document, const Node& node, const std::string& what,
+                 std::string_view wanted, std::string fallback_hint) {
+  std::string hint = numberHint(node.text);
+  if (hint.empty()) hint = std::move(fallback_hint);
+  return document.error(node.mark, "scene.number",
+                        what + " wants " + std::string(wanted) + ", not " + inQuotes(node.text),
+                        std::move(hint));
+}
+
+Error badUnit(const Document& document, const Node& node, Dimension dimension,
+              const Quantity& quantity, const std::string& what) {
+  const std::string wanted(dimensionName(dimension));
+  const std::string help(unitHelp(dimension));
+  if (quantity.status == Quantity::Status::kMissingUnit) {
+    return document.error(node.mark, "scene.unit", what + " is " + wanted + " and needs its unit",
+                          "write " + node.text + " " + help);
+  }
+  if (quantity.status == Quantity::Status::kWrongDimension) {
+    return document.error(
+        node.mark, "scene.unit",
+        what + " wants " + wanted + ", and " + inQuotes(quantity.unit) + " is no unit of that",
+        "units: " + help);
+  }
+  const std::string close = suggest(quantity.unit, unitNames(dimension));
+  return document.error(node.mark, "scene.unit",
+                        what + " has the unknown unit " + inQuotes(quantity.unit),
+                        close.empty() ? "units: " + help : "did you mean " + inQuotes(close) + "?");
+}
+
+}  // namespace
+
+std::string readText(const Document& document, const Node& node, const std::string& what) {
+  if (node.kind != Node::Kind::kScalar) throw wrongKind(document, node, what, "a text");
+  if (node.text.empty()) {
+    throw document.error(node.mark, "scene.empty", what + " is an empty text");
+  }
+  const auto control = [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7F;
+  };
+  if (std::any_of(node.text.begin(), node.text.end(), control)) {
+    throw document.error(node.mark, "scene.kind", what + " has a control character in it");
+  }
+  if (!node.quoted && (parseNumber(node.text) || node.text == "true" || node.text == "false")) {
+    throw document.error(node.mark, "scene.kind", what + " wants a text, not " + shown(node),
+                         "quote it: \"" + node.text + "\"");
+  }
+  return node.text;
+}
+
+double readNumber(const Document& document, const Node& node, const std::string& what) {
+  if (node.kind != Node::Kind::kScalar) throw wrongKind(document, node, what, "a number");
+  const std::optional<double> number = parseNumber(node.text);
+  if (node.quoted) {
+    throw document.error(node.mark, "scene.kind", what + " wants a number, not a quoted text",
+                         number ? "remove the quotes: " + node.text : std::string());
+  }
+  if (!number) {
+    throw notANumber(document, node, what, "a number", "a plain decimal number without a unit");
+  }
+  return *number;
+}
+
+bool readBool(const Document& document, const Node& node, const std::string& what) {
+  if (node.kind == Node::Kind::kScalar && !node.quoted) {
+    if (node.text == "true") return true;
+    if (node.text == "false") return false;
+  }
+  throw wrongKind(document, node, what, "true or false",
+                  "only true and false are read; yes, no, on and off differ between YAML readers");
+}
+
+double readQuantity(const Document& document, const Node& node, Dimension dimension,
+                    const std::string& what) {
+  const std::string_view wanted = dimensionName(dimension);
+  if (node.kind != Node::Kind::kScalar) throw wrongKind(document, node, what, wanted);
+  const Quantity quantity = parseQuantity(node.text, dimension);
+  if (quantity.status == Quantity::Status::kOk) return quantity.si;
+  if (quantity.status == Quantity::Status::kNotANumber) {
+    throw notANumber(document, node, what, wanted,
+                     "a number and its unit: " + std::string(unitHelp(dimension)));
+  }
+  throw badUnit(document, node, dimension, quantity, what);
+}
+
+double readLength(const SceneLoader& loader, const Node& node, const std::string& what) {
+  const Document& document = loader.document();
+  if (node.kind != Node::Kind::kScalar) throw wrongKind(document, node, what, "a length");
+  const std::optional<double> number = parseNumber(node.text);
+  if (number && !node.quoted) return scaledTo(*number, loader.metresPerUnit());
+  const Quantity quantity = parseQuantity(node.text, Dimension::kLength);
+  if (quantity.status == Quantity::Status::kOk) return quantity.si;
+  if (number) {
+    throw document.error(node.mark, "scene.kind", what + " wants a length, not quoted digits",
+                         "remove the quotes: " + node.text + " (in " + loader.lengthUnit() +
+                             "), or write the unit in them");
+  }
+  if (quantity.status == Quantity::Status::kNotANumber) {
+    throw notANumber(document, node, what, "a length",
+                     "a number in " + loader.lengthUnit() +
+                         ", or one with its unit: " + std::string(unitHelp(Dimension::kLength)));
+  }
+  throw badUnit(document, node, Dimension::kLength, quantity, what);
+}
+
+const std::vector<Node>& readList(const Document& document, const Node& node,
+                                  const std::string& what, std::size_t least, std::size_t most) {
+  if (node.kind != Node::Kind::kSequence) {
+    std::string hint;
+    if (node.kind == Node::Kind::kScalar && least <= 1) hint = "write [" + node.text + "]";
+    throw wrongKind(document, node, what, "a list", std::move(hint));
+  }
+  if (node.items.size() < least || (most != 0 && node.items.size() > most)) {
+    const std::string wanted = least == most ? std::to_string(least)
+                               : most == 0   ? std::to_string(least) + " or more"
+                                           : std::to_string(least) + " to " + std::to_string(most);
+    throw document.error(
+        node.mark, "scene.length",
+        what + " wants a list of " + wanted + ", not of " + std::to_string(node.items.size()));
+  }
+  for (const Node& item : node.items) {
+    if (item.kind == Node::Kind::kNull) {
+      throw document.error(item.mark, "scene.empty", what + " has an empty entry here",
+                           "fill it in or remove it");
+    }
+  }
+  return node.items;
+}
+
+std::size_t readChoice(const Document& document, const Node& node, const std::string& what,
+                       const std::vector<std::string_view>& choices) {
+  if (node.kind != Node::Kind::kScalar) {
+    throw wrongKind(document, node, what, "one of " + listed(choices));
+  }
+  const auto found = std::find(choices.begin(), choices.end(), node.text);
+  if (found == choices.end()) {
+    throw document.error(node.mark, "scene.choice",
+                         what + " is " + listed(choices) + ", not " + inQuotes(node.text),
+                         suggestOrList(node.text, choices, "one of "));
+  }
+  return static_cast<std::size_t>(found - choices.begin());
+}
+
+void requireMap(const Document& document, const Node& node, const std::string& what) {
+  if (node.kind != Node::Kind::kMap) throw wrongKind(document, node, what, "a map {key: value}");
+}
+
+void refuseEmpty(const Document& document, const Node::Entry& entry) {
+  if (entry.value.kind == Node::Kind::kNull) {
+    std::string hint = "give it a value or remove it";
+    if (entry.key.find(':') != std::string::npos) hint = "put a space behind the ':'";
+    throw document.error(entry.key_mark, "scene.empty", inQuotes(entry.key) + " has no value",
+                         std::move(hint));
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,41 @@
+#pragma once
+/// Nodes read as values. `what` names the value in messages ("'radius' of sphere"). All throw Error
+/// (kInput) at the node. An empty node is refused by every one of them.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "palpate/core/math.h"
+#include "palpate/scene/scene_file.h"
+
+namespace palpate {
+
+/// Any text. A plain scalar that YAML readers take for something else (12, true) must be quoted, so
+/// that a scene means the same to all of them.
+[[nodiscard]] std::string readText(const Document& document, const Node& node,
+                                   const std::string& what);
+[[nodiscard]] double readNumber(const Document& document, const Node& node,
+                                const std::string& what);
+[[nodiscard]] bool readBool(const Document& document, const Node& node, const std::string& what);
+[[nodiscard]] double readQuantity(const Document& document, const Node& node, Dimension dimension,
+                                  const std::string& what);
+/// A bare number in the file's length unit, or a text with a unit; in [m].
+[[nodiscard]] double readLength(const SceneLoader& loader, const Node& node,
+                                const std::string& what);
+
+/// The items of a list of at least `least` and, unless 0, at most `most` items, none of them empty.
+[[nodiscard]] const std::vector<Node>& readList(const Document& document, const Node& node,
+                                                const std::string& what, std::size_t least,
+                                                std::size_t most);
+/// Index of the one of `choices` that is written.
+[[nodiscard]] std::size_t readChoice(const Document& document, const Node& node,
+                                     const std::string& what,
+                                     const std::vector<std::string_view>& choices);
+
+/// @throws Error unless `node` is a map.
+void requireMap(const Document& document, const Node& node, const std::string& what);
+/// @throws Error if the entry has no value; points at the key, because the value is nowhere.
+void refuseEmpty(const Document& document, const Node::Entry& entry);
+
+}  // namespace palpate

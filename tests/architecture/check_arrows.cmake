@@ -1,0 +1,122 @@
+# cmake -D ROOT=... -P check_arrows.cmake
+# Fails on an include against the arrows of the design:
+#   tools -> devices, vdb, lib;  devices -> lib;  vdb -> lib;  lib -> nobody
+#   inside lib: render -> scene -> {contact, interior} -> materials -> fields -> core
+# Target visibility does not see to it: /usr/include is always on the path, and so are a static library's
+# own headers. Tests may include everything.
+cmake_minimum_required(VERSION 3.25)
+
+# What each module may include of ours, itself apart.
+set(modules_lib "")
+set(modules_vdb lib)
+set(modules_devices lib)
+set(modules_tools lib vdb devices)
+
+# What each layer of lib may include of lib, itself apart.
+set(layers_core "")
+set(layers_fields core)
+set(layers_materials fields ${layers_fields})
+set(layers_contact materials ${layers_materials})
+set(layers_interior materials ${layers_materials})
+set(layers_scene contact interior ${layers_contact})
+set(layers_render scene ${layers_scene})
+
+# Libraries that live in one place only: regular expression of the include, then where it may stand.
+set(confined_names openvdb tbb imath assimp nifti boost yaml)
+set(confined_openvdb "^openvdb/" "^vdb/")
+set(confined_tbb "^(tbb|oneapi)/" "^vdb/")
+set(confined_imath "^(Imath|OpenEXR)/" "^vdb/")
+set(confined_assimp "^assimp/" "^vdb/src/")
+set(confined_nifti "^(nifti/.*|nifti[12]?(_io)?|nifticdf|znzlib)[.]h$|^nifti/" "^vdb/src/")
+set(confined_boost "^boost/" "^vdb/")
+set(confined_yaml "^yaml-cpp/" "^lib/src/scene/")
+
+set(wrong 0)
+macro(complain file what)
+  message(STATUS "${file}: ${what}")
+  math(EXPR wrong "${wrong} + 1")
+endmacro()
+
+# Which module and, within lib, which layer a file of ours belongs to.
+function(place file module_out layer_out)
+  string(REGEX MATCH "^[^/]+" module "${file}")
+  set(layer "")
+  if(module STREQUAL "lib" AND file MATCHES "^lib/(include/palpate|src)/([^/]+)/")
+    set(layer "${CMAKE_MATCH_2}")
+  endif()
+  set(${module_out} "${module}" PARENT_SCOPE)
+  set(${layer_out} "${layer}" PARENT_SCOPE)
+endfunction()
+
+# The file of ours that `included` in `file` means, relative to ROOT; empty if it is none of ours.
+function(resolve file included out)
+  cmake_path(GET file PARENT_PATH folder)
+  string(REGEX MATCH "^[^/]+" module "${file}")
+  foreach(base "${folder}" "${module}/src" lib/include vdb/include devices/include)
+    set(candidate "${base}/${included}")
+    cmake_path(NORMAL_PATH candidate)
+    if(EXISTS "${ROOT}/${candidate}")
+      set(${out} "${candidate}" PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+  set(${out} "" PARENT_SCOPE)
+endfunction()
+
+file(GLOB_RECURSE files RELATIVE "${ROOT}"
+  "${ROOT}/lib/*.h" "${ROOT}/vdb/*.h" "${ROOT}/devices/*.h" "${ROOT}/tools/*.h"
+  "${ROOT}/lib/*.cpp" "${ROOT}/vdb/*.cpp" "${ROOT}/devices/*.cpp" "${ROOT}/tools/*.cpp")
+list(LENGTH files count)
+if(count EQUAL 0)
+  message(FATAL_ERROR "no sources below '${ROOT}'")
+endif()
+
+foreach(file IN LISTS files)
+  place("${file}" module layer)
+  if(module STREQUAL "lib" AND NOT DEFINED "layers_${layer}")
+    complain("${file}" "'${layer}' is no layer of lib that this check knows")
+    continue()
+  endif()
+
+  file(READ "${ROOT}/${file}" text)
+  # Only the include itself is kept: brackets and semicolons further on would break a CMake list.
+  string(REGEX MATCHALL "\n[ \t]*#[ \t]*include[ \t]*[<\"][^>\"\n]+" lines "\n${text}")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE ".*[<\"]" "" included "${line}")
+
+    foreach(name IN LISTS confined_names)
+      list(GET confined_${name} 0 what)
+      list(GET confined_${name} 1 where)
+      if(included MATCHES "${what}" AND NOT file MATCHES "${where}")
+        complain("${file}" "includes ${included}: only ${where} may know it")
+      endif()
+    endforeach()
+
+    resolve("${file}" "${included}" target)
+    if(target)
+      place("${target}" target_module target_layer)
+      if(NOT target_module STREQUAL module)
+        if(NOT target_module IN_LIST modules_${module})
+          complain("${file}" "includes ${included}: ${module} must not know ${target_module}")
+        elseif(NOT target MATCHES "/include/")
+          complain("${file}" "includes ${included}: it is private to ${target_module}")
+        endif()
+      elseif(module STREQUAL "lib" AND NOT target_layer STREQUAL layer
+             AND NOT target_layer IN_LIST layers_${layer})
+        complain("${file}" "includes ${included}: within lib, ${layer} must not know ${target_layer}")
+      elseif(file MATCHES "^[^/]+/include/" AND NOT target MATCHES "^[^/]+/include/")
+        complain("${file}" "includes ${included}: a public header must not need a private one")
+      endif()
+    elseif(included MATCHES "^palpate/")
+      complain("${file}" "includes ${included}: there is no such header")
+    elseif(module STREQUAL "lib" AND NOT included MATCHES "^(glm|yaml-cpp)/" AND included MATCHES "[./]")
+      # What is left is the standard library, whose headers have neither a folder nor a suffix.
+      complain("${file}" "includes ${included}: lib knows the C++ standard library and GLM only")
+    endif()
+  endforeach()
+endforeach()
+
+if(wrong GREATER 0)
+  message(FATAL_ERROR "${wrong} of the includes in ${count} files run against the arrows")
+endif()
+message(STATUS "${count} files keep to the arrows")

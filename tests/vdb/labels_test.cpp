@@ -1,0 +1,122 @@
+// Tables of label names, and which labels a scene's `match` means.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "palpate/core/error.h"
+#include "palpate/vdb/image.h"
+#include "palpate/vdb/scan_surface.h"
+#include "vdb/nifti_writer.h"
+
+namespace palpate::vdb {
+namespace {
+
+using test::writeTemporary;
+
+NameTable tableOf(const std::string& text) { return readNameTable(writeTemporary("t.txt", text)); }
+
+void expectRefused(const std::string& text, const std::string& code, int line,
+                   const std::string& says) {
+  try {
+    (void)tableOf(text);
+    ADD_FAILURE() << "read without complaint: " << text;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.problem().code, code);
+    EXPECT_EQ(error.problem().line, line) << error.what();
+    EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+  }
+}
+
+TEST(NameTable, ReadsMricronsAal) {
+  const NameTable names = readNameTable("/usr/share/mricron/templates/aal.nii.txt");
+  EXPECT_EQ(names.size(), 116U);
+  EXPECT_EQ(names.at(1), "Precentral_L");
+  EXPECT_EQ(names.at(77), "Thalamus_L");
+  EXPECT_EQ(names.at(78), "Thalamus_R");
+}
+
+TEST(NameTable, ReadsTheAbdomensCsv) {
+  const std::string path = PALPATE_SOURCE_DIR "/../shared/data/abdomen/labels.csv";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  const NameTable names = readNameTable(path);
+  EXPECT_EQ(names.at(0), "background");
+  EXPECT_EQ(names.at(5), "liver");
+}
+
+TEST(NameTable, ReadsBothShapesWithCommentsBlankLinesBomAndCrLf) {
+  const NameTable expected = {{-1, "other"}, {2, "Caudate_L"}, {30, "skin"}};
+  EXPECT_EQ(tableOf("2 Caudate_L 7001\n30 skin\n-1 other\n"), expected);
+  EXPECT_EQ(tableOf("\xEF\xBB\xBF# a comment\r\n\r\n  2\tCaudate_L\r\n30\tskin\r\n -1 other"),
+            expected);
+  EXPECT_EQ(tableOf("value,name\r\n2,Caudate_L\r\n30 , skin\r\n-1,other,9,9\r\n"), expected);
+  EXPECT_EQ(tableOf("2,Caudate_L\n30,skin\n-1,other\n"), expected);
+  EXPECT_EQ(
+      tableOf(
+          "# Color table file\n2 Caudate_L 255 200 135 255\n30 skin 1 2 3 255\n-1 other 0 0 0 0"),
+      expected);
+  EXPECT_EQ(tableOf("1\tleft lobe\t7\n"), (NameTable{{1, "left lobe"}}));
+  EXPECT_EQ(tableOf("1,\"lobe, \"\"left\"\"\"\n"), (NameTable{{1, "lobe, \"left\""}}));
+  EXPECT_EQ(tableOf("1 a\n1 a\n"), (NameTable{{1, "a"}}));
+}
+
+TEST(NameTable, RefusesWhatItCannotBeSureOf) {
+  expectRefused("1 a\n\n1 b\n", "labels.table_duplicate", 3, "`b` here and `a` before");
+  expectRefused("1 a\nx b\n", "labels.table_row", 2, "`x` is not a label value");
+  expectRefused("1.5 a\n", "labels.table_row", 1, "1.5");
+  expectRefused("99999999999 a\n", "labels.table_row", 1, "99999999999");
+  expectRefused("1 a\n2\n", "labels.table_row", 2, "label 2 has no name");
+  expectRefused("value,name\nvalue,name\n", "labels.table_row", 2, "`value`");
+  expectRefused("1 left lobe\n", "labels.table_row", 1, "`lobe`");
+  // ITK-SNAP's own format: the second column is a colour, no name.
+  expectRefused("1 255 0 0 1 1 1 \"liver\"\n", "labels.table_row", 1, "\"liver\"");
+  expectRefused("# only this\n", "labels.table_empty", 0, "no label");
+}
+
+TEST(NameTable, TellsOfMissingFiles) {
+  for (const std::string& path : {testing::TempDir() + "/no_such_table.csv", testing::TempDir()}) {
+    try {
+      (void)readNameTable(path);
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.problem().code, "labels.table_missing");
+      EXPECT_EQ(error.problem().file, path);
+    }
+  }
+}
+
+const NameTable kNames = {{0, "background"}, {3, "rib_left_1"},  {4, "rib_left_2"},
+                          {5, "liver"},      {8, "rib_right_1"}, {9, "liver"}};
+
+TEST(ResolveLabels, TakesValuesNamesAndGlobs) {
+  const auto resolve = [](std::vector<std::string> match) {
+    return resolveLabels(match, kNames, "labels.csv");
+  };
+  EXPECT_EQ(resolve({"12"}), (std::vector{12}));  // a value needs no name
+  EXPECT_EQ(resolve({"liver"}), (std::vector{5, 9}));
+  EXPECT_EQ(resolve({"rib_*_1", "4", "rib_left_?"}), (std::vector{3, 4, 8}));
+  EXPECT_EQ(resolve({"background"}), (std::vector{0}));
+  EXPECT_EQ(resolve({"*"}), (std::vector{3, 4, 5, 8, 9}));  // all but the background
+  EXPECT_EQ(resolveLabels({"7", "-2"}, {}, ""), (std::vector{-2, 7}));
+}
+
+TEST(ResolveLabels, NamesWhatMatchesNothing) {
+  const auto problemOf = [](std::vector<std::string> match, const NameTable& names) {
+    try {
+      (void)resolveLabels(match, names, "labels.csv");
+    } catch (const Error& error) {
+      return error.problem();
+    }
+    return Problem{};
+  };
+  const Problem slip = problemOf({"5", "livr"}, kNames);
+  EXPECT_EQ(slip.code, "labels.unknown");
+  EXPECT_NE(slip.message.find("`livr`"), std::string::npos);
+  EXPECT_NE(slip.hint.find("`liver`"), std::string::npos) << slip.hint;
+  EXPECT_EQ(slip.file, "labels.csv");
+  EXPECT_EQ(problemOf({"Liver"}, kNames).code, "labels.unknown");
+  EXPECT_EQ(problemOf({"spine_*"}, kNames).code, "labels.unknown");
+  EXPECT_EQ(problemOf({"liver"}, {}).code, "labels.no_names");
+}
+
+}  // namespace
+}  // namespace palpate::vdb

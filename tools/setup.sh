@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# What tools/run.sh and tools/test.sh share: the one list of Debian packages, and how to install them,
+# configure and build. Sourced by them; has nothing to run by itself.
+
+# To build and run Palpate. libboost-dev: OpenVDB's headers need it, but libopenvdb-dev does not bring it.
+# fonts-dejavu-core: the letters in pictures. mricron-data: the scanned head that data/scenes/head.yaml is about.
+build_packages=(
+  g++ cmake ninja-build ccache
+  libopenvdb-dev libtbb-dev libboost-dev libnifti-dev zlib1g-dev libassimp-dev
+  libglm-dev libyaml-cpp-dev
+  libcli11-dev nlohmann-json3-dev pkg-config libcairo2-dev fonts-dejavu-core
+  mricron-data
+)
+
+# To test it as well. git tells what changed; Python and OpenVDB's own tools are what results are held against.
+test_packages=(
+  clang-format clang-tidy git
+  libgtest-dev libbenchmark-dev
+  python3-nibabel python3-numpy python3-scipy python3-openvdb libopenvdb-tools
+)
+
+export LC_ALL=C.UTF-8
+
+say() { printf '\n== %s\n' "$*"; }
+fail() { printf 'error: %s\n' "$*" >&2; exit 1; }
+
+# Seconds since the script began, for reports.
+elapsed() { printf '%d s' "$SECONDS"; }
+
+missing_packages() { # NAME...: those that are not installed, one a line
+  local installed
+  # dpkg-query fails when it does not know a name, which only means that it is missing.
+  installed=$({ dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' "$@" 2> /dev/null || true; } |
+    sed -n 's/^installed //p')
+  printf '%s\n' "$@" | grep --line-regexp --fixed-strings --invert-match "$installed" || true
+}
+
+install_packages() { # NAME...: installs what is missing, as root or through sudo
+  if ! command -v dpkg-query > /dev/null; then
+    echo "This is not Debian, so nothing is installed. Needed, by Debian's names: $*"
+    return 0
+  fi
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
+  [ ${#missing[@]} -gt 0 ] || return 0
+
+  local as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo > /dev/null ||
+      fail "missing packages, and neither root nor sudo to install them. As root: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  as_root+=(env DEBIAN_FRONTEND=noninteractive)
+  local apt=("${as_root[@]}" apt-get --quiet --yes -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0)
+
+  say "Installing ${#missing[@]} packages and what they need: ${missing[*]}"
+  # An installation that was interrupted is finished first; apt refuses to go on otherwise.
+  "${as_root[@]}" dpkg --configure -a || fail "dpkg --configure -a failed; see above"
+  "${apt[@]}" update || fail "apt-get update failed; is a Debian mirror configured and reachable?"
+  if ! "${apt[@]}" install --no-install-recommends "${missing[@]}"; then
+    local name absent=()
+    for name in "${missing[@]}"; do
+      apt-cache show "$name" > /dev/null 2>&1 || absent+=("$name")
+    done
+    [ ${#absent[@]} = 0 ] ||
+      fail "this system's package sources do not have: ${absent[*]}. Palpate is built on Debian 12 (bookworm)."
+    fail "apt-get could not install: $(missing_packages "${missing[@]}" | paste --serial --delimiters=' '); see above"
+  fi
+}
+
+use_ccache() { # what was compiled once, here or in another clone of this project, is not compiled again
+  if command -v ccache > /dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1
+  fi
+}
+
+configure() { # PRESET [-D...]: only when there is something new to configure
+  local dir=$root/build/$1 wanted="$*"
+  if [ -f "$dir/build.ninja" ] && [ "$dir/build.ninja" -nt "$root/CMakePresets.json" ] &&
+    [ "$(cat "$dir/.configured" 2> /dev/null)" = "$wanted" ]; then
+    return 0 # ninja itself sees changes of CMakeLists.txt
+  fi
+  cmake --preset "$@" && printf '%s' "$wanted" > "$dir/.configured"
+}

@@ -1,0 +1,64 @@
+#include "input_kind.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <utility>
+
+#include "palpate/core/error.h"
+
+namespace palpate::tools {
+namespace {
+
+constexpr std::array<std::pair<const char*, InputKind>, 11> kExtensions = {{
+    {".yaml", InputKind::kScene},
+    {".yml", InputKind::kScene},
+    {".json", InputKind::kScene},
+    {".vdb", InputKind::kGrid},
+    {".stl", InputKind::kMesh},
+    {".obj", InputKind::kMesh},
+    {".ply", InputKind::kMesh},
+    {".gltf", InputKind::kMesh},
+    {".glb", InputKind::kMesh},
+    {".nii", InputKind::kImage},
+    {".nii.gz", InputKind::kImage},
+}};
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+}  // namespace
+
+bool hasExtension(const std::string& path, const std::string& extension) {
+  return lower(path).ends_with(lower(extension));
+}
+
+InputKind inputKind(const std::string& path) {
+  std::error_code failed;
+  if (!std::filesystem::exists(path, failed)) {
+    throw inputError("file.missing", "there is no such file", "check the path", path);
+  }
+  if (std::filesystem::is_directory(path, failed)) {
+    throw inputError("file.is_folder", "this is a folder", "name a file in it", path);
+  }
+  for (const auto& [extension, kind] : kExtensions) {
+    if (hasExtension(path, extension)) return kind;
+  }
+  throw inputError(
+      "file.unknown_kind", "cannot tell from its name what this file is",
+      "known are scenes (.yaml .yml .json), grids (.vdb), meshes (.stl .obj .ply .gltf .glb) "
+      "and images (.nii .nii.gz)",
+      path);
+}
+
+std::string stemOf(const std::string& path) {
+  std::string name = std::filesystem::path(path).filename().string();
+  if (hasExtension(name, ".nii.gz")) return name.substr(0, name.size() - 7);
+  return std::filesystem::path(name).stem().string();
+}
+
+}  // namespace palpate::tools

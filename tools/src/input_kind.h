@@ -1,0 +1,20 @@
+#pragma once
+/// What a file is, by its name.
+
+#include <string>
+
+namespace palpate::tools {
+
+enum class InputKind { kScene, kGrid, kMesh, kImage };
+
+/// By extension. @throws Error: kInput if the file is missing, is no regular file or has an extension that
+/// nothing here reads.
+[[nodiscard]] InputKind inputKind(const std::string& path);
+
+/// `path` without folder and extensions: "ch2" for "a/ch2.nii.gz".
+[[nodiscard]] std::string stemOf(const std::string& path);
+
+/// True if `path` ends with `extension` (".png"), in any case.
+[[nodiscard]] bool hasExtension(const std::string& path, const std::string& extension);
+
+}  // namespace palpate::tools

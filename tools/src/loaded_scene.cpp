@@ -1,0 +1,67 @@
+#include "loaded_scene.h"
+
+#include <utility>
+
+#include "palpate/scene/scene_file.h"
+
+namespace palpate::tools {
+
+LoadedScene::LoadedScene(const std::string& file, Console& console) : console_(&console) {
+  SceneRegistry registry;
+  vdb::RegisterOptions options;
+  options.on_grid = [this](const vdb::GridRecord& record) { grids_.push_back(record); };
+  options.on_note = [this](const std::string& note) { console_->note(note); };
+  vdb::registerKinds(registry, std::move(options));
+
+  // Pictures want the scans themselves, so the entries are noted down on their way through.
+  registry.image = [this, inner = registry.image](MapReader& reader) {
+    SceneImage image;
+    image.file = reader.loader().resolvePath(reader.requireText("file"));
+    image.has_names = reader.has("names");
+    for (const auto& entry : reader.loader().document().root.entries) {
+      if (entry.key != "images") continue;
+      for (const auto& named : entry.value.entries) {
+        if (&named.value == &reader.node()) image.name = named.key;
+      }
+    }
+    auto made = inner(reader);
+    images_.push_back(std::move(image));
+    return made;
+  };
+  description_ = readScene(file, registry);
+}
+
+LengthUnit LoadedScene::unit() const {
+  return {description_.length_unit, description_.metres_per_unit};
+}
+
+ScenePtr LoadedScene::compile() const {
+  return palpate::compile(description_, console_->progress());
+}
+
+Json LoadedScene::gridsJson() const {
+  Json list = Json::array();
+  for (const auto& grid : grids_) {
+    list.push_back({{"what", grid.what},
+                    {"voxel_size_m", grid.info.voxel_size},
+                    {"active_voxels", grid.info.active_voxels},
+                    {"memory_bytes", grid.info.memory},
+                    {"seconds", grid.seconds}});
+  }
+  return list;
+}
+
+std::string LoadedScene::gridsText() const {
+  if (grids_.empty()) return {};
+  Table table({"grid", "voxel", "active voxels", "memory", "made in"});
+  for (const auto& grid : grids_) {
+    table.add({grid.what,
+               formatNumber(grid.info.voxel_size / description_.metres_per_unit, 3) + " " +
+                   description_.length_unit,
+               formatCount(grid.info.active_voxels), formatBytes(grid.info.memory),
+               formatSeconds(grid.seconds)});
+  }
+  return table.text("  ");
+}
+
+}  // namespace palpate::tools

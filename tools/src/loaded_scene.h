@@ -1,0 +1,50 @@
+#pragma once
+/// A scene file read with everything palpate::vdb can read, and what its grids cost.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "console.h"
+#include "palpate/scene/scene.h"
+#include "palpate/vdb/register.h"
+#include "report.h"
+#include "text.h"
+
+namespace palpate::tools {
+
+/// An entry of the scene's `images`.
+struct SceneImage {
+  std::string name;
+  std::string file;        ///< as this process can open it
+  bool has_names = false;  ///< a label image, not grey values
+};
+
+/// Stays where it is: the description's sources report back to it.
+class LoadedScene {
+ public:
+  /// Reads the file; makes nothing yet. @throws Error (kInput).
+  LoadedScene(const std::string& file, Console& console);
+  LoadedScene(const LoadedScene&) = delete;
+  LoadedScene& operator=(const LoadedScene&) = delete;
+
+  [[nodiscard]] const SceneDescription& description() const noexcept { return description_; }
+  [[nodiscard]] LengthUnit unit() const;
+  [[nodiscard]] const std::vector<SceneImage>& images() const noexcept { return images_; }
+  [[nodiscard]] const std::vector<vdb::GridRecord>& grids() const noexcept { return grids_; }
+
+  /// Compiles, with progress. @throws Error.
+  [[nodiscard]] ScenePtr compile() const;
+
+  [[nodiscard]] Json gridsJson() const;
+  [[nodiscard]] std::string gridsText() const;  ///< empty if there is none
+
+ private:
+  Console* console_;
+  std::vector<vdb::GridRecord> grids_;
+  std::vector<SceneImage> images_;
+  SceneDescription description_;
+};
+
+}  // namespace palpate::tools

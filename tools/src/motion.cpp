@@ -1,0 +1,159 @@
+#include "motion.h"
+
+#include <cmath>
+#include <string_view>
+
+#include "palpate/core/error.h"
+
+namespace palpate::tools {
+namespace {
+
+// No sensible path is longer; a slip in --hold or --speed must not fill the memory.
+constexpr double kLongestPath = 20e6;  // [ticks], 5.5 hours at 1 kHz
+
+Error usageError(std::string message, std::string hint = {}) {
+  return Error(ErrorKind::kUsage, {"usage.motion", std::move(message), std::move(hint)});
+}
+
+std::string_view chosenMotion(const TouchOptions& o) {
+  std::string_view chosen;
+  int count = 0;
+  const auto look = [&](bool given, std::string_view name) {
+    if (!given) return;
+    chosen = name;
+    ++count;
+  };
+  look(!o.path.empty(), "--path");
+  look(!o.press.empty(), "--press");
+  look(!o.stroke.empty(), "--stroke");
+  look(!o.tap.empty(), "--tap");
+  look(!o.insert.empty(), "--insert");
+  if (count != 1) {
+    throw usageError(count == 0 ? "the hand's motion is missing" : "more than one motion was given",
+                     "exactly one of --path FILE.csv, --press X,Y,Z, --stroke A B, --tap X,Y,Z, "
+                     "--insert A B ...");
+  }
+  return chosen;
+}
+
+double positive(double value, const char* what) {
+  if (!(value > 0.0) || !std::isfinite(value)) {
+    throw usageError(std::string(what) + " must be greater than 0");
+  }
+  return value;
+}
+
+double notNegative(double value, const char* what) {
+  if (!(value >= 0.0) || !std::isfinite(value)) {
+    throw usageError(std::string(what) + " must not be negative");
+  }
+  return value;
+}
+
+int atLeastOne(int value, const char* what) {
+  if (value < 1) throw usageError(std::string(what) + " must be 1 or more");
+  return value;
+}
+
+void checkDuration(double seconds, double rate) {
+  if (seconds * rate > kLongestPath) {
+    throw usageError(
+        "the motion would last " + formatSeconds(seconds) + ", too long to keep in memory",
+        "raise --speed or shorten the way");
+  }
+}
+
+}  // namespace
+
+void checkMotion(const TouchOptions& o) {
+  const std::string_view motion = chosenMotion(o);
+  const auto only = [&](bool given, const char* name,
+                        std::initializer_list<std::string_view> motions) {
+    if (!given) return;
+    std::string list;
+    for (const auto m : motions) {
+      if (m == motion) return;
+      list += (list.empty() ? "" : ", ") + std::string(m);
+    }
+    throw usageError(std::string(name) + " does not apply to " + std::string(motion),
+                     "it is a parameter of " + list);
+  };
+  only(!o.normal.empty(), "--normal", {"--press", "--tap"});
+  only(!o.depth.empty(), "--depth", {"--press", "--tap"});
+  only(!o.clearance.empty(), "--clearance", {"--press", "--tap"});
+  only(!o.speed.empty(), "--speed", {"--press", "--stroke", "--insert"});
+  only(o.hold.has_value(), "--hold", {"--press", "--insert"});
+  only(o.repeats.has_value(), "--repeats", {"--stroke"});
+  only(o.frequency.has_value(), "--frequency", {"--tap"});
+  only(o.taps.has_value(), "--taps", {"--tap"});
+  only(o.back, "--back", {"--insert"});
+  if (motion == "--stroke" && o.stroke.size() != 2) throw usageError("--stroke takes two points");
+  if (motion == "--insert" && o.insert.size() < 2)
+    throw usageError("--insert takes two points or more");
+}
+
+devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {
+  if (!o.path.empty()) return devices::readPath(o.path);
+  const auto point = [&](const std::string& text, const char* what) {
+    return parsePoint(text, unit, what);
+  };
+  const auto length = [&](const std::string& text, const char* what, double fallback) {
+    return text.empty() ? fallback : notNegative(parseLength(text, unit, what), what);
+  };
+  const auto speed = [&](double fallback) {
+    return o.speed.empty() ? fallback : positive(parseSpeed(o.speed, unit, "--speed"), "--speed");
+  };
+  const auto normal = [&](const Vec3& fallback) {
+    if (o.normal.empty()) return fallback;
+    const Vec3 n = parseVector(o.normal, "--normal");
+    if (!(glm::length(n) > 0.0)) throw usageError("--normal has no direction");
+    return glm::normalize(n);
+  };
+
+  if (!o.press.empty()) {
+    devices::PressPath shape;
+    shape.surface = point(o.press, "--press");
+    shape.normal = normal(shape.normal);
+    shape.depth = length(o.depth, "--depth", shape.depth);
+    shape.clearance = length(o.clearance, "--clearance", shape.clearance);
+    shape.speed = speed(shape.speed);
+    shape.hold = notNegative(o.hold.value_or(shape.hold), "--hold");
+    checkDuration(2.0 * (shape.depth + shape.clearance) / shape.speed + shape.hold, o.rate);
+    return devices::generate(shape, o.rate);
+  }
+  if (!o.tap.empty()) {
+    devices::TapPath shape;
+    shape.surface = point(o.tap, "--tap");
+    shape.normal = normal(shape.normal);
+    shape.depth = length(o.depth, "--depth", shape.depth);
+    shape.clearance = length(o.clearance, "--clearance", shape.clearance);
+    shape.frequency = positive(o.frequency.value_or(shape.frequency), "--frequency");
+    shape.taps = atLeastOne(o.taps.value_or(shape.taps), "--taps");
+    checkDuration(shape.taps / shape.frequency, o.rate);
+    return devices::generate(shape, o.rate);
+  }
+  if (!o.stroke.empty()) {
+    devices::StrokePath shape;
+    shape.from = point(o.stroke[0], "--stroke");
+    shape.to = point(o.stroke[1], "--stroke");
+    shape.speed = speed(shape.speed);
+    shape.repeats = atLeastOne(o.repeats.value_or(shape.repeats), "--repeats");
+    checkDuration(2.0 * shape.repeats * glm::distance(shape.from, shape.to) / shape.speed, o.rate);
+    return devices::generate(shape, o.rate);
+  }
+  devices::InsertPath shape;
+  double way = 0.0;
+  for (const std::string& text : o.insert) {
+    shape.points.push_back(point(text, "--insert"));
+    if (shape.points.size() > 1) {
+      way += glm::distance(shape.points.back(), shape.points[shape.points.size() - 2]);
+    }
+  }
+  shape.speed = speed(shape.speed);
+  shape.hold = notNegative(o.hold.value_or(shape.hold), "--hold");
+  shape.back = o.back;
+  checkDuration(2.0 * way / shape.speed + shape.hold, o.rate);
+  return devices::generate(shape, o.rate);
+}
+
+}  // namespace palpate::tools

@@ -1,0 +1,94 @@
+#pragma once
+/// What the user asked for: one plain struct a verb. Lengths and points stay text until the unit of the
+/// input is known.
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace palpate::tools {
+
+/// Holds for every verb.
+struct GeneralOptions {
+  bool json = false;
+  bool quiet = false;
+  bool force = false;  ///< verbs that write files only
+};
+
+struct TouchOptions {
+  std::string scene;
+  // Exactly one of these five says how the hand moves.
+  std::string path;                 ///< CSV file
+  std::string press;                ///< point
+  std::vector<std::string> stroke;  ///< two points
+  std::string tap;                  ///< point
+  std::vector<std::string> insert;  ///< two points or more
+  // Parameters of the generators; which apply is checked in motion.cpp.
+  std::string normal;
+  std::string depth;
+  std::string clearance;
+  std::string speed;
+  std::optional<double> hold;       ///< [s]
+  std::optional<double> frequency;  ///< [Hz]
+  std::optional<int> repeats;
+  std::optional<int> taps;
+  bool back = false;
+
+  std::string renderer;  ///< empty: as the scene says
+  bool realtime = false;
+  double rate = 1000.0;  ///< [Hz]
+  std::string trace;
+  std::string image;
+};
+
+struct BakeOptions {
+  std::string input;
+  std::string output;
+  std::vector<std::string> layers;  ///< scene: which layers; threshold and mesh: the layer's name
+  std::string units;                ///< mesh
+  std::optional<double> above;
+  std::string keep;  ///< "largest" or "all"; empty: largest
+  bool fill = false;
+  std::vector<std::string> labels;
+  std::string names;
+  std::string voxel;
+  double half_width = 4.0;  ///< [voxels]
+};
+
+struct InfoOptions {
+  std::vector<std::string> files;
+  std::string units;
+};
+
+struct QueryOptions {
+  std::string input;
+  std::vector<std::string> at;
+  std::string points;
+  std::string field;
+};
+
+struct ExplainOptions {
+  std::string scene;
+};
+
+struct RenderOptions {
+  std::string scene;
+  std::string output;
+  std::string plane;  ///< "x=VALUE"
+  std::string cut;    ///< "X,Y,Z,NX,NY,NZ"
+  std::string size;   ///< "WxH"
+  std::string trace;
+  std::string image;
+};
+
+/// `palpate help`: everything, or one verb.
+struct HelpOptions {
+  std::string verb;
+  bool markdown = false;
+};
+
+using VerbOptions = std::variant<HelpOptions, TouchOptions, BakeOptions, InfoOptions, QueryOptions,
+                                 ExplainOptions, RenderOptions>;
+
+}  // namespace palpate::tools

@@ -1,0 +1,42 @@
+#pragma once
+/// The plane a picture is cut along, with a right and an up on it.
+
+#include <string>
+
+#include "palpate/core/math.h"
+#include "picture/track.h"
+#include "text.h"
+
+namespace palpate::tools {
+
+/// What lies on the side that `normal` points to, the viewer's, is cut away.
+struct CutPlane {
+  Vec3 point{0.0};            ///< [m]
+  Vec3 right{1.0, 0.0, 0.0};  ///< unit
+  Vec3 up{0.0, 0.0, 1.0};     ///< unit; right x up points at the viewer
+  std::string name;           ///< "y = 12 mm"
+  int right_axis = -1;        ///< world axis that `right` is, or -1
+  int up_axis = -1;
+
+  [[nodiscard]] Vec3 normal() const { return glm::cross(right, up); }
+  [[nodiscard]] Vec3 at(double u, double v) const { return point + u * right + v * up; }
+  [[nodiscard]] double u(const Vec3& p) const { return glm::dot(p - point, right); }
+  [[nodiscard]] double v(const Vec3& p) const { return glm::dot(p - point, up); }
+};
+
+/// Across world axis 0, 1 or 2 at `value` [m].
+[[nodiscard]] CutPlane planeAcross(int axis, double value, const LengthUnit& unit);
+
+/// Through `point`, across `normal` (any length but zero), up as near to z (else y) as can be.
+[[nodiscard]] CutPlane planeThrough(const Vec3& point, const Vec3& normal, const LengthUnit& unit);
+
+/// The plane that a hand's path lies in, or lies in best; straight paths leave a choice, which goes
+/// to the plane that is most nearly across y, then x, then z.
+[[nodiscard]] CutPlane planeAlong(const Track& track, const LengthUnit& unit);
+
+/// "x=12" (scene's unit). @throws Error (kUsage).
+[[nodiscard]] CutPlane parsePlane(const std::string& text, const LengthUnit& unit);
+/// "X,Y,Z,NX,NY,NZ". @throws Error (kUsage).
+[[nodiscard]] CutPlane parseCut(const std::string& text, const LengthUnit& unit);
+
+}  // namespace palpate::tools

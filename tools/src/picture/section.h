@@ -1,0 +1,65 @@
+#pragma once
+/// A flat cut through a scene: which region each pixel is in, and the lines between regions with what
+/// they are: walls, absent walls, ports.
+
+#include <vector>
+
+#include "palpate/core/progress.h"
+#include "palpate/scene/scene.h"
+#include "picture/canvas.h"
+#include "picture/cut_plane.h"
+
+namespace palpate::tools {
+
+/// The part of a plane that a panel of `width` x `height` pixels shows.
+struct View {
+  CutPlane plane;
+  double left = 0.0;  ///< [m] u of the left edge
+  double top = 0.0;   ///< [m] v of the upper edge
+  double step = 1.0;  ///< [m] a pixel
+  int width = 0;
+  int height = 0;
+
+  [[nodiscard]] Vec3 world(double x, double y) const {
+    return plane.at(left + x * step, top - y * step);
+  }
+  /// Where `p`, projected onto the plane, is in the panel.
+  [[nodiscard]] Pixel pixel(const Vec3& p) const {
+    return {(plane.u(p) - left) / step, (top - plane.v(p)) / step};
+  }
+};
+
+/// A line between two regions.
+struct Boundary {
+  enum class Kind { kWall, kAbsent, kPort };
+  RegionId a = kOutside;
+  RegionId b = kOutside;
+  Kind kind = Kind::kWall;
+  PortId port = 0;      ///< kPort only
+  bool from_a = false;  ///< kPort: passable from a to b ...
+  bool from_b = false;  ///< ... and back
+  std::vector<Pixel> points;
+
+  [[nodiscard]] bool sameLine(const Boundary& o) const {
+    return a == o.a && b == o.b && kind == o.kind && (kind != Kind::kPort || port == o.port);
+  }
+};
+
+struct Section {
+  int width = 0;
+  int height = 0;
+  std::vector<RegionId> regions;  ///< of the pixels' centres
+  std::vector<Boundary> boundaries;
+
+  [[nodiscard]] RegionId at(int x, int y) const {
+    return regions[static_cast<std::size_t>(x) +
+                   static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
+  }
+};
+
+[[nodiscard]] Section cutSection(const Scene& scene, const View& view, const Progress& progress);
+
+/// What is crossed between two points in neighbouring cells; points are left empty.
+[[nodiscard]] Boundary classify(const Scene& scene, const Signs& here, const Signs& there);
+
+}  // namespace palpate::tools

@@ -1,0 +1,16 @@
+#pragma once
+/// What a verb has to say in the end. Printed once, by main(), as text or as one JSON object.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace palpate::tools {
+
+using Json = nlohmann::ordered_json;
+
+struct Report {
+  Json json;         ///< with "schema": "palpate.<verb>/1" first
+  std::string text;  ///< for people; ends with a newline
+};
+
+}  // namespace palpate::tools

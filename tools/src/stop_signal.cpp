@@ -1,0 +1,26 @@
+#include "stop_signal.h"
+
+#include <csignal>
+
+namespace palpate::tools {
+namespace {
+
+std::atomic<bool> stop_requested = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+
+extern "C" void onStopSignal(int /*signal*/) { stop_requested.store(true); }
+
+}  // namespace
+
+void catchStopSignals() {
+  struct sigaction action = {};
+  action.sa_handler = onStopSignal;
+  // Who asks twice is not made to wait.
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+const std::atomic<bool>& stopRequested() noexcept { return stop_requested; }
+
+}  // namespace palpate::tools

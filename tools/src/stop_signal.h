@@ -1,0 +1,13 @@
+#pragma once
+/// Ctrl-C and a polite kill, turned into a flag.
+
+#include <atomic>
+
+namespace palpate::tools {
+
+/// From now on SIGINT and SIGTERM set stopRequested(); a second one ends the process at once.
+void catchStopSignals();
+
+[[nodiscard]] const std::atomic<bool>& stopRequested() noexcept;
+
+}  // namespace palpate::tools

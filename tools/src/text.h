@@ -1,0 +1,50 @@
+#pragma once
+/// Numbers, points and tables: from the command line, and for people to read.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "palpate/core/math.h"
+
+namespace palpate::tools {
+
+/// The unit that lengths without one are in.
+struct LengthUnit {
+  std::string name = "mm";
+  double metres = 1e-3;  ///< [m] in one
+};
+/// @throws Error (kUsage) for a unit that is not known.
+[[nodiscard]] LengthUnit lengthUnit(const std::string& name);
+
+// From text. `what` names the option in the message. @throws Error (kUsage).
+[[nodiscard]] double parseLength(std::string_view text, const LengthUnit& unit, const char* what);
+[[nodiscard]] double parseSpeed(std::string_view text, const LengthUnit& unit, const char* what);
+/// "X,Y,Z": three numbers, unitless.
+[[nodiscard]] Vec3 parseVector(std::string_view text, const char* what);
+/// "X,Y,Z" in `unit`; to [m].
+[[nodiscard]] Vec3 parsePoint(std::string_view text, const LengthUnit& unit, const char* what);
+[[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
+
+// To text.
+[[nodiscard]] std::string formatNumber(double value, int digits = 4);   ///< "%.{digits}g", "inf"
+[[nodiscard]] std::string formatVector(const Vec3& v, int digits = 4);  ///< "(x, y, z)"
+[[nodiscard]] std::string formatBytes(std::uint64_t bytes);  ///< "12.3 MB" (powers of ten)
+[[nodiscard]] std::string formatCount(std::uint64_t count);  ///< "1 234 567"
+[[nodiscard]] std::string formatNanoseconds(double ns);      ///< "830 ns", "1.2 us"
+[[nodiscard]] std::string formatSeconds(double seconds);     ///< "0.41 s", "12 s"
+
+/// Columns of text under headings; numbers to the right.
+class Table {
+ public:
+  explicit Table(std::vector<std::string> heading) { rows_.push_back(std::move(heading)); }
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  [[nodiscard]] bool empty() const noexcept { return rows_.size() == 1; }
+  [[nodiscard]] std::string text(std::string_view indent) const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace palpate::tools

@@ -1,0 +1,47 @@
+#pragma once
+/// What a trace amounts to: regions in order, ports passed, forces, and how long a tick took.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "palpate/render/trace.h"
+#include "report.h"
+#include "text.h"
+
+namespace palpate::tools {
+
+/// A stay of the proxy in one region.
+struct Visit {
+  RegionId region = kOutside;
+  double t = 0.0;            ///< [s] of entering
+  double seconds = 0.0;      ///< [s] to the end of the stay
+  double entry_depth = 0.0;  ///< [m] from where the first surface was met, straight, when it began
+  double depth = 0.0;        ///< [m] the same, at most during the stay
+  double peak_force = 0.0;   ///< [N]
+};
+
+/// One passage through a port.
+struct PassedPort {
+  double t = 0.0;  ///< [s]
+  PortId port = 0;
+};
+
+struct TouchSummary {
+  std::uint64_t ticks = 0;
+  double seconds = 0.0;  ///< [s] of hand time
+  std::uint64_t contact_ticks = 0;
+  double peak_force = 0.0;  ///< [N]
+  Vec3 peak_force_at{0.0};  ///< [m] proxy
+  std::vector<Visit> visits;
+  std::vector<PassedPort> ports;
+  double tick_median = 0.0, tick_p99 = 0.0, tick_p999 = 0.0, tick_max = 0.0;  ///< [ns]
+};
+
+[[nodiscard]] TouchSummary summarize(std::span<const TraceRow> rows);
+
+[[nodiscard]] Json summaryJson(const TouchSummary& summary, const Scene& scene);
+[[nodiscard]] std::string summaryText(const TouchSummary& summary, const Scene& scene);
+
+}  // namespace palpate::tools

@@ -1,0 +1,183 @@
+#include <cmath>
+#include <optional>
+
+#include "input_kind.h"
+#include "json_parts.h"
+#include "loaded_scene.h"
+#include "palpate/scene/scene_file.h"
+#include "palpate/vdb/image.h"
+#include "points_file.h"
+#include "text.h"
+#include "verbs.h"
+
+namespace palpate::tools {
+namespace {
+
+std::vector<Vec3> queryPoints(const QueryOptions& options, const LengthUnit& unit) {
+  if (!options.points.empty()) return readPoints(options.points, unit);
+  std::vector<Vec3> points;
+  for (const std::string& text : options.at) points.push_back(parsePoint(text, unit, "--at"));
+  return points;
+}
+
+Report queryImage(const QueryOptions& options, Console& console) {
+  if (!options.field.empty()) {
+    throw Error(ErrorKind::kUsage,
+                {"usage.command_line", "--field applies to scenes, not to images"});
+  }
+  const LengthUnit mm = {"mm", 1e-3};
+  const std::vector<Vec3> points = queryPoints(options, mm);
+  const vdb::Image image = vdb::readNifti(options.input);
+  for (const auto& note : image.notes) console.note(options.input + ": " + note);
+  Report report;
+  report.json = {{"schema", "palpate.query/1"},
+                 {"image", options.input},
+                 {"length_unit", "mm"},
+                 {"points", Json::array()}};
+  Table table({"at (RAS mm)", "intensity"});
+  std::size_t outside = 0;
+  for (const Vec3& p : points) {
+    const double value = image.interpolate(p);
+    const bool there = std::isfinite(value);
+    if (!there) ++outside;
+    report.json["points"].push_back(
+        {{"at", vectorJson(p / mm.metres)}, {"value", there ? Json(value) : Json()}});
+    table.add({formatVector(p / mm.metres, 6), there ? formatNumber(value, 8) : "outside"});
+  }
+  if (outside > 0) {
+    console.note(std::to_string(outside) + " of " + std::to_string(points.size()) +
+                 " points lie outside the box of the voxel centres; there is no value there");
+  }
+  report.text = table.text("");
+  return report;
+}
+
+/// A field that can be asked by name.
+struct Asked {
+  std::string name;
+  const Field* field;
+  bool layer;
+};
+
+std::vector<Asked> askable(const Scene& scene) {
+  std::vector<Asked> all;
+  for (const Region& region : scene.regions()) {
+    if (region.field) all.push_back({region.name, region.field.get(), true});
+  }
+  for (const NamedField& named : scene.fields()) {
+    all.push_back({named.name, named.source->get().get(), false});
+  }
+  return all;
+}
+
+std::vector<Asked> chooseFields(const Scene& scene, const std::string& name) {
+  std::vector<Asked> all = askable(scene);
+  if (name.empty()) {
+    std::erase_if(all, [](const Asked& a) { return !a.layer; });
+    return all;
+  }
+  std::vector<std::string_view> names;
+  for (const Asked& a : all) {
+    if (a.name == name) return {a};
+    names.push_back(a.name);
+  }
+  const std::string close = suggest(name, names);
+  throw inputError("query.unknown_field", "there is no field or layer '" + name + "'",
+                   close.empty() ? "palpate info names them" : "did you mean '" + close + "'?");
+}
+
+const char* metricName(Metric metric) {
+  switch (metric) {
+    case Metric::kExact:
+      return "exact";
+    case Metric::kBound:
+      return "bound";
+    case Metric::kImplicit:
+      return "implicit";
+  }
+  return "";
+}
+
+Json contentJson(const Scene& scene, const Region& region) {
+  if (region.content < 0) return {};
+  return materialJson(scene.materials()[static_cast<std::size_t>(region.content)]);
+}
+
+Json sampleJson(const Asked& asked, const FieldSample& s, double unit) {
+  Json json = {{"name", asked.name},
+               {"value", s.value / unit},
+               {"gradient", vectorJson(s.gradient)},
+               {"metric", metricName(asked.field->metric())},
+               {"in_band", s.in_band}};
+  return json;
+}
+
+Report queryScene(const QueryOptions& options, Console& console) {
+  LoadedScene loaded(options.input, console);
+  const LengthUnit unit = loaded.unit();
+  const std::vector<Vec3> points = queryPoints(options, unit);
+  const ScenePtr scene = loaded.compile();
+  const std::vector<Asked> fields = chooseFields(*scene, options.field);
+
+  Report report;
+  report.json = {{"schema", "palpate.query/1"},
+                 {"scene", options.input},
+                 {"length_unit", unit.name},
+                 {"points", Json::array()}};
+  for (const Vec3& p : points) {
+    const Region& region = scene->regions()[scene->regionAt(p)];
+    Json json = {
+        {"at", vectorJson(p / unit.metres)},
+        {"region", region.name},
+        {"content", contentJson(*scene, region)},
+        {"wall", region.wall < 0
+                     ? Json()
+                     : materialJson(scene->materials()[static_cast<std::size_t>(region.wall)])},
+        {"fields", Json::array()}};
+    report.text += "at " + formatVector(p / unit.metres, 6) + " " + unit.name + ": " + region.name;
+    if (region.content >= 0) {
+      const Material& m = scene->materials()[static_cast<std::size_t>(region.content)];
+      report.text += ", content " + m.name + " (" + formatNumber(m.viscosity) + " N.s/m)";
+    }
+    if (region.wall >= 0) {
+      const Material& m = scene->materials()[static_cast<std::size_t>(region.wall)];
+      report.text += ", wall " + m.name + " (" + formatNumber(m.stiffness) + " N/m)";
+    }
+    report.text += "\n";
+    Table table({"field", "value [" + unit.name + "]", "gradient", "value is"});
+    for (const Asked& asked : fields) {
+      const FieldSample s = asked.field->sample(p);
+      json["fields"].push_back(sampleJson(asked, s, unit.metres));
+      table.add({asked.name,
+                 (s.in_band       ? ""
+                  : s.value < 0.0 ? "< "
+                                  : "> ") +
+                     formatNumber(s.value / unit.metres, 8),
+                 s.in_band ? formatVector(s.gradient, 6) : "-",
+                 s.in_band ? metricName(asked.field->metric()) : "beyond the band"});
+    }
+    report.text += table.text("  ");
+    report.json["points"].push_back(std::move(json));
+  }
+  return report;
+}
+
+}  // namespace
+
+Report run(const QueryOptions& options, const GeneralOptions&, Console& console) {
+  switch (inputKind(options.input)) {
+    case InputKind::kImage:
+      return queryImage(options, console);
+    case InputKind::kScene:
+      return queryScene(options, console);
+    case InputKind::kGrid:
+    case InputKind::kMesh:
+      break;
+  }
+  throw inputError(
+      "query.kind", "only scenes and images can be queried",
+      "name the grid or mesh in a scene file: fields: {part: {mesh: {file: part.stl}}}",
+      options.input);
+}
+
+}  // namespace palpate::tools

@@ -1,0 +1,132 @@
+#include <chrono>
+#include <filesystem>
+
+#include "input_kind.h"
+#include "loaded_scene.h"
+#include "motion.h"
+#include "output_files.h"
+#include "palpate/devices/servo_loop.h"
+#include "palpate/devices/virtual_device.h"
+#include "palpate/render/trace.h"
+#include "picture/picture.h"
+#include "stop_signal.h"
+#include "touch_summary.h"
+#include "verbs.h"
+
+namespace palpate::tools {
+namespace {
+
+RendererSettings rendererSettings(const std::string& name) {
+  if (name == "paper") return {RendererKind::kPaper};
+  if (name == "constraint") return {RendererKind::kConstraint};
+  return {};
+}
+
+/// Runs the loop over the whole path and keeps every tick.
+Trace follow(HapticRenderer& renderer, devices::Path path, const devices::ServoSettings& settings,
+             devices::ServoReport& report) {
+  Trace trace(path.size());
+  devices::VirtualDevice device(std::move(path));
+  const auto tick = [&](const devices::DeviceState& state) {
+    TraceRow row;
+    row.t = state.time;
+    row.hip = state.position;
+    const auto before = std::chrono::steady_clock::now();
+    row.result = renderer.update({state.position, state.velocity});
+    const auto after = std::chrono::steady_clock::now();
+    row.tick_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count();
+    trace.add(row);
+    return row.result.force;
+  };
+  report = devices::runServo(device, tick, settings, stopRequested());
+  return trace;
+}
+
+void checkExit(devices::ServoExit exit) {
+  switch (exit) {
+    case devices::ServoExit::kEnd:
+      return;
+    case devices::ServoExit::kStopped:
+      throw Error(ErrorKind::kCancelled, {"cancelled", "stopped at your request"});
+    case devices::ServoExit::kTimeout:
+      throw Error(ErrorKind::kDevice, {"device.timeout", "the device does not answer any more"});
+    case devices::ServoExit::kDisconnected:
+      throw Error(ErrorKind::kDevice, {"device.disconnected", "the device was disconnected"});
+    case devices::ServoExit::kFault:
+      throw Error(ErrorKind::kDevice, {"device.fault", "the device reported a fault"});
+  }
+}
+
+}  // namespace
+
+Report run(const TouchOptions& options, const GeneralOptions& general, Console& console) {
+  checkMotion(options);
+  OutputFiles files(general.force);
+  const std::vector<std::string> inputs = {options.scene, options.path};
+  if (!options.trace.empty()) files.announce(options.trace, inputs);
+  if (!options.image.empty()) {
+    if (!hasExtension(options.image, ".png")) {
+      throw Error(ErrorKind::kUsage,
+                  {"usage.touch", "the picture " + options.image + " must end in .png"});
+    }
+    files.announce(options.image, inputs);
+  }
+
+  LoadedScene loaded(options.scene, console);
+  devices::Path path = makeMotion(options, loaded.unit());
+  const ScenePtr scene = loaded.compile();
+  const RendererSettings settings = rendererSettings(options.renderer);
+  const auto renderer = makeRenderer(scene, settings);
+
+  devices::ServoSettings servo;
+  servo.realtime = options.realtime;
+  servo.rate = options.rate;
+  servo.elevate = options.realtime;
+  devices::ServoReport servo_report;
+  const Trace trace = follow(*renderer, std::move(path), servo, servo_report);
+  checkExit(servo_report.exit);
+  const TouchSummary summary = summarize(trace.rows());
+
+  if (!options.trace.empty()) files.write(options.trace, traceCsv(trace.rows(), *scene));
+  if (!options.image.empty()) {
+    PictureOptions picture;
+    picture.title = std::filesystem::path(options.scene).filename().string();
+    picture.track = trackOf(trace.rows());
+    picture.image = pictureImage(loaded, "");
+    picture.anatomical = !loaded.images().empty();
+    (void)drawPicture(*scene, picture, files.temporary(options.image), console);
+  }
+  checkStop();
+  files.commit();
+
+  const bool paper = settings.kind.value_or(scene->renderer()) == RendererKind::kPaper;
+  Report report;
+  report.json = {{"schema", "palpate.touch/1"},
+                 {"scene", options.scene},
+                 {"renderer", paper ? "paper" : "constraint"}};
+  report.json.update(summaryJson(summary, *scene));
+  if (options.realtime) {
+    report.json["realtime"] = {{"overruns", servo_report.overruns},
+                               {"worst_lateness_s", servo_report.worst_lateness},
+                               {"elevated", servo_report.elevated}};
+  }
+  report.json["grids"] = loaded.gridsJson();
+  report.json["trace"] = options.trace.empty() ? Json() : Json(options.trace);
+  report.json["image"] = options.image.empty() ? Json() : Json(options.image);
+
+  report.text = summaryText(summary, *scene);
+  if (options.realtime) {
+    report.text += "Real time   " + std::to_string(servo_report.overruns) +
+                   " overruns, worst start " + formatSeconds(servo_report.worst_lateness) +
+                   " late" + (servo_report.elevated ? "\n" : ", without real-time priority\n");
+  }
+  const std::string grids = loaded.gridsText();
+  if (!grids.empty()) report.text += "\nGrids\n" + grids;
+  if (!options.trace.empty()) report.text += "\nTrace    " + options.trace + "\n";
+  if (!options.image.empty())
+    report.text +=
+        (options.trace.empty() ? "\n" : "") + std::string("Picture  ") + options.image + "\n";
+  return report;
+}
+
+}  // namespace palpate::tools

@@ -1,0 +1,23 @@
+#pragma once
+/// The verbs. Each does its work, writes its files and says what came out; each throws palpate::Error.
+
+#include "console.h"
+#include "options.h"
+#include "report.h"
+
+namespace palpate::tools {
+
+[[nodiscard]] Report run(const TouchOptions& options, const GeneralOptions& general,
+                         Console& console);
+[[nodiscard]] Report run(const BakeOptions& options, const GeneralOptions& general,
+                         Console& console);
+[[nodiscard]] Report run(const InfoOptions& options, const GeneralOptions& general,
+                         Console& console);
+[[nodiscard]] Report run(const QueryOptions& options, const GeneralOptions& general,
+                         Console& console);
+[[nodiscard]] Report run(const ExplainOptions& options, const GeneralOptions& general,
+                         Console& console);
+[[nodiscard]] Report run(const RenderOptions& options, const GeneralOptions& general,
+                         Console& console);
+
+}  // namespace palpate::tools

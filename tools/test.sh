@@ -1,0 +1,136 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds Palpate and passes its tests, lane by lane. Each lane sees what no other does:
+#   format    clang-format on every file
+#   arrows    no include against the arrows between modules and layers (cmake script, seconds)
+#   dev       assertions on, warnings are errors, every public header compiles alone
+#   release   what users get: optimised code, installed and used by an outside project
+#   asan      memory errors and undefined behaviour
+#   tsan      data races (without vdb: TBB is not instrumented)
+#   tidy      names and bug patterns, by clang-tidy, in the sources that changed
+# Options:
+#   --quick         format, arrows and dev only
+#   --lane NAME     only this lane; may be given several times
+#   --all           tidy on all sources, and the slow sweeps (PALPATE_SLOW_TESTS=1)
+#   --changed REF   what counts as changed for tidy: since REF. Default: since the branch left origin/main,
+#                   or on main itself, in the day up to its newest commit
+# The last line says 'N passed, N failed' over all lanes; the exit status is 0 if none failed.
+set -uo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root" || exit 1
+source tools/setup.sh
+
+lanes=()
+all_lanes=(format arrows dev release asan tsan tidy)
+tidy_all=0 changed_since=
+usage() { printf 'error: %s; tools/test.sh --help lists the options\n' "$1" >&2; exit 2; }
+while [ $# -gt 0 ]; do
+  case $1 in
+    --quick) lanes+=(format arrows dev) ;;
+    --lane)
+      [[ " ${all_lanes[*]} " == *" ${2:-none} "* ]] || usage "--lane takes one of: ${all_lanes[*]}"
+      lanes+=("$2") && shift ;;
+    --all) tidy_all=1 && export PALPATE_SLOW_TESTS=1 ;;
+    --changed) [ -n "${2:-}" ] || usage "--changed takes a commit" ; changed_since=$2 && shift ;;
+    -h | --help) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "$0" && exit 0 ;;
+    *) usage "unknown option $1" ;;
+  esac
+  shift
+done
+[ ${#lanes[@]} -gt 0 ] || lanes=("${all_lanes[@]}")
+
+results=$root/build/test-results
+mkdir -p "$results"
+passed=0 failed=0 skipped=0 failed_lanes=() report=()
+
+# Every C++ file of ours.
+sources() { find lib vdb devices tools tests -name '*.h' -o -name '*.cpp' | sort; }
+
+count_check() { # STATUS: a lane that is one check
+  if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+  return "$1"
+}
+
+count_tests() { # JUNIT_FILE: adds up what ctest ran; false if it ran nothing or something failed
+  local head tests fails skips
+  head=$(tr '\n' ' ' < "$1" | grep --only-matching '<testsuite [^>]*>') || return 1
+  number() { sed -n "s/.* $1=\"\([0-9]*\)\".*/\1/p" <<< "$head"; }
+  tests=$(number tests) fails=$(number failures) skips=$(($(number skipped) + $(number disabled)))
+  passed=$((passed + tests - fails - skips)) failed=$((failed + fails)) skipped=$((skipped + skips))
+  lane_note="$((tests - fails - skips)) passed, $fails failed"
+  [ "$skips" = 0 ] || lane_note+=", $skips skipped"
+  [ "$tests" -gt 0 ] && [ "$fails" = 0 ]
+}
+
+build_and_test() { # PRESET
+  local junit=$results/$1.xml
+  rm -f "$junit"
+  if ! configure "$1" -DPALPATE_TESTS=ON || ! cmake --build --preset "$1"; then
+    lane_note="does not build"
+    count_check 1
+    return
+  fi
+  ctest --preset "$1" --output-junit "$junit"
+  local status=$?
+  count_tests "$junit" && [ $status = 0 ]
+}
+
+lane_format() { sources | xargs --no-run-if-empty clang-format --dry-run --Werror; count_check $?; }
+lane_arrows() { cmake -D ROOT="$root" -P tests/architecture/check_arrows.cmake; count_check $?; }
+lane_dev() { build_and_test dev; }
+lane_release() { build_and_test release; }
+lane_asan() { build_and_test asan; }
+lane_tsan() { build_and_test tsan; }
+
+# The sources clang-tidy has to look at: all that changed, and for each header that changed one that includes it.
+tidy_sources() {
+  local base=$changed_since file
+  if [ -z "$base" ]; then
+    base=$(git merge-base HEAD origin/main 2> /dev/null) || base=
+    if [ -z "$base" ] || [ "$base" = "$(git rev-parse HEAD 2> /dev/null)" ]; then
+      base=$(git rev-list -1 --before="$(git show -s --format=%ct HEAD) - 1 day" HEAD 2> /dev/null) || base=
+    fi
+  fi
+  if [ $tidy_all = 1 ] || [ -z "$base" ] || git diff --name-only "$base" | grep --quiet '^\.clang-tidy$'; then
+    sources | grep '\.cpp$'
+    return
+  fi
+  { git diff --name-only --diff-filter=d "$base"; git ls-files --others --exclude-standard; } |
+    grep -E '^(lib|vdb|devices|tools|tests)/.*\.(h|cpp)$' | while read -r file; do
+      case $file in
+        *.cpp) echo "$file" ;;
+        *) # the source of the same name is the best witness of a header
+          grep --recursive --files-with-matches --include='*.cpp' --fixed-strings \
+            "${file#*/include/}\"" lib vdb devices tools tests |
+            awk -v stem="/$(basename "$file" .h).cpp" '{ if (index($0, stem)) { print; found = 1; exit } last = $0 }
+              END { if (!found && last) print last }' ;;
+      esac
+    done | sort --unique
+}
+
+lane_tidy() {
+  configure tidy -DPALPATE_TESTS=ON || { lane_note="does not configure"; count_check 1; return; }
+  local list=$results/tidy.txt
+  tidy_sources > "$list"
+  lane_note="$(wc -l < "$list") files"
+  # shellcheck disable=SC2016
+  xargs --no-run-if-empty --max-procs="$(nproc)" --max-args=1 --arg-file="$list" sh -c \
+    'echo "tidy $1"; exec clang-tidy -p build/tidy --quiet "$1" 2> /dev/null' tidy
+  count_check $?
+}
+
+install_packages "${build_packages[@]}" "${test_packages[@]}"
+use_ccache
+
+for lane in "${lanes[@]}"; do
+  say "$lane"
+  began=$SECONDS lane_note=
+  if "lane_$lane"; then word=ok; else word=FAILED; failed_lanes+=("$lane"); fi
+  report+=("$(printf '%-8s %-7s %5d s  %s' "$lane" $word $((SECONDS - began)) "$lane_note")")
+  printf '%s\n' "${report[-1]}"
+done
+
+say "Summary after $(elapsed)"
+printf '%s\n' "${report[@]}"
+[ ${#failed_lanes[@]} = 0 ] || echo "Failed: ${failed_lanes[*]}"
+echo "$passed passed, $failed failed$([ $skipped = 0 ] || echo ", $skipped skipped")"
+[ ${#failed_lanes[@]} = 0 ]

@@ -1,0 +1,32 @@
+#pragma once
+/// The OpenVDB grid behind a LevelSet, for code that knows OpenVDB. Including this costs what
+/// openvdb/openvdb.h costs; palpate/vdb/level_set.h does not.
+
+#include <openvdb/openvdb.h>
+
+#include <map>
+#include <string>
+
+#include "palpate/vdb/level_set.h"
+
+namespace palpate::vdb {
+
+struct LevelSet::Impl {
+  openvdb::FloatGrid::ConstPtr grid;  ///< never null; world coordinates and values in length_unit
+  LevelSetInfo info;
+  Vec3 origin{0.0, 0.0, 0.0};  ///< [m] centre of voxel (0, 0, 0)
+};
+
+/// openvdb::initialize(), once in a process and from any thread.
+void initializeOpenVdb();
+
+/// Takes over `grid`: marks it as a level set, writes `length_unit`, the version of palpate and
+/// `metadata` into it, and looks at it once. Values and world coordinates must be in `length_unit`;
+/// inactive voxels must hold +background outside and -background inside. Nobody else may write to
+/// the grid's tree afterwards.
+/// @throws Error (kInput): unknown unit, background not positive, a transform that is not a positive
+/// uniform scale and a translation.
+[[nodiscard]] LevelSet makeLevelSet(openvdb::FloatGrid::Ptr grid, const std::string& length_unit,
+                                    const std::map<std::string, std::string>& metadata = {});
+
+}  // namespace palpate::vdb

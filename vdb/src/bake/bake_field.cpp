@@ -1,0 +1,306 @@
+#include "palpate/vdb/bake.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "bake/bake_plan.h"
+
+namespace palpate::vdb {
+namespace {
+
+using openvdb::Coord;
+using openvdb::CoordBBox;
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+enum class Verdict : std::uint8_t { kOutside, kInside, kKeep };
+
+/// The distance that is baked: the field's value, made a distance where it is none, and cut off by a
+/// box where one is needed.
+class Source {
+ public:
+  Source(const Field& field, const std::optional<Box3>& cut)
+      : field_(field),
+        cut_(cut),
+        implicit_(field.metric() == Metric::kImplicit),
+        lipschitz_(field.lipschitz()),
+        domain_(field.lipschitzDomain()) {}
+
+  struct Value {
+    double distance;
+    bool known;  ///< false: only the sign counts
+  };
+
+  [[nodiscard]] Value at(const Vec3& p) const noexcept {
+    Value result = fieldAt(p);
+    if (cut_) {
+      const double wall = boxDistance(p);
+      if (wall > result.distance) result = {wall, true};
+    }
+    return result;
+  }
+
+  /// Whether every point within `radius` of `center` is more than `band` away from the surface.
+  /// |S(p)| >= |S(center)| - L radius, and S / |grad S| is at least |S| / L.
+  [[nodiscard]] Verdict judge(const Vec3& center, double radius, double band) const noexcept {
+    // A billionth covers the rounding of positions and values.
+    const double reach = (radius + band) * (1.0 + 1e-9);
+    Verdict verdict = Verdict::kKeep;
+    if (holds(center, radius)) {
+      const double value = field_.value(center);
+      if (std::abs(value) > lipschitz_ * reach) {
+        verdict = value > 0.0 ? Verdict::kOutside : Verdict::kInside;
+      }
+    }
+    if (cut_ && verdict != Verdict::kOutside) {
+      const double wall = boxDistance(center);
+      if (wall > reach) return Verdict::kOutside;
+      if (wall >= -reach) return Verdict::kKeep;
+    }
+    return verdict;
+  }
+
+ private:
+  [[nodiscard]] Value fieldAt(const Vec3& p) const noexcept {
+    if (!implicit_) return {field_.value(p), true};
+    const FieldSample sample = field_.sample(p);
+    if (!sample.in_band) return {sample.value, false};
+    const double slope = glm::length(sample.gradient);
+    // Where the gradient vanishes the quotient says "far away", which is all the band needs.
+    return {sample.value == 0.0 ? 0.0 : sample.value / slope, true};
+  }
+
+  [[nodiscard]] double boxDistance(const Vec3& p) const noexcept {
+    const Vec3 q = glm::abs(p - cut_->center()) - 0.5 * cut_->size();
+    const double inside = std::min(std::max({q.x, q.y, q.z}), 0.0);
+    return glm::length(glm::max(q, Vec3(0.0))) + inside;
+  }
+
+  [[nodiscard]] bool holds(const Vec3& center, double radius) const noexcept {
+    return domain_.contains(center - Vec3(radius)) && domain_.contains(center + Vec3(radius));
+  }
+
+  const Field& field_;
+  std::optional<Box3> cut_;
+  bool implicit_;
+  double lipschitz_;
+  Box3 domain_;
+};
+
+class FieldBaker {
+ public:
+  FieldBaker(const Field& field, const BakeOptions& options, const Progress& progress)
+      : options_(options),
+        progress_(progress),
+        plan_(checkOptions(options)),
+        domain_(bakeDomain(field, options)),
+        source_(field, cutBy(field, options)),
+        grid_(emptyGrid(plan_, options)) {}
+
+  LevelSet run() {
+    fillLeaves(findLeaves());
+    report(progress_, "bake", 1.0);
+    return finishGrid(grid_, plan_, options_);
+  }
+
+ private:
+  /// Where the surface is.
+  static Box3 bakeDomain(const Field& field, const BakeOptions& options) {
+    Box3 domain = field.bounds();
+    if (options.box) domain = domain.intersectedWith(*options.box);
+    if (domain.isEmpty()) {
+      throw inputError("bake.empty",
+                       "nothing to bake as '" + options.name + "': the shape is empty" +
+                           (options.box ? ", or lies outside the box to bake in" : ""));
+    }
+    if (!domain.isBounded()) {
+      throw inputError("bake.unbounded",
+                       "'" + options.name + "' reaches to infinity and cannot be baked whole",
+                       "give a box to bake in, or keep the field analytic");
+    }
+    return domain;
+  }
+
+  /// A box that holds the whole shape cuts nothing off.
+  static std::optional<Box3> cutBy(const Field& field, const BakeOptions& options) {
+    if (!options.box) return {};
+    const Box3 bounds = field.bounds();
+    if (options.box->contains(bounds.lo) && options.box->contains(bounds.hi)) return {};
+    return options.box;
+  }
+
+  [[nodiscard]] Vec3 position(double i, double j, double k) const noexcept {
+    return Vec3(i, j, k) * plan_.voxel;
+  }
+
+  [[nodiscard]] Verdict judge(const Coord& origin, int size) const noexcept {
+    const double half = 0.5 * (size - 1);
+    return source_.judge(position(origin.x() + half, origin.y() + half, origin.z() + half),
+                         std::sqrt(3.0) * half * plan_.voxel, plan_.band);
+  }
+
+  /// Voxels whose values can differ from the background, as a range of indices.
+  [[nodiscard]] CoordBBox voxelRange() const {
+    CoordBBox range;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double lo = std::floor((domain_.lo[axis] - plan_.band) / plan_.voxel);
+      const double hi = std::ceil((domain_.hi[axis] + plan_.band) / plan_.voxel);
+      constexpr double kMost = 1 << 29;  // OpenVDB counts voxels in 32 bits
+      if (!(std::max(std::abs(lo), std::abs(hi)) < kMost)) {
+        throw Error(ErrorKind::kOperation,
+                    {"bake.too_fine",
+                     "'" + options_.name + "' reaches more than 2^29 voxels of " +
+                         inMillimetres(plan_.voxel) + " from the origin",
+                     "use larger voxels; also check that the shape has the length unit it should"});
+      }
+      range.min()[axis] = static_cast<int>(lo);
+      range.max()[axis] = static_cast<int>(hi);
+    }
+    return range;
+  }
+
+  static int alignedDown(int value, int size) { return value & ~(size - 1); }
+
+  /// Blocks at the top of the hierarchy: few, so that the first level costs nothing.
+  static std::pair<std::vector<Coord>, int> topBlocks(const CoordBBox& range) {
+    int size = 8;
+    while (size < (1 << 30) && range.dim()[range.maxExtent()] / size >= 16) size *= 2;
+    std::vector<Coord> blocks;
+    const Coord lo(alignedDown(range.min().x(), size), alignedDown(range.min().y(), size),
+                   alignedDown(range.min().z(), size));
+    for (int x = lo.x(); x <= range.max().x(); x += size) {
+      for (int y = lo.y(); y <= range.max().y(); y += size) {
+        for (int z = lo.z(); z <= range.max().z(); z += size) blocks.emplace_back(x, y, z);
+      }
+    }
+    return {std::move(blocks), size};
+  }
+
+  /// Blocks of 8^3 voxels that the band can touch. Larger blocks inside become tiles on the way.
+  std::vector<Coord> findLeaves() {
+    const CoordBBox range = voxelRange();
+    auto [blocks, size] = topBlocks(range);
+    std::vector<Verdict> verdicts;
+    for (;; size /= 2) {
+      verdicts.assign(blocks.size(), Verdict::kKeep);
+      parallelWithProgress(
+          blocks.size(), progress_, "bake: finding the surface", 0.0, 0.0,
+          [&, size_now = size](std::size_t i) { verdicts[i] = judge(blocks[i], size_now); });
+      std::vector<Coord> kept;
+      for (std::size_t i = 0; i < blocks.size(); ++i) {
+        if (verdicts[i] == Verdict::kKeep) kept.push_back(blocks[i]);
+        if (verdicts[i] == Verdict::kInside) fillInside(blocks[i], size);
+      }
+      refuseIfTooLarge(kept.size(), size);
+      if (size == 8) return kept;
+      blocks = split(kept, size / 2, range);
+    }
+  }
+
+  static std::vector<Coord> split(const std::vector<Coord>& blocks, int size,
+                                  const CoordBBox& range) {
+    std::vector<Coord> parts;
+    parts.reserve(8 * blocks.size());
+    for (const Coord& block : blocks) {
+      for (int n = 0; n < 8; ++n) {
+        const Coord part = block.offsetBy((n >> 2) * size, ((n >> 1) & 1) * size, (n & 1) * size);
+        if (range.hasOverlap(CoordBBox::createCube(part, size))) parts.push_back(part);
+      }
+    }
+    return parts;
+  }
+
+  /// Blocks of `size` along a surface of area A number about 2 A / size^2 (they are kept in a shell of
+  /// twice their half diagonal), and leaves as many of size 8. Early levels judge with a wide margin.
+  void refuseIfTooLarge(std::size_t blocks, int size) const {
+    constexpr std::size_t kEnoughToCount = 20000;
+    const double ratio = size / 8.0;
+    const double bytes = static_cast<double>(blocks) * ratio * ratio * kLeafBytes;
+    const bool sure = size == 8 || (blocks > kEnoughToCount &&
+                                    bytes / 8.0 > static_cast<double>(plan_.max_memory));
+    if (sure) requireMemory(bytes, plan_);
+  }
+
+  void fillInside(const Coord& origin, int size) {
+    if (size == 8) {
+      grid_->tree().addTile(1, origin, -plan_.background, false);
+    } else {
+      grid_->tree().sparseFill(CoordBBox::createCube(origin, size), -plan_.background, false);
+    }
+  }
+
+  void fillLeaves(const std::vector<Coord>& origins) {
+    std::vector<std::unique_ptr<Leaf>> leaves(origins.size());
+    std::vector<Verdict> verdicts(origins.size());
+    std::atomic<bool> broken = false;
+    parallelWithProgress(origins.size(), progress_, "bake", 0.0, 1.0, [&](std::size_t i) {
+      leaves[i] = std::make_unique<Leaf>(origins[i], plan_.background, false);
+      verdicts[i] = fillLeaf(*leaves[i], broken);
+      if (verdicts[i] != Verdict::kKeep) leaves[i].reset();
+    });
+    if (broken) {
+      throw inputError("bake.not_finite", "the field of '" + options_.name +
+                                              "' is not a number somewhere in its bounds");
+    }
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+      if (verdicts[i] == Verdict::kKeep) grid_->tree().addLeaf(leaves[i].release());
+      if (verdicts[i] == Verdict::kInside) fillInside(origins[i], 8);
+    }
+  }
+
+  /// Evaluates the sub-blocks of 4^3 voxels that the band can touch.
+  Verdict fillLeaf(Leaf& leaf, std::atomic<bool>& broken) const noexcept {
+    constexpr int kPart = 4;
+    float* const values = leaf.buffer().data();
+    const float background = plan_.background;
+    bool any_inside = false, any_outside = false, any_active = false;
+    for (int n = 0; n < 8; ++n) {
+      const Coord local((n >> 2) * kPart, ((n >> 1) & 1) * kPart, (n & 1) * kPart);
+      const Coord origin = leaf.origin() + local;
+      const Verdict verdict = judge(origin, kPart);
+      for (int x = 0; x < kPart; ++x) {
+        for (int y = 0; y < kPart; ++y) {
+          for (int z = 0; z < kPart; ++z) {
+            const openvdb::Index at = Leaf::coordToOffset(local.offsetBy(x, y, z));
+            float value = verdict == Verdict::kInside ? -background : background;
+            if (verdict == Verdict::kKeep) {
+              const Source::Value found =
+                  source_.at(position(origin.x() + x, origin.y() + y, origin.z() + z));
+              const auto stored = static_cast<float>(found.distance / plan_.metres_per_unit);
+              if (std::isnan(stored)) broken.store(true, std::memory_order_relaxed);
+              const bool active = found.known && std::abs(stored) < background;
+              value = active ? stored : std::copysign(background, stored);
+              if (active) leaf.setValueOn(at);
+              any_active = any_active || active;
+            }
+            values[at] = value;
+            any_inside = any_inside || value < 0.0F;
+            any_outside = any_outside || value > 0.0F;
+          }
+        }
+      }
+    }
+    if (any_active || (any_inside && any_outside)) return Verdict::kKeep;
+    return any_inside ? Verdict::kInside : Verdict::kOutside;
+  }
+
+  const BakeOptions& options_;
+  const Progress& progress_;
+  BakePlan plan_;
+  Box3 domain_;  ///< [m] holds the surface
+  Source source_;
+  openvdb::FloatGrid::Ptr grid_;
+};
+
+}  // namespace
+
+LevelSet bake(const Field& field, const BakeOptions& options, const Progress& progress) {
+  return FieldBaker(field, options, progress).run();
+}
+
+}  // namespace palpate::vdb

@@ -1,0 +1,115 @@
+#include "bake/bake_plan.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "palpate/scene/units.h"
+#include "palpate/vdb/openvdb_access.h"
+
+namespace palpate::vdb {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string inGigabytes(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, bytes < 1e8 ? "%.3f GB" : "%.1f GB", bytes * 1e-9);
+  return text;
+}
+
+/// Rounded up to two significant digits: a number that a person would type.
+double roundedUp(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return std::ceil(value / unit) * unit;
+}
+
+std::uint64_t defaultMemory() {
+  const auto bytes =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return static_cast<std::uint64_t>(0.8 * bytes);
+}
+
+bool hasNegativeVoxel(const openvdb::FloatGrid& grid) {
+  for (auto value = grid.cbeginValueAll(); value; ++value) {
+    if (*value < 0.0F) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string inMillimetres(double metres) { return number(metres * 1e3) + " mm"; }
+
+BakePlan checkOptions(const BakeOptions& options) {
+  if (!(options.voxel_size > 0.0) || !std::isfinite(options.voxel_size)) {
+    throw inputError("bake.voxel_size", "the voxel size is " + inMillimetres(options.voxel_size) +
+                                            "; it must be a positive length");
+  }
+  if (!(options.half_width >= 2.0 && options.half_width <= 1000.0)) {
+    throw inputError("bake.half_width", "the band's half width is " + number(options.half_width) +
+                                            " voxels; it must be from 2 to 1000");
+  }
+  if (options.box && !options.box->isBounded()) {
+    throw inputError("bake.box", "the box to bake in is empty or infinite",
+                     "give it two finite corners, the lower one first");
+  }
+  const std::optional<double> metres = metresPer(options.length_unit);
+  if (!metres) {
+    throw inputError("unit.unknown", "unknown length unit '" + options.length_unit + "'",
+                     "use m, cm, mm or um");
+  }
+  BakePlan plan;
+  plan.voxel = options.voxel_size;
+  plan.band = options.half_width * options.voxel_size;
+  plan.metres_per_unit = *metres;
+  plan.background = static_cast<float>(plan.band / *metres);
+  plan.max_memory = options.max_memory > 0 ? options.max_memory : defaultMemory();
+  return plan;
+}
+
+openvdb::FloatGrid::Ptr emptyGrid(const BakePlan& plan, const BakeOptions& options) {
+  initializeOpenVdb();
+  auto grid = openvdb::FloatGrid::create(plan.background);
+  grid->setTransform(
+      openvdb::math::Transform::createLinearTransform(plan.voxel / plan.metres_per_unit));
+  grid->setName(options.name);
+  return grid;
+}
+
+LevelSet finishGrid(openvdb::FloatGrid::Ptr grid, const BakePlan& plan,
+                    const BakeOptions& options) {
+  if (!hasNegativeVoxel(*grid)) {
+    throw inputError("bake.empty",
+                     "no voxel of '" + options.name +
+                         "' lies inside: the shape is empty, or thinner "
+                         "than voxels of " +
+                         inMillimetres(plan.voxel) + " can hold",
+                     "use voxels smaller than a third of the thinnest part; a shape far too small "
+                     "may have been read in the wrong length unit");
+  }
+  auto metadata = options.metadata;
+  metadata.try_emplace("frame", "world");
+  return makeLevelSet(std::move(grid), options.length_unit, metadata);
+}
+
+void requireMemory(double bytes, const BakePlan& plan) {
+  const auto limit = static_cast<double>(plan.max_memory);
+  if (bytes <= limit) return;
+  const double fits = roundedUp(1.1 * plan.voxel * std::sqrt(bytes / limit));
+  throw Error(ErrorKind::kOperation,
+              {"bake.memory",
+               "voxels of " + inMillimetres(plan.voxel) + " need about " + inGigabytes(bytes) +
+                   "; " + inGigabytes(limit) + " are allowed",
+               "voxels of " + inMillimetres(fits) +
+                   " should fit; also check that the shape has the length unit it should"});
+}
+
+}  // namespace palpate::vdb

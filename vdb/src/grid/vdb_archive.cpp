@@ -1,0 +1,79 @@
+#include "grid/vdb_archive.h"
+
+#include <istream>
+#include <ostream>
+#include <stdexcept>
+#include <utility>
+
+#include "palpate/vdb/openvdb_access.h"
+
+namespace palpate::vdb {
+
+std::string VdbArchive::Entry::name() const {
+  return openvdb::io::GridDescriptor::nameAsString(descriptor.uniqueName());
+}
+
+void VdbArchive::writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids) {
+  initializeOpenVdb();
+  setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+  setInstancingEnabled(false);  // so that any reader can take any grid by itself
+  write(stream, grids, /*seekable=*/true);
+}
+
+void VdbArchive::open(std::istream& stream) {
+  initializeOpenVdb();
+  readHeader(stream);
+  setFormatVersion(stream);
+  setLibraryVersion(stream);
+  setDataCompression(stream);
+  openvdb::MetaMap().readMeta(stream);
+  const std::int32_t count = readGridCount(stream);
+  for (std::int32_t i = 0; i < count; ++i) {
+    Entry entry;
+    entry.grid = entry.descriptor.read(stream);
+    if (inputHasGridOffsets()) {
+      // Each grid must lie behind the one before, or a damaged file could keep us here for ever.
+      const std::int64_t begin = stream.tellg();
+      if (entry.descriptor.getGridPos() < begin ||
+          entry.descriptor.getEndPos() <= entry.descriptor.getGridPos()) {
+        throw std::runtime_error("its table of contents makes no sense");
+      }
+      entry.descriptor.seekToGrid(stream);
+      readGridCompression(stream);
+      entry.grid->readMeta(stream);
+      entry.grid->readTransform(stream);
+      entry.descriptor.seekToEnd(stream);
+    } else {
+      readGrid(entry.grid, entry.descriptor, stream);  // a stream can only be read in order
+      entry.has_tree = true;
+    }
+    entries_.push_back(std::move(entry));
+  }
+}
+
+openvdb::GridBase::Ptr VdbArchive::readGridOf(std::istream& stream, Entry entry) const {
+  if (!entry.has_tree) {
+    entry.descriptor.seekToGrid(stream);
+    readGrid(entry.grid, entry.descriptor, stream);
+  }
+  if (!entry.descriptor.isInstance()) return entry.grid;
+  for (const Entry& parent : entries_) {
+    if (parent.descriptor.uniqueName() != entry.descriptor.instanceParentName()) continue;
+    if (parent.descriptor.isInstance()) break;
+    entry.grid->setTree(readGridOf(stream, parent)->baseTreePtr());
+    return entry.grid;
+  }
+  throw std::runtime_error("the grid whose voxels '" + entry.name() + "' shares is not there");
+}
+
+openvdb::GridBase::Ptr VdbArchive::readTopologyOf(std::istream& stream, Entry entry) {
+  if (entry.has_tree || entry.descriptor.isInstance()) return entry.grid;
+  entry.descriptor.seekToGrid(stream);
+  readGridCompression(stream);
+  entry.grid->readMeta(stream);
+  entry.grid->readTransform(stream);
+  entry.grid->readTopology(stream);
+  return entry.grid;
+}
+
+}  // namespace palpate::vdb

@@ -1,0 +1,43 @@
+#pragma once
+/// .vdb streams with errors. OpenVDB's own io::File never looks at its streams, so that a full disk and a
+/// file cut short pass for success; here every short read or write throws std::ios_base::failure.
+
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/GridDescriptor.h>
+#include <openvdb/openvdb.h>
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace palpate::vdb {
+
+class VdbArchive : public openvdb::io::Archive {
+ public:
+  /// `stream` must be seekable and have its exceptions on; the bytes are those of io::File.
+  void writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids);
+
+  /// One grid of a file: name, metadata and transform, and its tree once it was asked for.
+  struct Entry {
+    openvdb::io::GridDescriptor descriptor;
+    openvdb::GridBase::Ptr grid;
+    bool has_tree = false;
+    [[nodiscard]] std::string name() const;
+  };
+
+  /// What is in the file. `stream` must be seekable and have its exceptions on.
+  /// @throws std::exception of many kinds for what is no .vdb file or a damaged one.
+  void open(std::istream& stream);
+  [[nodiscard]] const std::vector<Entry>& entries() const noexcept { return entries_; }
+
+  /// Reads the whole tree of an entry, also if that is another entry's.
+  openvdb::GridBase::Ptr readGridOf(std::istream& stream, Entry entry) const;
+
+  /// Reads an entry's tree without the values of its leaves.
+  static openvdb::GridBase::Ptr readTopologyOf(std::istream& stream, Entry entry);
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+}  // namespace palpate::vdb

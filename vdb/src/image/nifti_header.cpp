@@ -1,0 +1,380 @@
+#include "image/nifti_header.h"
+
+#include <nifti2_io.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "palpate/core/error.h"
+
+namespace palpate::vdb {
+namespace {
+
+struct Affine {
+  Mat3 axes{1.0};
+  Vec3 origin{0.0, 0.0, 0.0};
+};
+
+struct FreeNifti {
+  void operator()(nifti_image* image) const noexcept { nifti_image_free(image); }
+};
+using NiftiPtr = std::unique_ptr<nifti_image, FreeNifti>;
+
+constexpr std::size_t kNifti1Size = sizeof(nifti_1_header);
+constexpr std::size_t kNifti2Size = sizeof(nifti_2_header);
+static_assert(kNifti1Size == 348 && kNifti2Size == 540);
+
+Error fail(const std::string& path, const char* code, std::string message, std::string hint = {}) {
+  return inputError(code, std::move(message), std::move(hint), path);
+}
+
+Error notNifti(const std::string& path) {
+  return fail(path, "nifti.format", "this is not a NIfTI file",
+              "images are read as .nii or .nii.gz (NIfTI-1 or NIfTI-2)");
+}
+
+void checkMagic(const char* magic, char version, const std::string& path) {
+  if (magic[0] == 'n' && magic[2] == version && magic[3] == '\0') {
+    if (magic[1] == '+') return;
+    if (magic[1] == 'i') {
+      throw fail(path, "nifti.pair", "this is the header of a detached .hdr / .img pair",
+                 "convert the pair to a single .nii or .nii.gz file");
+    }
+  }
+  if (version == '1') {
+    throw fail(path, "nifti.analyze",
+               "this looks like an Analyze 7.5 header, which says nothing "
+               "about orientation",
+               "convert the image to NIfTI with the orientation you know of");
+  }
+  throw notNifti(path);
+}
+
+/// dim[] before libnifti sees it: libnifti prints its complaints to stderr, whatever its debug level.
+template <typename Header>
+void checkDimensions(const Header& header, const std::string& path) {
+  if (header.dim[0] < 1 || header.dim[0] > 7) {
+    throw fail(path, "nifti.dimensions",
+               "the header gives " + std::to_string(header.dim[0]) + " dimensions; 1 to 7 can be");
+  }
+  std::string shape;
+  bool more_than_3d = false;
+  for (int i = 1; i <= header.dim[0]; ++i) {
+    shape += (i > 1 ? " x " : "") + std::to_string(header.dim[i]);
+    more_than_3d = more_than_3d || (i > 3 && header.dim[i] > 1);
+  }
+  for (int i = 1; i <= header.dim[0]; ++i) {
+    if (header.dim[i] < 1 || header.dim[i] > std::numeric_limits<int>::max()) {
+      throw fail(path, "nifti.dimensions", "the image is " + shape + " voxels, which cannot be");
+    }
+  }
+  if (more_than_3d) {
+    throw fail(path, "nifti.dimensions",
+               "the image has " + std::to_string(header.dim[0]) + " dimensions (" + shape +
+                   "); one 3-D volume of single values is needed",
+               "save the volume that you mean to a file of its own");
+  }
+  if (header.dim[0] < 3 || header.dim[1] < 2 || header.dim[2] < 2 || header.dim[3] < 2) {
+    throw fail(path, "nifti.dimensions",
+               "the image is " + shape +
+                   "; a 3-D image with at least two voxels along each axis "
+                   "is needed");
+  }
+}
+
+VoxelType voxelType(int datatype, const std::string& path) {
+  switch (datatype) {
+    case NIFTI_TYPE_UINT8:
+      return VoxelType::kUint8;
+    case NIFTI_TYPE_INT8:
+      return VoxelType::kInt8;
+    case NIFTI_TYPE_UINT16:
+      return VoxelType::kUint16;
+    case NIFTI_TYPE_INT16:
+      return VoxelType::kInt16;
+    case NIFTI_TYPE_UINT32:
+      return VoxelType::kUint32;
+    case NIFTI_TYPE_INT32:
+      return VoxelType::kInt32;
+    case NIFTI_TYPE_UINT64:
+      return VoxelType::kUint64;
+    case NIFTI_TYPE_INT64:
+      return VoxelType::kInt64;
+    case NIFTI_TYPE_FLOAT32:
+      return VoxelType::kFloat32;
+    case NIFTI_TYPE_FLOAT64:
+      return VoxelType::kFloat64;
+    default:
+      break;
+  }
+  std::string name = "code " + std::to_string(datatype);
+  if (nifti_is_valid_datatype(datatype) != 0) {
+    name = std::string(nifti_datatype_to_string(datatype)) + ", " + name;
+  }
+  throw fail(path, "nifti.data_type",
+             "voxels of this data type (" + name +
+                 ") are not single numbers "
+                 "that can be read",
+             "save the image with an integer or float type of 8 to 64 bits");
+}
+
+/// [m] in one unit of the header's spatial coordinates.
+double metresPerSpaceUnit(int code, const std::string& path, std::vector<std::string>& notes) {
+  switch (code) {
+    case NIFTI_UNITS_METER:
+      return 1.0;
+    case NIFTI_UNITS_MM:
+      return 1e-3;
+    case NIFTI_UNITS_MICRON:
+      return 1e-6;
+    case NIFTI_UNITS_UNKNOWN:
+      notes.emplace_back("the header names no length unit (unit code 0): taken as mm");
+      return 1e-3;
+    default:
+      break;
+  }
+  throw fail(path, "nifti.unit",
+             "the header's length unit has code " + std::to_string(code) +
+                 "; 1 (m), 2 (mm) and 3 (um) are known",
+             "set xyzt_units to 2 if the image is in mm");
+}
+
+Affine affineOf(const nifti_dmat44& m, double scale) {
+  Affine a;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) a.axes[column][row] = scale * m.m[row][column];
+    a.origin[row] = scale * m.m[row][3];
+  }
+  return a;
+}
+
+/// Volume of a voxel against that of a box with the same edges: 1 for orthogonal axes, 0 for flat ones.
+double solidity(const Mat3& axes) {
+  const double edges = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
+  return edges > 0.0 ? std::abs(glm::determinant(axes)) / edges : 0.0;
+}
+
+void checkAffine(const Affine& affine, const char* name, const std::string& path) {
+  bool finite = isFinite(affine.origin);
+  for (int c = 0; c < 3; ++c) finite = finite && isFinite(affine.axes[c]);
+  // Written as a negation so that NaN fails too.
+  if (!finite || !(solidity(affine.axes) > 1e-6)) {
+    throw fail(path, "nifti.singular",
+               std::string("the ") + name + " is singular: it gives the voxels no volume in space",
+               std::string("set a valid sform") +
+                   (name[0] == 's' ? ", or set sform_code to 0 to use the qform" : ""));
+  }
+}
+
+/// Largest distance between the two places of a corner of the image, in voxels of `a`.
+double disagreement(const Affine& a, const Affine& b, const std::array<int, 3>& size) {
+  const Mat3 to_index = glm::inverse(a.axes);
+  double worst = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 index((corner & 1) != 0 ? size[0] - 1 : 0, (corner & 2) != 0 ? size[1] - 1 : 0,
+                     (corner & 4) != 0 ? size[2] - 1 : 0);
+    const Vec3 apart = to_index * (b.axes * index + b.origin - a.axes * index - a.origin);
+    worst = std::max(worst, glm::length(apart));
+  }
+  return worst;
+}
+
+std::string shortNumber(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::optional<Affine> qform(const nifti_image& nim, double scale, const std::string& path) {
+  if (nim.qform_code <= 0) return std::nullopt;
+  for (int i = 1; i <= 3; ++i) {
+    // libnifti puts 1 in the place of such spacings.
+    if (!(nim.pixdim[i] > 0.0) || !std::isfinite(nim.pixdim[i])) {
+      throw fail(path, "nifti.spacing",
+                 "the voxel spacing pixdim[" + std::to_string(i) + "] is " +
+                     shortNumber(nim.pixdim[i]) + ", which the qform needs to be positive",
+                 "set the sform and set qform_code to 0");
+    }
+  }
+  const Affine affine = affineOf(nim.qto_xyz, scale);
+  checkAffine(affine, "qform", path);
+  return affine;
+}
+
+Affine placeInSpace(const nifti_image& nim, double scale, const std::array<int, 3>& size,
+                    const std::string& path) {
+  const std::optional<Affine> from_q = qform(nim, scale, path);
+  if (nim.sform_code <= 0) {
+    if (from_q) return *from_q;
+    throw fail(
+        path, "nifti.no_affine",
+        "neither the sform nor the qform is set, so nothing says where and which way round "
+        "the image lies",
+        "set the sform, for example in Python with nibabel: image.set_sform(affine, code=1)");
+  }
+  const Affine from_s = affineOf(nim.sto_xyz, scale);
+  checkAffine(from_s, "sform", path);
+  if (from_q) {
+    const double apart = disagreement(from_s, *from_q, size);
+    if (apart > 0.1) {
+      throw fail(path, "nifti.affine_conflict",
+                 "sform (code " + std::to_string(nim.sform_code) + ") and qform (code " +
+                     std::to_string(nim.qform_code) + ") place the image differently: by " +
+                     shortNumber(apart) + " voxels at a corner, 0.1 at most is taken as agreement",
+                 "set the code of the wrong one to 0");
+    }
+  }
+  return from_s;
+}
+
+std::string orientationCodes(const Mat3& axes) {
+  nifti_dmat44 m{};
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) m.m[row][column] = axes[column][row];
+  }
+  m.m[3][3] = 1.0;
+  int codes[3] = {0, 0, 0};
+  nifti_dmat44_to_orientation(m, &codes[0], &codes[1], &codes[2]);
+  constexpr char kLetters[] = "?RLAPSI";  // indexed by NIFTI_L2R (towards R) = 1, ...
+  std::string text;
+  for (const int code : codes) text += code >= 1 && code <= 6 ? kLetters[code] : '?';
+  return text;
+}
+
+void applyScaling(NiftiHeader& out, const nifti_image& nim) {
+  if (!std::isfinite(nim.scl_slope) || nim.scl_slope == 0.0) return;  // "none", says the standard
+  out.slope = nim.scl_slope;
+  out.intercept = std::isfinite(nim.scl_inter) ? nim.scl_inter : 0.0;
+  out.scaled = out.slope != 1.0 || out.intercept != 0.0;
+}
+
+template <typename Header>
+NiftiHeader interpret(Header raw, int version, bool swapped, const std::string& path) {
+  if (swapped) swap_nifti_header(&raw, version);
+  checkMagic(raw.magic, version == 1 ? '1' : '2', path);
+  checkDimensions(raw, path);
+
+  NiftiHeader out;
+  out.type = voxelType(raw.datatype, path);
+  // The file's own spacings, before libnifti mends them.
+  const double pixdim[4] = {0.0, static_cast<double>(raw.pixdim[1]),
+                            static_cast<double>(raw.pixdim[2]), static_cast<double>(raw.pixdim[3])};
+  NiftiPtr nim;
+  if constexpr (sizeof(Header) == kNifti1Size) {
+    nim.reset(nifti_convert_n1hdr2nim(raw, nullptr));
+  } else {
+    nim.reset(nifti_convert_n2hdr2nim(raw, nullptr));
+  }
+  if (!nim) throw fail(path, "nifti.format", "libnifti cannot make sense of the header");
+  std::copy(pixdim + 1, pixdim + 4, nim->pixdim + 1);
+
+  out.size = {static_cast<int>(nim->nx), static_cast<int>(nim->ny), static_cast<int>(nim->nz)};
+  out.bytes_per_voxel = nim->nbyper;
+  out.swapped = swapped;
+  const auto offset = static_cast<double>(raw.vox_offset);
+  const std::size_t header_size = sizeof(Header) + 4;  // four bytes announce the extensions
+  if (!(offset >= 0.0) || offset > 1e15) {
+    throw fail(path, "nifti.offset", "the voxels are said to begin at byte " + shortNumber(offset));
+  }
+  out.data_offset = std::max<std::uint64_t>(static_cast<std::uint64_t>(offset), header_size);
+  applyScaling(out, *nim);
+
+  const double scale = metresPerSpaceUnit(nim->xyz_units, path, out.notes);
+  const Affine affine = placeInSpace(*nim, scale, out.size, path);
+  out.axes = affine.axes;
+  out.origin = affine.origin;
+  out.orientation = orientationCodes(affine.axes);
+  return out;
+}
+
+/// No product of three ints times eight bytes is trusted to fit before this.
+void checkLength(const NiftiHeader& header, const ByteStream& stream, const std::string& path) {
+  const double needed = static_cast<double>(header.data_offset) +
+                        static_cast<double>(header.size[0]) * static_cast<double>(header.size[1]) *
+                            static_cast<double>(header.size[2]) *
+                            static_cast<double>(header.bytes_per_voxel);
+  if (needed > static_cast<double>(stream.contentLimit())) {
+    char needs[32];
+    std::snprintf(needs, sizeof needs, "%.0f", needed);
+    throw fail(path, "nifti.truncated",
+               "the file is cut short: it has " + std::to_string(stream.fileSize()) +
+                   (stream.isGzip() ? " bytes of gzip data" : " bytes") + ", its header asks for " +
+                   needs + (stream.isGzip() ? " unpacked" : ""),
+               "fetch or write the file again");
+  }
+}
+
+}  // namespace
+
+const char* nameOf(VoxelType type) noexcept {
+  switch (type) {
+    case VoxelType::kUint8:
+      return "uint8";
+    case VoxelType::kInt8:
+      return "int8";
+    case VoxelType::kUint16:
+      return "uint16";
+    case VoxelType::kInt16:
+      return "int16";
+    case VoxelType::kUint32:
+      return "uint32";
+    case VoxelType::kInt32:
+      return "int32";
+    case VoxelType::kUint64:
+      return "uint64";
+    case VoxelType::kInt64:
+      return "int64";
+    case VoxelType::kFloat32:
+      return "float32";
+    case VoxelType::kFloat64:
+      return "float64";
+  }
+  return "";
+}
+
+NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path, std::uint64_t& consumed) {
+  nifti_set_debug_level(0);  // otherwise libnifti talks on stderr
+  std::array<unsigned char, kNifti2Size> bytes{};
+  consumed = stream.read(std::span(bytes).first(kNifti1Size));
+  std::int32_t header_size = 0;
+  std::memcpy(&header_size, bytes.data(), sizeof header_size);
+  std::int32_t other_order = header_size;
+  nifti_swap_4bytes(1, &other_order);
+  const auto is = [&](std::size_t size) {
+    return header_size == static_cast<std::int32_t>(size) ||
+           other_order == static_cast<std::int32_t>(size);
+  };
+  if (!is(kNifti1Size) && !is(kNifti2Size)) {
+    if (consumed < sizeof header_size && stream.brokeOff()) stream.verifyEnd();
+    throw notNifti(path);
+  }
+  const std::size_t wanted = is(kNifti1Size) ? kNifti1Size : kNifti2Size;
+  if (consumed == kNifti1Size && wanted > consumed) {
+    consumed += stream.read(std::span(bytes).subspan(kNifti1Size));
+  }
+  if (consumed < wanted) {
+    throw fail(path, "nifti.truncated",
+               "the file ends within its header (" + std::to_string(consumed) + " of " +
+                   std::to_string(wanted) + " bytes)",
+               "fetch or write the file again");
+  }
+  const bool swapped = header_size != static_cast<std::int32_t>(wanted);
+  NiftiHeader header;
+  if (wanted == kNifti1Size) {
+    nifti_1_header raw;
+    std::memcpy(&raw, bytes.data(), sizeof raw);
+    header = interpret(raw, 1, swapped, path);
+  } else {
+    nifti_2_header raw;
+    std::memcpy(&raw, bytes.data(), sizeof raw);
+    header = interpret(raw, 2, swapped, path);
+  }
+  checkLength(header, stream, path);
+  return header;
+}
+
+}  // namespace palpate::vdb
