@@ -78,11 +78,11 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
   }
 }
 
-Facet Passages::facet(const Partition& partition, RegionId from, const Signs& here,
+Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond, const Signs& here,
                       const Signs& there, std::span<const LeafId> crossed,
                       const PassedPorts& passed) const noexcept {
   Facet facet;
-  facet.beyond = partition.regionOf(there);
+  facet.beyond = beyond;
   if (facet.beyond == from) {
     for (const Sheet& sheet : sheets_) {
       if (!meets(sheet.leaves, crossed)) continue;

@@ -92,9 +92,9 @@ class Passages {
   }
 
   /// The facet that is crossed when the leaves `crossed` (one, or several that coincide there) change
-  /// sign from `here`, a cell of region `from`, to `there`.
-  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& here,
-                            const Signs& there, std::span<const LeafId> crossed,
+  /// sign from `here`, a cell of region `from`, to `there`, a cell of region `beyond`.
+  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, RegionId beyond,
+                            const Signs& here, const Signs& there, std::span<const LeafId> crossed,
                             const PassedPorts& passed) const noexcept;
 
  private:
