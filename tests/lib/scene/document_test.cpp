@@ -122,6 +122,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "quote globs"},
         Refusal{"UnquotedStar", "match: [*]\n", 1, 9, "document.alias", "*", "quote globs"},
         Refusal{"UnquotedStarsAround", "match: *CL*\n", 1, 8, "document.alias", "*", "quote globs"},
+        Refusal{"UnquotedQuestionMark", "a: [n?d]\n", 1, 6, "document.syntax", "not YAML",
+                "quote globs"},
         Refusal{"Tag", "a: !!int 3\n", 1, 4, "document.tag", "!", "tag"},
         Refusal{"LocalTag", "a: !mine {b: 1}\n", 1, 4, "document.tag", "!", "tag"},
         Refusal{"NonSpecificTag", "a: ! \"3\"\n", 1, 4, "document.tag", "!", "tag"},

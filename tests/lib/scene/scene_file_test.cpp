@@ -8,6 +8,7 @@
 
 #include "lib/scene/problems.h"
 #include "lib/scene/stand_in_readers.h"
+#include "palpate/scene/scene.h"
 #include "support/temp_file.h"
 
 namespace palpate {
@@ -325,7 +326,7 @@ TEST(SceneFile, NamesInOtherAlphabetsAndWithSpaces) {
       "  - {name: \"3rd ventricle (left)\", inside: {sphere: {center: [0, 0, 0], radius: 9}}}\n"
       "  - {name: n\xC5\x93ud, inside: {sphere: {center: [0, 0, 0], radius: 5}}}\n"
       "ports:\n"
-      "  - {name: p, between: [\"3rd*\", n?ud]}\n");
+      "  - {name: p, between: [\"3rd*\", \"n?ud\"]}\n");
   EXPECT_EQ(scene.layers[0].name, "3rd ventricle (left)");
   EXPECT_EQ(scene.ports[0].to, "n?ud");
 }
@@ -336,6 +337,38 @@ TEST(SceneFile, ReadsTheFileItIsGiven) {
   EXPECT_EQ(readScene(path).layers.size(), 1U);
   const Problem problem = problemOf([&] { (void)readScene(folder.path("other.yaml")); });
   EXPECT_EQ(problem.file, folder.path("other.yaml"));
+}
+
+// The analytic scenes of the project hold together: every port joins neighbours, every region is reached.
+TEST(SceneFile, TheProjectsScenesCompile) {
+  for (const std::string name : {"container", "csg_part", "valve_tube"}) {
+    const ScenePtr scene = compile(readScene(PALPATE_SOURCE_DIR "/data/scenes/" + name + ".yaml"));
+    EXPECT_FALSE(scene->ports().empty()) << name;
+    for (const Region& region : scene->regions()) {
+      if (region.name != "part") {
+        EXPECT_TRUE(region.reachable) << name << " " << region.name;
+      }
+    }
+  }
+}
+
+TEST(SceneFile, TheProjectsScenesHoldWhatTheyShow) {
+  const auto regionIn = [](const std::string& file, double x, double y, double z) {
+    const ScenePtr scene = compile(readScene(PALPATE_SOURCE_DIR "/data/scenes/" + file));
+    return scene->regions()[scene->regionAt(0.001 * Vec3(x, y, z))].name;
+  };
+  EXPECT_EQ(regionIn("container.yaml", 0, 0, 14), "liquid");
+  EXPECT_EQ(regionIn("container.yaml", 0, 0, 16), "outside");
+  EXPECT_EQ(regionIn("valve_tube.yaml", -39, 0, 0), "upstream");
+  EXPECT_EQ(regionIn("valve_tube.yaml", 39, 11, 0), "downstream");
+  EXPECT_EQ(regionIn("valve_tube.yaml", 39, 13, 0), "outside");
+  EXPECT_EQ(regionIn("csg_part.yaml", -22, 0, -2), "chamber");   // the hollow
+  EXPECT_EQ(regionIn("csg_part.yaml", -22, 0, 11), "outside");   // the hole above the grease
+  EXPECT_EQ(regionIn("csg_part.yaml", -22, 11, -2), "chamber");  // only the hollow is so wide
+  EXPECT_EQ(regionIn("csg_part.yaml", -22, 11, 9), "part");
+  EXPECT_EQ(regionIn("csg_part.yaml", -4, 0, 11), "outside");  // the slot
+  EXPECT_EQ(regionIn("csg_part.yaml", 20, 0, 11), "outside");  // the dish
+  EXPECT_EQ(regionIn("csg_part.yaml", 45, 0, 0), "part");      // the dome
 }
 
 TEST(SceneFile, EverySceneOfTheProjectIsRead) {

@@ -19,6 +19,7 @@ inline SceneRegistry standInReaders() {
   registry.fields["mesh"] = [later](MapReader& reader) {
     const std::string file = reader.loader().resolvePath(reader.requireText("file"));
     (void)reader.textOr("units", "");
+    (void)reader.numberOr("half_width", 4.0);
     return later("mesh " + file, reader.lengthOr("voxel", 1.0));
   };
   registry.fields["grid"] = [later](MapReader& reader) {
