@@ -79,7 +79,9 @@ SweepResult sweep(const SweepSurface& surface, const Vec3& a, const Vec3& b, dou
     stride = std::min(2.0 * stride, surface.graze);
     const double next = std::min(1.0, t + step);
     const double ahead = next >= 1.0 ? end : motion.valueAt(next);
-    if (ahead <= 0.0 && (value > surface.tolerance || ahead < -surface.tolerance)) {
+    // A start slightly beyond the surface is on its way back: only going deeper is a hit there.
+    const double deeper = std::min(0.0, value) - surface.tolerance;
+    if (ahead <= 0.0 && (value > surface.tolerance || ahead < deeper)) {
       out.kind = SweepResult::Kind::kHit;
       out.at = value > surface.tolerance ? narrow(motion, t, value, next, ahead) : t;
       out.end_value = 0.0;

@@ -75,7 +75,8 @@ struct Partition::Builder {
         program.steps.push_back({Step::Op::kNot, 1});
         break;
       case FieldStructure::Kind::kUnion:
-      case FieldStructure::Kind::kIntersection: {
+      case FieldStructure::Kind::kIntersection:
+      case FieldStructure::Kind::kFaces: {
         // Folding each operand in as it comes keeps the stack as deep as the tree, not as wide.
         const auto op =
             structure.kind == FieldStructure::Kind::kUnion ? Step::Op::kOr : Step::Op::kAnd;

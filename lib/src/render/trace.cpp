@@ -1,6 +1,7 @@
 #include "palpate/render/trace.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <string_view>
 
@@ -10,9 +11,6 @@ namespace {
 constexpr std::string_view kHeader =
     "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,"
     "region,contact,event,tick_ns\n";
-
-/// The longest shortest double is -2.2250738585072014e-308: 24 characters; an int64 takes 20.
-constexpr std::size_t kNumberRoom = 32;
 
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -24,44 +22,27 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-/// Appends to a string that is grown in large steps, so that numbers are printed straight into it.
-class Writer {
+/// A few numbers, each with a comma behind it, printed on the stack and appended at once: the text is
+/// written once, and not first filled with zeros. The longest shortest double has 24 characters
+/// (-2.2250738585072014e-308), an int64 has 20.
+template <std::size_t kCount>
+class Numbers {
  public:
-  explicit Writer(std::size_t expected) { text_.resize(expected); }
-
   template <typename Number>
-  void number(Number value) {
-    room(kNumberRoom);
-    used_ = static_cast<std::size_t>(
-        std::to_chars(text_.data() + used_, text_.data() + text_.size(), value).ptr - text_.data());
+  void add(Number value) {
+    at_ = std::to_chars(at_, buffer_.data() + buffer_.size(), value).ptr;
+    *at_++ = ',';
   }
-  void character(char c) {
-    room(1);
-    text_[used_++] = c;
+  void add(const Vec3& v) {
+    for (int i = 0; i < 3; ++i) add(v[i]);
   }
-  void words(std::string_view words) {
-    room(words.size());
-    std::copy(words.begin(), words.end(), text_.begin() + static_cast<std::ptrdiff_t>(used_));
-    used_ += words.size();
-  }
-  void vector(const Vec3& v) {
-    for (int i = 0; i < 3; ++i) {
-      number(v[i]);
-      character(',');
-    }
-  }
-  [[nodiscard]] std::string take() && {
-    text_.resize(used_);
-    return std::move(text_);
+  [[nodiscard]] std::string_view text() const {
+    return {buffer_.data(), static_cast<std::size_t>(at_ - buffer_.data())};
   }
 
  private:
-  void room(std::size_t more) {
-    if (text_.size() - used_ < more) text_.resize(2 * text_.size() + more);
-  }
-
-  std::string text_;
-  std::size_t used_ = 0;
+  std::array<char, 32 * kCount> buffer_;
+  char* at_ = buffer_.data();
 };
 
 const std::string& nameOf(std::span<const std::string> names, std::size_t id, const char* what) {
@@ -71,20 +52,15 @@ const std::string& nameOf(std::span<const std::string> names, std::size_t id, co
                                      std::to_string(names.size()) + " have a name");
 }
 
-/// The ports of one tick as one field. Quotes belong around the whole field, so names are joined bare.
-void events(Writer& out, const TickResult& result, std::span<const std::string> ports) {
-  if (result.event_count == 0) return;
+/// The ports of one tick as one field.
+std::string events(const TickResult& result, std::span<const std::string> ports) {
   const auto count = std::min<std::size_t>(result.event_count, TickResult::kMaxEvents);
-  if (count == 1) {
-    out.words(quoted(nameOf(ports, result.events[0], "port")));
-    return;
-  }
   std::string joined;
   for (std::size_t i = 0; i < count; ++i) {
     if (i > 0) joined += ';';
     joined += nameOf(ports, result.events[i], "port");
   }
-  out.words(quoted(joined));
+  return quoted(joined);
 }
 
 }  // namespace
@@ -95,23 +71,27 @@ std::string traceCsv(std::span<const TraceRow> rows, std::span<const std::string
   region_fields.reserve(regions.size());
   for (const std::string& name : regions) region_fields.push_back(quoted(name));
 
-  constexpr std::size_t kTypicalRow = 160;
-  Writer out(kHeader.size() + kTypicalRow * rows.size());
-  out.words(kHeader);
+  constexpr std::size_t kTypicalRow = 220;  // of numbers that use all their digits
+  std::string out;
+  out.reserve(kHeader.size() + kTypicalRow * rows.size());
+  out += kHeader;
   for (const TraceRow& row : rows) {
-    out.number(row.t);
-    out.character(',');
-    out.vector(row.hip);
-    out.vector(row.result.proxy);
-    out.vector(row.result.force);
-    out.words(nameOf(region_fields, row.result.region, "region"));
-    out.words(row.result.contact ? ",1," : ",0,");
-    events(out, row.result, ports);
-    out.character(',');
-    out.number(row.tick_ns);
-    out.character('\n');
+    Numbers<10> numbers;
+    numbers.add(row.t);
+    numbers.add(row.hip);
+    numbers.add(row.result.proxy);
+    numbers.add(row.result.force);
+    out += numbers.text();
+    out += nameOf(region_fields, row.result.region, "region");
+    out += row.result.contact ? ",1," : ",0,";
+    if (row.result.event_count > 0) out += events(row.result, ports);
+    out += ',';
+    Numbers<1> time;
+    time.add(row.tick_ns);
+    out += time.text();
+    out.back() = '\n';
   }
-  return std::move(out).take();
+  return out;
 }
 
 std::string traceCsv(std::span<const TraceRow> rows, const Scene& scene) {

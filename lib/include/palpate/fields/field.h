@@ -37,7 +37,15 @@ using FieldPtr = std::shared_ptr<const Field>;  ///< shared and unchanging, neve
 
 /// How a field is put together, so that CSG can be taken apart into its smooth leaves.
 struct FieldStructure {
-  enum class Kind { kLeaf, kUnion, kIntersection, kComplement, kTransform };
+  enum class Kind {
+    kLeaf,          ///< smooth, or to be taken as it is
+    kUnion,         ///< min of the operands
+    kIntersection,  ///< max of the operands
+    kComplement,    ///< minus the operand
+    kTransform,     ///< the operand, moved
+    kFaces,  ///< inside where inside all operands, which are smooth; the value itself is better
+             ///< than their max (a box: its exact distance, and six half-spaces)
+  };
   Kind kind = Kind::kLeaf;
   std::span<const FieldPtr> operands{};  ///< none for a leaf; one for complement and transform
   Pose pose{};                           ///< transform only: operand frame -> this field's frame

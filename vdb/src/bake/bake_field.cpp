@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake_plan.h"
+#include "bake/bake_plan.h"
 
 namespace palpate::vdb {
 namespace {

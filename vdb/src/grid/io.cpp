@@ -18,7 +18,7 @@
 #include "palpate/core/error.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/openvdb_access.h"
-#include "vdb_archive.h"
+#include "grid/vdb_archive.h"
 
 namespace palpate::vdb {
 namespace {
