@@ -26,7 +26,7 @@ RegionId regionAt(const Partition& partition, const Vec3& p) {
 
 TEST(Signs, HoldOneBitEachBeyondAWord) {
   Signs signs(130);
-  for (const LeafId leaf : {0, 63, 64, 127, 128, 129}) {
+  for (const LeafId leaf : std::vector<LeafId>{0, 63, 64, 127, 128, 129}) {
     signs.set(leaf, true);
     EXPECT_TRUE(signs.inside(leaf));
     EXPECT_FALSE(signs.inside(static_cast<LeafId>(leaf == 0 ? 1 : leaf - 2)));
@@ -70,7 +70,7 @@ TEST(Partition, TakesCsgApartAndSharesLeaves) {
 }
 
 TEST(Partition, GivesTransformsToTheLeaves) {
-  const FieldPtr part = unite({box(Vec3(0.0), Vec3(0.02, 0.04, 0.06)), ball(0.02)});
+  const FieldPtr part = unite({ellipsoid(Vec3(0.0), Vec3(0.01, 0.02, 0.03)), ball(0.02)});
   const Pose turn{rotationAbout(Vec3(1, 2, 3), 0.7), Vec3(0.01, -0.02, 0.03)};
   const Pose shift{Mat3(1.0), Vec3(0.05, 0, 0)};
   const FieldPtr once = place(part, turn);

@@ -104,11 +104,11 @@ TEST(Port, LeadsByItsDirection) {
   }
 }
 
-/// Two nested boxes and a mask: leaf 0 is region 1's, leaf 1 region 2's, leaf 2 the mask (x < 0).
+/// Two nested balls and a mask: leaf 0 is region 1's, leaf 1 region 2's, leaf 2 the mask (x < 0).
 class Facets : public testing::Test {
  protected:
   Facets()
-      : layers_{box(Vec3(0.0), Vec3(0.4)), box(Vec3(0.0), Vec3(0.2))},
+      : layers_{sphere(Vec3(0.0), 0.2), sphere(Vec3(0.0), 0.1)},
         masks_{halfSpace(Vec3(0.0), Vec3(1, 0, 0))},
         partition_(layers_, masks_) {}
 
