@@ -4,6 +4,16 @@
 
 namespace palpate {
 
+namespace {
+
+bool meets(const std::vector<LeafId>& leaves, std::span<const LeafId> crossed) noexcept {
+  return std::any_of(crossed.begin(), crossed.end(), [&](LeafId leaf) {
+    return std::find(leaves.begin(), leaves.end(), leaf) != leaves.end();
+  });
+}
+
+}  // namespace
+
 bool PassedPorts::contains(PortId port) const noexcept {
   for (std::size_t i = 0; i < size_; ++i) {
     if (stack_[i].port == port) return true;
@@ -48,8 +58,13 @@ bool Port::leads(RegionId a, RegionId b) const noexcept {
   return direction != PortDirection::kIn && holds(to, a) && holds(from, b);
 }
 
-Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Port> ports)
-    : regions_(regions), walls_(std::move(walls)), ports_(std::move(ports)), ports_of_(regions) {
+Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Port> ports,
+                   std::vector<Sheet> sheets)
+    : regions_(regions),
+      walls_(std::move(walls)),
+      ports_(std::move(ports)),
+      sheets_(std::move(sheets)),
+      ports_of_(regions) {
   for (std::size_t region = 0; region < regions; ++region) {
     for (std::size_t port = 0; port < ports_.size(); ++port) {
       for (std::size_t other = 0; other < regions; ++other) {
@@ -63,11 +78,24 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
   }
 }
 
-Facet Passages::facet(const Partition& partition, RegionId from, const Signs& there,
-                      std::span<const LeafId> crossed, const PassedPorts& passed) const noexcept {
+Facet Passages::facet(const Partition& partition, RegionId from, const Signs& here,
+                      const Signs& there, std::span<const LeafId> crossed,
+                      const PassedPorts& passed) const noexcept {
   Facet facet;
   facet.beyond = partition.regionOf(there);
-  if (facet.beyond == from) return facet;
+  if (facet.beyond == from) {
+    for (const Sheet& sheet : sheets_) {
+      if (!meets(sheet.leaves, crossed)) continue;
+      const auto solid = static_cast<std::size_t>(sheet.solid);
+      if (partition.maskHolds(solid, here) == partition.maskHolds(solid, there)) continue;
+      if (sheet.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(sheet.mask), there))
+        continue;
+      facet.kind = Facet::Kind::kClosed;
+      facet.material = sheet.material;
+      break;
+    }
+    return facet;
+  }
   const Wall& between = wall(from, facet.beyond);
   if (between.absent) {
     facet.kind = Facet::Kind::kAbsent;
@@ -78,11 +106,7 @@ Facet Passages::facet(const Partition& partition, RegionId from, const Signs& th
   for (const PortId id : ports_of_[from]) {
     const Port& port = ports_[id];
     if (!port.leads(from, facet.beyond)) continue;
-    if (!port.on.empty() && std::none_of(crossed.begin(), crossed.end(), [&](LeafId leaf) {
-          return std::find(port.on.begin(), port.on.end(), leaf) != port.on.end();
-        })) {
-      continue;
-    }
+    if (!port.on.empty() && !meets(port.on, crossed)) continue;
     // The mask's own leaves are not among those crossed, so the far cell tells its state as well.
     if (port.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(port.mask), there))
       continue;
