@@ -78,13 +78,16 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
   }
 }
 
-Facet Passages::facet(const Partition& partition, RegionId from, const Signs& there,
-                      std::span<const LeafId> crossed, const PassedPorts& passed) const noexcept {
+Facet Passages::facet(const Partition& partition, RegionId from, const Signs& here,
+                      const Signs& there, std::span<const LeafId> crossed,
+                      const PassedPorts& passed) const noexcept {
   Facet facet;
   facet.beyond = partition.regionOf(there);
   if (facet.beyond == from) {
     for (const Sheet& sheet : sheets_) {
       if (!meets(sheet.leaves, crossed)) continue;
+      const auto solid = static_cast<std::size_t>(sheet.solid);
+      if (partition.maskHolds(solid, here) == partition.maskHolds(solid, there)) continue;
       if (sheet.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(sheet.mask), there))
         continue;
       facet.kind = Facet::Kind::kClosed;

@@ -173,8 +173,9 @@ Facet CellWalker::facetAt(LeafId leaf) noexcept {
   if (crossing_count_ == 1 && known.state == state_) return known.facet;
   beyond_ = signs_;  // same size: copies words, allocates nothing
   for (std::size_t i = 0; i < crossing_count_; ++i) beyond_.flip(crossing_[i]);
-  const Facet facet = scene_.passages().facet(
-      scene_.partition(), region_, beyond_, std::span(crossing_.data(), crossing_count_), passed_);
+  const Facet facet =
+      scene_.passages().facet(scene_.partition(), region_, signs_, beyond_,
+                              std::span(crossing_.data(), crossing_count_), passed_);
   if (crossing_count_ == 1) known = {facet, state_};
   return facet;
 }

@@ -22,7 +22,8 @@ struct Wall {
 /// An open surface: part of a leaf's zero set that is a wall though the same region lies on both sides.
 struct Sheet {
   std::string name;
-  std::vector<LeafId> leaves;  ///< whose zero set it is part of
+  std::vector<LeafId> leaves;  ///< of the field whose zero set it is part of
+  int solid = -1;              ///< mask of that field: the sheet is where its sign changes
   int mask = -1;               ///< only within this mask of the partition; -1: everywhere
   int material = -1;           ///< index into the scene's materials
 };
@@ -92,8 +93,8 @@ class Passages {
 
   /// The facet that is crossed when the leaves `crossed` (one, or several that coincide there) change
   /// sign from `here`, a cell of region `from`, to `there`.
-  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& there,
-                            std::span<const LeafId> crossed,
+  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& here,
+                            const Signs& there, std::span<const LeafId> crossed,
                             const PassedPorts& passed) const noexcept;
 
  private:
