@@ -130,4 +130,11 @@ Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond
   return facet;
 }
 
+Facet Passages::facet(const Partition& partition, RegionId from, const Signs& there,
+                      std::span<const LeafId> crossed, const PassedPorts& passed) const {
+  Signs here = there;
+  for (const LeafId leaf : crossed) here.flip(leaf);
+  return facet(partition, from, partition.regionOf(there), here, there, crossed, passed);
+}
+
 }  // namespace palpate

@@ -97,6 +97,11 @@ class Passages {
                             const Signs& here, const Signs& there, std::span<const LeafId> crossed,
                             const PassedPorts& passed) const noexcept;
 
+  /// The same where only the far cell is known: the near one differs from it in the leaves `crossed`, and
+  /// the region beyond is looked up. Copies signs: for set-up and pictures.
+  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& there,
+                            std::span<const LeafId> crossed, const PassedPorts& passed) const;
+
  private:
   std::size_t regions_ = 0;
   std::vector<Wall> walls_;
