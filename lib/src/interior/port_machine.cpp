@@ -82,11 +82,11 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
   }
 }
 
-Facet Passages::facet(const Partition& partition, RegionId from, const Signs& here,
+Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond, const Signs& here,
                       const Signs& there, std::span<const LeafId> crossed,
                       const PassedPorts& passed) const noexcept {
   Facet facet;
-  facet.beyond = partition.regionOf(there);
+  facet.beyond = beyond;
   if (facet.beyond == from) {
     for (const Sheet& sheet : sheets_) {
       if (!meets(sheet.leaves, crossed)) continue;
@@ -131,6 +131,13 @@ Facet Passages::facet(const Partition& partition, RegionId from, const Signs& he
     }
   }
   return facet;
+}
+
+Facet Passages::facet(const Partition& partition, RegionId from, const Signs& there,
+                      std::span<const LeafId> crossed, const PassedPorts& passed) const {
+  Signs here = there;
+  for (const LeafId leaf : crossed) here.flip(leaf);
+  return facet(partition, from, partition.regionOf(there), here, there, crossed, passed);
 }
 
 }  // namespace palpate
