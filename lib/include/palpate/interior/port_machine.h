@@ -92,10 +92,15 @@ class Passages {
   }
 
   /// The facet that is crossed when the leaves `crossed` (one, or several that coincide there) change
-  /// sign from `here`, a cell of region `from`, to `there`.
-  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& here,
-                            const Signs& there, std::span<const LeafId> crossed,
+  /// sign from `here`, a cell of region `from`, to `there`, a cell of region `beyond`.
+  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, RegionId beyond,
+                            const Signs& here, const Signs& there, std::span<const LeafId> crossed,
                             const PassedPorts& passed) const noexcept;
+
+  /// The same where only the far cell is known: the near one differs from it in the leaves `crossed`, and
+  /// the region beyond is looked up. Copies signs: for set-up and pictures.
+  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& there,
+                            std::span<const LeafId> crossed, const PassedPorts& passed) const;
 
  private:
   std::size_t regions_ = 0;
