@@ -3,12 +3,12 @@
 # configure and build. Sourced by them; has nothing to run by itself.
 
 # To build and run Palpate. libboost-dev: OpenVDB's headers need it, but libopenvdb-dev does not bring it.
-# mricron-data: the scanned head that data/scenes/head.yaml is about.
+# fonts-dejavu-core: the letters in pictures. mricron-data: the scanned head that data/scenes/head.yaml is about.
 build_packages=(
   g++ cmake ninja-build ccache
   libopenvdb-dev libtbb-dev libboost-dev libnifti-dev zlib1g-dev libassimp-dev
   libglm-dev libyaml-cpp-dev
-  libcli11-dev nlohmann-json3-dev libpng-dev
+  libcli11-dev nlohmann-json3-dev pkg-config libcairo2-dev fonts-dejavu-core
   mricron-data
 )
 

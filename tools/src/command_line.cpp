@@ -37,7 +37,7 @@ struct Verb {
   const char* line;     ///< what it does, in one line
   const char* example;  ///< one that runs from the project's folder
   const char* usage;
-  const char* details;  ///< after the options; may be empty
+  const char* details;                ///< after the options; may be empty
   std::set<std::string> point_lists;  ///< options that take several points after one another
   std::function<void(CLI::App&, Invocation&)> define;
   std::function<void(const Invocation&)> check;  ///< what must be there
@@ -106,7 +106,8 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
           "keep to the clock (default: as fast as the machine goes)");
   g = "Output files";
   add(app, g, "--trace", "FILE.csv", o.trace, "write one row a tick (SI units)");
-  add(app, g, "--image", "FILE.png", o.image, "draw the scene cut open, with the path and the forces");
+  add(app, g, "--image", "FILE.png", o.image,
+      "draw the scene cut open, with the path and the forces");
 }
 
 void defineBake(CLI::App& app, Invocation& invocation) {
@@ -123,7 +124,8 @@ void defineBake(CLI::App& app, Invocation& invocation) {
   addList(app, g, "--layer", "NAME", o.layers,
           "scene: only this layer, may be repeated; mesh, --above: what to call it");
   g = "From a mesh";
-  add(app, g, "--units", "UNIT", o.units, "what one unit of the mesh is: mm (default), cm, m, um, in");
+  add(app, g, "--units", "UNIT", o.units,
+      "what one unit of the mesh is: mm (default), cm, m, um, in");
   g = "From a NIfTI image";
   add(app, g, "--above", "VALUE", o.above, "the surface around all voxels greater than this");
   add(app, g, "--keep", "largest|all", o.keep, "--above: which pieces (default largest)")
@@ -166,7 +168,8 @@ void defineRender(CLI::App& app, Invocation& invocation) {
   add(app, g, "--size", "WxH", o.size, "in pixels (default 1600x1000)");
   g = "Where to cut (default: along the trace, else through the middle)";
   add(app, g, "--plane", "AXIS=VALUE", o.plane, "across an axis: x=12 (the scene's unit)");
-  add(app, g, "--cut", "X,Y,Z,NX,NY,NZ", o.cut, "any plane: a point and a normal; looked at against it");
+  add(app, g, "--cut", "X,Y,Z,NX,NY,NZ", o.cut,
+      "any plane: a point and a normal; looked at against it");
   g = "What to show";
   add(app, g, "--trace", "FILE.csv", o.trace, "the path and the forces of a `touch --trace`");
   add(app, g, "--image", "IMAGE", o.image,
@@ -177,7 +180,8 @@ void defineRender(CLI::App& app, Invocation& invocation) {
 void defineHelp(CLI::App& app, Invocation& invocation) {
   auto& o = choose<HelpOptions>(invocation);
   app.add_option("verb", o.verb);
-  addFlag(app, "Options", "--markdown", o.markdown, "everything, as the reference in tools/README.md");
+  addFlag(app, "Options", "--markdown", o.markdown,
+          "everything, as the reference in tools/README.md");
 }
 
 template <class Options>
@@ -191,10 +195,13 @@ const std::vector<Verb>& verbs() {
        "Move a probe through a scene and feel it",
        "palpate touch data/scenes/container.yaml --insert 0,0,60 0,0,0 --back --trace trace.csv",
        "palpate touch SCENE MOTION [OPTIONS]",
-       "Prints the regions in the order in which they were entered, with the depth below the first\n"
-       "surface met and the peak force in each; the ports passed; how long a tick takes; and what each\n"
+       "Prints the regions in the order in which they were entered, with the depth below the "
+       "first\n"
+       "surface met and the peak force in each; the ports passed; how long a tick takes; and what "
+       "each\n"
        "grid cost. A trace has the header\n"
-       "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_ns\n"
+       "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,"
+       "tick_ns\n"
        "and the same input gives the same trace, bit for bit except tick_ns.",
        {"--stroke", "--insert"},
        defineTouch,
@@ -203,7 +210,8 @@ const std::vector<Verb>& verbs() {
        "Turn a scene, a mesh or a scan into narrow-band level sets (.vdb)",
        "palpate bake data/scenes/container.yaml -o container.vdb --voxel 0.5",
        "palpate bake INPUT -o OUT.vdb [OPTIONS]",
-       "INPUT is a scene file, a mesh (.stl .obj .ply .gltf .glb) or an image (.nii .nii.gz). Each layer\n"
+       "INPUT is a scene file, a mesh (.stl .obj .ply .gltf .glb) or an image (.nii .nii.gz). Each "
+       "layer\n"
        "becomes a grid `<layer>/surface`. An image needs --above or --labels.",
        {},
        defineBake,
@@ -223,7 +231,8 @@ const std::vector<Verb>& verbs() {
        "Value, gradient, region and material at points; or an image's intensity",
        "palpate query data/scenes/container.yaml --at 0,0,14 0,0,16",
        "palpate query SCENE|IMAGE POINTS [OPTIONS]",
-       "An image (.nii .nii.gz) is read at RAS points in mm, trilinear between voxel centres; outside\n"
+       "An image (.nii .nii.gz) is read at RAS points in mm, trilinear between voxel centres; "
+       "outside\n"
        "these there is no value.",
        {"--at"},
        defineQuery,
@@ -231,8 +240,9 @@ const std::vector<Verb>& verbs() {
          const auto& o = chosen<QueryOptions>(i);
          need(!o.input.empty(), "SCENE or IMAGE");
          if (o.at.empty() == o.points.empty()) {
-           throw usageError(o.at.empty() ? "no points were given" : "--at and --points exclude one another",
-                            "write --at X,Y,Z ... or --points FILE.csv");
+           throw usageError(
+               o.at.empty() ? "no points were given" : "--at and --points exclude one another",
+               "write --at X,Y,Z ... or --points FILE.csv");
          }
        }},
       {"explain",
@@ -272,7 +282,8 @@ const std::vector<Verb>& verbs() {
 
 const Verb* findVerb(std::string_view name) {
   const auto& all = verbs();
-  const auto at = std::find_if(all.begin(), all.end(), [&](const Verb& v) { return v.name == name; });
+  const auto at =
+      std::find_if(all.begin(), all.end(), [&](const Verb& v) { return v.name == name; });
   return at == all.end() ? nullptr : &*at;
 }
 
@@ -308,7 +319,8 @@ std::string verbHelp(const Verb& verb) {
 
 std::string overview() {
   std::string text =
-      "palpate - feel what is inside a scanned or modelled object\n\nUsage: palpate VERB [OPTIONS]\n\n";
+      "palpate - feel what is inside a scanned or modelled object\n\nUsage: palpate VERB "
+      "[OPTIONS]\n\n";
   for (const Verb& verb : verbs()) {
     text += "  " + std::string(verb.name) + std::string(10 - std::string(verb.name).size(), ' ') +
             verb.line + "\n            " + verb.example + "\n";
@@ -336,8 +348,8 @@ Error unknownVerb(const std::string& word) {
     list += (list.empty() ? "" : ", ") + std::string(verb.name);
   }
   const std::string close = suggest(word, names);
-  return usageError("there is no verb '" + word + "'", close.empty() ? "the verbs are " + list
-                                                                     : "did you mean '" + close + "'?");
+  return usageError("there is no verb '" + word + "'",
+                    close.empty() ? "the verbs are " + list : "did you mean '" + close + "'?");
 }
 
 /// For an option that nobody knows: what may have been meant.

@@ -11,8 +11,8 @@
 namespace palpate::tools {
 namespace {
 
-constexpr auto kQuietStart = std::chrono::seconds(2);      // shorter work is not worth a line
-constexpr auto kLineInterval = std::chrono::seconds(5);    // between lines in a log
+constexpr auto kQuietStart = std::chrono::seconds(2);    // shorter work is not worth a line
+constexpr auto kLineInterval = std::chrono::seconds(5);  // between lines in a log
 constexpr auto kBarInterval = std::chrono::milliseconds(80);
 constexpr int kBarWidth = 28;
 
@@ -58,7 +58,8 @@ bool Console::onProgress(std::string_view what, double fraction) {
       const int filled = static_cast<int>(std::lround(kBarWidth * std::clamp(fraction, 0.0, 1.0)));
       std::fill_n(bar.begin(), filled, '#');
     }
-    print("\r\033[K[" + bar + "] " + (fraction >= 0.0 ? std::to_string(percent(fraction)) + " % " : "") +
+    print("\r\033[K[" + bar + "] " +
+          (fraction >= 0.0 ? std::to_string(percent(fraction)) + " % " : "") +
           std::string(what.substr(0, 60)));
     std::fflush(stderr);
     bar_shown_ = true;
@@ -67,8 +68,8 @@ bool Console::onProgress(std::string_view what, double fraction) {
   }
   if (now - work_began_ < kQuietStart) return true;
   if (what == last_what_ && now - last_shown_ < kLineInterval) return true;
-  print(std::string(what) + (fraction >= 0.0 ? ": " + std::to_string(percent(fraction)) + " %" : "") +
-        "\n");
+  print(std::string(what) +
+        (fraction >= 0.0 ? ": " + std::to_string(percent(fraction)) + " %" : "") + "\n");
   last_what_ = what;
   last_shown_ = now;
   return true;

@@ -48,10 +48,11 @@ InputKind inputKind(const std::string& path) {
   for (const auto& [extension, kind] : kExtensions) {
     if (hasExtension(path, extension)) return kind;
   }
-  throw inputError("file.unknown_kind", "cannot tell from its name what this file is",
-                   "known are scenes (.yaml .yml .json), grids (.vdb), meshes (.stl .obj .ply .gltf .glb) "
-                   "and images (.nii .nii.gz)",
-                   path);
+  throw inputError(
+      "file.unknown_kind", "cannot tell from its name what this file is",
+      "known are scenes (.yaml .yml .json), grids (.vdb), meshes (.stl .obj .ply .gltf .glb) "
+      "and images (.nii .nii.gz)",
+      path);
 }
 
 std::string stemOf(const std::string& path) {

@@ -16,12 +16,13 @@ namespace palpate::tools {
 }
 
 [[nodiscard]] inline Json materialJson(const Material& m) {
-  return {{"name", m.name},
-          {"stiffness_N_per_m", m.stiffness},
-          {"damping_Ns_per_m", m.damping},
-          {"friction", {{"static", m.friction.static_ratio}, {"kinetic", m.friction.kinetic_ratio}}},
-          {"viscosity_Ns_per_m", m.viscosity},
-          {"flow_m_per_s", vectorJson(m.flow)}};
+  return {
+      {"name", m.name},
+      {"stiffness_N_per_m", m.stiffness},
+      {"damping_Ns_per_m", m.damping},
+      {"friction", {{"static", m.friction.static_ratio}, {"kinetic", m.friction.kinetic_ratio}}},
+      {"viscosity_Ns_per_m", m.viscosity},
+      {"flow_m_per_s", vectorJson(m.flow)}};
 }
 
 }  // namespace palpate::tools

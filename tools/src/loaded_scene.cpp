@@ -35,7 +35,9 @@ LengthUnit LoadedScene::unit() const {
   return {description_.length_unit, description_.metres_per_unit};
 }
 
-ScenePtr LoadedScene::compile() const { return palpate::compile(description_, console_->progress()); }
+ScenePtr LoadedScene::compile() const {
+  return palpate::compile(description_, console_->progress());
+}
 
 Json LoadedScene::gridsJson() const {
   Json list = Json::array();

@@ -44,7 +44,8 @@ Json errorJson(const Problem& problem) {
 
 /// False if stdout did not take it.
 bool print(const std::string& text) {
-  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
+         std::fflush(stdout) == 0;
 }
 
 bool print(const Json& json) {

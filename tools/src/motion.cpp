@@ -57,8 +57,9 @@ int atLeastOne(int value, const char* what) {
 
 void checkDuration(double seconds, double rate) {
   if (seconds * rate > kLongestPath) {
-    throw usageError("the motion would last " + formatSeconds(seconds) + ", too long to keep in memory",
-                     "raise --speed or shorten the way");
+    throw usageError(
+        "the motion would last " + formatSeconds(seconds) + ", too long to keep in memory",
+        "raise --speed or shorten the way");
   }
 }
 
@@ -66,7 +67,8 @@ void checkDuration(double seconds, double rate) {
 
 void checkMotion(const TouchOptions& o) {
   const std::string_view motion = chosenMotion(o);
-  const auto only = [&](bool given, const char* name, std::initializer_list<std::string_view> motions) {
+  const auto only = [&](bool given, const char* name,
+                        std::initializer_list<std::string_view> motions) {
     if (!given) return;
     std::string list;
     for (const auto m : motions) {
@@ -86,7 +88,8 @@ void checkMotion(const TouchOptions& o) {
   only(o.taps.has_value(), "--taps", {"--tap"});
   only(o.back, "--back", {"--insert"});
   if (motion == "--stroke" && o.stroke.size() != 2) throw usageError("--stroke takes two points");
-  if (motion == "--insert" && o.insert.size() < 2) throw usageError("--insert takes two points or more");
+  if (motion == "--insert" && o.insert.size() < 2)
+    throw usageError("--insert takes two points or more");
 }
 
 devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {

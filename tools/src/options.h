@@ -19,11 +19,11 @@ struct GeneralOptions {
 struct TouchOptions {
   std::string scene;
   // Exactly one of these five says how the hand moves.
-  std::string path;                  ///< CSV file
-  std::string press;                 ///< point
-  std::vector<std::string> stroke;   ///< two points
-  std::string tap;                   ///< point
-  std::vector<std::string> insert;   ///< two points or more
+  std::string path;                 ///< CSV file
+  std::string press;                ///< point
+  std::vector<std::string> stroke;  ///< two points
+  std::string tap;                  ///< point
+  std::vector<std::string> insert;  ///< two points or more
   // Parameters of the generators; which apply is checked in motion.cpp.
   std::string normal;
   std::string depth;

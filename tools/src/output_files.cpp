@@ -33,15 +33,15 @@ void OutputFiles::announce(const std::string& path, const std::vector<std::strin
   std::error_code failed;
   for (const std::string& input : inputs) {
     if (!input.empty() && fs::equivalent(path, input, failed)) {
-      throw Error(ErrorKind::kUsage, {"usage.output_is_input",
-                                      "the output would replace the input " + input,
-                                      "choose another name", path});
+      throw Error(ErrorKind::kUsage,
+                  {"usage.output_is_input", "the output would replace the input " + input,
+                   "choose another name", path});
     }
   }
   for (const File& other : files_) {
     if (fs::path(path).lexically_normal() == fs::path(other.path).lexically_normal()) {
-      throw Error(ErrorKind::kUsage,
-                  {"usage.output_twice", "two outputs have the same name", "choose another name", path});
+      throw Error(ErrorKind::kUsage, {"usage.output_twice", "two outputs have the same name",
+                                      "choose another name", path});
     }
   }
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".";
@@ -50,17 +50,18 @@ void OutputFiles::announce(const std::string& path, const std::vector<std::strin
                          "make it first: mkdir -p " + folder.string(), path);
   }
   if (fs::is_directory(path, failed)) {
-    throw operationError("output.is_folder", "this is a folder, not a file to write", "name a file in it",
-                         path);
+    throw operationError("output.is_folder", "this is a folder, not a file to write",
+                         "name a file in it", path);
   }
   if (!overwrite_ && fs::exists(fs::symlink_status(path, failed))) {
     throw operationError("output.exists", "the file exists already",
                          "choose another name, or say --force to replace it", path);
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw operationError("output.not_writable",
-                         "cannot write to the folder " + folder.string() + ": " + std::strerror(errno),
-                         "choose a folder of yours", path);
+    throw operationError(
+        "output.not_writable",
+        "cannot write to the folder " + folder.string() + ": " + std::strerror(errno),
+        "choose a folder of yours", path);
   }
   files_.push_back({path, path + "." + std::to_string(getpid()) + ".tmp"});
 }
@@ -88,7 +89,8 @@ void OutputFiles::write(const std::string& path, std::string_view text) const {
 }
 
 void OutputFiles::commit() {
-  std::vector<std::string> fresh;  // what this call brought into being, to be undone if a later one fails
+  std::vector<std::string>
+      fresh;  // what this call brought into being, to be undone if a later one fails
   for (const File& file : files_) {
     std::error_code failed;
     const bool existed = fs::exists(fs::symlink_status(file.path, failed));
@@ -100,8 +102,8 @@ void OutputFiles::commit() {
     if (failed) {
       std::error_code ignored;
       for (const std::string& name : fresh) fs::remove(name, ignored);
-      throw operationError("output.rename", "cannot give the file its name: " + failed.message(), "",
-                           file.path);
+      throw operationError("output.rename", "cannot give the file its name: " + failed.message(),
+                           "", file.path);
     }
     if (!existed) fresh.push_back(file.path);
   }

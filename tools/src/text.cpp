@@ -26,9 +26,9 @@ double parseWithUnit(std::string_view text, Dimension dimension, double plain_un
   if (const auto plain = parseNumber(text)) return *plain * plain_unit;
   const Quantity quantity = parseQuantity(text, dimension);
   if (quantity.status == Quantity::Status::kOk) return quantity.si;
-  throw usageError(what, "'" + std::string(text) + "' is not a number or a quantity",
-                   "a number means " + plain_name + "; or write the unit: " +
-                       std::string(unitHelp(dimension)));
+  throw usageError(
+      what, "'" + std::string(text) + "' is not a number or a quantity",
+      "a number means " + plain_name + "; or write the unit: " + std::string(unitHelp(dimension)));
 }
 
 std::size_t columns(std::string_view text) {  // UTF-8: continuation bytes take no column

@@ -28,7 +28,7 @@ struct LengthUnit {
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 
 // To text.
-[[nodiscard]] std::string formatNumber(double value, int digits = 4);  ///< "%.{digits}g", "inf"
+[[nodiscard]] std::string formatNumber(double value, int digits = 4);   ///< "%.{digits}g", "inf"
 [[nodiscard]] std::string formatVector(const Vec3& v, int digits = 4);  ///< "(x, y, z)"
 [[nodiscard]] std::string formatBytes(std::uint64_t bytes);  ///< "12.3 MB" (powers of ten)
 [[nodiscard]] std::string formatCount(std::uint64_t count);  ///< "1 234 567"

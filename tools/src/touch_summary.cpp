@@ -32,7 +32,8 @@ TouchSummary summarize(std::span<const TraceRow> rows) {
     const TickResult& r = row.result;
     times.push_back(row.tick_ns);
     const bool new_region = summary.visits.empty() || summary.visits.back().region != r.region;
-    if (!first_surface && (r.contact || r.event_count > 0 || (new_region && !summary.visits.empty()))) {
+    if (!first_surface &&
+        (r.contact || r.event_count > 0 || (new_region && !summary.visits.empty()))) {
       first_surface = r.proxy;
     }
     const double depth = first_surface ? glm::distance(*first_surface, r.proxy) : 0.0;
@@ -77,10 +78,8 @@ Json summaryJson(const TouchSummary& s, const Scene& scene) {
   for (const PassedPort& p : s.ports) {
     json["events"].push_back({{"t", p.t}, {"port", scene.ports()[p.port].name}});
   }
-  json["tick_ns"] = {{"median", s.tick_median},
-                     {"p99", s.tick_p99},
-                     {"p99.9", s.tick_p999},
-                     {"max", s.tick_max}};
+  json["tick_ns"] = {
+      {"median", s.tick_median}, {"p99", s.tick_p99}, {"p99.9", s.tick_p999}, {"max", s.tick_max}};
   return json;
 }
 
@@ -103,7 +102,8 @@ std::string summaryText(const TouchSummary& s, const Scene& scene) {
   text += "\n";
   constexpr std::size_t kMostListed = 24;
   for (std::size_t i = 0; i < std::min(s.ports.size(), kMostListed); ++i) {
-    text += "  " + formatNumber(s.ports[i].t, 4) + " s  " + scene.ports()[s.ports[i].port].name + "\n";
+    text +=
+        "  " + formatNumber(s.ports[i].t, 4) + " s  " + scene.ports()[s.ports[i].port].name + "\n";
   }
   if (s.ports.size() > kMostListed) {
     text += "  ... and " + std::to_string(s.ports.size() - kMostListed) + " more\n";

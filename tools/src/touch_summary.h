@@ -30,10 +30,10 @@ struct PassedPort {
 
 struct TouchSummary {
   std::uint64_t ticks = 0;
-  double seconds = 0.0;          ///< [s] of hand time
+  double seconds = 0.0;  ///< [s] of hand time
   std::uint64_t contact_ticks = 0;
-  double peak_force = 0.0;       ///< [N]
-  Vec3 peak_force_at{0.0};       ///< [m] proxy
+  double peak_force = 0.0;  ///< [N]
+  Vec3 peak_force_at{0.0};  ///< [m] proxy
   std::vector<Visit> visits;
   std::vector<PassedPort> ports;
   double tick_median = 0.0, tick_p99 = 0.0, tick_p999 = 0.0, tick_max = 0.0;  ///< [ns]

@@ -1,5 +1,3 @@
-#include "palpate/vdb/bake.h"
-
 #include <algorithm>
 #include <chrono>
 
@@ -8,6 +6,7 @@
 #include "loaded_scene.h"
 #include "output_files.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/vdb/bake.h"
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/mesh.h"
@@ -82,9 +81,10 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
   for (const std::string& wanted : options.layers) {
     if (std::find(names.begin(), names.end(), wanted) != names.end()) continue;
     const std::string close = suggest(wanted, names);
-    throw inputError("scene.unknown_layer", "there is no layer '" + wanted + "'",
-                     close.empty() ? "palpate info names the layers" : "did you mean '" + close + "'?",
-                     options.input);
+    throw inputError(
+        "scene.unknown_layer", "there is no layer '" + wanted + "'",
+        close.empty() ? "palpate info names the layers" : "did you mean '" + close + "'?",
+        options.input);
   }
   const LengthUnit unit = loaded.unit();
   if (!options.voxel.empty()) (void)voxelSize(options, unit, {}, "", console);
@@ -93,8 +93,8 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
   std::vector<BakedGrid> grids;
   for (const Region& region : scene->regions()) {
     if (!region.field) continue;
-    if (!options.layers.empty() &&
-        std::find(options.layers.begin(), options.layers.end(), region.name) == options.layers.end()) {
+    if (!options.layers.empty() && std::find(options.layers.begin(), options.layers.end(),
+                                             region.name) == options.layers.end()) {
       continue;
     }
     const std::string source =
@@ -110,7 +110,8 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
 }
 
 std::string onlyLayerName(const BakeOptions& options) {
-  if (options.layers.size() > 1) throw usageError("one surface has one name; --layer was given twice");
+  if (options.layers.size() > 1)
+    throw usageError("one surface has one name; --layer was given twice");
   return options.layers.empty() ? stemOf(options.input) : options.layers.front();
 }
 
@@ -143,7 +144,8 @@ std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOpti
       const auto named = names.find(value);
       const std::string layer =
           named != names.end() ? named->second : "label_" + std::to_string(value);
-      auto at = std::find_if(layers.begin(), layers.end(), [&](const auto& l) { return l.first == layer; });
+      auto at = std::find_if(layers.begin(), layers.end(),
+                             [&](const auto& l) { return l.first == layer; });
       if (at == layers.end()) at = layers.insert(layers.end(), {layer, {}});
       if (std::find(at->second.begin(), at->second.end(), value) == at->second.end()) {
         at->second.push_back(value);
@@ -170,8 +172,8 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
 
   const vdb::Image image = vdb::readNifti(options.input);
   for (const auto& note : image.notes) console.note(options.input + ": " + note);
-  const double spacing = std::min({glm::length(image.axes[0]), glm::length(image.axes[1]),
-                                   glm::length(image.axes[2])});
+  const double spacing = std::min(
+      {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])});
   const double voxel = asked > 0.0 ? asked : spacing;
 
   std::vector<BakedGrid> grids;
@@ -183,7 +185,8 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
     threshold.voxel_size = asked;
     grids.push_back(timed([&] {
       return vdb::surfaceFromThreshold(
-          image, threshold, bakeOptions(options, onlyLayerName(options), voxel, "mm", options.input),
+          image, threshold,
+          bakeOptions(options, onlyLayerName(options), voxel, "mm", options.input),
           console.progress());
     }));
     return grids;
@@ -250,9 +253,10 @@ Report run(const BakeOptions& options, const GeneralOptions& general, Console& c
                                     {"bounds_m", boxJson(info.bounds)},
                                     {"seconds", one.seconds}});
     table.add({info.name, formatNumber(info.voxel_size / unit, 3) + " " + info.length_unit,
-               formatCount(info.active_voxels), formatBytes(info.memory), formatSeconds(one.seconds),
-               formatVector(info.bounds.lo / unit) + " to " + formatVector(info.bounds.hi / unit) + " " +
-                   info.length_unit});
+               formatCount(info.active_voxels), formatBytes(info.memory),
+               formatSeconds(one.seconds),
+               formatVector(info.bounds.lo / unit) + " to " + formatVector(info.bounds.hi / unit) +
+                   " " + info.length_unit});
   }
   report.text = table.text("") + "\nWrote " + options.output + "\n";
   return report;

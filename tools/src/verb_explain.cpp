@@ -68,8 +68,9 @@ std::vector<std::string> conditions(const Transition& t, const Scene& scene,
   if (t.port == nullptr) return all;
   const PortDescription* described = describedPort(description, t.port->name);
   if (!t.port->on.empty()) {
-    all.push_back("on " + (described != nullptr && !described->on_name.empty() ? described->on_name
-                                                                              : std::string("one face")));
+    all.push_back("on " + (described != nullptr && !described->on_name.empty()
+                               ? described->on_name
+                               : std::string("one face")));
   }
   if (t.port->mask >= 0) all.emplace_back("within its extent");
   for (const PortId before : t.port->after) all.push_back("after " + scene.ports()[before].name);
@@ -114,7 +115,8 @@ std::string whyUnreachable(const Scene& scene, RegionId region) {
   }
   if (!touched) return "it touches no other region";
   if (closed.empty()) return "no port leads into it";
-  return "its ports (" + closed + ") start in regions that cannot be reached either, or come after such";
+  return "its ports (" + closed +
+         ") start in regions that cannot be reached either, or come after such";
 }
 
 }  // namespace
@@ -135,8 +137,9 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
                  {"start", regions[scene.startRegion()].name},
                  {"memory", scene.keepsMemory() ? "keep" : "until outside"}};
 
-  report.text = options.scene + ": the probe starts in " + regions[scene.startRegion()].name + "; renderer " +
-                report.json["renderer"].get<std::string>() + "; lengths in " + scene.lengthUnit() + "\n\n";
+  report.text = options.scene + ": the probe starts in " + regions[scene.startRegion()].name +
+                "; renderer " + report.json["renderer"].get<std::string>() + "; lengths in " +
+                scene.lengthUnit() + "\n\n";
 
   report.json["regions"] = Json::array();
   Table region_table({"region", "made from", "content", "wall", "can be entered", "a point of it"});
@@ -147,7 +150,8 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
     const std::string source = i == kOutside ? "-" : r.source.empty() ? "formula" : r.source;
     region_table.add(
         {r.name, source,
-         content == nullptr ? "-" : content->name + " (" + formatNumber(content->viscosity) + " N.s/m)",
+         content == nullptr ? "-"
+                            : content->name + " (" + formatNumber(content->viscosity) + " N.s/m)",
          i == kOutside ? "-" : wallText(scene, {r.wall_absent, r.wall}), r.reachable ? "yes" : "NO",
          r.has_seed ? formatVector(r.seed / unit, 3) : "-"});
     Json json = {{"name", r.name},
@@ -174,7 +178,8 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
       if (!scene.touches(a, b)) continue;
       const Wall& from_a = scene.passages().wall(a, b);
       const Wall& from_b = scene.passages().wall(b, a);
-      wall_table.add({regions[a].name, regions[b].name, wallText(scene, from_a), wallText(scene, from_b)});
+      wall_table.add(
+          {regions[a].name, regions[b].name, wallText(scene, from_a), wallText(scene, from_b)});
       report.json["walls"].push_back({{"between", Json::array({regions[a].name, regions[b].name})},
                                       {"from_first", wallJson(scene, from_a)},
                                       {"from_second", wallJson(scene, from_b)}});
@@ -187,7 +192,8 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
     const PortDescription* described = describedPort(description, port.name);
     Json json = {{"name", port.name}};
     json["between"] = described == nullptr ? Json() : Json::array({described->from, described->to});
-    json["on"] = described == nullptr || described->on_name.empty() ? Json() : Json(described->on_name);
+    json["on"] =
+        described == nullptr || described->on_name.empty() ? Json() : Json(described->on_name);
     json["where"] = port.mask >= 0;
     json["direction"] = directionName(port.direction);
     json["after"] = Json::array();
@@ -201,7 +207,8 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
   Table move_table({"from", "through", "to", "direction", "open when"});
   for (const Transition& t : transitions(scene)) {
     const auto when = conditions(t, scene, description);
-    move_table.add({regions[t.from].name, t.port == nullptr ? "(no wall)" : t.port->name, regions[t.to].name,
+    move_table.add({regions[t.from].name, t.port == nullptr ? "(no wall)" : t.port->name,
+                    regions[t.to].name,
                     t.port == nullptr ? "both" : directionName(t.port->direction), joined(when)});
     report.json["transitions"].push_back({{"from", regions[t.from].name},
                                           {"port", t.port == nullptr ? Json() : Json(t.port->name)},
@@ -209,8 +216,8 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
                                           {"opens_at_N", t.force},
                                           {"conditions", when}});
   }
-  report.text += "\nTransitions\n" + (move_table.empty() ? "  none: every wall is closed\n"
-                                                          : move_table.text("  "));
+  report.text += "\nTransitions\n" +
+                 (move_table.empty() ? "  none: every wall is closed\n" : move_table.text("  "));
 
   report.json["sources"] = Json::array();
   Table source_table({"field or layer", "made from", "made"});

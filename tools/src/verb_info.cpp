@@ -37,15 +37,17 @@ FileReport sceneInfo(const std::string& file, Console& console) {
   out.text = file + ": a scene, lengths in " + d.length_unit + "\n";
   Table layers({"layer", "made from", "wall", "content"});
   for (const auto& layer : d.layers) {
-    const std::string source = layer.inside->summary().empty() ? "formula" : layer.inside->summary();
+    const std::string source =
+        layer.inside->summary().empty() ? "formula" : layer.inside->summary();
     const std::string wall = layer.wall.absent             ? "absent"
                              : layer.wall.material.empty() ? "default"
                                                            : layer.wall.material;
     layers.add({layer.name, source, wall, layer.content.empty() ? "-" : layer.content});
-    out.json["layers"].push_back({{"name", layer.name},
-                                  {"source", source},
-                                  {"wall", wall},
-                                  {"content", layer.content.empty() ? Json() : Json(layer.content)}});
+    out.json["layers"].push_back(
+        {{"name", layer.name},
+         {"source", source},
+         {"wall", wall},
+         {"content", layer.content.empty() ? Json() : Json(layer.content)}});
   }
   out.text += layers.text("  ");
   out.json["ports"] = Json::array();
@@ -76,9 +78,9 @@ FileReport gridInfo(const std::string& file) {
     const std::string name = unit_known ? info.length_unit : "units (no length unit in the file)";
     out.text += "  " + (grid.name.empty() ? "(no name)" : grid.name) + ": " + grid.type + ", " +
                 grid.grid_class + "\n    " + plural(info.active_voxels, "active voxel") + " of " +
-                formatNumber(info.voxel_size / unit) + " " + name + ", " + formatBytes(info.memory) +
-                "\n    bounds " + boxText(info.bounds, unit, unit_known ? info.length_unit : "units") +
-                "\n";
+                formatNumber(info.voxel_size / unit) + " " + name + ", " +
+                formatBytes(info.memory) + "\n    bounds " +
+                boxText(info.bounds, unit, unit_known ? info.length_unit : "units") + "\n";
     if (info.half_width > 0.0) {
       out.text += "    band " + formatNumber(info.half_width) + " voxels on each side\n";
     }
@@ -122,11 +124,11 @@ FileReport meshInfo(const std::string& file, const std::string& units, Console& 
               {"bounds_m", boxJson(r.bounds)}};
   out.text = file + ": a " + (r.isClosed() ? "closed" : "open") + " mesh of " +
              plural(mesh.triangles.size(), "triangle") + " and " +
-             formatCount(mesh.vertices.size()) + " vertices in " +
-             plural(r.components, "piece") + "\n";
+             formatCount(mesh.vertices.size()) + " vertices in " + plural(r.components, "piece") +
+             "\n";
   out.text += "  bounds  " + boxText(r.bounds, unit.metres, unit.name) + "\n";
-  out.text += "  volume  " + formatNumber(r.volume / std::pow(unit.metres, 3)) + " " + unit.name + "^3" +
-              (r.volume < 0.0 ? " (the triangles wind inwards)" : "") + "\n";
+  out.text += "  volume  " + formatNumber(r.volume / std::pow(unit.metres, 3)) + " " + unit.name +
+              "^3" + (r.volume < 0.0 ? " (the triangles wind inwards)" : "") + "\n";
   if (!r.isClosed()) {
     out.json["first_boundary_m"] = vectorJson(r.first_boundary);
     out.text += "  open at " + plural(r.boundary_edges, "edge") + ", one of them at " +
@@ -136,7 +138,8 @@ FileReport meshInfo(const std::string& file, const std::string& units, Console& 
     out.text += "  " + plural(r.non_manifold_edges, "edge") + " with three triangles or more\n";
   }
   if (r.flipped_edges > 0) {
-    out.text += "  " + plural(r.flipped_edges, "edge") + " whose triangles disagree about the outside\n";
+    out.text +=
+        "  " + plural(r.flipped_edges, "edge") + " whose triangles disagree about the outside\n";
   }
   if (r.degenerate_triangles > 0) {
     out.text += "  " + plural(r.degenerate_triangles, "triangle") + " without area\n";
@@ -148,8 +151,13 @@ FileReport meshInfo(const std::string& file, const std::string& units, Console& 
 std::string axisWords(const std::string& orientation) {
   std::string text;
   for (const char c : orientation) {
-    const char* word = c == 'R' ? "right" : c == 'L' ? "left" : c == 'A' ? "front" : c == 'P' ? "back"
-                     : c == 'S' ? "up" : c == 'I' ? "down" : "?";
+    const char* word = c == 'R'   ? "right"
+                       : c == 'L' ? "left"
+                       : c == 'A' ? "front"
+                       : c == 'P' ? "back"
+                       : c == 'S' ? "up"
+                       : c == 'I' ? "down"
+                                  : "?";
     text += (text.empty() ? "" : ", ") + std::string(word);
   }
   return text;
@@ -166,7 +174,8 @@ FileReport imageInfo(const std::string& file, Console& console) {
     }
     box.include(info.axes * index + info.origin);
   }
-  const Vec3 spacing(glm::length(info.axes[0]), glm::length(info.axes[1]), glm::length(info.axes[2]));
+  const Vec3 spacing(glm::length(info.axes[0]), glm::length(info.axes[1]),
+                     glm::length(info.axes[2]));
   const auto size = std::to_string(info.size[0]) + " x " + std::to_string(info.size[1]) + " x " +
                     std::to_string(info.size[2]);
   FileReport out;
@@ -182,8 +191,8 @@ FileReport imageInfo(const std::string& file, Console& console) {
               {"bounds_m", boxJson(box)},
               {"notes", info.notes}};
   out.text = file + ": an image of " + size + " voxels (" + info.data_type + ")\n";
-  out.text += "  spacing      " + formatNumber(spacing.x * 1e3) + " x " + formatNumber(spacing.y * 1e3) +
-              " x " + formatNumber(spacing.z * 1e3) + " mm\n";
+  out.text += "  spacing      " + formatNumber(spacing.x * 1e3) + " x " +
+              formatNumber(spacing.y * 1e3) + " x " + formatNumber(spacing.z * 1e3) + " mm\n";
   out.text += "  orientation  " + info.orientation + ": its axes run to the " +
               axisWords(info.orientation) + "\n";
   out.text += "  centres      " + boxText(box, 1e-3, "mm (RAS)") + "\n";

@@ -22,7 +22,8 @@ std::vector<Vec3> queryPoints(const QueryOptions& options, const LengthUnit& uni
 
 Report queryImage(const QueryOptions& options, Console& console) {
   if (!options.field.empty()) {
-    throw Error(ErrorKind::kUsage, {"usage.command_line", "--field applies to scenes, not to images"});
+    throw Error(ErrorKind::kUsage,
+                {"usage.command_line", "--field applies to scenes, not to images"});
   }
   const LengthUnit mm = {"mm", 1e-3};
   const std::vector<Vec3> points = queryPoints(options, mm);
@@ -125,13 +126,14 @@ Report queryScene(const QueryOptions& options, Console& console) {
                  {"points", Json::array()}};
   for (const Vec3& p : points) {
     const Region& region = scene->regions()[scene->regionAt(p)];
-    Json json = {{"at", vectorJson(p / unit.metres)},
-                 {"region", region.name},
-                 {"content", contentJson(*scene, region)},
-                 {"wall", region.wall < 0
-                              ? Json()
-                              : materialJson(scene->materials()[static_cast<std::size_t>(region.wall)])},
-                 {"fields", Json::array()}};
+    Json json = {
+        {"at", vectorJson(p / unit.metres)},
+        {"region", region.name},
+        {"content", contentJson(*scene, region)},
+        {"wall", region.wall < 0
+                     ? Json()
+                     : materialJson(scene->materials()[static_cast<std::size_t>(region.wall)])},
+        {"fields", Json::array()}};
     report.text += "at " + formatVector(p / unit.metres, 6) + " " + unit.name + ": " + region.name;
     if (region.content >= 0) {
       const Material& m = scene->materials()[static_cast<std::size_t>(region.content)];
@@ -147,7 +149,10 @@ Report queryScene(const QueryOptions& options, Console& console) {
       const FieldSample s = asked.field->sample(p);
       json["fields"].push_back(sampleJson(asked, s, unit.metres));
       table.add({asked.name,
-                 (s.in_band ? "" : s.value < 0.0 ? "< " : "> ") + formatNumber(s.value / unit.metres, 8),
+                 (s.in_band       ? ""
+                  : s.value < 0.0 ? "< "
+                                  : "> ") +
+                     formatNumber(s.value / unit.metres, 8),
                  s.in_band ? formatVector(s.gradient, 6) : "-",
                  s.in_band ? metricName(asked.field->metric()) : "beyond the band"});
     }
@@ -169,9 +174,10 @@ Report run(const QueryOptions& options, const GeneralOptions&, Console& console)
     case InputKind::kMesh:
       break;
   }
-  throw inputError("query.kind", "only scenes and images can be queried",
-                   "name the grid or mesh in a scene file: fields: {part: {mesh: {file: part.stl}}}",
-                   options.input);
+  throw inputError(
+      "query.kind", "only scenes and images can be queried",
+      "name the grid or mesh in a scene file: fields: {part: {mesh: {file: part.stl}}}",
+      options.input);
 }
 
 }  // namespace palpate::tools

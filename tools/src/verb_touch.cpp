@@ -1,5 +1,7 @@
 #include <chrono>
+#include <filesystem>
 
+#include "input_kind.h"
 #include "loaded_scene.h"
 #include "motion.h"
 #include "output_files.h"
@@ -62,7 +64,13 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   OutputFiles files(general.force);
   const std::vector<std::string> inputs = {options.scene, options.path};
   if (!options.trace.empty()) files.announce(options.trace, inputs);
-  if (!options.image.empty()) files.announce(options.image, inputs);
+  if (!options.image.empty()) {
+    if (!hasExtension(options.image, ".png")) {
+      throw Error(ErrorKind::kUsage,
+                  {"usage.touch", "the picture " + options.image + " must end in .png"});
+    }
+    files.announce(options.image, inputs);
+  }
 
   LoadedScene loaded(options.scene, console);
   devices::Path path = makeMotion(options, loaded.unit());
@@ -82,9 +90,11 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   if (!options.trace.empty()) files.write(options.trace, traceCsv(trace.rows(), *scene));
   if (!options.image.empty()) {
     PictureOptions picture;
+    picture.title = std::filesystem::path(options.scene).filename().string();
     picture.track = trackOf(trace.rows());
     picture.image = pictureImage(loaded, "");
-    drawPicture(*scene, loaded.description(), picture, files.temporary(options.image), console);
+    picture.anatomical = !loaded.images().empty();
+    (void)drawPicture(*scene, picture, files.temporary(options.image), console);
   }
   checkStop();
   files.commit();
@@ -106,15 +116,16 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
 
   report.text = summaryText(summary, *scene);
   if (options.realtime) {
-    report.text += "Real time   " + std::to_string(servo_report.overruns) + " overruns, worst start " +
-                   formatSeconds(servo_report.worst_lateness) + " late" +
-                   (servo_report.elevated ? "\n" : ", without real-time priority\n");
+    report.text += "Real time   " + std::to_string(servo_report.overruns) +
+                   " overruns, worst start " + formatSeconds(servo_report.worst_lateness) +
+                   " late" + (servo_report.elevated ? "\n" : ", without real-time priority\n");
   }
   const std::string grids = loaded.gridsText();
   if (!grids.empty()) report.text += "\nGrids\n" + grids;
   if (!options.trace.empty()) report.text += "\nTrace    " + options.trace + "\n";
-  if (!options.image.empty()) report.text += (options.trace.empty() ? "\n" : "") +
-                                             std::string("Picture  ") + options.image + "\n";
+  if (!options.image.empty())
+    report.text +=
+        (options.trace.empty() ? "\n" : "") + std::string("Picture  ") + options.image + "\n";
   return report;
 }
 

@@ -2,6 +2,7 @@
 
 #include "fields/checks.h"
 #include "fields/vector.h"
+#include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 
 namespace palpate {
@@ -73,7 +74,15 @@ class Box final : public Field {
 FieldPtr box(const Vec3& center, const Vec3& size) {
   fields::checkPoint("box", "center", center);
   fields::checkLengths("box", "size", size);
-  return std::make_shared<Box>(center, 0.5 * size);
+  std::vector<FieldPtr> faces;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Vec3 normal(0.0);
+      normal[axis] = side;
+      faces.push_back(halfSpace(center + 0.5 * size * normal, normal));
+    }
+  }
+  return withFaces(std::make_shared<Box>(center, 0.5 * size), std::move(faces));
 }
 
 }  // namespace palpate

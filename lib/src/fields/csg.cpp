@@ -44,6 +44,7 @@ Box3 boundsOfComplement(const Field& field) {
       }
       return tidy(box);
     }
+    case Kind::kFaces:
     case Kind::kIntersection: {
       Box3 box;
       for (const FieldPtr& operand : structure.operands) {

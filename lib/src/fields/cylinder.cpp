@@ -2,6 +2,7 @@
 
 #include "fields/checks.h"
 #include "fields/revolved.h"
+#include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 
 namespace palpate {
@@ -40,6 +41,20 @@ struct CylinderProfile {
   [[nodiscard]] double featureSize() const noexcept { return std::min(radius, 2.0 * half_height); }
 };
 
+/// The wall alone, without end.
+struct TubeProfile {
+  double radius = 0.0;
+
+  [[nodiscard]] fields::ProfileSample sample(double rho, double) const noexcept {
+    return {rho - radius, 1.0, 0.0};
+  }
+  [[nodiscard]] fields::ProfileJet jet(double rho, double height) const noexcept {
+    return {sample(rho, height)};
+  }
+  [[nodiscard]] Box3 bounds(const Vec3&, const Vec3&) const noexcept { return Box3::everything(); }
+  [[nodiscard]] double featureSize() const noexcept { return radius; }
+};
+
 }  // namespace
 
 FieldPtr cylinder(const Vec3& center, const Vec3& axis, double radius, double height) {
@@ -47,8 +62,12 @@ FieldPtr cylinder(const Vec3& center, const Vec3& axis, double radius, double he
   const Vec3 unit = fields::checkedDirection("cylinder", "axis", axis);
   fields::checkLength("cylinder", "radius", radius);
   fields::checkLength("cylinder", "height", height);
-  return std::make_shared<fields::Revolved<CylinderProfile>>(center, unit,
-                                                             CylinderProfile{radius, 0.5 * height});
+  const Vec3 up = 0.5 * height * unit;
+  return withFaces(
+      std::make_shared<fields::Revolved<CylinderProfile>>(center, unit,
+                                                          CylinderProfile{radius, 0.5 * height}),
+      {std::make_shared<fields::Revolved<TubeProfile>>(center, unit, TubeProfile{radius}),
+       halfSpace(center + up, unit), halfSpace(center - up, -unit)});
 }
 
 }  // namespace palpate

@@ -4,6 +4,20 @@
 
 namespace palpate {
 
+namespace {
+
+bool holds(const std::vector<RegionId>& set, RegionId region) noexcept {
+  return std::find(set.begin(), set.end(), region) != set.end();
+}
+
+bool meets(const std::vector<LeafId>& leaves, std::span<const LeafId> crossed) noexcept {
+  return std::any_of(crossed.begin(), crossed.end(), [&](LeafId leaf) {
+    return std::find(leaves.begin(), leaves.end(), leaf) != leaves.end();
+  });
+}
+
+}  // namespace
+
 bool PassedPorts::contains(PortId port) const noexcept {
   for (std::size_t i = 0; i < size_; ++i) {
     if (stack_[i].port == port) return true;
@@ -40,16 +54,21 @@ bool operator==(const PassedPorts& a, const PassedPorts& b) noexcept {
   return true;
 }
 
-bool Port::leads(RegionId a, RegionId b) const noexcept {
-  const auto holds = [](const std::vector<RegionId>& set, RegionId region) {
-    return std::find(set.begin(), set.end(), region) != set.end();
-  };
-  if (direction != PortDirection::kOut && holds(from, a) && holds(to, b)) return true;
-  return direction != PortDirection::kIn && holds(to, a) && holds(from, b);
+bool Port::leadsInward(RegionId a, RegionId b) const noexcept {
+  return direction != PortDirection::kOut && holds(from, a) && holds(to, b);
 }
 
-Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Port> ports)
-    : regions_(regions), walls_(std::move(walls)), ports_(std::move(ports)), ports_of_(regions) {
+bool Port::leads(RegionId a, RegionId b) const noexcept {
+  return leadsInward(a, b) || (direction != PortDirection::kIn && holds(to, a) && holds(from, b));
+}
+
+Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Port> ports,
+                   std::vector<Sheet> sheets)
+    : regions_(regions),
+      walls_(std::move(walls)),
+      ports_(std::move(ports)),
+      sheets_(std::move(sheets)),
+      ports_of_(regions) {
   for (std::size_t region = 0; region < regions; ++region) {
     for (std::size_t port = 0; port < ports_.size(); ++port) {
       for (std::size_t other = 0; other < regions; ++other) {
@@ -63,11 +82,24 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
   }
 }
 
-Facet Passages::facet(const Partition& partition, RegionId from, const Signs& there,
-                      std::span<const LeafId> crossed, const PassedPorts& passed) const noexcept {
+Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond, const Signs& here,
+                      const Signs& there, std::span<const LeafId> crossed,
+                      const PassedPorts& passed) const noexcept {
   Facet facet;
-  facet.beyond = partition.regionOf(there);
-  if (facet.beyond == from) return facet;
+  facet.beyond = beyond;
+  if (facet.beyond == from) {
+    for (const Sheet& sheet : sheets_) {
+      if (!meets(sheet.leaves, crossed)) continue;
+      const auto solid = static_cast<std::size_t>(sheet.solid);
+      if (partition.maskHolds(solid, here) == partition.maskHolds(solid, there)) continue;
+      if (sheet.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(sheet.mask), there))
+        continue;
+      facet.kind = Facet::Kind::kClosed;
+      facet.material = sheet.material;
+      break;
+    }
+    return facet;
+  }
   const Wall& between = wall(from, facet.beyond);
   if (between.absent) {
     facet.kind = Facet::Kind::kAbsent;
@@ -78,11 +110,7 @@ Facet Passages::facet(const Partition& partition, RegionId from, const Signs& th
   for (const PortId id : ports_of_[from]) {
     const Port& port = ports_[id];
     if (!port.leads(from, facet.beyond)) continue;
-    if (!port.on.empty() && std::none_of(crossed.begin(), crossed.end(), [&](LeafId leaf) {
-          return std::find(port.on.begin(), port.on.end(), leaf) != port.on.end();
-        })) {
-      continue;
-    }
+    if (!port.on.empty() && !meets(port.on, crossed)) continue;
     // The mask's own leaves are not among those crossed, so the far cell tells its state as well.
     if (port.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(port.mask), there))
       continue;
@@ -90,8 +118,7 @@ Facet Passages::facet(const Partition& partition, RegionId from, const Signs& th
                      [&](PortId before) { return passed.contains(before); })) {
       continue;
     }
-    const bool inward = std::find(port.from.begin(), port.from.end(), from) != port.from.end();
-    const double force = inward ? port.opens_at : port.back;
+    const double force = port.leadsInward(from, facet.beyond) ? port.opens_at : port.back;
     if (force <= 0.0) {
       facet.kind = Facet::Kind::kOpen;
       facet.port = id;
@@ -104,6 +131,13 @@ Facet Passages::facet(const Partition& partition, RegionId from, const Signs& th
     }
   }
   return facet;
+}
+
+Facet Passages::facet(const Partition& partition, RegionId from, const Signs& there,
+                      std::span<const LeafId> crossed, const PassedPorts& passed) const {
+  Signs here = there;
+  for (const LeafId leaf : crossed) here.flip(leaf);
+  return facet(partition, from, partition.regionOf(there), here, there, crossed, passed);
 }
 
 }  // namespace palpate

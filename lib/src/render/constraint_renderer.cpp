@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "palpate/contact/surface_effects.h"
 #include "start_point.h"
 
 namespace palpate {
@@ -26,23 +27,18 @@ double ConstraintRenderer::Contact::load() const noexcept {
   return glm::length(sum);
 }
 
-ConstraintRenderer::ConstraintRenderer(ScenePtr scene)
-    : scene_(std::move(scene)), walker_(*scene_) {}
+ConstraintRenderer::ConstraintRenderer(ScenePtr scene, const RendererSettings& settings)
+    : HapticRenderer(settings.limits), scene_(std::move(scene)), walker_(*scene_) {}
 
-void ConstraintRenderer::reset() noexcept {
+void ConstraintRenderer::forget() noexcept {
   started_ = false;
   sticking_ = false;
   walker_.forget();
   contact_ = {};
 }
 
-TickResult ConstraintRenderer::update(const HipState& hip) noexcept {
+TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   TickResult out;
-  if (!isFinite(hip.position) || !isFinite(hip.velocity)) {
-    out.proxy = walker_.position();
-    out.region = walker_.region();
-    return out;
-  }
   if (!started_) start(hip.position);
   walker_.beginTick();
   track(hip.position);
@@ -52,8 +48,7 @@ TickResult ConstraintRenderer::update(const HipState& hip) noexcept {
   out.contact = contact_.count > 0;
   out.event_count = walker_.eventCount();
   out.events = walker_.events();
-  const Vec3 felt = force(hip);
-  if (isFinite(felt)) out.force = felt;
+  out.force = force(hip);
   return out;
 }
 
@@ -73,8 +68,10 @@ void ConstraintRenderer::track(const Vec3& hip) noexcept {
       if (stop == CellWalker::Stop::kSpent) break;
       continue;
     }
-    if (puncture()) continue;
     if (isSettled(hip)) {
+      // Only at rest does the spring of the wall have the length that is felt: a tangent plane that one
+      // tick's motion left behind may be pressed harder, and must not open what was never pressed so.
+      if (puncture()) continue;
       // At rest by the first order; by the second it may still be able to come closer.
       if (sticking_ || !mayBeSaddle(contact_.walls())) return;
       const SlideStep rest = slideStep(contact_.pull, contact_.walls());
@@ -82,7 +79,10 @@ void ConstraintRenderer::track(const Vec3& hip) noexcept {
       if (!rest.is_saddle || !slideBy(hip, length * rest.downhill, true)) return;
       continue;
     }
-    if (!slide(hip)) break;
+    if (!slide(hip)) {
+      if (puncture()) continue;
+      break;
+    }
   }
   findContact(hip);
 }
@@ -250,9 +250,14 @@ Vec3 ConstraintRenderer::force(const HipState& hip) const noexcept {
     Vec3 outward(0.0);
     for (std::size_t i = 0; i < c.count; ++i) {
       const Material& wall = wallMaterial(c.facet[c.index[i]]);
-      const double multiplier = c.held[i].multiplier;
-      force += wall.stiffness * multiplier * c.held[i].normal;
-      outward += multiplier * c.held[i].normal;
+      const HeldWall& held = c.held[i];
+      const double multiplier = held.multiplier;
+      const Vec3& x = walker_.position();
+      const Vec3 n = wall.shading > 0.0
+                         ? shadedNormal(*held.field, held.side, x, held.normal, wall.shading)
+                         : held.normal;
+      force += wall.stiffness * (multiplier + textureHeight(wall.texture, x, multiplier)) * n;
+      outward += multiplier * held.normal;
       total += multiplier;
       stiffness += wall.stiffness * multiplier;
       damping += wall.damping * multiplier;

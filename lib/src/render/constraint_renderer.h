@@ -13,12 +13,12 @@ namespace palpate {
 
 class ConstraintRenderer final : public HapticRenderer {
  public:
-  explicit ConstraintRenderer(ScenePtr scene);
-
-  [[nodiscard]] TickResult update(const HipState& hip) noexcept override;
-  void reset() noexcept override;
+  ConstraintRenderer(ScenePtr scene, const RendererSettings& settings);
 
  private:
+  [[nodiscard]] TickResult step(const HipState& hip) noexcept override;
+  void forget() noexcept override;
+
   /// The closed walls at the proxy: what the local problem is made of, and which of them hold it.
   struct Contact {
     std::array<LeafId, kMaxPlanes> leaf{};

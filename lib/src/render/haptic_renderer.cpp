@@ -6,12 +6,30 @@
 
 namespace palpate {
 
+TickResult HapticRenderer::update(const HipState& hip) noexcept {
+  if (isFinite(hip.position) && isFinite(hip.velocity)) {
+    last_ = step(hip);
+    last_.force = guard_.apply(last_.force, hip.dt);
+    return last_;
+  }
+  TickResult held = last_;
+  held.force = guard_.apply(Vec3(0.0), hip.dt);
+  held.event_count = 0;
+  return held;
+}
+
+void HapticRenderer::reset() noexcept {
+  guard_.reset();
+  last_ = {};
+  forget();
+}
+
 std::unique_ptr<HapticRenderer> makeRenderer(ScenePtr scene, RendererSettings settings) {
   if (!scene) throw inputError("render.no_scene", "makeRenderer() was given no scene");
   if (settings.kind.value_or(scene->renderer()) == RendererKind::kPaper) {
     return std::make_unique<PaperRenderer>(std::move(scene), settings);
   }
-  return std::make_unique<ConstraintRenderer>(std::move(scene));
+  return std::make_unique<ConstraintRenderer>(std::move(scene), settings);
 }
 
 }  // namespace palpate

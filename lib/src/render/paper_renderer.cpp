@@ -22,7 +22,9 @@ bool isOneOf(const std::vector<LeafId>& leaves, const std::vector<LeafId>& among
 }  // namespace
 
 PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
-    : scene_(std::move(scene)), scratch_(scene_->partition().leaves().size()) {
+    : HapticRenderer(settings.limits),
+      scene_(std::move(scene)),
+      scratch_(scene_->partition().leaves().size()) {
   for (const Port& port : scene_->ports()) {
     if (port.opens_at > 0.0 || port.back > 0.0) {
       throw inputError(
@@ -76,18 +78,15 @@ PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
   }
 }
 
-void PaperRenderer::reset() noexcept {
+void PaperRenderer::forget() noexcept {
   started_ = false;
   in_contact_ = false;
   passed_.clear();
   for (Table& table : tables_) table.entered = false;
 }
 
-TickResult PaperRenderer::update(const HipState& hip) noexcept {
+TickResult PaperRenderer::step(const HipState& hip) noexcept {
   TickResult out;
-  out.proxy = last_;
-  out.region = state();
-  if (!isFinite(hip.position) || !isFinite(hip.velocity)) return out;
   if (!started_) {
     started_ = true;
     last_ = hip.position;
@@ -209,8 +208,7 @@ void PaperRenderer::feel(const HipState& hip, TickResult& out) noexcept {
   const int content = scene_->regions()[here].content;
   if (content >= 0) {
     const Material& medium = scene_->materials()[static_cast<std::size_t>(content)];
-    const Vec3 drag = -medium.viscosity * (hip.velocity - medium.flow);
-    if (isFinite(drag)) out.force = drag;
+    out.force = -medium.viscosity * (hip.velocity - medium.flow);
   }
 }
 

@@ -22,10 +22,10 @@ class PaperRenderer final : public HapticRenderer {
   /// @throws Error (kInput) for ports with an opening force, which the paper does not have.
   PaperRenderer(ScenePtr scene, const RendererSettings& settings);
 
-  [[nodiscard]] TickResult update(const HipState& hip) noexcept override;
-  void reset() noexcept override;
-
  private:
+  [[nodiscard]] TickResult step(const HipState& hip) noexcept override;
+  void forget() noexcept override;
+
   /// Table I's view of one layer.
   struct Table {
     FieldPtr wall;                   ///< A

@@ -70,7 +70,8 @@ class SceneCompiler {
     materials();
     lookAround();
     std::vector<Wall> walls = makeWalls();
-    scene_->passages_ = Passages(count(), std::move(walls), makePorts());
+    std::vector<Port> ports = makePorts();
+    scene_->passages_ = Passages(count(), std::move(walls), std::move(ports), makeSheets());
     scene_->start_ = start();
     scene_->touch_ = survey_.touch;
     markReachable();
@@ -92,6 +93,12 @@ class SceneCompiler {
     for (const PortDescription& port : description_.ports) {
       mask_of_.push_back(port.where ? static_cast<int>(masks.size()) : -1);
       if (port.where) masks.push_back(port.where->get(progress));
+    }
+    for (const SheetDescription& sheet : description_.sheets) {
+      sheet_mask_of_.push_back(sheet.where ? static_cast<int>(masks.size()) : -1);
+      if (sheet.where) masks.push_back(sheet.where->get(progress));
+      sheet_solid_of_.push_back(static_cast<int>(masks.size()));
+      masks.push_back(sheet.on->get(progress));
     }
     return Partition(layers_, masks);
   }
@@ -223,6 +230,21 @@ class SceneCompiler {
     return ports;
   }
 
+  std::vector<Sheet> makeSheets() {
+    std::vector<Sheet> sheets;
+    for (std::size_t i = 0; i < description_.sheets.size(); ++i) {
+      const SheetDescription& given = description_.sheets[i];
+      Sheet sheet;
+      sheet.name = given.name;
+      sheet.leaves = scene_->partition_.leavesOf(given.on->get().get());
+      sheet.solid = sheet_solid_of_[i];
+      sheet.mask = sheet_mask_of_[i];
+      sheet.material = wall({false, given.material}, given.place).material;
+      sheets.push_back(std::move(sheet));
+    }
+    return sheets;
+  }
+
   std::vector<LeafId> facetLeaves(const PortDescription& given, const Port& port) {
     const std::vector<LeafId> leaves = scene_->partition_.leavesOf(given.on->get().get());
     const auto bounds = [&](const std::vector<RegionId>& sides) {
@@ -351,6 +373,8 @@ class SceneCompiler {
   const SceneDescription& description_;
   std::vector<FieldPtr> layers_;
   std::vector<int> mask_of_;
+  std::vector<int> sheet_mask_of_;
+  std::vector<int> sheet_solid_of_;
   std::shared_ptr<Scene> scene_;
   std::vector<Box3> boxes_;
   Survey survey_;

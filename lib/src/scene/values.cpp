@@ -98,6 +98,12 @@ std::string readText(const Document& document, const Node& node, const std::stri
   if (node.text.empty()) {
     throw document.error(node.mark, "scene.empty", what + " is an empty text");
   }
+  const auto control = [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7F;
+  };
+  if (std::any_of(node.text.begin(), node.text.end(), control)) {
+    throw document.error(node.mark, "scene.kind", what + " has a control character in it");
+  }
   if (!node.quoted && (parseNumber(node.text) || node.text == "true" || node.text == "false")) {
     throw document.error(node.mark, "scene.kind", what + " wants a text, not " + shown(node),
                          "quote it: \"" + node.text + "\"");

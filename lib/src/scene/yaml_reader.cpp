@@ -22,8 +22,13 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (has_document_) {
-      throw document_.error(markOf(mark), "document.several", "a second YAML document",
-                            "one file is one document; remove the '---' before this");
+      const bool marker =
+          mark.pos >= 0 && text_.compare(static_cast<std::size_t>(mark.pos), 3, "---") == 0;
+      throw document_.error(
+          markOf(mark), "document.several",
+          marker ? "a second YAML document" : "this belongs to nothing before it",
+          marker ? "one file is one document; remove the '---'"
+                 : "is it indented like the lines before it, and inside their brackets?");
     }
     has_document_ = true;
   }
@@ -45,6 +50,7 @@ class TreeBuilder final : public YAML::EventHandler {
     node.mark = markOf(mark);
     node.text = value;
     node.quoted = tag == "!";  // what yaml-cpp calls every scalar that is not plain
+    refuseOpenQuote(mark);
     add(std::move(node));
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -76,7 +82,9 @@ class TreeBuilder final : public YAML::EventHandler {
       return alias(star);
     }
     std::string hint = "a text with : # [ ] { } , in it needs quotes";
-    if (exception.msg == YAML::ErrorMsg::MAP_VALUE) {
+    if (at == '?') {
+      hint = "quote globs: \"name?\"";
+    } else if (exception.msg == YAML::ErrorMsg::MAP_VALUE) {
       hint =
           "is a line before this not closed, or indented otherwise? a text with ': ' needs quotes";
     } else if (exception.msg == YAML::ErrorMsg::END_OF_MAP_FLOW) {
@@ -161,6 +169,27 @@ class TreeBuilder final : public YAML::EventHandler {
                           "quote the text, or leave the tag out");
   }
 
+  // yaml-cpp lets a quotation end with the file. One that runs on takes what follows for text, so it
+  // must end on its line, as in JSON.
+  void refuseOpenQuote(const YAML::Mark& mark) const {
+    const char quote = characterAt(mark);
+    if (quote != '"' && quote != '\'') return;
+    for (auto i = static_cast<std::size_t>(mark.pos) + 1; i < text_.size() && text_[i] != '\n';
+         ++i) {
+      if (quote == '"' && text_[i] == '\\') {
+        ++i;
+      } else if (text_[i] == quote) {
+        // Twice is one quotation mark of the text itself.
+        const bool doubled = quote == '\'' && i + 1 < text_.size() && text_[i + 1] == quote;
+        if (!doubled) return;
+        ++i;
+      }
+    }
+    throw document_.error(markOf(mark), "document.quote",
+                          "the quotation mark is not closed on its line",
+                          "close it; a text of several lines is written below a '|'");
+  }
+
   void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
             Node::Kind kind) {
     refuseTag(mark, tag);
@@ -171,7 +200,6 @@ class TreeBuilder final : public YAML::EventHandler {
                             "nested deeper than " + std::to_string(kDeepestNesting) + " levels",
                             "give inner fields names of their own in `fields`");
     }
-    if (!frames_.empty()) refuseAsKey(markOf(mark));
     Frame frame;
     frame.node.kind = kind;
     frame.node.mark = markOf(mark);
@@ -181,13 +209,6 @@ class TreeBuilder final : public YAML::EventHandler {
     Node node = std::move(frames_.back().node);
     frames_.pop_back();
     add(std::move(node));
-  }
-
-  void refuseAsKey(Mark mark) const {
-    const Frame& top = frames_.back();
-    if (top.node.kind != Node::Kind::kMap || top.has_key) return;
-    throw document_.error(mark, "document.key", "a key that is no plain text",
-                          "a key is one word, with ': ' behind it");
   }
 
   void add(Node node) {
@@ -205,7 +226,10 @@ class TreeBuilder final : public YAML::EventHandler {
       top.has_key = false;
       return;
     }
-    if (node.kind != Node::Kind::kScalar) refuseAsKey(node.mark);
+    if (node.kind != Node::Kind::kScalar) {
+      throw document_.error(node.mark, "document.key", "a key that is no plain text",
+                            "a key is one word, with ': ' behind it");
+    }
     if (!top.keys.insert(node.text).second) {
       const auto first = std::find_if(top.node.entries.begin(), top.node.entries.end(),
                                       [&](const Node::Entry& e) { return e.key == node.text; });

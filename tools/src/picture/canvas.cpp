@@ -45,7 +45,8 @@ struct Canvas::Impl {
     if (closed) cairo_close_path(cr());
   }
   void font(const TextStyle& style) const {
-    cairo_select_font_face(cr(), kFont, style.italic ? CAIRO_FONT_SLANT_OBLIQUE : CAIRO_FONT_SLANT_NORMAL,
+    cairo_select_font_face(cr(), kFont,
+                           style.italic ? CAIRO_FONT_SLANT_OBLIQUE : CAIRO_FONT_SLANT_NORMAL,
                            style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cr(), style.size);
   }
@@ -64,18 +65,21 @@ void Canvas::fill(const Color& color) {
 }
 
 void Canvas::image(const Raster& raster, double x, double y) {
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, raster.width, raster.height));
+  const Surface surface(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, raster.width, raster.height));
   cairo_surface_flush(surface.get());
   unsigned char* data = cairo_image_surface_get_data(surface.get());
   if (data == nullptr) return;
   const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
   for (int row = 0; row < raster.height; ++row) {
     for (int column = 0; column < raster.width; ++column) {
-      const Color& c = raster.colors[static_cast<std::size_t>(column) +
-                                     static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(row)];
+      const Color& c =
+          raster.colors[static_cast<std::size_t>(column) +
+                        static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(row)];
       const std::uint32_t word = (byteOf(c.r) << 16U) | (byteOf(c.g) << 8U) | byteOf(c.b);
-      std::memcpy(data + static_cast<std::size_t>(row) * stride + static_cast<std::size_t>(column) * 4,
-                  &word, sizeof word);
+      std::memcpy(
+          data + static_cast<std::size_t>(row) * stride + static_cast<std::size_t>(column) * 4,
+          &word, sizeof word);
     }
   }
   cairo_surface_mark_dirty(surface.get());
@@ -179,9 +183,10 @@ void Canvas::unclip() { cairo_restore(impl_->cr()); }
 void Canvas::writePng(const std::string& path) {
   const cairo_status_t status = cairo_surface_write_to_png(impl_->surface.get(), path.c_str());
   if (status != CAIRO_STATUS_SUCCESS) {
-    throw Error(ErrorKind::kOperation,
-                {"output.write", std::string("cannot write the picture: ") + cairo_status_to_string(status),
-                 "look for room on the disk", path});
+    throw Error(
+        ErrorKind::kOperation,
+        {"output.write", std::string("cannot write the picture: ") + cairo_status_to_string(status),
+         "look for room on the disk", path});
   }
 }
 

@@ -23,9 +23,11 @@ struct Pixel {
 
 /// A picture in memory, opaque.
 struct Raster {
-  Raster(int w, int h) : width(w), height(h), colors(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+  Raster(int w, int h)
+      : width(w), height(h), colors(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
   [[nodiscard]] Color& at(int x, int y) {
-    return colors[static_cast<std::size_t>(x) + static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
+    return colors[static_cast<std::size_t>(x) +
+                  static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
   }
   int width;
   int height;
@@ -46,7 +48,7 @@ struct TextStyle {
   bool bold = false;
   bool italic = false;
   Align align = Align::kLeft;
-  double halo = 0.0;  ///< width of a light rim around the letters
+  double halo = 0.0;     ///< width of a light rim around the letters
   bool upright = false;  ///< turned to read from below
 };
 

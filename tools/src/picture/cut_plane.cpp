@@ -13,10 +13,10 @@ namespace {
 constexpr double kAligned = 1e-6;  // sine below which a direction is an axis
 
 Error usageError(const char* option, std::string message) {
-  return Error(ErrorKind::kUsage, {"usage.plane", std::string(option) + ": " + std::move(message),
-                                   std::string("as in ") + (std::string(option) == "--plane"
-                                                                ? "--plane x=12"
-                                                                : "--cut 0,0,10,1,0,1")});
+  return Error(ErrorKind::kUsage,
+               {"usage.plane", std::string(option) + ": " + std::move(message),
+                std::string("as in ") +
+                    (std::string(option) == "--plane" ? "--plane x=12" : "--cut 0,0,10,1,0,1")});
 }
 
 Vec3 axisVector(int axis) {
@@ -99,7 +99,8 @@ CutPlane planeAcross(int axis, double value, const LengthUnit& unit) {
   plane.up_axis = kUp[axis];
   plane.right = axisVector(plane.right_axis);
   plane.up = axisVector(plane.up_axis);
-  plane.name = std::string(1, "xyz"[axis]) + " = " + formatNumber(value / unit.metres) + " " + unit.name;
+  plane.name =
+      std::string(1, "xyz"[axis]) + " = " + formatNumber(value / unit.metres) + " " + unit.name;
   return plane;
 }
 
@@ -142,9 +143,10 @@ CutPlane planeAlong(const Track& track, const LengthUnit& unit) {
     if (best == 1) normal = -normal;  // across y one looks along y, with x to the right
   }
   // Of the two sides, the one that the standard views look from.
-  const int main_axis = std::abs(normal.y) >= std::abs(normal.x) && std::abs(normal.y) >= std::abs(normal.z) ? 1
-                        : std::abs(normal.x) >= std::abs(normal.z)                                           ? 0
-                                                                                                             : 2;
+  const int main_axis =
+      std::abs(normal.y) >= std::abs(normal.x) && std::abs(normal.y) >= std::abs(normal.z) ? 1
+      : std::abs(normal.x) >= std::abs(normal.z)                                           ? 0
+                                                                                           : 2;
   const double wanted = main_axis == 1 ? -1.0 : 1.0;
   if (normal[main_axis] * wanted < 0.0) normal = -normal;
   for (int i = 0; i < 3; ++i) {

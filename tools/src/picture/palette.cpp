@@ -6,9 +6,9 @@
 namespace palpate::tools {
 
 Color regionColor(RegionId region) {
-  static constexpr std::array<std::uint32_t, 12> kColors = {
-      0xE8CBA6, 0xE0A79F, 0x9FBBD6, 0xA9CBA2, 0xC3B1DA, 0xE3CF80,
-      0x8CC6C2, 0xDFAFCB, 0xC9B99A, 0xB4BFCC, 0xD9B38C, 0xBFD08F};
+  static constexpr std::array<std::uint32_t, 12> kColors = {0xE8CBA6, 0xE0A79F, 0x9FBBD6, 0xA9CBA2,
+                                                            0xC3B1DA, 0xE3CF80, 0x8CC6C2, 0xDFAFCB,
+                                                            0xC9B99A, 0xB4BFCC, 0xD9B38C, 0xBFD08F};
   if (region == kOutside) return kPaper;
   return rgb(kColors[(region - 1U) % kColors.size()]);
 }
@@ -19,8 +19,8 @@ Color mixed(const Color& a, const Color& b, double share_of_b) {
 }
 
 Color scaled(const Color& c, double brightness) {
-  return {std::min(1.0, c.r * brightness), std::min(1.0, c.g * brightness), std::min(1.0, c.b * brightness),
-          c.a};
+  return {std::min(1.0, c.r * brightness), std::min(1.0, c.g * brightness),
+          std::min(1.0, c.b * brightness), c.a};
 }
 
 }  // namespace palpate::tools

@@ -169,7 +169,9 @@ Boundary classify(const Scene& scene, const Signs& here, const Signs& there) {
   }
   const Facet inward = scene.passages().facet(partition, line.a, *second, crossed, all);
   const Facet outward = scene.passages().facet(partition, line.b, *first, crossed, all);
-  const auto passable = [](const Facet& f) { return f.kind == Facet::Kind::kOpen || f.opens_at > 0.0; };
+  const auto passable = [](const Facet& f) {
+    return f.kind == Facet::Kind::kOpen || f.opens_at > 0.0;
+  };
   if (inward.kind == Facet::Kind::kAbsent || outward.kind == Facet::Kind::kAbsent) {
     line.kind = Boundary::Kind::kAbsent;
   } else if (passable(inward) || passable(outward)) {
@@ -185,7 +187,8 @@ Section cutSection(const Scene& scene, const View& view, const Progress& progres
   Section section;
   section.width = view.width;
   section.height = view.height;
-  section.regions.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
+  section.regions.resize(static_cast<std::size_t>(view.width) *
+                         static_cast<std::size_t>(view.height));
   std::vector<Signs> scratch(workerCount(), Signs(scene.partition().leaves().size()));
   parallelRows(view.height, progress, "cutting the scene", [&](int y, std::size_t worker) {
     for (int x = 0; x < view.width; ++x) {

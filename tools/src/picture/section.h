@@ -35,9 +35,9 @@ struct Boundary {
   RegionId a = kOutside;
   RegionId b = kOutside;
   Kind kind = Kind::kWall;
-  PortId port = 0;        ///< kPort only
-  bool from_a = false;    ///< kPort: passable from a to b ...
-  bool from_b = false;    ///< ... and back
+  PortId port = 0;      ///< kPort only
+  bool from_a = false;  ///< kPort: passable from a to b ...
+  bool from_b = false;  ///< ... and back
   std::vector<Pixel> points;
 
   [[nodiscard]] bool sameLine(const Boundary& o) const {
@@ -52,7 +52,8 @@ struct Section {
   std::vector<Boundary> boundaries;
 
   [[nodiscard]] RegionId at(int x, int y) const {
-    return regions[static_cast<std::size_t>(x) + static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
+    return regions[static_cast<std::size_t>(x) +
+                   static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
   }
 };
 

@@ -10,7 +10,8 @@ namespace palpate::tools {
 namespace {
 
 constexpr const char* kHeader =
-    "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_ns";
+    "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_"
+    "ns";
 constexpr std::size_t kColumns = 14;
 
 }  // namespace

@@ -21,4 +21,9 @@ namespace palpate {
 /// The object turned inside out: -S.
 [[nodiscard]] FieldPtr complement(FieldPtr operand);
 
+/// `whole`, an intersection of smooth solids with a value of its own, that shows `faces` as its
+/// structure (kFaces): contact then holds each face, and edges and corners between them, exactly.
+/// @throws Error (kInput) if there are no faces, or something is null.
+[[nodiscard]] FieldPtr withFaces(FieldPtr whole, std::vector<FieldPtr> faces);
+
 }  // namespace palpate

@@ -35,9 +35,18 @@ enum class Metric {
 class Field;
 using FieldPtr = std::shared_ptr<const Field>;  ///< shared and unchanging, never null in a scene
 
-/// How a field is put together, so that CSG can be taken apart into its smooth leaves.
+/// How a field is put together, so that CSG can be taken apart into its smooth leaves. The operands
+/// are a view into the field that was asked, and live as long as it.
 struct FieldStructure {
-  enum class Kind { kLeaf, kUnion, kIntersection, kComplement, kTransform };
+  enum class Kind {
+    kLeaf,          ///< smooth, or to be taken as it is
+    kUnion,         ///< min of the operands
+    kIntersection,  ///< max of the operands
+    kComplement,    ///< minus the operand
+    kTransform,     ///< the operand, moved
+    kFaces,  ///< inside where inside all operands, which are smooth; the value itself is better
+             ///< than their max (a box: its exact distance, and six half-spaces)
+  };
   Kind kind = Kind::kLeaf;
   std::span<const FieldPtr> operands{};  ///< none for a leaf; one for complement and transform
   Pose pose{};                           ///< transform only: operand frame -> this field's frame

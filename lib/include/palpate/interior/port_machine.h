@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "palpate/interior/partition.h"
@@ -16,6 +17,15 @@ namespace palpate {
 struct Wall {
   bool absent = false;
   int material = -1;  ///< index into the scene's materials
+};
+
+/// An open surface: part of a leaf's zero set that is a wall though the same region lies on both sides.
+struct Sheet {
+  std::string name;
+  std::vector<LeafId> leaves;  ///< of the field whose zero set it is part of
+  int solid = -1;              ///< mask of that field: the sheet is where its sign changes
+  int mask = -1;               ///< only within this mask of the partition; -1: everywhere
+  int material = -1;           ///< index into the scene's materials
 };
 
 /// The ports passed on the way to where the proxy is. A value of fixed size: copy it to rewind.
@@ -68,9 +78,11 @@ class Passages {
  public:
   Passages() = default;
   /// `walls[from * regions + to]`; `ports` in the author's order, which decides where several are open.
-  Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Port> ports);
+  Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Port> ports,
+           std::vector<Sheet> sheets = {});
 
   [[nodiscard]] std::span<const Port> ports() const noexcept { return ports_; }
+  [[nodiscard]] std::span<const Sheet> sheets() const noexcept { return sheets_; }
   [[nodiscard]] const Wall& wall(RegionId from, RegionId to) const noexcept {
     return walls_[from * regions_ + to];
   }
@@ -80,15 +92,21 @@ class Passages {
   }
 
   /// The facet that is crossed when the leaves `crossed` (one, or several that coincide there) change
-  /// sign from `here`, a cell of region `from`, to `there`.
-  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& there,
-                            std::span<const LeafId> crossed,
+  /// sign from `here`, a cell of region `from`, to `there`, a cell of region `beyond`.
+  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, RegionId beyond,
+                            const Signs& here, const Signs& there, std::span<const LeafId> crossed,
                             const PassedPorts& passed) const noexcept;
+
+  /// The same where only the far cell is known: the near one differs from it in the leaves `crossed`, and
+  /// the region beyond is looked up. Copies signs: for set-up and pictures.
+  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& there,
+                            std::span<const LeafId> crossed, const PassedPorts& passed) const;
 
  private:
   std::size_t regions_ = 0;
   std::vector<Wall> walls_;
   std::vector<Port> ports_;
+  std::vector<Sheet> sheets_;
   std::vector<std::vector<PortId>> ports_of_;
 };
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "palpate/contact/force_guard.h"
 #include "palpate/scene/scene.h"
 
 namespace palpate {
@@ -15,6 +16,7 @@ namespace palpate {
 struct HipState {
   Vec3 position{0.0, 0.0, 0.0};  ///< [m, world] the haptic interface point P
   Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s, world] by whatever estimator the caller names
+  double dt = 1e-3;              ///< [s] since the last tick; used by slew limit and ramp only
 };
 
 /// What one tick came to.
@@ -40,6 +42,7 @@ struct RendererSettings {
   std::optional<RendererKind> kind = {};        ///< not given: as the scene says
   AlphaForm alpha_form = AlphaForm::kByMetric;  ///< paper's renderer only
   double alpha = 1.0;                           ///< [-] paper's renderer only
+  ForceLimits limits = {};  ///< none unless asked for, so that closed forms hold
 };
 
 /// One algorithm of section 3 of DESIGN.md. Construction may throw and allocate; update() and reset()
@@ -50,14 +53,23 @@ class HapticRenderer {
   HapticRenderer(const HapticRenderer&) = delete;
   HapticRenderer& operator=(const HapticRenderer&) = delete;
 
-  /// One tick. A non-finite position or velocity gives zero force and changes no state.
-  [[nodiscard]] virtual TickResult update(const HipState& hip) noexcept = 0;
+  /// One tick. A non-finite position or velocity gives zero force and changes no state; the next good
+  /// tick goes on from where the proxy was. The force is finite and within the limits.
+  [[nodiscard]] TickResult update(const HipState& hip) noexcept;
 
   /// Back to the start region; the next update() is a first tick.
-  virtual void reset() noexcept = 0;
+  void reset() noexcept;
 
  protected:
-  HapticRenderer() = default;
+  explicit HapticRenderer(const ForceLimits& limits) : guard_(limits) {}
+
+ private:
+  /// The algorithm's own tick: `hip` is finite, the force is not limited yet.
+  [[nodiscard]] virtual TickResult step(const HipState& hip) noexcept = 0;
+  virtual void forget() noexcept = 0;
+
+  ForceGuard guard_;
+  TickResult last_;
 };
 
 /// @throws Error (kInput) if the scene is null or asks the paper's renderer for what it cannot do.

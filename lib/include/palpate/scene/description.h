@@ -96,6 +96,16 @@ struct PortDescription {
   SourcePlace place = {};
 };
 
+/// An open surface: the part of `on`'s zero set where `where` is negative, with the same region on both
+/// sides (a dangling edge, a plate without thickness).
+struct SheetDescription {
+  std::string name;
+  FieldSourcePtr on;
+  FieldSourcePtr where = {};  ///< null: the whole zero set
+  std::string material = {};  ///< name; empty: the documented default wall
+  SourcePlace place = {};
+};
+
 /// Which renderer a scene asks for.
 enum class RendererKind { kConstraint, kPaper };
 
@@ -108,6 +118,7 @@ struct SceneDescription {
   std::vector<LayerDescription> layers = {};
   std::vector<WallOverride> walls = {};
   std::vector<PortDescription> ports = {};
+  std::vector<SheetDescription> sheets = {};
   std::string start_region = "outside";
   SourcePlace start_place = {};
   bool keep_memory = false;  ///< `memory: keep`: reaching outside does not clear the passed ports

@@ -30,7 +30,7 @@ struct MeshReport {
   [[nodiscard]] bool isClosed() const noexcept { return boundary_edges == 0; }
 };
 
-/// Reads STL, OBJ, PLY, glTF / GLB with Assimp, each part where its nodes put it; cuts polygons into
+/// Reads STL, OBJ, PLY, glTF / GLB (and what else Assimp reads, each part where its nodes put it); cuts polygons into
 /// triangles; welds vertices in the same place; drops triangles with two corners in one point.
 /// @throws Error (kInput): missing, unreadable, no faces, NaN or infinite vertices, bad indices.
 [[nodiscard]] Mesh readMesh(const std::string& path, double metres_per_unit);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <future>
 
-#include "bake_plan.h"
+#include "bake/bake_plan.h"
 #include "palpate/vdb/bake.h"
 
 namespace palpate::vdb {

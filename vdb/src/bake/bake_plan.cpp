@@ -1,4 +1,4 @@
-#include "bake_plan.h"
+#include "bake/bake_plan.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "vdb_archive.h"
+#include "grid/vdb_archive.h"
 
 #include <istream>
 #include <ostream>

@@ -1,0 +1,27 @@
+#pragma once
+/// The colour of a point of a cut face: its region's, darkened and lightened by a scan's grey values.
+
+#include <memory>
+
+#include "palpate/interior/partition.h"
+#include "palpate/vdb/image.h"
+#include "picture/canvas.h"
+
+namespace palpate::tools {
+
+class Paint {
+ public:
+  /// Without an image: plain colours. Grey runs from the 1st to the 99th percentile of the voxels.
+  explicit Paint(std::shared_ptr<const vdb::Image> image);
+
+  [[nodiscard]] Color at(RegionId region, const Vec3& p) const;
+  [[nodiscard]] bool hasImage() const noexcept { return image_ != nullptr; }
+
+ private:
+  std::shared_ptr<const vdb::Image> image_;
+  Mat3 to_index_{1.0};
+  double low_ = 0.0;
+  double high_ = 1.0;
+};
+
+}  // namespace palpate::tools

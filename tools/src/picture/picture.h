@@ -1,0 +1,37 @@
+#pragma once
+/// The picture of a scene: a flat section with names, walls, ports, the hand's path and the forces; the scene in
+/// space with its front cut away; and a legend.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "console.h"
+#include "loaded_scene.h"
+#include "palpate/scene/scene.h"
+#include "palpate/vdb/image.h"
+#include "picture/cut_plane.h"
+#include "picture/track.h"
+
+namespace palpate::tools {
+
+struct PictureOptions {
+  std::string title;
+  std::optional<CutPlane> plane;            ///< not given: along the track, or through the middle
+  int width = 1600;                         ///< [pixels]
+  int height = 1000;                        ///< [pixels]
+  Track track;                              ///< may be empty
+  std::shared_ptr<const vdb::Image> image;  ///< grey values; may be null
+  bool anatomical = false;                  ///< x, y, z run to the right, the front and up
+};
+
+/// The grey values to show: of the scene's image called `wanted`, of the file `wanted`, or if it is empty
+/// of the scene's first image without names; null if there is none. @throws Error (kInput).
+[[nodiscard]] std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
+                                                             const std::string& wanted);
+
+/// Draws to a PNG file; returns the plane that was cut along. @throws Error: kOperation, kCancelled.
+[[nodiscard]] CutPlane drawPicture(const Scene& scene, const PictureOptions& options,
+                                   const std::string& file, Console& console);
+
+}  // namespace palpate::tools

@@ -1,0 +1,100 @@
+#include "mesh/builder.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "palpate/core/error.h"
+
+namespace palpate::vdb {
+namespace {
+
+/// Twice the area of a, b, c seen against `normal`; positive if they turn left.
+double turn(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
+  return glm::dot(glm::cross(b - a, c - a), normal);
+}
+
+bool holdsPoint(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& normal) {
+  return turn(a, b, p, normal) >= 0.0 && turn(b, c, p, normal) >= 0.0 &&
+         turn(c, a, p, normal) >= 0.0;
+}
+
+}  // namespace
+
+void refuseIndex(const std::string& file, std::size_t face, long long index, std::size_t count,
+                 int line) {
+  throw Error(ErrorKind::kInput,
+              {"mesh.index",
+               "face " + std::to_string(face) + " (from 0) names vertex " + std::to_string(index) +
+                   ", but the mesh has " + std::to_string(count) + " vertices",
+               "the file is damaged or was written wrongly; export the mesh again", file, line});
+}
+
+void MeshBuilder::refuseVertex(const Vec3& p, const std::string& where, int line) const {
+  throw Error(ErrorKind::kInput, {"mesh.not_finite",
+                                  where + " lies at (" + std::to_string(p.x) + ", " +
+                                      std::to_string(p.y) + ", " + std::to_string(p.z) + ")",
+                                  "repair or export the mesh again", mesh_.source, line});
+}
+
+std::uint32_t MeshBuilder::weld(const Vec3& p) {
+  // Adding zero turns -0 into +0, which are one position.
+  const std::array<std::uint64_t, 3> key{std::bit_cast<std::uint64_t>(p.x + 0.0),
+                                         std::bit_cast<std::uint64_t>(p.y + 0.0),
+                                         std::bit_cast<std::uint64_t>(p.z + 0.0)};
+  const auto [entry, is_new] =
+      numbers_.try_emplace(key, static_cast<std::uint32_t>(mesh_.vertices.size()));
+  if (is_new) mesh_.vertices.push_back(p);
+  return entry->second;
+}
+
+/// A triangle with two corners in one point has no area, and its other two sides cancel. One with three
+/// corners in a line has no area either, but without it its neighbours would not meet.
+void MeshBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  if (a == b || b == c || c == a) {
+    ++mesh_.dropped_triangles;
+  } else {
+    mesh_.triangles.push_back({a, b, c});
+  }
+}
+
+void MeshBuilder::addPolygon(std::span<const std::uint32_t> corners) {
+  if (corners.size() < 3) return;
+  std::vector<std::uint32_t> rest(corners.begin(), corners.end());
+  const auto at = [&](std::size_t i) -> const Vec3& {
+    return mesh_.vertices[rest[i % rest.size()]];
+  };
+  Vec3 normal(0.0);
+  for (std::size_t i = 1; rest.size() > 3 && i + 1 < rest.size(); ++i) {
+    normal += glm::cross(at(i) - at(0), at(i + 1) - at(0));
+  }
+  while (rest.size() > 3) {
+    const std::size_t n = rest.size();
+    std::size_t ear = n;
+    for (std::size_t i = 0; i < n && ear == n; ++i) {
+      const std::size_t before = i + n - 1;
+      bool is_ear = turn(at(before), at(i), at(i + 1), normal) > 0.0;
+      for (std::size_t k = i + 2; is_ear && k < before; ++k) {
+        is_ear = !holdsPoint(at(before), at(i), at(i + 1), at(k), normal);
+      }
+      if (is_ear) ear = i;
+    }
+    if (ear == n) ear = 0;  // no area or crossing itself: any cut closes it
+    addTriangle(rest[(ear + n - 1) % n], rest[ear], rest[(ear + 1) % n]);
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  addTriangle(rest[0], rest[1], rest[2]);
+}
+
+Mesh MeshBuilder::take() {
+  if (mesh_.triangles.empty()) {
+    throw inputError("mesh.no_faces",
+                     mesh_.dropped_triangles > 0
+                         ? "every triangle of the mesh has two corners in one point"
+                         : "the mesh has no faces",
+                     "a surface of triangles is needed, not points or lines", mesh_.source);
+  }
+  numbers_.clear();
+  return std::move(mesh_);
+}
+
+}  // namespace palpate::vdb

@@ -1,0 +1,73 @@
+#pragma once
+/// Puts a mesh together from what a file says: checks, welds, cuts polygons.
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "palpate/vdb/mesh.h"
+
+namespace palpate::vdb {
+
+class MeshBuilder {
+ public:
+  MeshBuilder(std::string source, double metres_per_unit) : metres_per_unit_(metres_per_unit) {
+    mesh_.source = std::move(source);
+  }
+
+  /// Number of the welded vertex at `p` [units of the file]. `where` says which one it is in the file
+  /// ("vertex 7 (from 0)"), `line` where that is.
+  /// @throws Error (kInput, mesh.not_finite)
+  template <typename Where>
+  std::uint32_t addVertex(const Vec3& p, const Where& where, int line = 0) {
+    if (!isFinite(p)) refuseVertex(p, where(), line);
+    return weld(p * metres_per_unit_);
+  }
+
+  /// Corners are numbers from addVertex(); polygons are cut into triangles by their ears.
+  void addPolygon(std::span<const std::uint32_t> corners);
+
+  /// @throws Error (kInput, mesh.no_faces)
+  [[nodiscard]] Mesh take();
+
+ private:
+  struct BitsHash {
+    std::size_t operator()(const std::array<std::uint64_t, 3>& key) const noexcept {
+      std::uint64_t hash = 0;
+      for (const std::uint64_t word : key) {
+        hash = (hash ^ word) * 0x9E3779B97F4A7C15U;
+        hash ^= hash >> 32;
+      }
+      return hash;
+    }
+  };
+
+  [[noreturn]] void refuseVertex(const Vec3& p, const std::string& where, int line) const;
+  std::uint32_t weld(const Vec3& p);
+  void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+
+  double metres_per_unit_;
+  Mesh mesh_;
+  std::unordered_map<std::array<std::uint64_t, 3>, std::uint32_t, BitsHash> numbers_;
+};
+
+/// @throws Error (kInput, mesh.index): a face that names vertex `index` of `count`.
+[[noreturn]] void refuseIndex(const std::string& file, std::size_t face, long long index,
+                              std::size_t count, int line = 0);
+
+/// STL, ASCII and binary; told apart by the length of the file, not by its first word.
+[[nodiscard]] Mesh readStl(const std::string& path, double metres_per_unit);
+
+/// Wavefront OBJ: vertices and faces; normals, groups and materials are passed over.
+[[nodiscard]] Mesh readObj(const std::string& path, double metres_per_unit);
+
+/// PLY, ASCII and binary of either byte order.
+[[nodiscard]] Mesh readPly(const std::string& path, double metres_per_unit);
+
+/// The whole file. @throws Error (kInput)
+[[nodiscard]] std::string readBytes(const std::string& path);
+
+}  // namespace palpate::vdb

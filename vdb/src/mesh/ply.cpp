@@ -1,0 +1,247 @@
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+#include "mesh/builder.h"
+#include "mesh/scanner.h"
+#include "palpate/core/error.h"
+
+namespace palpate::vdb {
+namespace {
+
+enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+
+struct Property {
+  std::string name;
+  Scalar type = Scalar::kFloat;
+  std::optional<Scalar> count;  ///< of a list: the type of its length
+};
+
+struct Element {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<Property> properties;
+};
+
+std::optional<Scalar> scalarCalled(const std::string& name) {
+  if (name == "char" || name == "int8") return Scalar::kInt8;
+  if (name == "uchar" || name == "uint8") return Scalar::kUint8;
+  if (name == "short" || name == "int16") return Scalar::kInt16;
+  if (name == "ushort" || name == "uint16") return Scalar::kUint16;
+  if (name == "int" || name == "int32") return Scalar::kInt32;
+  if (name == "uint" || name == "uint32") return Scalar::kUint32;
+  if (name == "float" || name == "float32") return Scalar::kFloat;
+  if (name == "double" || name == "float64") return Scalar::kDouble;
+  return {};
+}
+
+class Ply {
+ public:
+  Ply(std::string_view bytes, const std::string& path, double metres_per_unit)
+      : input_{bytes}, path_(path), builder_(path, metres_per_unit) {}
+
+  Mesh read() {
+    readHeader();
+    for (const Element& element : elements_) {
+      for (std::size_t i = 0; i < element.count; ++i) {
+        if (is_text_) input_.skipBlanks();
+        const int line = is_text_ ? input_.line : 0;
+        readItem(element);
+        if (element.name == "vertex") {
+          vertices_.push_back(builder_.addVertex(
+              position_, [&] { return "vertex " + std::to_string(i) + " (from 0)"; }, line));
+        } else if (element.name == "face") {
+          addFace(i, line);
+        }
+      }
+    }
+    return builder_.take();
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& what, const char* code = "mesh.unreadable") const {
+    throw Error(ErrorKind::kInput,
+                {code, what, "export the mesh again", path_, is_text_ ? input_.line : 0});
+  }
+
+  [[noreturn]] void refuseEnd() const {
+    refuse("the file ends before all that its header promises; it was cut short", "mesh.truncated");
+  }
+
+  void addFace(std::size_t face, int line) {
+    corners_.clear();
+    for (const double number : indices_) {
+      if (!(number >= 0.0 && number < static_cast<double>(vertices_.size()))) {
+        refuseIndex(path_, face, static_cast<long long>(number), vertices_.size(), line);
+      }
+      corners_.push_back(vertices_[static_cast<std::size_t>(number)]);
+    }
+    builder_.addPolygon(corners_);
+  }
+
+  void readHeader() {
+    bool has_format = false;
+    for (;;) {
+      std::istringstream words(headerLine());
+      std::string key, word;
+      words >> key;
+      if (key == "end_header") break;
+      if (key == "format") {
+        words >> word;
+        has_format = true;
+        format_is_text_ = word == "ascii";
+        const bool little = word == "binary_little_endian";
+        if (!format_is_text_ && !little && word != "binary_big_endian") {
+          refuse("unknown PLY format '" + word + "'");
+        }
+        swap_ = !format_is_text_ && little != (std::endian::native == std::endian::little);
+      } else if (key == "element") {
+        Element element;
+        if (!(words >> element.name >> element.count)) refuse("an element without name and count");
+        elements_.push_back(std::move(element));
+      } else if (key == "property") {
+        if (elements_.empty()) refuse("a property before any element");
+        elements_.back().properties.push_back(propertyOf(words));
+      } else if (key != "ply" && key != "comment" && key != "obj_info" && !key.empty()) {
+        refuse("'" + key.substr(0, 40) + "' means nothing in the header of a PLY file");
+      }
+    }
+    if (!has_format) refuse("the header does not name the format");
+    is_text_ = format_is_text_;
+    requireParts();
+  }
+
+  void requireParts() const {
+    const auto element = [&](const char* name) {
+      return std::find_if(elements_.begin(), elements_.end(),
+                          [&](const Element& e) { return e.name == name; });
+    };
+    const auto vertex = element("vertex");
+    if (vertex == elements_.end()) refuse("the file has no element 'vertex'");
+    for (const char* axis : {"x", "y", "z"}) {
+      const auto& list = vertex->properties;
+      if (std::none_of(list.begin(), list.end(),
+                       [&](const Property& p) { return p.name == axis && !p.count; })) {
+        refuse(std::string("the vertices have no property '") + axis + "'");
+      }
+    }
+    if (element("face") < vertex) refuse("the faces come before the vertices");
+  }
+
+  Property propertyOf(std::istringstream& words) const {
+    Property property;
+    std::string type;
+    words >> type;
+    if (type == "list") {
+      std::string count;
+      words >> count >> type;
+      property.count = scalarCalled(count);
+      if (!property.count) refuse("unknown type '" + count + "' of a list's length");
+    }
+    const std::optional<Scalar> scalar = scalarCalled(type);
+    if (!scalar) refuse("unknown property type '" + type + "'");
+    property.type = *scalar;
+    if (!(words >> property.name)) refuse("a property without a name");
+    return property;
+  }
+
+  std::string headerLine() {
+    const std::size_t end = input_.text.find('\n', input_.at);
+    if (end == std::string_view::npos) refuse("the header has no 'end_header'", "mesh.truncated");
+    std::string text(input_.text.substr(input_.at, end - input_.at));
+    input_.at = end + 1;
+    ++input_.line;
+    return text;
+  }
+
+  void readItem(const Element& element) {
+    indices_.clear();
+    for (const Property& property : element.properties) {
+      if (!property.count) {
+        const double value = readScalar(property.type);
+        if (property.name == "x") position_.x = value;
+        if (property.name == "y") position_.y = value;
+        if (property.name == "z") position_.z = value;
+        continue;
+      }
+      const double count = readScalar(*property.count);
+      if (!(count >= 0.0)) refuse("a list of negative length");
+      const bool wanted = property.name == "vertex_indices" || property.name == "vertex_index";
+      for (double n = 0.0; n < count; ++n) {
+        const double value = readScalar(property.type);
+        if (wanted) indices_.push_back(value);
+      }
+    }
+  }
+
+  double readScalar(Scalar type) {
+    if (is_text_) return readText();
+    switch (type) {
+      case Scalar::kInt8:
+        return readBinary<std::int8_t>();
+      case Scalar::kUint8:
+        return readBinary<std::uint8_t>();
+      case Scalar::kInt16:
+        return readBinary<std::int16_t>();
+      case Scalar::kUint16:
+        return readBinary<std::uint16_t>();
+      case Scalar::kInt32:
+        return readBinary<std::int32_t>();
+      case Scalar::kUint32:
+        return readBinary<std::uint32_t>();
+      case Scalar::kFloat:
+        return static_cast<double>(readBinary<float>());
+      case Scalar::kDouble:
+        break;
+    }
+    return readBinary<double>();
+  }
+
+  template <typename Type>
+  Type readBinary() {
+    if (input_.text.size() - input_.at < sizeof(Type)) refuseEnd();
+    char raw[sizeof(Type)];
+    std::memcpy(raw, input_.text.data() + input_.at, sizeof raw);
+    input_.at += sizeof raw;
+    if (swap_) std::reverse(raw, raw + sizeof raw);
+    Type value;
+    std::memcpy(&value, raw, sizeof value);
+    return value;
+  }
+
+  double readText() {
+    const std::string_view word = input_.word();
+    if (word.empty()) refuseEnd();
+    const std::optional<double> value = numberOf(word);
+    if (!value) refuse("'" + std::string(word.substr(0, 40)) + "' is not a number");
+    return *value;
+  }
+
+  Scanner input_;
+  const std::string& path_;
+  MeshBuilder builder_;
+  std::vector<Element> elements_;
+  bool format_is_text_ = false;
+  bool is_text_ = true;  ///< the header always is
+  bool swap_ = false;
+  Vec3 position_{0.0};
+  std::vector<double> indices_;
+  std::vector<std::uint32_t> vertices_;  ///< number in the file -> welded vertex
+  std::vector<std::uint32_t> corners_;
+};
+
+}  // namespace
+
+Mesh readPly(const std::string& path, double metres_per_unit) {
+  const std::string bytes = readBytes(path);
+  if (!bytes.starts_with("ply")) {
+    throw inputError("mesh.unreadable", "this is no PLY file: it does not begin with 'ply'", "",
+                     path);
+  }
+  return Ply(bytes, path, metres_per_unit).read();
+}
+
+}  // namespace palpate::vdb

@@ -1,0 +1,161 @@
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/DefaultLogger.hpp>
+#include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <system_error>
+
+#include "mesh/builder.h"
+#include "palpate/core/error.h"
+
+namespace palpate::vdb {
+namespace {
+
+/// Assimp drops faces whose indices are out of range and tells only its log, which is one for the process.
+class DroppedFaces final : public Assimp::LogStream {
+ public:
+  DroppedFaces() : lock_(mutex()), created_(Assimp::DefaultLogger::isNullLogger()) {
+    if (created_) {
+      Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
+    }
+    Assimp::DefaultLogger::get()->attachStream(this, Assimp::Logger::Warn | Assimp::Logger::Err);
+  }
+  ~DroppedFaces() override {
+    Assimp::DefaultLogger::get()->detachStream(this, Assimp::Logger::Warn | Assimp::Logger::Err);
+    if (created_) Assimp::DefaultLogger::kill();
+  }
+  DroppedFaces(const DroppedFaces&) = delete;
+  DroppedFaces& operator=(const DroppedFaces&) = delete;
+
+  void write(const char* message) override {
+    if (std::string_view(message).find("out-of-range") != std::string_view::npos) seen_ = true;
+  }
+  [[nodiscard]] bool seen() const noexcept { return seen_; }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+  bool created_;
+  bool seen_ = false;
+};
+
+/// Collects the meshes of a scene graph, each under the transforms above it.
+class Collector {
+ public:
+  Collector(const aiScene& scene, const std::string& path, MeshBuilder& builder)
+      : scene_(scene), path_(path), builder_(builder) {}
+
+  void collect(const aiNode& node, const aiMatrix4x4& above) {
+    const aiMatrix4x4 transform = above * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*scene_.mMeshes[node.mMeshes[i]], transform);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) collect(*node.mChildren[i], transform);
+  }
+
+ private:
+  void add(const aiMesh& part, const aiMatrix4x4& m) {
+    std::vector<std::uint32_t> numbers(part.mNumVertices);
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+      const aiVector3D& v = part.mVertices[i];
+      const Vec3 p(v.x, v.y, v.z);
+      const Vec3 placed(Vec3(m.a1, m.b1, m.c1) * p.x + Vec3(m.a2, m.b2, m.c2) * p.y +
+                        Vec3(m.a3, m.b3, m.c3) * p.z + Vec3(m.a4, m.b4, m.c4));
+      const auto where = [&] { return "vertex " + std::to_string(i) + " (from 0)"; };
+      numbers[i] = builder_.addVertex(isFinite(p) ? placed : p, where);
+    }
+    const bool mirrored = m.Determinant() < 0.0F;
+    for (unsigned i = 0; i < part.mNumFaces; ++i) {
+      const aiFace& face = part.mFaces[i];
+      std::vector<std::uint32_t> corners;
+      for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
+        if (face.mIndices[corner] >= part.mNumVertices) {
+          refuseIndex(path_, i, face.mIndices[corner], part.mNumVertices);
+        }
+        corners.push_back(numbers[face.mIndices[corner]]);
+      }
+      if (mirrored) std::reverse(corners.begin(), corners.end());
+      builder_.addPolygon(corners);
+    }
+  }
+
+  const aiScene& scene_;
+  const std::string& path_;
+  MeshBuilder& builder_;
+};
+
+Mesh readWithAssimp(const std::string& path, double metres_per_unit) {
+  const DroppedFaces dropped;
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(path, 0);
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    const std::string reason = importer.GetErrorString();
+    const bool index = reason.find("index") != std::string::npos;
+    throw inputError(index ? "mesh.index" : "mesh.unreadable",
+                     "not a mesh that can be read: " + reason,
+                     index ? "the file is damaged or was written wrongly; export the mesh again"
+                           : "STL, OBJ, PLY, glTF and GLB are read",
+                     path);
+  }
+  if (dropped.seen()) {
+    throw inputError("mesh.index", "some faces name vertices that are not there",
+                     "the file is damaged or was written wrongly; export the mesh again", path);
+  }
+  MeshBuilder builder(path, metres_per_unit);
+  Collector(*scene, path, builder).collect(*scene->mRootNode, aiMatrix4x4());
+  return builder.take();
+}
+
+std::string extensionOf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+std::ifstream openFile(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw inputError("mesh.missing", "there is no such file", "", path);
+  }
+  if (std::filesystem::is_directory(status)) {
+    throw inputError("mesh.unreadable", "this is a folder, not a mesh", "", path);
+  }
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    throw inputError("mesh.unreadable", "the file cannot be opened for reading", "", path);
+  }
+  return stream;
+}
+
+}  // namespace
+
+std::string readBytes(const std::string& path) {
+  std::ifstream stream = openFile(path);
+  std::string bytes(std::filesystem::file_size(path), '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!stream) throw inputError("mesh.unreadable", "the file cannot be read to its end", "", path);
+  return bytes;
+}
+
+// STL, OBJ and PLY are read by our own code: of files that were cut short Assimp 5.2.5 takes some for
+// whole and crashes on others, and it cannot say which line is wrong.
+Mesh readMesh(const std::string& path, double metres_per_unit) {
+  const std::string extension = extensionOf(path);
+  if (extension == ".stl") return readStl(path, metres_per_unit);
+  if (extension == ".ply") return readPly(path, metres_per_unit);
+  if (extension == ".obj") return readObj(path, metres_per_unit);
+  openFile(path);
+  return readWithAssimp(path, metres_per_unit);
+}
+
+}  // namespace palpate::vdb

@@ -1,0 +1,44 @@
+#pragma once
+/// Voxels that belong to a shape, and their pieces and cavities.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "palpate/vdb/image.h"
+
+namespace palpate::vdb {
+
+/// Inside or outside for each voxel of a box of an image, in a frame of outside voxels one thick, so that
+/// every voxel of the box has its neighbours.
+///
+/// Connectedness is that of the surface drawn around the mask (surface_net.h): two inside voxels hang
+/// together across a face, two outside voxels across a face or an edge.
+struct Mask {
+  std::array<int, 3> first{};        ///< image index of the box's first voxel
+  std::array<int, 3> box{};          ///< voxels of the box along i, j, k
+  std::vector<std::uint8_t> inside;  ///< 0 or 1; (box[0] + 2) (box[1] + 2) (box[2] + 2), i fastest
+
+  [[nodiscard]] std::array<std::ptrdiff_t, 3> strides() const noexcept {
+    return {1, box[0] + 2, static_cast<std::ptrdiff_t>(box[0] + 2) * (box[1] + 2)};
+  }
+  /// Place in `inside` of box voxel (i, j, k); each may run from -1 to box[a], both in the frame.
+  [[nodiscard]] std::ptrdiff_t at(int i, int j, int k) const noexcept {
+    const auto s = strides();
+    return (i + 1) + s[1] * (j + 1) + s[2] * (k + 1);
+  }
+};
+
+/// The voxels whose value passes `test`, in the smallest box of the image that holds them and `margin`
+/// voxels around, as far as the image goes. The box is empty if there are none.
+[[nodiscard]] Mask maskOf(const Image& image, const std::function<bool(float)>& test, int margin);
+
+/// Leaves only the largest piece (the first in voxel order if two are equal); returns how many there were.
+std::size_t keepLargestPiece(Mask& mask);
+
+/// Fills all outside voxels that no path of outside voxels joins to the border of the box: what an air
+/// path leads into stays open. Returns how many were filled.
+std::size_t fillCavities(Mask& mask);
+
+}  // namespace palpate::vdb
