@@ -1,5 +1,3 @@
-#include "palpate/vdb/bake.h"
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "bake/bake_plan.h"
+#include "palpate/vdb/bake.h"
 
 namespace palpate::vdb {
 namespace {
@@ -20,16 +19,19 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 
 enum class Verdict : std::uint8_t { kOutside, kInside, kKeep };
 
-/// The distance that is baked: the field's value, made a distance where it is none, and cut off by a
-/// box where one is needed.
+/// The distance that is baked: the field's value, made a distance where it is none. A field that is
+/// not exact can fall short of the distance to its own bounds, and would have a band without end
+/// there; and a box may cut it off.
 class Source {
  public:
-  Source(const Field& field, const std::optional<Box3>& cut)
+  Source(const Field& field, const Box3& domain, bool is_cut)
       : field_(field),
-        cut_(cut),
+        domain_(domain),
+        is_cut_(is_cut),
         implicit_(field.metric() == Metric::kImplicit),
+        exact_(field.metric() == Metric::kExact),
         lipschitz_(field.lipschitz()),
-        domain_(field.lipschitzDomain()) {}
+        lipschitz_domain_(field.lipschitzDomain()) {}
 
   struct Value {
     double distance;
@@ -38,9 +40,9 @@ class Source {
 
   [[nodiscard]] Value at(const Vec3& p) const noexcept {
     Value result = fieldAt(p);
-    if (cut_) {
+    if (is_cut_ || !exact_) {
       const double wall = boxDistance(p);
-      if (wall > result.distance) result = {wall, true};
+      if (wall > result.distance && (is_cut_ || wall > 0.0)) result = {wall, true};
     }
     return result;
   }
@@ -51,13 +53,14 @@ class Source {
     // A billionth covers the rounding of positions and values.
     const double reach = (radius + band) * (1.0 + 1e-9);
     Verdict verdict = Verdict::kKeep;
-    if (holds(center, radius)) {
+    if (lipschitz_domain_.contains(center - Vec3(radius)) &&
+        lipschitz_domain_.contains(center + Vec3(radius))) {
       const double value = field_.value(center);
       if (std::abs(value) > lipschitz_ * reach) {
         verdict = value > 0.0 ? Verdict::kOutside : Verdict::kInside;
       }
     }
-    if (cut_ && verdict != Verdict::kOutside) {
+    if (is_cut_ && verdict != Verdict::kOutside) {
       const double wall = boxDistance(center);
       if (wall > reach) return Verdict::kOutside;
       if (wall >= -reach) return Verdict::kKeep;
@@ -76,20 +79,18 @@ class Source {
   }
 
   [[nodiscard]] double boxDistance(const Vec3& p) const noexcept {
-    const Vec3 q = glm::abs(p - cut_->center()) - 0.5 * cut_->size();
+    const Vec3 q = glm::max(domain_.lo - p, p - domain_.hi);
     const double inside = std::min(std::max({q.x, q.y, q.z}), 0.0);
     return glm::length(glm::max(q, Vec3(0.0))) + inside;
   }
 
-  [[nodiscard]] bool holds(const Vec3& center, double radius) const noexcept {
-    return domain_.contains(center - Vec3(radius)) && domain_.contains(center + Vec3(radius));
-  }
-
   const Field& field_;
-  std::optional<Box3> cut_;
-  bool implicit_;
-  double lipschitz_;
   Box3 domain_;
+  bool is_cut_;
+  bool implicit_;
+  bool exact_;
+  double lipschitz_;
+  Box3 lipschitz_domain_;
 };
 
 class FieldBaker {
@@ -99,7 +100,7 @@ class FieldBaker {
         progress_(progress),
         plan_(checkOptions(options)),
         domain_(bakeDomain(field, options)),
-        source_(field, cutBy(field, options)),
+        source_(field, domain_, isCut(field, options)),
         grid_(emptyGrid(plan_, options)) {}
 
   LevelSet run() {
@@ -127,11 +128,10 @@ class FieldBaker {
   }
 
   /// A box that holds the whole shape cuts nothing off.
-  static std::optional<Box3> cutBy(const Field& field, const BakeOptions& options) {
-    if (!options.box) return {};
+  static bool isCut(const Field& field, const BakeOptions& options) {
+    if (!options.box) return false;
     const Box3 bounds = field.bounds();
-    if (options.box->contains(bounds.lo) && options.box->contains(bounds.hi)) return {};
-    return options.box;
+    return !options.box->contains(bounds.lo) || !options.box->contains(bounds.hi);
   }
 
   [[nodiscard]] Vec3 position(double i, double j, double k) const noexcept {

@@ -1,6 +1,4 @@
-#include <openvdb/tree/LeafManager.h>
 #include <openvdb/tree/ValueAccessor.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "grid/survey.h"
 #include "palpate/vdb/level_set.h"
 #include "palpate/vdb/openvdb_access.h"
 
@@ -23,90 +22,35 @@ using Accessor = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
 
 /// Eight voxels around a point: bit 2 of the index steps along x, bit 1 along y, bit 0 along z.
 struct Cell {
-  std::array<float, 8> values;
-  bool all_active;
+  std::array<float, 8> values{};
+  unsigned active = 0;  ///< a bit for each
 };
 
 Cell readCell(const Accessor& accessor, const Coord& base) noexcept {
-  Cell cell{};
+  Cell cell;
   constexpr int kLast = static_cast<int>(Leaf::DIM) - 1;
   const bool in_one_leaf =
       (base.x() & kLast) != kLast && (base.y() & kLast) != kLast && (base.z() & kLast) != kLast;
   const Leaf* const leaf = in_one_leaf ? accessor.probeConstLeaf(base) : nullptr;
-  bool active = true;
   if (leaf != nullptr) {
     const openvdb::Index first = Leaf::coordToOffset(base);
     for (openvdb::Index n = 0; n < 8; ++n) {
       const openvdb::Index at = first + ((n >> 2) << 6) + (((n >> 1) & 1) << 3) + (n & 1);
       cell.values[n] = leaf->getValue(at);
-      active = active && leaf->isValueOn(at);
+      cell.active |= (leaf->isValueOn(at) ? 1U : 0U) << n;
     }
-  } else {
-    for (int n = 0; n < 8; ++n) {
-      const Coord at = base.offsetBy(n >> 2, (n >> 1) & 1, n & 1);
-      active = accessor.probeValue(at, cell.values[static_cast<std::size_t>(n)]) && active;
-    }
+    return cell;
   }
-  cell.all_active = active;
+  for (unsigned n = 0; n < 8; ++n) {
+    const Coord at = base.offsetBy(static_cast<int>(n >> 2), static_cast<int>((n >> 1) & 1),
+                                   static_cast<int>(n & 1));
+    cell.active |= (accessor.probeValue(at, cell.values[n]) ? 1U : 0U) << n;
+  }
   return cell;
 }
 
-/// What has to be known of a grid before it can be a field.
-struct Survey {
-  CoordBBox inside;     ///< of the voxels with negative values
-  double steepest = 0;  ///< largest |gradient| of the interpolant [-]
-
-  void include(const Survey& other) {
-    inside.expand(other.inside);
-    steepest = std::max(steepest, other.steepest);
-  }
-};
-
-/// Bound of the interpolant's gradient in a cell: each component is a mean of four edge differences.
-double steepestIn(const std::array<float, 8>& v, double voxel) noexcept {
-  double sum = 0.0;
-  for (std::size_t step : {4U, 2U, 1U}) {
-    double largest = 0.0;
-    for (std::size_t n = 0; n < 8; ++n) {
-      if ((n & step) != 0) continue;
-      largest = std::max(largest, std::abs(static_cast<double>(v[n + step]) - v[n]));
-    }
-    sum += largest * largest;
-  }
-  return std::sqrt(sum) / voxel;
-}
-
-void surveyLeaf(const Leaf& leaf, const Accessor& accessor, double voxel, Survey& survey) {
-  for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
-    const Coord at = leaf.offsetToGlobalCoord(n);
-    if (leaf.getValue(n) < 0.0F) survey.inside.expand(at);
-    if (!leaf.isValueOn(n)) continue;
-    const Cell cell = readCell(accessor, at);
-    if (cell.all_active) {
-      survey.steepest = std::max(survey.steepest, steepestIn(cell.values, voxel));
-    }
-  }
-}
-
-Survey surveyGrid(const openvdb::FloatGrid& grid) {
-  const double voxel = grid.voxelSize().x();
-  tbb::enumerable_thread_specific<Survey> parts;
-  openvdb::tree::LeafManager<const Tree> leaves(grid.tree());
-  leaves.foreach ([&](const Leaf& leaf, std::size_t) {
-    surveyLeaf(leaf, Accessor(grid.tree()), voxel, parts.local());
-  });
-  Survey all;
-  for (const Survey& part : parts) all.include(part);
-  auto tiles = grid.tree().cbeginValueAll();
-  tiles.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
-  for (; tiles; ++tiles) {
-    if (*tiles < 0.0F) all.inside.expand(tiles.getBoundingBox());
-  }
-  return all;
-}
-
-/// Trilinear interpolation of the voxels. Its zero set is what is felt, and its value is no distance
-/// but nearly so: kImplicit.
+/// Trilinear interpolation of the voxels: one continuous function everywhere. Out of the band the
+/// voxels stand at a plateau, and outside of all voxels it rises with the distance to them.
 class GridField final : public Field {
  public:
   explicit GridField(LevelSet grid)
@@ -114,27 +58,29 @@ class GridField final : public Field {
         tree_(grid_.impl().grid->tree()),
         origin_(grid_.impl().origin),
         voxel_(grid_.info().voxel_size),
-        metres_per_unit_(grid_.info().metres_per_unit) {
-    const Survey survey = surveyGrid(*grid_.impl().grid);
-    // Never below 1, the slope of a distance, though a grid whose band is flat measures less.
+        metres_per_unit_(grid_.info().metres_per_unit),
+        plateau_(plateauOf(grid_.info())) {
+    const Survey survey = surveyGrid(*grid_.impl().grid, plateau_);
+    // The slope of a distance is 1, though a grid whose surface is flat may measure less.
     lipschitz_ = std::max(1.0, survey.steepest);
-    if (!survey.inside.empty()) {
-      // A cell's values can be negative only if one of its corners is.
-      bounds_.include(position(survey.inside.min().offsetBy(-1)));
-      bounds_.include(position(survey.inside.max().offsetBy(1)));
-    }
-    reach_ = bounds_.grownBy((grid_.info().half_width + 2.0) * voxel_);
+    // A cell is negative somewhere only if a corner is; it has a known voxel only if a corner is one.
+    if (!survey.inside.empty()) bounds_ = around(survey.inside);
+    reach_ = bounds_.unitedWith(survey.known.empty() ? Box3{} : around(survey.known));
   }
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
     if (!reach_.contains(p)) return beyond(p);
     const Vec3 q = (p - origin_) / voxel_;
     const Vec3 base = glm::floor(q);
-    const Vec3 t = q - base;
     const Accessor accessor(tree_);
-    const Cell cell = readCell(accessor, Coord(static_cast<int>(base.x), static_cast<int>(base.y),
-                                               static_cast<int>(base.z)));
-    return cell.all_active ? interpolate(cell.values, t) : outOfBand(cell.values, t, p);
+    Cell cell = readCell(accessor, Coord(static_cast<int>(base.x), static_cast<int>(base.y),
+                                         static_cast<int>(base.z)));
+    constexpr unsigned kAll = 0xFF;
+    if (cell.active == kAll) return interpolate(cell.values, q - base);
+    for (unsigned n = 0; n < 8; ++n) {
+      if ((cell.active >> n & 1U) == 0) cell.values[n] = std::copysign(plateau_, cell.values[n]);
+    }
+    return {interpolate(cell.values, q - base).value, Vec3(0.0), false};
   }
 
   [[nodiscard]] Box3 bounds() const noexcept override { return bounds_; }
@@ -143,8 +89,20 @@ class GridField final : public Field {
   [[nodiscard]] double featureSize() const noexcept override { return voxel_; }
 
  private:
+  /// [units] What an inactive voxel counts. Its distance is at least half_width voxels, but between
+  /// eight such voxels the surface can be nearer than interpolation says: the distance to one point
+  /// bends by at most 1 / distance along each axis, so by voxel^2 / 8 of that each.
+  static float plateauOf(const LevelSetInfo& info) {
+    const double slack = 3.0 / 8.0 / (info.half_width - 0.5 * std::sqrt(3.0));
+    return static_cast<float>((info.half_width - slack) * info.voxel_size / info.metres_per_unit);
+  }
+
   [[nodiscard]] Vec3 position(const Coord& at) const noexcept {
     return origin_ + voxel_ * Vec3(at.x(), at.y(), at.z());
+  }
+
+  [[nodiscard]] Box3 around(const CoordBBox& voxels) const noexcept {
+    return {position(voxels.min().offsetBy(-1)), position(voxels.max().offsetBy(1))};
   }
 
   [[nodiscard]] FieldSample interpolate(const std::array<float, 8>& v,
@@ -164,29 +122,14 @@ class GridField final : public Field {
     return {mix(near, far, t.x) * metres_per_unit_, slope * (metres_per_unit_ / voxel_), true};
   }
 
-  /// Not all of the eight voxels are known. The distance at p is at least that at a corner less the way
-  /// there; the slope of the interpolant may be above 1, so its own zero may lie nearer by that.
-  [[nodiscard]] FieldSample outOfBand(const std::array<float, 8>& v, const Vec3& t,
-                                      const Vec3& p) const noexcept {
-    double nearest = -kInfinity;
-    for (std::size_t n = 0; n < 8; ++n) {
-      const Vec3 corner(static_cast<double>(n >> 2), static_cast<double>((n >> 1) & 1),
-                        static_cast<double>(n & 1));
-      nearest = std::max(nearest, std::abs(static_cast<double>(v[n])) * metres_per_unit_ -
-                                      voxel_ * glm::length(t - corner));
-    }
-    const double interpolated = interpolate(v, t).value;
-    const bool is_inside = std::signbit(interpolated);
-    double distance = std::max(std::min(std::abs(interpolated), nearest), 0.0) / lipschitz_;
-    if (!is_inside) distance = std::max(distance, bounds_.distanceTo(p));
-    return {is_inside ? -distance : distance, Vec3(0.0), false};
-  }
-
-  /// So far away that no voxel is near; also where p is not a number.
+  /// Where no voxel is near; also where p is not a number.
   [[nodiscard]] FieldSample beyond(const Vec3& p) const noexcept {
+    const double plateau = plateau_ * metres_per_unit_;
     if (!isFinite(p)) return {std::numeric_limits<double>::quiet_NaN(), Vec3(0.0), false};
-    if (bounds_.isEmpty()) return {grid_.info().half_width * voxel_, Vec3(0.0), false};
-    return {bounds_.distanceTo(p), Vec3(0.0), false};
+    if (reach_.isEmpty()) return {plateau, Vec3(0.0), false};
+    const Vec3 out = glm::max(glm::max(reach_.lo - p, p - reach_.hi), Vec3(0.0));
+    // hypot, because squares overflow far away.
+    return {plateau + std::hypot(out.x, out.y, out.z), Vec3(0.0), false};
   }
 
   LevelSet grid_;
@@ -194,9 +137,10 @@ class GridField final : public Field {
   Vec3 origin_;             ///< [m] centre of voxel (0, 0, 0)
   double voxel_;            ///< [m]
   double metres_per_unit_;  ///< [m]
+  float plateau_;           ///< [units]
   double lipschitz_ = 1.0;
   Box3 bounds_;
-  Box3 reach_;  ///< [m] beyond it there is no voxel to read
+  Box3 reach_;  ///< [m] every cell beyond it is unknown and outside
 };
 
 }  // namespace

@@ -15,10 +15,10 @@
 #include <system_error>
 #include <utility>
 
+#include "grid/vdb_archive.h"
 #include "palpate/core/error.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/openvdb_access.h"
-#include "grid/vdb_archive.h"
 
 namespace palpate::vdb {
 namespace {

@@ -10,16 +10,20 @@
 namespace palpate::vdb {
 
 struct BakeOptions {
-  double voxel_size = 0.0;   ///< [m] must be positive
-  double half_width = 4.0;   ///< [voxels] at least 2
-  std::optional<Box3> box;   ///< [m] where to bake; needed for unbounded fields
+  double voxel_size = 0.0;  ///< [m] must be positive
+  double half_width = 4.0;  ///< [voxels] at least 2
+  std::optional<Box3> box;  ///< [m] where to bake; needed for unbounded fields. What reaches out of
+                            ///< it is cut off by its faces, so that the result is closed
   std::string name = "surface";
   std::string length_unit = "mm";  ///< unit that the grid's world coordinates are stored in
   std::uint64_t max_memory = 0;    ///< [bytes] 0: 80 % of the machine's
   std::map<std::string, std::string> metadata = {};
 };
 
-/// Values are the field's own if it is exact; S / |grad S| otherwise.
+/// Voxel (0, 0, 0) has its centre at the origin. Values are the field's own if it is exact or a
+/// bound; S / |grad S| if it is implicit; and never less than the distance to the field's bounds.
+/// Active are the voxels with |value| less than half_width voxels. The result does not depend on the
+/// number of threads.
 /// @throws Error: kInput for options or an empty result (a shape the voxels cannot hold), kOperation
 /// for memory, kCancelled.
 [[nodiscard]] LevelSet bake(const Field& field, const BakeOptions& options,

@@ -15,14 +15,14 @@ namespace palpate::vdb {
 
 /// What is known of a level set without looking at its voxels one by one.
 struct LevelSetInfo {
-  std::string name;              ///< grid name, `<layer>/surface`
-  double voxel_size = 0.0;       ///< [m]
-  double half_width = 0.0;       ///< [voxels] of the narrow band, each side
+  std::string name;         ///< grid name, `<layer>/surface`
+  double voxel_size = 0.0;  ///< [m]
+  double half_width = 0.0;  ///< [voxels] of the narrow band, each side
   std::uint64_t active_voxels = 0;
-  std::uint64_t memory = 0;      ///< [bytes]
-  Box3 bounds;                   ///< [m] of the active voxels
-  std::string length_unit;       ///< of the file: "mm", "m", ...
-  double metres_per_unit = 1.0;  ///< [m]
+  std::uint64_t memory = 0;                     ///< [bytes]
+  Box3 bounds;                                  ///< [m] of the active voxels
+  std::string length_unit;                      ///< of the file: "mm", "m", ...
+  double metres_per_unit = 1.0;                 ///< [m]
   std::map<std::string, std::string> metadata;  ///< frame, layer, source, tolerance, ... as text
 };
 
@@ -45,8 +45,14 @@ class LevelSet {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// The level set as a Field in [m]. Trilinear: value and its own gradient from the same eight voxels.
-/// Out of the band the sample says so: sign right, |value| a lower bound, gradient zero.
+/// The level set as a Field in [m]. Trilinear: value and its own gradient from the same eight voxels,
+/// in some 50 ns; in the band if all eight are active. Out of the band the sample says so: the
+/// sign is right, the gradient zero, and |value| a lower bound of the distance that never exceeds the
+/// band's half width by more than the way to the nearest voxel.
+///
+/// metric() is kImplicit: between exact voxels the interpolant is off by up to voxel^2 / 8 of the
+/// curvatures, either way, and its gradient's length differs from 1. lipschitz() is measured from the
+/// voxels, and holds everywhere, across the band's rim too.
 [[nodiscard]] FieldPtr gridField(const LevelSet& grid);
 
 }  // namespace palpate::vdb

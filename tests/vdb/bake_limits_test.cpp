@@ -1,0 +1,149 @@
+// What a bake refuses, and how it is stopped.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <thread>
+
+#include "palpate/fields/csg.h"
+#include "palpate/fields/primitives.h"
+#include "palpate/vdb/bake.h"
+#include "vdb/shapes.h"
+
+namespace palpate::vdb {
+namespace {
+
+using namespace palpate::vdb::test;  // NOLINT(google-build-using-namespace)
+
+/// The problem that `work` ends in.
+template <typename Work>
+Error errorOf(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << "no error";
+  return inputError("none", "none");
+}
+
+Error bakeError(const FieldPtr& field, const BakeOptions& options) {
+  return errorOf([&] { static_cast<void>(bake(*field, options)); });
+}
+
+TEST(BakeLimits, OptionsAreChecked) {
+  const FieldPtr ball = sphere(Vec3(0.0), 5e-3);
+  for (const double bad : {0.0, -1e-3, std::nan(""), kInfinity}) {
+    EXPECT_EQ(bakeError(ball, voxels(bad)).problem().code, "bake.voxel_size");
+  }
+  for (const double bad : {1.9, -4.0, std::nan(""), 1e9}) {
+    EXPECT_EQ(bakeError(ball, voxels(1e-3, bad)).problem().code, "bake.half_width");
+  }
+  BakeOptions options = voxels(1e-3);
+  options.length_unit = "furlong";
+  EXPECT_EQ(bakeError(ball, options).problem().code, "unit.unknown");
+  options = voxels(1e-3);
+  options.box = Box3{};
+  EXPECT_EQ(bakeError(ball, options).problem().code, "bake.box");
+}
+
+TEST(BakeLimits, UnboundedNeedsABox) {
+  const Error error = bakeError(halfSpace(Vec3(0.0), Vec3(0.0, 0.0, 1.0)), voxels(1e-3));
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
+  EXPECT_EQ(error.problem().code, "bake.unbounded");
+  EXPECT_NE(error.problem().hint.find("box"), std::string::npos);
+}
+
+TEST(BakeLimits, ShapeThinnerThanVoxelsIsRefused) {
+  // A plate of a tenth of a voxel, between two layers of voxels.
+  const Error error =
+      bakeError(box(Vec3(0.0, 0.0, 0.5e-3), Vec3(20e-3, 20e-3, 0.1e-3)), voxels(1e-3));
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
+  EXPECT_EQ(error.problem().code, "bake.empty");
+  EXPECT_NE(error.problem().message.find("1 mm"), std::string::npos);
+  EXPECT_NE(error.problem().hint.find("third"), std::string::npos);
+}
+
+TEST(BakeLimits, NothingInTheBoxIsRefused) {
+  BakeOptions options = voxels(1e-3);
+  options.box = Box3{Vec3(0.1), Vec3(0.2)};
+  EXPECT_EQ(bakeError(sphere(Vec3(0.0), 5e-3), options).problem().code, "bake.empty");
+}
+
+TEST(BakeLimits, FieldThatIsNoNumberIsRefused) {
+  const auto function = [](const Vec3& p) {
+    const double value = glm::length(p) - 5e-3;
+    return FieldSample{p.x > 4.6e-3 ? std::nan("") : value, p, true};
+  };
+  const FunctionField field(function, {{Vec3(-5e-3), Vec3(5e-3)}});
+  const Error error = errorOf([&] { static_cast<void>(bake(field, voxels(0.5e-3))); });
+  EXPECT_EQ(error.problem().code, "bake.not_finite");
+}
+
+TEST(BakeLimits, MemoryIsRefusedBeforeItIsTaken) {
+  // A million voxels across: some 10^13 in the band.
+  const Error error = bakeError(sphere(Vec3(0.0), 50e-3), voxels(0.1e-6));
+  EXPECT_EQ(error.kind(), ErrorKind::kOperation);
+  EXPECT_EQ(error.problem().code, "bake.memory");
+  EXPECT_NE(error.problem().message.find("0.0001 mm"), std::string::npos);
+  EXPECT_EQ(bakeError(sphere(Vec3(0.0), 50e-3), voxels(1e-12)).kind(), ErrorKind::kOperation);
+}
+
+TEST(BakeLimits, SuggestedVoxelSizeFits) {
+  const FieldPtr ball = sphere(Vec3(0.0), 20e-3);
+  for (const std::uint64_t limit : {2'000'000U, 20'000'000U}) {
+    BakeOptions options = voxels(0.02e-3);
+    options.max_memory = limit;
+    const Error error = bakeError(ball, options);
+    ASSERT_EQ(error.problem().code, "bake.memory");
+    const std::string& hint = error.problem().hint;
+    ASSERT_TRUE(hint.starts_with("voxels of "));
+    const double suggested = std::stod(hint.substr(10)) * 1e-3;
+    options.voxel_size = suggested;
+    const LevelSet set = bake(*ball, options);
+    EXPECT_LE(set.info().memory, limit);
+    // Not wastefully larger either: a quarter of that size would be 16 times the memory.
+    options.voxel_size = suggested / 4.0;
+    EXPECT_EQ(bakeError(ball, options).problem().code, "bake.memory");
+  }
+}
+
+TEST(BakeLimits, ProgressComesOnTheCallingThread) {
+  double last = -1.0;
+  int calls = 0;
+  const auto here = std::this_thread::get_id();
+  const LevelSet set =
+      bake(*sphere(Vec3(0.0), 20e-3), voxels(0.3e-3), [&](std::string_view what, double fraction) {
+        EXPECT_EQ(std::this_thread::get_id(), here);
+        EXPECT_FALSE(what.empty());
+        EXPECT_LE(fraction, 1.0);
+        EXPECT_GE(fraction, last);
+        last = fraction;
+        ++calls;
+        return true;
+      });
+  EXPECT_GT(calls, 4);
+  EXPECT_EQ(last, 1.0);
+}
+
+TEST(BakeLimits, CanBeStoppedAtAnyReport) {
+  const FieldPtr ball = sphere(Vec3(0.0), 10e-3);
+  int reports = 0;
+  static_cast<void>(bake(*ball, voxels(0.3e-3), [&](std::string_view, double) {
+    ++reports;
+    return true;
+  }));
+  for (const int stop_at : {0, 1, reports / 2}) {
+    int calls = 0;
+    const Error error = errorOf([&] {
+      static_cast<void>(
+          bake(*ball, voxels(0.3e-3), [&](std::string_view, double) { return calls++ < stop_at; }));
+    });
+    EXPECT_EQ(error.kind(), ErrorKind::kCancelled);
+    EXPECT_EQ(calls, stop_at + 1);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::vdb
