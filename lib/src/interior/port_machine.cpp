@@ -6,6 +6,10 @@ namespace palpate {
 
 namespace {
 
+bool holds(const std::vector<RegionId>& set, RegionId region) noexcept {
+  return std::find(set.begin(), set.end(), region) != set.end();
+}
+
 bool meets(const std::vector<LeafId>& leaves, std::span<const LeafId> crossed) noexcept {
   return std::any_of(crossed.begin(), crossed.end(), [&](LeafId leaf) {
     return std::find(leaves.begin(), leaves.end(), leaf) != leaves.end();
@@ -50,12 +54,12 @@ bool operator==(const PassedPorts& a, const PassedPorts& b) noexcept {
   return true;
 }
 
+bool Port::leadsInward(RegionId a, RegionId b) const noexcept {
+  return direction != PortDirection::kOut && holds(from, a) && holds(to, b);
+}
+
 bool Port::leads(RegionId a, RegionId b) const noexcept {
-  const auto holds = [](const std::vector<RegionId>& set, RegionId region) {
-    return std::find(set.begin(), set.end(), region) != set.end();
-  };
-  if (direction != PortDirection::kOut && holds(from, a) && holds(to, b)) return true;
-  return direction != PortDirection::kIn && holds(to, a) && holds(from, b);
+  return leadsInward(a, b) || (direction != PortDirection::kIn && holds(to, a) && holds(from, b));
 }
 
 Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Port> ports,
@@ -114,8 +118,7 @@ Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond
                      [&](PortId before) { return passed.contains(before); })) {
       continue;
     }
-    const bool inward = std::find(port.from.begin(), port.from.end(), from) != port.from.end();
-    const double force = inward ? port.opens_at : port.back;
+    const double force = port.leadsInward(from, facet.beyond) ? port.opens_at : port.back;
     if (force <= 0.0) {
       facet.kind = Facet::Kind::kOpen;
       facet.port = id;

@@ -99,6 +99,7 @@ void shake(const Bag& bag) {
     const TickResult out = drive.renderer().update({hip, Vec3(0.0)});
     SCOPED_TRACE(testing::Message() << bag.name << " tick " << i);
     ASSERT_TRUE(isFinite(out.force));
+    if (i > 228 && i < 236 && std::string(bag.name) == "label group") std::printf("%d hip %.9g %.9g %.9g proxy %.12g %.12g %.12g region %d ev %d f %.9g %.9g %.9g\n", i, hip.x, hip.y, hip.z, out.proxy.x, out.proxy.y, out.proxy.z, out.region, out.event_count, scene.regions()[1].field->value(out.proxy), scene.regions()[2].field->value(out.proxy), scene.regions()[3].field->value(out.proxy));
     ASSERT_TRUE(isAt(scene, out.region, out.proxy, 2e-8))
         << "says " << out.region << ", is in " << scene.regionAt(out.proxy);
     ASSERT_TRUE(isExplained(scene, region, out)) << region << " to " << out.region;
