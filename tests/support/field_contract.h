@@ -2,8 +2,8 @@
 /// The promises of palpate::Field as checks that any field can be put through.
 ///
 /// A test file joins its fields with
-///   INSTANTIATE_TEST_SUITE_P(Spheres, FieldContract, testing::ValuesIn(cases()),
-///                            testing::PrintToStringParamName());
+///   INSTANTIATE_TEST_SUITE_P(Spheres, FieldContract, ::testing::ValuesIn(cases()),
+///                            ::testing::PrintToStringParamName());
 /// and each check can be called on its own, to show that it catches a field that lies.
 
 #include <gtest/gtest.h>
@@ -56,26 +56,26 @@ class Random {
 };
 
 /// gradient against central differences of value, except where the gradient itself jumps.
-[[nodiscard]] testing::AssertionResult checkGradient(const FieldCase& field_case);
+[[nodiscard]] ::testing::AssertionResult checkGradient(const FieldCase& field_case);
 /// value < 0 exactly where `inside` says so.
-[[nodiscard]] testing::AssertionResult checkSign(const FieldCase& field_case);
+[[nodiscard]] ::testing::AssertionResult checkSign(const FieldCase& field_case);
 /// Nothing inside lies out of bounds(), not even a hair's breadth beyond its faces.
-[[nodiscard]] testing::AssertionResult checkBounds(const FieldCase& field_case);
+[[nodiscard]] ::testing::AssertionResult checkBounds(const FieldCase& field_case);
 /// No pair of points in lipschitzDomain() rises faster than lipschitz(), searched uphill.
-[[nodiscard]] testing::AssertionResult checkLipschitz(const FieldCase& field_case);
+[[nodiscard]] ::testing::AssertionResult checkLipschitz(const FieldCase& field_case);
 /// |value| against the distance found by shooting at the border of `inside`: equal for exact
 /// fields, never more for bounds, sign only for implicit ones.
-[[nodiscard]] testing::AssertionResult checkMetric(const FieldCase& field_case);
+[[nodiscard]] ::testing::AssertionResult checkMetric(const FieldCase& field_case);
 /// jet() has the value and gradient of sample(), and the Hessian of its differences.
-[[nodiscard]] testing::AssertionResult checkJet(const FieldCase& field_case);
+[[nodiscard]] ::testing::AssertionResult checkJet(const FieldCase& field_case);
 /// value() is sample().value, bit for bit.
-[[nodiscard]] testing::AssertionResult checkValue(const FieldCase& field_case);
+[[nodiscard]] ::testing::AssertionResult checkValue(const FieldCase& field_case);
 /// Nothing but finite numbers and usable gradients at the awkward points; no finite value for a
 /// point that is not finite.
-[[nodiscard]] testing::AssertionResult checkAwkward(const FieldCase& field_case);
+[[nodiscard]] ::testing::AssertionResult checkAwkward(const FieldCase& field_case);
 /// Constants are in range and belong together.
-[[nodiscard]] testing::AssertionResult checkConstants(const FieldCase& field_case);
+[[nodiscard]] ::testing::AssertionResult checkConstants(const FieldCase& field_case);
 
-class FieldContract : public testing::TestWithParam<FieldCase> {};
+class FieldContract : public ::testing::TestWithParam<FieldCase> {};
 
 }  // namespace palpate::test

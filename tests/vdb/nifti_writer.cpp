@@ -1,14 +1,13 @@
 #include "vdb/nifti_writer.h"
 
-#include <gtest/gtest.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
+
+#include "support/temp_file.h"
 
 namespace palpate::vdb::test {
 namespace {
@@ -180,20 +179,12 @@ Bytes gzipped(const Bytes& content) {
 }
 
 std::string writeTemporary(const std::string& name, const Bytes& content) {
-  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  std::string folder = std::string(test->test_suite_name()) + "." + test->name();
-  std::replace(folder.begin(), folder.end(), '/', '_');
-  const auto path = std::filesystem::path(testing::TempDir()) / "palpate" / folder / name;
-  std::filesystem::create_directories(path.parent_path());
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(reinterpret_cast<const char*>(content.data()),
-             static_cast<std::streamsize>(content.size()));
-  if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
-  return path.string();
+  return writeTemporary(name, std::string(content.begin(), content.end()));
 }
 
 std::string writeTemporary(const std::string& name, const std::string& content) {
-  return writeTemporary(name, Bytes(content.begin(), content.end()));
+  static const palpate::testing::TempFolder folder;
+  return folder.file(name, content);
 }
 
 }  // namespace palpate::vdb::test

@@ -34,7 +34,8 @@ using Bytes = std::vector<unsigned char>;
 [[nodiscard]] Bytes bytesOf(const NiftiFile& file);
 [[nodiscard]] Bytes gzipped(const Bytes& content);
 
-/// Writes `content` to `name` in a folder of the running test's own and returns the path.
+/// Writes `content` to `name` in a folder that goes when the tests end; its path. A name is used again
+/// and again.
 std::string writeTemporary(const std::string& name, const Bytes& content);
 std::string writeTemporary(const std::string& name, const std::string& content);
 

@@ -19,23 +19,33 @@ struct Motion {
   }
 };
 
-/// Narrows a change of side down to the tolerance: secant steps kept inside the bracket, halving where
-/// they stall. Returns the near end.
+/// Narrows a change of side down to the tolerance. Secant steps aim at half of the tolerance, on the near
+/// side, so that one good step ends the search; the value of an end that stays twice is halved (the
+/// Illinois rule), and every fourth step halves the bracket, so that no shape of S stalls it. Returns the near end.
 double narrow(Motion& motion, double near, double near_value, double far,
               double far_value) noexcept {
   const double tolerance = motion.surface.tolerance;
+  const double aim = 0.5 * tolerance;
   const double shortest = 1e-15;
+  double near_weight = near_value - aim;
+  double far_weight = far_value - aim;
+  int moved = 0;  // +1: the near end, -1: the far end
   for (int i = 0; i < 60 && near_value > tolerance && far - near > shortest; ++i) {
-    double t = near + (far - near) * near_value / (near_value - far_value);
-    if (i % 3 == 2) t = 0.5 * (near + far);
+    double t = near + (far - near) * near_weight / (near_weight - far_weight);
+    if (i % 4 == 3) t = 0.5 * (near + far);
     t = std::clamp(t, near, far);
     const double value = motion.valueAt(t);
     if (value > 0.0) {
       near = t;
       near_value = value;
+      near_weight = value - aim;
+      if (moved > 0) far_weight *= 0.5;
+      moved = 1;
     } else {
       far = t;
-      far_value = value;
+      far_weight = value - aim;
+      if (moved < 0) near_weight *= 0.5;
+      moved = -1;
     }
   }
   return near;

@@ -65,14 +65,14 @@ struct Partition::Builder {
     switch (structure.kind) {
       case FieldStructure::Kind::kLeaf:
         program.leaves.push_back(leaf(field, pose));
-        program.steps.push_back({Step::Op::kLeaf, program.leaves.back()});
+        program.steps.push_back({Step::Op::kLeaf, program.leaves.back(), 0});
         break;
       case FieldStructure::Kind::kTransform:
         append(program, structure.operands.front(), pose.after(structure.pose), depth);
         break;
       case FieldStructure::Kind::kComplement:
         append(program, structure.operands.front(), pose, depth);
-        program.steps.push_back({Step::Op::kNot, 1});
+        program.steps.push_back({Step::Op::kNot, 0, 0});
         break;
       case FieldStructure::Kind::kUnion:
       case FieldStructure::Kind::kIntersection:
@@ -83,7 +83,7 @@ struct Partition::Builder {
         bool is_first = true;
         for (const FieldPtr& operand : structure.operands) {
           append(program, operand, pose, depth + (is_first ? 0 : 1));
-          if (!is_first) program.steps.push_back({op, 2});
+          if (!is_first) fold(program, op);
           is_first = false;
         }
         break;
@@ -91,6 +91,23 @@ struct Partition::Builder {
     }
     remember(field.get(), program.leaves.begin() + static_cast<std::ptrdiff_t>(first),
              program.leaves.end());
+  }
+
+  /// Combines the two topmost operands; a run of leaves with one more leaf stays one step.
+  static void fold(Program& program, Step::Op op) {
+    const Step::Op run = op == Step::Op::kOr ? Step::Op::kAnyOf : Step::Op::kAllOf;
+    std::vector<Step>& steps = program.steps;
+    if (steps.size() >= 2 && steps.back().op == Step::Op::kLeaf) {
+      Step& before = steps[steps.size() - 2];
+      const auto next = static_cast<LeafId>(before.leaf + std::max<std::size_t>(before.count, 1));
+      if ((before.op == Step::Op::kLeaf || before.op == run) && steps.back().leaf == next) {
+        before.count = static_cast<std::uint16_t>(std::max<int>(before.count, 1) + 1);
+        before.op = run;
+        steps.pop_back();
+        return;
+      }
+    }
+    steps.push_back({op, 0, 0});
   }
 
   LeafId leaf(const FieldPtr& field, const Pose& pose) {
@@ -132,6 +149,41 @@ Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr>
   for (const FieldPtr& layer : layers) programs_.push_back(builder.build(layer));
   for (const FieldPtr& mask : masks) programs_.push_back(builder.build(mask));
   parts_.assign(builder.parts.begin(), builder.parts.end());
+
+  regions_of_leaf_.resize(leaves_.size());
+  const Signs nowhere(leaves_.size());
+  for (std::size_t i = 0; i < layer_count_; ++i) {
+    const auto region = static_cast<RegionId>(i + 1);
+    for (const LeafId leaf : programs_[i].leaves) regions_of_leaf_[leaf].push_back(region);
+    if (evaluate(programs_[i], nowhere)) hold_empty_.push_back(region);
+  }
+  std::vector<Box3> boxes;
+  for (const Leaf& leaf : leaves_) boxes.push_back(leaf.field->bounds());
+  tree_ = BoundsTree(boxes);
+}
+
+bool Signs::anyInside(LeafId first, std::size_t count) const noexcept {
+  for (std::size_t leaf = first; leaf < first + count;) {
+    const std::size_t bit = leaf & 63U;
+    const std::size_t taken = std::min(64 - bit, first + count - leaf);
+    const std::uint64_t mask = (taken == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << taken) - 1)
+                               << bit;
+    if ((words_[leaf >> 6U] & mask) != 0) return true;
+    leaf += taken;
+  }
+  return false;
+}
+
+bool Signs::allInside(LeafId first, std::size_t count) const noexcept {
+  for (std::size_t leaf = first; leaf < first + count;) {
+    const std::size_t bit = leaf & 63U;
+    const std::size_t taken = std::min(64 - bit, first + count - leaf);
+    const std::uint64_t mask = (taken == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << taken) - 1)
+                               << bit;
+    if ((words_[leaf >> 6U] & mask) != mask) return false;
+    leaf += taken;
+  }
+  return true;
 }
 
 std::vector<LeafId> Partition::leavesOf(const Field* part) const {
@@ -152,7 +204,13 @@ bool Partition::evaluate(const Program& program, const Signs& signs) noexcept {
   for (const Step& step : program.steps) {
     switch (step.op) {
       case Step::Op::kLeaf:
-        stack = (stack << 1U) | (signs.inside(step.argument) ? 1U : 0U);
+        stack = (stack << 1U) | (signs.inside(step.leaf) ? 1U : 0U);
+        break;
+      case Step::Op::kAnyOf:
+        stack = (stack << 1U) | (signs.anyInside(step.leaf, step.count) ? 1U : 0U);
+        break;
+      case Step::Op::kAllOf:
+        stack = (stack << 1U) | (signs.allInside(step.leaf, step.count) ? 1U : 0U);
         break;
       case Step::Op::kNot:
         stack ^= 1U;
@@ -177,16 +235,29 @@ bool Partition::maskHolds(std::size_t index, const Signs& signs) const noexcept 
 }
 
 RegionId Partition::regionOf(const Signs& signs) const noexcept {
-  for (std::size_t i = layer_count_; i > 0; --i) {
-    if (evaluate(programs_[i - 1], signs)) return static_cast<RegionId>(i);
+  if (layer_count_ <= 8) {
+    for (std::size_t i = layer_count_; i > 0; --i) {
+      if (evaluate(programs_[i - 1], signs)) return static_cast<RegionId>(i);
+    }
+    return kOutside;
   }
-  return kOutside;
+  // Only layers that use an inside leaf, or hold even without one, can hold the cell.
+  RegionId best = kOutside;
+  const auto consider = [&](RegionId region) {
+    if (region > best && evaluate(programs_[region - 1U], signs)) best = region;
+  };
+  for (const RegionId region : hold_empty_) consider(region);
+  signs.forInside([&](LeafId leaf) {
+    for (const RegionId region : regions_of_leaf_[leaf]) consider(region);
+  });
+  return best;
 }
 
 void Partition::signsAt(const Vec3& p, Signs& out) const noexcept {
-  for (std::size_t i = 0; i < leaves_.size(); ++i) {
-    out.set(static_cast<LeafId>(i), leaves_[i].field->value(p) < 0.0);
-  }
+  out.clear();
+  tree_.visit(p, 0.0, [&](std::uint32_t item) {
+    if (leaves_[item].field->value(p) < 0.0) out.set(static_cast<LeafId>(item), true);
+  });
 }
 
 }  // namespace palpate

@@ -6,6 +6,10 @@ namespace palpate {
 
 namespace {
 
+bool holds(const std::vector<RegionId>& set, RegionId region) noexcept {
+  return std::find(set.begin(), set.end(), region) != set.end();
+}
+
 bool meets(const std::vector<LeafId>& leaves, std::span<const LeafId> crossed) noexcept {
   return std::any_of(crossed.begin(), crossed.end(), [&](LeafId leaf) {
     return std::find(leaves.begin(), leaves.end(), leaf) != leaves.end();
@@ -50,12 +54,12 @@ bool operator==(const PassedPorts& a, const PassedPorts& b) noexcept {
   return true;
 }
 
+bool Port::leadsInward(RegionId a, RegionId b) const noexcept {
+  return direction != PortDirection::kOut && holds(from, a) && holds(to, b);
+}
+
 bool Port::leads(RegionId a, RegionId b) const noexcept {
-  const auto holds = [](const std::vector<RegionId>& set, RegionId region) {
-    return std::find(set.begin(), set.end(), region) != set.end();
-  };
-  if (direction != PortDirection::kOut && holds(from, a) && holds(to, b)) return true;
-  return direction != PortDirection::kIn && holds(to, a) && holds(from, b);
+  return leadsInward(a, b) || (direction != PortDirection::kIn && holds(to, a) && holds(from, b));
 }
 
 Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Port> ports,
@@ -78,13 +82,16 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
   }
 }
 
-Facet Passages::facet(const Partition& partition, RegionId from, const Signs& there,
-                      std::span<const LeafId> crossed, const PassedPorts& passed) const noexcept {
+Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond, const Signs& here,
+                      const Signs& there, std::span<const LeafId> crossed,
+                      const PassedPorts& passed) const noexcept {
   Facet facet;
-  facet.beyond = partition.regionOf(there);
+  facet.beyond = beyond;
   if (facet.beyond == from) {
     for (const Sheet& sheet : sheets_) {
       if (!meets(sheet.leaves, crossed)) continue;
+      const auto solid = static_cast<std::size_t>(sheet.solid);
+      if (partition.maskHolds(solid, here) == partition.maskHolds(solid, there)) continue;
       if (sheet.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(sheet.mask), there))
         continue;
       facet.kind = Facet::Kind::kClosed;
@@ -111,8 +118,7 @@ Facet Passages::facet(const Partition& partition, RegionId from, const Signs& th
                      [&](PortId before) { return passed.contains(before); })) {
       continue;
     }
-    const bool inward = std::find(port.from.begin(), port.from.end(), from) != port.from.end();
-    const double force = inward ? port.opens_at : port.back;
+    const double force = port.leadsInward(from, facet.beyond) ? port.opens_at : port.back;
     if (force <= 0.0) {
       facet.kind = Facet::Kind::kOpen;
       facet.port = id;
@@ -125,6 +131,13 @@ Facet Passages::facet(const Partition& partition, RegionId from, const Signs& th
     }
   }
   return facet;
+}
+
+Facet Passages::facet(const Partition& partition, RegionId from, const Signs& there,
+                      std::span<const LeafId> crossed, const PassedPorts& passed) const {
+  Signs here = there;
+  for (const LeafId leaf : crossed) here.flip(leaf);
+  return facet(partition, from, partition.regionOf(there), here, there, crossed, passed);
 }
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "palpate/contact/sweep.h"
 
@@ -20,6 +21,8 @@ constexpr int kEvaluationsPerTick = 4096;
 constexpr int kEvaluationsPerSweep = 256;
 /// The hot list reaches this many times as far as the motion that made it.
 constexpr double kHorizon = 16.0;
+/// ... and at least this share of the smallest feature.
+constexpr double kHorizonShare = 0.1;
 
 }  // namespace
 
@@ -34,7 +37,9 @@ CellWalker::CellWalker(const Scene& scene)
       known_(leaves_.size()) {
   for (std::size_t i = 0; i < leaves_.size(); ++i) {
     tolerance_[i] = kOnSurface * leaves_[i].feature * leaves_[i].lipschitz;
+    smallest_horizon_ = std::min(smallest_horizon_, kHorizonShare * leaves_[i].feature);
   }
+  holding_.reserve(scene.regions().size());
   place(Vec3(0.0));
 }
 
@@ -43,13 +48,13 @@ void CellWalker::place(const Vec3& p) noexcept {
   travel_ = 0.0;
   cold_due_ = 0.0;
   hot_count_ = 0;
-  for (std::size_t i = 0; i < leaves_.size(); ++i) {
-    const auto id = static_cast<LeafId>(i);
-    const double value = leaves_[i].field->value(p);
-    signs_.set(id, value < 0.0);
-    due_[i] = std::fabs(value) / leaves_[i].lipschitz;
+  scene_.partition().signsAt(p, signs_);
+  holding_.clear();
+  for (std::size_t i = scene_.regions().size() - 1; i > 0; --i) {
+    const auto region = static_cast<RegionId>(i);
+    if (scene_.partition().layerHolds(region, signs_)) holding_.push_back(region);
   }
-  region_ = scene_.partition().regionOf(signs_);
+  region_ = holding_.empty() ? kOutside : holding_.front();
   mouth_ = -1;
   ++state_;
 }
@@ -60,9 +65,8 @@ void CellWalker::beginTick() noexcept {
   evaluations_left_ = kEvaluationsPerTick;
   // The odometer starts again now and then, so that its rounding stays below every tolerance.
   if (travel_ > 1.0) {
-    for (double& due : due_) due -= travel_;
-    cold_due_ -= travel_;
     travel_ = 0.0;
+    cold_due_ = 0.0;
   }
 }
 
@@ -74,18 +78,14 @@ double CellWalker::measure(LeafId leaf) noexcept {
 
 void CellWalker::refresh(double length) noexcept {
   if (travel_ + length < cold_due_) return;
-  const double horizon = travel_ + kHorizon * length;
+  const double horizon = std::max(kHorizon * length, smallest_horizon_);
   hot_count_ = 0;
-  cold_due_ = kInfinity;
-  for (std::size_t i = 0; i < leaves_.size(); ++i) {
-    const auto id = static_cast<LeafId>(i);
-    if (due_[i] <= travel_ + length) measure(id);
-    if (due_[i] <= horizon) {
-      hot_[hot_count_++] = id;
-    } else {
-      cold_due_ = std::min(cold_due_, due_[i]);
-    }
-  }
+  scene_.partition().tree().visit(x_, horizon, [&](std::uint32_t item) {
+    const auto leaf = static_cast<LeafId>(item);
+    due_[leaf] = travel_;
+    hot_[hot_count_++] = leaf;
+  });
+  cold_due_ = travel_ + horizon;
 }
 
 void CellWalker::jump(const Vec3& x) noexcept {
@@ -173,15 +173,54 @@ Facet CellWalker::facetAt(LeafId leaf) noexcept {
   if (crossing_count_ == 1 && known.state == state_) return known.facet;
   beyond_ = signs_;  // same size: copies words, allocates nothing
   for (std::size_t i = 0; i < crossing_count_; ++i) beyond_.flip(crossing_[i]);
-  const Facet facet = scene_.passages().facet(
-      scene_.partition(), region_, beyond_, std::span(crossing_.data(), crossing_count_), passed_);
+  const Facet facet =
+      scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_, beyond_,
+                              std::span(crossing_.data(), crossing_count_), passed_);
   if (crossing_count_ == 1) known = {facet, state_};
   return facet;
+}
+
+RegionId CellWalker::regionBeyond() const noexcept {
+  const Partition& partition = scene_.partition();
+  const auto uses_crossed = [&](RegionId region) {
+    for (std::size_t i = 0; i < crossing_count_; ++i) {
+      const auto regions = partition.regionsOf(crossing_[i]);
+      if (std::find(regions.begin(), regions.end(), region) != regions.end()) return true;
+    }
+    return false;
+  };
+  RegionId best = kOutside;
+  for (const RegionId region : holding_) {
+    if (!uses_crossed(region)) {
+      best = region;  // the innermost of those that stay as they are
+      break;
+    }
+  }
+  for (std::size_t i = 0; i < crossing_count_; ++i) {
+    for (const RegionId region : partition.regionsOf(crossing_[i])) {
+      if (region > best && partition.layerHolds(region, beyond_)) best = region;
+    }
+  }
+  return best;
+}
+
+void CellWalker::updateHolding() noexcept {
+  const Partition& partition = scene_.partition();
+  for (std::size_t i = 0; i < crossing_count_; ++i) {
+    for (const RegionId region : partition.regionsOf(crossing_[i])) {
+      const auto at = std::lower_bound(holding_.begin(), holding_.end(), region, std::greater<>());
+      const bool was = at != holding_.end() && *at == region;
+      const bool is = partition.layerHolds(region, signs_);
+      if (is && !was) holding_.insert(at, region);  // room for all regions was reserved
+      if (was && !is) holding_.erase(at);
+    }
+  }
 }
 
 void CellWalker::cross(LeafId leaf, const Facet& facet) noexcept {
   gather(leaf);
   for (std::size_t i = 0; i < crossing_count_; ++i) signs_.flip(crossing_[i]);
+  updateHolding();
   --crossings_left_;
   ++state_;
   if (facet.beyond == region_) return;

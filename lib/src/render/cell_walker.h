@@ -76,6 +76,9 @@ class CellWalker {
   double measure(LeafId leaf) noexcept;
   /// Sees to it that every leaf that a motion of `length` could reach is in the hot list.
   void refresh(double length) noexcept;
+  /// The region that the cell beyond_ lies in; only layers that use a crossed leaf are looked at again.
+  [[nodiscard]] RegionId regionBeyond() const noexcept;
+  void updateHolding() noexcept;
   /// The leaves that change side together with `leaf` where they coincide at the point.
   void gather(LeafId leaf) noexcept;
   void jump(const Vec3& x) noexcept;
@@ -85,7 +88,8 @@ class CellWalker {
   std::vector<double> tolerance_;  ///< of |S| by leaf: 1e-9 of the feature size, in units of S
   Vec3 x_{0.0, 0.0, 0.0};
   Signs signs_;
-  Signs beyond_;  ///< scratch of facetAt()
+  Signs beyond_;                   ///< scratch of facetAt()
+  std::vector<RegionId> holding_;  ///< layers that hold the cell, innermost (last) first
   RegionId region_ = kOutside;
   PassedPorts passed_;
   int mouth_ = -1;
@@ -95,13 +99,15 @@ class CellWalker {
   int crossings_left_ = 0;
   int evaluations_left_ = 0;
 
-  // A leaf whose |S| was measured cannot be met before the point has travelled |S| / L. `due_` is the
-  // odometer reading at which it could; leaves that are not hot are all due after cold_due_.
+  // A leaf whose |S| was measured cannot be met before the point has travelled |S| / L: `due_` is the
+  // odometer reading at which it could. Hot are the leaves whose boxes came near the point when the
+  // list was made; all others are further away than the point can go before cold_due_.
   double travel_ = 0.0;
   std::vector<double> due_;
   std::vector<LeafId> hot_;
   std::size_t hot_count_ = 0;
   double cold_due_ = 0.0;
+  double smallest_horizon_ = kInfinity;  ///< [m]
 
   /// A facet looked up in the present state, valid while nothing was crossed.
   struct Known {

@@ -68,8 +68,10 @@ void ConstraintRenderer::track(const Vec3& hip) noexcept {
       if (stop == CellWalker::Stop::kSpent) break;
       continue;
     }
-    if (puncture()) continue;
     if (isSettled(hip)) {
+      // Only at rest does the spring of the wall have the length that is felt: a tangent plane that one
+      // tick's motion left behind may be pressed harder, and must not open what was never pressed so.
+      if (puncture()) continue;
       // At rest by the first order; by the second it may still be able to come closer.
       if (sticking_ || !mayBeSaddle(contact_.walls())) return;
       const SlideStep rest = slideStep(contact_.pull, contact_.walls());
@@ -77,7 +79,10 @@ void ConstraintRenderer::track(const Vec3& hip) noexcept {
       if (!rest.is_saddle || !slideBy(hip, length * rest.downhill, true)) return;
       continue;
     }
-    if (!slide(hip)) break;
+    if (!slide(hip)) {
+      if (puncture()) continue;
+      break;
+    }
   }
   findContact(hip);
 }

@@ -97,7 +97,8 @@ class SceneCompiler {
     for (const SheetDescription& sheet : description_.sheets) {
       sheet_mask_of_.push_back(sheet.where ? static_cast<int>(masks.size()) : -1);
       if (sheet.where) masks.push_back(sheet.where->get(progress));
-      masks.push_back(sheet.on->get(progress));  // so that the sheet's own surface is a leaf
+      sheet_solid_of_.push_back(static_cast<int>(masks.size()));
+      masks.push_back(sheet.on->get(progress));
     }
     return Partition(layers_, masks);
   }
@@ -236,6 +237,7 @@ class SceneCompiler {
       Sheet sheet;
       sheet.name = given.name;
       sheet.leaves = scene_->partition_.leavesOf(given.on->get().get());
+      sheet.solid = sheet_solid_of_[i];
       sheet.mask = sheet_mask_of_[i];
       sheet.material = wall({false, given.material}, given.place).material;
       sheets.push_back(std::move(sheet));
@@ -372,6 +374,7 @@ class SceneCompiler {
   std::vector<FieldPtr> layers_;
   std::vector<int> mask_of_;
   std::vector<int> sheet_mask_of_;
+  std::vector<int> sheet_solid_of_;
   std::shared_ptr<Scene> scene_;
   std::vector<Box3> boxes_;
   Survey survey_;

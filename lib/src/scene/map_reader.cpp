@@ -26,11 +26,10 @@ const Node& MapReader::require(std::string_view key) {
   if (const Node* node = optional(key)) return *node;
   // A slip in the key is the likelier reason, and tells more.
   for (const Node::Entry& entry : map_->entries) {
-    const bool known = std::find(known_.begin(), known_.end(), entry.key) != known_.end();
-    if (!known && !suggest(entry.key, std::vector{key}).empty()) {
-      throw loader_->document().error(entry.key_mark, "scene.unknown_key",
-                                      "unknown key " + inQuotes(entry.key) + " in " + what_,
-                                      "did you mean " + inQuotes(key) + "?");
+    if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
+    if (entry.key.starts_with(std::string(key) + ':')) throw unknown(entry, {});
+    if (!suggest(entry.key, std::vector{key}).empty()) {
+      throw unknown(entry, {key});
     }
   }
   throw loader_->document().error(map_->mark, "scene.missing_key",
@@ -41,15 +40,18 @@ const Node& MapReader::require(std::string_view key) {
 void MapReader::finish() {
   for (const Node::Entry& entry : map_->entries) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
-    const std::vector<std::string_view> names(known_.begin(), known_.end());
-    std::string hint = suggestOrList(entry.key, names, "keys here: ");
-    if (entry.value.kind == Node::Kind::kNull && entry.key.find(':') != std::string::npos) {
-      hint = "put a space behind the ':'";
-    }
-    throw loader_->document().error(entry.key_mark, "scene.unknown_key",
-                                    "unknown key " + inQuotes(entry.key) + " in " + what_,
-                                    std::move(hint));
+    throw unknown(entry, {known_.begin(), known_.end()});
   }
+}
+
+Error MapReader::unknown(const Node::Entry& entry,
+                         const std::vector<std::string_view>& names) const {
+  // YAML reads {region:skin} as one key without a value.
+  const bool glued =
+      entry.value.kind == Node::Kind::kNull && entry.key.find(':') != std::string::npos;
+  return loader_->document().error(
+      entry.key_mark, "scene.unknown_key", "unknown key " + inQuotes(entry.key) + " in " + what_,
+      glued ? "put a space behind the ':'" : suggestOrList(entry.key, names, "keys here: "));
 }
 
 Error MapReader::errorAt(std::string_view key, std::string code, std::string message,

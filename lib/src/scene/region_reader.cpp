@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::string_view kOutsideName = "outside";
 constexpr std::string_view kAbsent = "absent";
+constexpr std::string_view kWallKey = "'wall'";
 // Layer kinds of palpate::vdb, as kKindsOfGrids of the fields.
 constexpr std::string_view kSurfacesOfImages[] = {"labels", "threshold"};
 
@@ -56,7 +57,9 @@ const Material& RegionReader::material(const Node& node, const std::string& what
   const auto found = std::find_if(scene_.materials.begin(), scene_.materials.end(),
                                   [&](const Material& m) { return m.name == name; });
   if (found == scene_.materials.end()) {
-    std::string hint = suggestOrList(name, namesOf(scene_.materials), "materials: ");
+    std::vector<std::string_view> names = namesOf(scene_.materials);
+    if (what == kWallKey) names.push_back(kAbsent);
+    std::string hint = suggestOrList(name, names, "materials: ");
     if (hint.empty()) hint = "define it in `materials`";
     throw loader_.document().error(node.mark, "scene.unknown_material",
                                    "there is no material " + inQuotes(name), std::move(hint));
@@ -66,7 +69,7 @@ const Material& RegionReader::material(const Node& node, const std::string& what
 
 WallDescription RegionReader::readWall(const Node& node) const {
   if (node.kind == Node::Kind::kScalar && node.text == kAbsent) return {true, {}};
-  const Material& wall = material(node, "'wall'");
+  const Material& wall = material(node, std::string(kWallKey));
   if (!(wall.stiffness > 0.0)) {
     throw loader_.document().error(node.mark, "scene.range",
                                    "the material " + inQuotes(wall.name) + " cannot be a wall",

@@ -1,11 +1,13 @@
 #include "survey.h"
 
+#include <algorithm>
 #include <random>
 
 namespace palpate {
 namespace {
 
 constexpr int kStepsPerLine = 128;
+constexpr std::size_t kMaxLines = 20000;  // in all, so that many layers do not take minutes
 constexpr int kHalvings = 40;  // a step shrinks to 1e-12 of itself: the wall to double precision
 
 class Surveyor {
@@ -88,6 +90,8 @@ class Surveyor {
 
 Survey survey(const Partition& partition, std::span<const Box3> boxes, std::size_t lines_per_box) {
   Surveyor surveyor(partition);
+  lines_per_box =
+      std::clamp<std::size_t>(kMaxLines / std::max<std::size_t>(boxes.size(), 1), 3, lines_per_box);
   std::mt19937_64 random(20240229);  // fixed: the same scene gives the same survey
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (const Box3& bare : boxes) {

@@ -65,6 +65,16 @@ std::size_t numberLength(std::string_view text) noexcept {
   return at;
 }
 
+// True for what goes on behind its first digits as other readers' numbers do: "1_000", "1,5", "0x1F".
+bool continuesNumber(std::string_view text, std::size_t length) noexcept {
+  if (length >= text.size()) return false;
+  const char next = text[length];
+  const bool letter = (next >= 'a' && next <= 'z') || (next >= 'A' && next <= 'Z');
+  if (!letter) return next != ' ';
+  const bool zero = text[length - 1] == '0' && (length == 1 || !isDigit(text[length - 2]));
+  return zero && std::string_view("xXoObB").find(next) != std::string_view::npos;
+}
+
 std::string helpFor(Dimension dimension) {
   const std::vector<std::string_view> names = unitNames(dimension);
   std::string help(names[0]);
@@ -134,6 +144,7 @@ Quantity parseQuantity(std::string_view text, Dimension dimension) noexcept {
   const std::size_t length = numberLength(text);
   const std::optional<double> number = parseNumber(text.substr(0, length));
   if (!number) return quantity;
+  if (continuesNumber(text, length)) return quantity;
   std::size_t at = length;
   while (at < text.size() && text[at] == ' ') ++at;
   quantity.unit = text.substr(at);
@@ -153,7 +164,6 @@ Quantity parseQuantity(std::string_view text, Dimension dimension) noexcept {
         std::isfinite(quantity.si) ? Quantity::Status::kOk : Quantity::Status::kNotANumber;
     return quantity;
   }
-  // "010 N" must not be read as the number 0 with the unit "10 N"; numberLength() saw to that.
   return quantity;
 }
 

@@ -82,7 +82,9 @@ class TreeBuilder final : public YAML::EventHandler {
       return alias(star);
     }
     std::string hint = "a text with : # [ ] { } , in it needs quotes";
-    if (exception.msg == YAML::ErrorMsg::MAP_VALUE) {
+    if (at == '?') {
+      hint = "quote globs: \"name?\"";
+    } else if (exception.msg == YAML::ErrorMsg::MAP_VALUE) {
       hint =
           "is a line before this not closed, or indented otherwise? a text with ': ' needs quotes";
     } else if (exception.msg == YAML::ErrorMsg::END_OF_MAP_FLOW) {

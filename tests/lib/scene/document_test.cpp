@@ -3,14 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "lib/scene/problems.h"
+#include "support/temp_file.h"
 
 namespace palpate {
 namespace {
 
 using namespace std::string_literals;
+using testing::TempFolder;
 
 TEST(Document, TreeKeepsOrderQuotesAndMarks) {
   const auto document = parseDocument(
@@ -97,7 +98,7 @@ TEST(Document, NestingOf64IsReadAnd65IsNot) {
   EXPECT_EQ(problem.column, 65);
 }
 
-class DocumentRefuses : public testing::TestWithParam<Refusal> {};
+class DocumentRefuses : public ::testing::TestWithParam<Refusal> {};
 
 TEST_P(DocumentRefuses, WithItsPlace) {
   const Refusal& refusal = GetParam();
@@ -106,7 +107,7 @@ TEST_P(DocumentRefuses, WithItsPlace) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, DocumentRefuses,
-    testing::Values(
+    ::testing::Values(
         Refusal{"Nothing", "", 1, 1, "document.empty", "empty", ""},
         Refusal{"OnlyComments", "# a\n\n# b\n", 1, 1, "document.empty", "empty", ""},
         Refusal{"DuplicateKey", "a: 1\nb: 2\na: 3\n", 3, 1, "document.duplicate_key", "'a'",
@@ -121,6 +122,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "quote globs"},
         Refusal{"UnquotedStar", "match: [*]\n", 1, 9, "document.alias", "*", "quote globs"},
         Refusal{"UnquotedStarsAround", "match: *CL*\n", 1, 8, "document.alias", "*", "quote globs"},
+        Refusal{"UnquotedQuestionMark", "a: [n?d]\n", 1, 6, "document.syntax", "not YAML",
+                "quote globs"},
         Refusal{"Tag", "a: !!int 3\n", 1, 4, "document.tag", "!", "tag"},
         Refusal{"LocalTag", "a: !mine {b: 1}\n", 1, 4, "document.tag", "!", "tag"},
         Refusal{"NonSpecificTag", "a: ! \"3\"\n", 1, 4, "document.tag", "!", "tag"},
@@ -193,42 +196,32 @@ TEST(Document, AnEmptyListEntryIsMarkedWhereItIs) {
   EXPECT_EQ(empty.mark.column, 3);
 }
 
-class DocumentFiles : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("palpate_document_" +
-               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_;
-};
-
-TEST_F(DocumentFiles, MissingFile) {
-  const std::string path = (folder_ / "none.yaml").string();
+TEST(DocumentFiles, MissingFile) {
+  const TempFolder folder;
+  const std::string path = folder.path("none.yaml");
   const Problem problem = problemOf([&] { (void)readDocument(path); });
   EXPECT_EQ(problem.code, "document.open");
   EXPECT_EQ(problem.file, path);
   EXPECT_NE(problem.message.find("no such file"), std::string::npos);
 }
 
-TEST_F(DocumentFiles, Folder) {
-  const Problem problem = problemOf([&] { (void)readDocument(folder_.string()); });
+TEST(DocumentFiles, Folder) {
+  const TempFolder folder;
+  const Problem problem = problemOf([&] { (void)readDocument(folder.path()); });
   EXPECT_EQ(problem.code, "document.open");
   EXPECT_NE(problem.message.find("folder"), std::string::npos);
 }
 
-TEST_F(DocumentFiles, HugeFile) {
-  const std::string path = (folder_ / "huge.yaml").string();
-  std::ofstream(path) << "a";
+TEST(DocumentFiles, HugeFile) {
+  const TempFolder folder;
+  const std::string path = folder.file("huge.yaml", "a");
   std::filesystem::resize_file(path, (std::uintmax_t{16} << 20U) + 1);  // sparse
   EXPECT_EQ(problemOf([&] { (void)readDocument(path); }).code, "document.too_big");
 }
 
-TEST_F(DocumentFiles, ReadsAFile) {
-  const std::string path = (folder_ / "small.yaml").string();
-  std::ofstream(path) << "a: 1\n";
+TEST(DocumentFiles, ReadsAFile) {
+  const TempFolder folder;
+  const std::string path = folder.file("small.yaml", "a: 1\n");
   const auto document = readDocument(path);
   EXPECT_EQ(document->file, path);
   EXPECT_EQ(document->root.find("a")->text, "1");

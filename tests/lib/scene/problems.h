@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ostream>
 #include <string>
 
@@ -48,7 +49,21 @@ inline void expectRefusal(const Refusal& refusal, const Problem& problem) {
   EXPECT_NE(problem.hint.find(refusal.hint), std::string::npos) << shown;
 }
 
-inline std::string refusalName(const testing::TestParamInfo<Refusal>& info) {
+/// The refusal of `text` at the place where an '@' stands in it.
+inline Refusal marked(const char* name, std::string text, std::string code, std::string message,
+                      std::string hint) {
+  const std::size_t at = text.find('@');
+  EXPECT_NE(at, std::string::npos) << name;
+  text.erase(at, 1);
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(at);
+  const auto line = static_cast<int>(std::count(text.begin(), end, '\n')) + 1;
+  const std::size_t start = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
+  const auto column = static_cast<int>(start == std::string::npos ? at + 1 : at - start);
+  return {name,           std::move(text), line, column, std::move(code), std::move(message),
+          std::move(hint)};
+}
+
+inline std::string refusalName(const ::testing::TestParamInfo<Refusal>& info) {
   return info.param.name;
 }
 

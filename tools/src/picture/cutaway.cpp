@@ -17,6 +17,8 @@ constexpr double kPitch = 24.0 * std::numbers::pi / 180.0;
 constexpr double kAmbient = 0.42;
 constexpr double kFaceShade = 0.97;
 constexpr int kMostSteps = 4000;
+constexpr int kFiner = 2;  // rays a pixel, along each side
+constexpr double kEdgeShade = 0.45;
 
 /// The part of a ray within a box, as distances along it.
 std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& origin,
@@ -37,6 +39,12 @@ std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& ori
   return std::pair{enter, leave};
 }
 
+/// What a ray met. Neighbours with different `part` are set apart by a dark edge.
+struct Hit {
+  Color color = rgb(0xFFFFFF);
+  int part = -1;  ///< region and whether it is the cut face; -1: nothing
+};
+
 /// One ray after the other through the scene; owns the scratch.
 class Marcher {
  public:
@@ -51,25 +59,26 @@ class Marcher {
         there_(here_),
         light_(glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right)) {}
 
-  Color cast(double x, double y) {
+  Hit cast(double x, double y) {
     const Vec3 origin = camera_.center +
                         camera_.right * ((x - 0.5 * camera_.width) * camera_.step) +
                         camera_.up * ((0.5 * camera_.height - y) * camera_.step);
     const Vec3 way = -camera_.toward;
     const auto part = within(box_, origin, way);
-    if (!part) return rgb(0xFFFFFF);
+    if (!part) return {};
     const double facing =
         glm::dot(way, plane_.normal());  // negative: the ray runs into the kept half
     const double cut = glm::dot(plane_.point - origin, plane_.normal()) / facing;
     double t = std::max(part->first, cut);
-    if (t >= part->second) return rgb(0xFFFFFF);
+    if (t >= part->second) return {};
 
     const double step = probe(origin + t * way, here_);
     const RegionId first = scene_.partition().regionOf(here_);
     if (first != kOutside) {
       const Vec3 p = origin + t * way;
-      if (t == cut) return scaled(paint_.at(first, p), kFaceShade);
-      return shaded(paint_.at(first, p), glm::dot(-way, light_));  // the box cuts an endless layer
+      if (t == cut) return {scaled(paint_.at(first, p), kFaceShade), 2 * first};
+      // The box cuts an endless layer.
+      return {shaded(paint_.at(first, p), glm::dot(-way, light_)), 2 * first + 1};
     }
     before_ = t;
     t += advance(step);
@@ -80,7 +89,7 @@ class Marcher {
       before_ = t;
       t += advance(distance);
     }
-    return rgb(0xFFFFFF);
+    return {};
   }
 
  private:
@@ -101,7 +110,7 @@ class Marcher {
   }
 
   /// here_ is outside, there_ (at `t`) is not: the surface is in between.
-  Color surface(const Vec3& origin, const Vec3& way, double t) {
+  Hit surface(const Vec3& origin, const Vec3& way, double t) {
     double low = std::min(before_, t);
     double high = t;
     Signs middle = there_;
@@ -131,7 +140,7 @@ class Marcher {
     Color base = regionColor(region);
     if (met.kind == Boundary::Kind::kPort) base = mixed(base, kPortInk, 0.35);
     if (met.kind == Boundary::Kind::kAbsent) base = mixed(base, kPaper, 0.4);
-    return shaded(base, std::abs(glm::dot(normal, light_)));
+    return {shaded(base, std::abs(glm::dot(normal, light_))), 2 * region + 1};
   }
 
   static Color shaded(const Color& base, double lambert) {
@@ -158,11 +167,10 @@ Camera cameraFor(const CutPlane& plane, const Box3& box, int width, int height) 
                      std::sin(kPitch) * plane.up);
   camera.right = glm::normalize(glm::cross(plane.up, camera.toward));
   camera.up = glm::cross(camera.toward, camera.right);
-  camera.center = box.center();
   camera.width = width;
   camera.height = height;
-  double across = 0.0;
-  double high = 0.0;
+  camera.center = box.center();
+  double left = kInfinity, right = -kInfinity, low = kInfinity, high = -kInfinity;
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 p = box.lo;
     for (int i = 0; i < 3; ++i) {
@@ -171,25 +179,52 @@ Camera cameraFor(const CutPlane& plane, const Box3& box, int width, int height) 
     // What is cut away needs no room: a corner in front of the plane counts where it meets the plane.
     const double front = glm::dot(p - plane.point, n);
     if (front > 0.0) p -= front * n;
-    across = std::max(across, std::abs(glm::dot(p - camera.center, camera.right)));
-    high = std::max(high, std::abs(glm::dot(p - camera.center, camera.up)));
+    const double x = glm::dot(p - camera.center, camera.right);
+    const double y = glm::dot(p - camera.center, camera.up);
+    left = std::min(left, x);
+    right = std::max(right, x);
+    low = std::min(low, y);
+    high = std::max(high, y);
   }
-  camera.step = 1.04 * std::max(2.0 * across / width, 2.0 * high / height);
+  camera.center += 0.5 * (left + right) * camera.right + 0.5 * (low + high) * camera.up;
+  camera.step = 1.02 * std::max((right - left) / width, (high - low) / height);
   return camera;
 }
 
 Raster drawCutaway(const Scene& scene, const CutPlane& plane, const Box3& box, const Camera& camera,
                    const Paint& paint, const Progress& progress) {
-  Raster raster(camera.width, camera.height);
+  const int width = kFiner * camera.width;
+  const int height = kFiner * camera.height;
+  std::vector<Hit> hits(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const auto hit = [&](int x, int y) -> Hit& {
+    return hits[static_cast<std::size_t>(x) +
+                static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
+  };
   std::vector<Marcher> marchers;
   for (std::size_t i = 0; i < workerCount(); ++i) {
     marchers.emplace_back(scene, plane, box, camera, paint);
   }
-  parallelRows(camera.height, progress, "shading the scene", [&](int y, std::size_t worker) {
-    for (int x = 0; x < camera.width; ++x) {
-      raster.at(x, y) = marchers[worker].cast(x + 0.5, y + 0.5);
+  parallelRows(height, progress, "shading the scene", [&](int y, std::size_t worker) {
+    for (int x = 0; x < width; ++x) {
+      hit(x, y) = marchers[worker].cast((x + 0.5) / kFiner, (y + 0.5) / kFiner);
     }
   });
+  Raster raster(camera.width, camera.height);
+  const double share = 1.0 / (kFiner * kFiner);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const Hit& here = hit(x, y);
+      const bool edge = (x + 1 < width && hit(x + 1, y).part != here.part) ||
+                        (y + 1 < height && hit(x, y + 1).part != here.part) ||
+                        (x > 0 && hit(x - 1, y).part != here.part) ||
+                        (y > 0 && hit(x, y - 1).part != here.part);
+      const Color color = edge ? mixed(here.color, kWallInk, kEdgeShade) : here.color;
+      Color& sum = raster.at(x / kFiner, y / kFiner);
+      sum.r += share * color.r;
+      sum.g += share * color.g;
+      sum.b += share * color.b;
+    }
+  }
   return raster;
 }
 

@@ -25,7 +25,7 @@ struct Camera {
   }
 };
 
-/// A camera that sees all of `box`.
+/// A camera that sees all of `box` that is behind the plane.
 [[nodiscard]] Camera cameraFor(const CutPlane& plane, const Box3& box, int width, int height);
 
 /// What is behind the plane within `box`: the cut face flat, everything else by Lambert's law.

@@ -170,9 +170,9 @@ class PictureMaker {
     }
   }
 
-  /// A small triangle across the middle of a one-way port.
+  /// A small arrow through a one-way port, away from its middle, where hands go.
   void oneWay(const Boundary& line) {
-    const std::size_t middle = line.points.size() / 2;
+    const std::size_t middle = line.points.size() * 3 / 4;
     if (middle == 0) return;
     const std::size_t reach =
         std::min<std::size_t>(4, std::min(middle, line.points.size() - 1 - middle) + 1);
@@ -209,10 +209,11 @@ class PictureMaker {
       extend(hip, p.hip);
       extend(proxy, p.proxy);
     }
-    canvas_.line(proxy, {rgb(0xFFFFFF, 0.75), px(6)});
-    canvas_.line(proxy, {kProxyInk, px(3)});
+    // The proxy on top: the hand shows where a wall keeps them apart.
     canvas_.line(hip, {rgb(0xFFFFFF, 0.6), px(3.4)});
     canvas_.line(hip, {kHipInk, px(1.7), {px(7), px(4)}});
+    canvas_.line(proxy, {rgb(0xFFFFFF, 0.75), px(6)});
+    canvas_.line(proxy, {kProxyInk, px(3)});
     forces();
     canvas_.disk(hip.front(), px(6), rgb(0xFFFFFF));
     canvas_.disk(hip.front(), px(4.5), kHipInk);
@@ -226,23 +227,18 @@ class PictureMaker {
     if (!(peak_ > 0.0)) return;
     const double longest = 0.13 * view_.height;
     std::vector<Pixel> tails;
-    std::vector<Pixel> tips;
     const auto draw = [&](const Track::Point& p) {
       const double length = longest * glm::length(p.force) / peak_;
-      if (length < px(5)) return;
+      if (length < px(5) || tails.size() >= kMostForces) return;
       const Pixel tail = onSheet(view_.pixel(p.proxy));
+      // Where arrows would lie on one another the first, the strongest, stands for all.
+      const bool taken = std::any_of(tails.begin(), tails.end(), [&](const Pixel& other) {
+        return std::hypot(tail.x - other.x, tail.y - other.y) < px(13);
+      });
+      if (taken) return;
       const Pixel tip{tail.x + longest / peak_ * glm::dot(p.force, plane_.right),
                       tail.y - longest / peak_ * glm::dot(p.force, plane_.up)};
-      // Where arrows would lie on one another the first one stands for all.
-      for (std::size_t i = 0; i < tails.size(); ++i) {
-        if (std::hypot(tail.x - tails[i].x, tail.y - tails[i].y) < px(9) &&
-            std::hypot(tip.x - tips[i].x, tip.y - tips[i].y) < px(14)) {
-          return;
-        }
-      }
-      if (tails.size() >= kMostForces) return;
       tails.push_back(tail);
-      tips.push_back(tip);
       canvas_.arrow(tail, tip, {kForceInk, px(2)}, px(9));
       busy_.push_back({tail, tip});
     };

@@ -121,9 +121,9 @@ std::size_t keepLargestPiece(Mask& mask) {
 std::size_t fillCavities(Mask& mask) {
   if (mask.inside.empty()) return 0;
   const auto [x, y, z] = mask.strides();
-  const std::ptrdiff_t faces_and_edges[] = {-z, -y, -x, x,     y,      z,      -z - y, -z - x, -z + x,
-                                            -z + y, -y - x, -y + x, y - x, y + x, z - y, z - x,
-                                            z + x, z + y};
+  const std::ptrdiff_t faces_and_edges[] = {-z,     -y,     -x,     x,      y,      z,
+                                            -z - y, -z - x, -z + x, -z + y, -y - x, -y + x,
+                                            y - x,  y + x,  z - y,  z - x,  z + x,  z + y};
   constexpr std::uint8_t kOpen = 2;
   std::vector<std::ptrdiff_t> stack;
   flood(mask.inside, 0, 0, kOpen, faces_and_edges, stack);  // 0 lies in the frame

@@ -16,8 +16,8 @@ namespace palpate::vdb {
 /// Connectedness is that of the surface drawn around the mask (surface_net.h): two inside voxels hang
 /// together across a face, two outside voxels across a face or an edge.
 struct Mask {
-  std::array<int, 3> first{};  ///< image index of the box's first voxel
-  std::array<int, 3> box{};    ///< voxels of the box along i, j, k
+  std::array<int, 3> first{};        ///< image index of the box's first voxel
+  std::array<int, 3> box{};          ///< voxels of the box along i, j, k
   std::vector<std::uint8_t> inside;  ///< 0 or 1; (box[0] + 2) (box[1] + 2) (box[2] + 2), i fastest
 
   [[nodiscard]] std::array<std::ptrdiff_t, 3> strides() const noexcept {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <stdexcept>
+
+#include "palpate/core/error.h"
 
 namespace palpate::vdb {
 namespace {

@@ -2,11 +2,13 @@
 /// Space cut into regions. Each layer is a Boolean expression over smooth leaf fields; the leaves' signs
 /// at a point say which layers hold it, and the last of those is its region (DESIGN.md section 2).
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "palpate/core/bounds_tree.h"
 #include "palpate/fields/field.h"
 
 namespace palpate {
@@ -38,6 +40,21 @@ class Signs {
     words_[leaf >> 6U] = inside ? (words_[leaf >> 6U] | bit) : (words_[leaf >> 6U] & ~bit);
   }
   void flip(LeafId leaf) noexcept { words_[leaf >> 6U] ^= std::uint64_t{1} << (leaf & 63U); }
+  void clear() noexcept {
+    for (std::uint64_t& word : words_) word = 0;
+  }
+  /// Calls f(leaf) for every leaf that is inside.
+  template <typename F>
+  void forInside(F&& f) const {
+    for (std::size_t w = 0; w < words_.size(); ++w) {
+      for (std::uint64_t rest = words_[w]; rest != 0; rest &= rest - 1) {
+        f(static_cast<LeafId>(64 * w + static_cast<std::size_t>(std::countr_zero(rest))));
+      }
+    }
+  }
+  /// True if any (all) of `count` leaves from `first` on are inside.
+  [[nodiscard]] bool anyInside(LeafId first, std::size_t count) const noexcept;
+  [[nodiscard]] bool allInside(LeafId first, std::size_t count) const noexcept;
   friend bool operator==(const Signs&, const Signs&) = default;
 
  private:
@@ -63,6 +80,14 @@ class Partition {
   /// Leaves of one layer's expression, without repetition.
   [[nodiscard]] std::span<const LeafId> leavesOfRegion(RegionId region) const noexcept;
 
+  /// Regions whose layer's expression uses `leaf`.
+  [[nodiscard]] std::span<const RegionId> regionsOf(LeafId leaf) const noexcept {
+    return regions_of_leaf_[leaf];
+  }
+
+  /// Which leaves' insides may come near a point: items are leaf ids.
+  [[nodiscard]] const BoundsTree& tree() const noexcept { return tree_; }
+
   /// True if `region`'s own layer (later layers not looked at) holds the cell `signs`; true for outside.
   [[nodiscard]] bool layerHolds(RegionId region, const Signs& signs) const noexcept;
 
@@ -76,10 +101,12 @@ class Partition {
   void signsAt(const Vec3& p, Signs& out) const noexcept;
 
  private:
-  /// Postfix: a leaf index pushes its sign; the operators take `count` operands off the stack.
+  /// Postfix: leaves push their sign, or the union or intersection of a run of them; kAnd and kOr take two
+  /// off the stack.
   struct Step {
-    enum class Op : std::uint8_t { kLeaf, kAnd, kOr, kNot } op;
-    std::uint16_t argument;  ///< leaf id, or operand count
+    enum class Op : std::uint8_t { kLeaf, kAnyOf, kAllOf, kAnd, kOr, kNot } op;
+    LeafId leaf = 0;          ///< the leaf, or the first of a run
+    std::uint16_t count = 0;  ///< of a run
   };
   struct Program {
     std::vector<Step> steps;
@@ -92,6 +119,10 @@ class Partition {
   std::vector<Leaf> leaves_;
   std::vector<Program> programs_;  ///< the layers', then the masks'
   std::size_t layer_count_ = 0;
+  std::vector<std::vector<RegionId>> regions_of_leaf_;
+  std::vector<RegionId>
+      hold_empty_;  ///< regions that hold the cell outside all leaves (complements)
+  BoundsTree tree_;
   std::vector<std::pair<const Field*, std::vector<LeafId>>> parts_;
 };
 

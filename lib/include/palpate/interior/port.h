@@ -26,6 +26,9 @@ struct Port {
   double opens_at = 0.0;      ///< [N] elastic normal force at which it opens; 0: always open
   double back = 0.0;          ///< [N] the same for coming back
 
+  /// True if going from `a` to `b` is the way in: from the first region named to the second.
+  [[nodiscard]] bool leadsInward(RegionId a, RegionId b) const noexcept;
+
   /// True if the port joins `a` to `b` in this direction of travel.
   [[nodiscard]] bool leads(RegionId a, RegionId b) const noexcept;
 };

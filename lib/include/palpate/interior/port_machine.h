@@ -22,7 +22,8 @@ struct Wall {
 /// An open surface: part of a leaf's zero set that is a wall though the same region lies on both sides.
 struct Sheet {
   std::string name;
-  std::vector<LeafId> leaves;  ///< whose zero set it is part of
+  std::vector<LeafId> leaves;  ///< of the field whose zero set it is part of
+  int solid = -1;              ///< mask of that field: the sheet is where its sign changes
   int mask = -1;               ///< only within this mask of the partition; -1: everywhere
   int material = -1;           ///< index into the scene's materials
 };
@@ -91,10 +92,15 @@ class Passages {
   }
 
   /// The facet that is crossed when the leaves `crossed` (one, or several that coincide there) change
-  /// sign from `here`, a cell of region `from`, to `there`.
-  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& there,
-                            std::span<const LeafId> crossed,
+  /// sign from `here`, a cell of region `from`, to `there`, a cell of region `beyond`.
+  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, RegionId beyond,
+                            const Signs& here, const Signs& there, std::span<const LeafId> crossed,
                             const PassedPorts& passed) const noexcept;
+
+  /// The same where only the far cell is known: the near one differs from it in the leaves `crossed`, and
+  /// the region beyond is looked up. Copies signs: for set-up and pictures.
+  [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& there,
+                            std::span<const LeafId> crossed, const PassedPorts& passed) const;
 
  private:
   std::size_t regions_ = 0;

@@ -47,6 +47,9 @@ class MapReader {
   [[nodiscard]] const Node& node() const noexcept { return *map_; }
 
  private:
+  [[nodiscard]] Error unknown(const Node::Entry& entry,
+                              const std::vector<std::string_view>& names) const;
+
   const SceneLoader* loader_;
   const Node* map_;
   std::string what_;

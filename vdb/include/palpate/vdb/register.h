@@ -13,7 +13,7 @@ namespace palpate::vdb {
 struct GridRecord {
   std::string what;       ///< layer or field, and its source
   LevelSetInfo info;
-  double seconds = 0.0;   ///< [s] it took
+  double seconds = 0.0;   ///< [s] it took, reading its file included
 };
 
 struct RegisterOptions {

@@ -1,0 +1,209 @@
+// Algorithms I and II against a transcription of their text made for this test alone, and the drift that
+// they are known for.
+
+#include "palpate/contact/paper_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "palpate/fields/primitives.h"
+#include "support/field_contract.h"
+
+namespace palpate::test {
+namespace {
+
+/// The text, sentence by sentence. S and N are the surface's, P the probe.
+struct Text {
+  const PaperSurface& surface;
+  int reacquired_on_pi = 0;
+  int reacquired_on_p = 0;
+
+  [[nodiscard]] double S(const Vec3& p) const {
+    return surface.side * surface.field->sample(p).value;
+  }
+  [[nodiscard]] Vec3 N(const Vec3& p) const {
+    return surface.side * surface.field->sample(p).gradient;
+  }
+  [[nodiscard]] Vec3 alphaTerm(const Vec3& p) const {
+    const double form = surface.newton_form ? glm::dot(N(p), N(p)) : glm::length(N(p));
+    return surface.alpha * S(p) * N(p) / form;
+  }
+  [[nodiscard]] Vec3 onNormalLine(const Vec3& po, const Vec3& probe) const {
+    return po + N(po) * (glm::dot(N(po), probe - po) / glm::dot(N(po), N(po)));
+  }
+
+  [[nodiscard]] PaperContact algorithm1(Vec3 out, Vec3 in, const Vec3& probe) const {
+    Vec3 po = (out + in) / 2.0;
+    for (int n = 0; n < 48 && !(std::fabs(S(po)) < surface.epsilon); ++n) {
+      if (S(po) > 0.0) out = po;
+      if (S(po) <= 0.0) in = po;
+      po = (out + in) / 2.0;
+    }
+    PaperContact c{po, onNormalLine(po, probe)};
+    if (S(po) < 0.0) c.surface_point = po - alphaTerm(po);
+    return c;
+  }
+
+  [[nodiscard]] PaperContact algorithm2(const PaperContact& last, const Vec3& last_probe,
+                                        const Vec3& probe) {
+    const Vec3 po0 = last.surface_point;
+    const Vec3 n = N(po0);
+    const Vec3 v = probe - last_probe;
+    const Vec3 po = po0 + v - n * (glm::dot(n, v) / glm::dot(n, n)) - alphaTerm(po0);
+    const PaperContact c{po, onNormalLine(po, probe)};
+    if (S(po) <= surface.epsilon) return c;
+    const bool bracket = !(S(c.interaction_point) > 0.0);
+    ++(bracket ? reacquired_on_pi : reacquired_on_p);
+    return algorithm1(po, bracket ? c.interaction_point : probe, probe);
+  }
+};
+
+void expectSame(const PaperContact& a, const PaperContact& b, const std::string& where) {
+  // Both do the same sums in another order: 1e-13 m is a thousand roundings of a decimeter.
+  EXPECT_LT(glm::length(a.surface_point - b.surface_point), 1e-13) << where;
+  EXPECT_LT(glm::length(a.interaction_point - b.interaction_point), 1e-13) << where;
+}
+
+/// An ellipsoid as a quadric: not a distance, its slope is 2 / radius.
+class Quadric final : public Field {
+ public:
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    const Vec3 w(1 / 0.05, 1 / 0.03, 1 / 0.04);
+    const Vec3 q = p * w;
+    return {glm::dot(q, q) - 1.0, 2.0 * q * w};
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return {Vec3(-0.05), Vec3(0.05)}; }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kImplicit; }
+  [[nodiscard]] double lipschitz() const noexcept override { return 200.0; }
+  [[nodiscard]] double featureSize() const noexcept override { return 0.01; }
+};
+
+TEST(PaperContact, IsTheTextStepByStep) {
+  const std::vector<FieldPtr> fields{sphere(Vec3(0.0), 0.05), box(Vec3(0.0), Vec3(0.08)),
+                                     std::make_shared<Quadric>()};
+  int on_pi = 0;
+  int on_p = 0;
+  int first = 0;
+  for (const FieldPtr& field : fields) {
+    for (const double side : {1.0, -1.0}) {
+      for (const bool newton : {false, true}) {
+        for (const double alpha : {1.0, 0.3}) {
+          // Printed, the term grows with the slope of S: on the quadric it would throw Po about.
+          if (!newton && field->metric() == Metric::kImplicit && alpha > 0.5) continue;
+          const PaperSurface surface{field.get(), side, 1e-6, newton ? alpha : 0.02 * alpha, newton};
+          Text text{surface};
+          Random random(4);
+          PaperContact mine;
+          PaperContact theirs;
+          bool touching = false;
+          Vec3 last = side * Vec3(0.06, 0, 0) * (side > 0 ? 1.0 : 0.0);
+          Vec3 drift = random.direction();
+          for (int tick = 0; tick < 3000; ++tick) {
+            // A walk near the surface, now and then through it: pulled to depths up to 4 mm.
+            const FieldSample s = field->sample(last);
+            const double depth = side * random.uniform(-0.004, 0.002);
+            drift = glm::normalize(drift + 0.3 * random.direction());
+            Vec3 probe = last + 4e-4 * drift;
+            probe -= s.gradient * (0.05 * (s.value - depth * glm::length(s.gradient)) /
+                                   glm::dot(s.gradient, s.gradient));
+            const bool in = text.S(probe) <= 0.0;
+            if (in && touching) {
+              mine = trackContact(surface, mine, last, probe);
+              theirs = text.algorithm2(theirs, last, probe);
+            } else if (in && text.S(last) > 0.0) {
+              mine = firstContact(surface, last, probe);
+              theirs = text.algorithm1(last, probe, probe);
+              ++first;
+            }
+            touching = in && (touching || text.S(last) > 0.0);
+            if (touching) {
+              expectSame(mine, theirs, std::to_string(tick));
+              ASSERT_FALSE(HasFailure()) << "side " << side << " newton " << newton;
+              theirs = mine;  // differences of rounding must not add up over a branch
+            }
+            last = probe;
+          }
+          on_pi += text.reacquired_on_pi;
+          on_p += text.reacquired_on_p;
+        }
+      }
+    }
+  }
+  EXPECT_GT(first, 50);
+  EXPECT_GT(on_pi, 50) << "the branch with a bracket was tried";
+  EXPECT_GT(on_p, 5) << "and the one without";
+}
+
+TEST(PaperContact, FirstContactIsTheCrossingOfThePathNotTheClosestPoint) {
+  // The paper's figure 2.1: a convex surface met off its normal.
+  const FieldPtr ball = sphere(Vec3(0.0), 0.05);
+  const PaperSurface surface{ball.get()};
+  const PaperContact c = firstContact(surface, Vec3(-0.06, 0.03, 0), Vec3(0.02, 0.03, 0));
+  EXPECT_LT(glm::length(c.surface_point - Vec3(-0.04, 0.03, 0)), 2e-6);
+  // Pi: the probe on the normal line (-0.8, 0.6) of that point.
+  EXPECT_LT(glm::length(c.interaction_point - c.surface_point - Vec3(0.8, -0.6, 0) * 0.048), 5e-6);
+}
+
+TEST(PaperContact, BothAlphaFormsAreWhatTheySay) {
+  const Quadric field;
+  const Vec3 inside(0.0499, 0, 0);
+  const double value = field.value(inside);
+  const Vec3 n = field.sample(inside).gradient;
+  const PaperContact last{inside, inside};
+  for (const bool newton : {false, true}) {
+    for (const double alpha : {1.0, 0.25}) {
+      const PaperSurface surface{&field, 1.0, 1e9, alpha, newton};
+      const Vec3 moved = trackContact(surface, last, inside, inside).surface_point - inside;
+      const double length = newton ? -alpha * value / glm::length(n) : -alpha * value;
+      EXPECT_NEAR(moved.x, length, 1e-15) << newton << alpha;
+    }
+  }
+}
+
+TEST(PaperContact, WithoutABracketGoesDownTheGradient) {
+  const FieldPtr ball = sphere(Vec3(0.0), 0.05);
+  const PaperSurface surface{ball.get()};
+  const PaperContact c = firstContact(surface, Vec3(0.03, 0, 0), Vec3(0, 0.04, 0));
+  EXPECT_LT(glm::length(c.surface_point - Vec3(0, 0.05, 0)), 1e-6);
+  // At the very center there is one fixed direction, and nothing that is not a number.
+  EXPECT_TRUE(isFinite(firstContact(surface, Vec3(0.0), Vec3(0.0)).surface_point));
+}
+
+/// Angle in degrees by which Po is behind P after `turns` turns at depth `share` R.
+double lagAfter(double turns, double share, double side) {
+  const double radius = 0.05;
+  const FieldPtr ball = sphere(Vec3(0.0), radius);
+  const PaperSurface surface{ball.get(), side};
+  const double rho = radius * (1.0 - side * share);
+  const auto at = [&](double angle, double r) {
+    return Vec3(r * std::cos(angle), r * std::sin(angle), 0.0);
+  };
+  const double step = 0.2e-3 / rho;  // 0.2 m/s at 1 kHz
+  Vec3 last = at(0.0, rho);
+  PaperContact c = firstContact(surface, at(0.0, radius * (1.0 + side * 0.01)), last);
+  double lag = 0.0;
+  for (int tick = 1; tick * step <= turns * 2.0 * std::numbers::pi; ++tick) {
+    const Vec3 probe = at(tick * step, rho);
+    c = trackContact(surface, c, last, probe);
+    last = probe;
+    const double now = tick * step - std::atan2(c.surface_point.y, c.surface_point.x);
+    lag += std::remainder(now - lag, 2.0 * std::numbers::pi);  // the turns unwound
+  }
+  return lag * 180.0 / std::numbers::pi;
+}
+
+TEST(PaperContact, DriftsOnABall) {
+  // Po walks rho per turn on a circle of R, so it falls behind by 2 pi d/R at first, and the more it is
+  // behind the less of the motion is along its tangent: 7.2 degrees at least for d/R = 0.02.
+  const double one = lagAfter(1.0, 0.02, 1.0);
+  EXPECT_GT(one, 7.2);
+  EXPECT_LT(one, 9.5);
+  EXPECT_GT(lagAfter(2.0, 0.02, 1.0), 2.0 * one) << "and it adds up";
+  EXPECT_GT(lagAfter(1.0, 0.1, 1.0), 36.0);
+  EXPECT_LT(lagAfter(1.0, 0.1, 1.0), 180.0);
+  EXPECT_LT(lagAfter(0.25, 0.02, -1.0), 0.0) << "in a hollow it runs ahead";
+}
+
+}  // namespace
+}  // namespace palpate::test

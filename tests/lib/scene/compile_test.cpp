@@ -1,0 +1,317 @@
+// What compile() refuses, and what it makes of the rest: walls, reachability, shared labels.
+
+#include "palpate/scene/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "palpate/core/error.h"
+#include "palpate/fields/csg.h"
+#include "palpate/fields/primitives.h"
+#include "support/field_contract.h"
+
+namespace palpate::test {
+namespace {
+
+FieldSourcePtr source(FieldPtr field) { return std::make_shared<FieldSource>(std::move(field)); }
+
+LayerDescription layer(const std::string& name, FieldPtr field, const std::string& wall = {}) {
+  LayerDescription out;
+  out.name = name;
+  out.inside = source(std::move(field));
+  out.wall.material = wall;
+  out.place = {"test.yaml", 7, 3, name};
+  return out;
+}
+
+PortDescription port(const std::string& name, const std::string& from, const std::string& to) {
+  PortDescription out;
+  out.name = name;
+  out.from = from;
+  out.to = to;
+  out.place = {"test.yaml", 9, 5, name};
+  return out;
+}
+
+Material material(const std::string& name, double stiffness) {
+  Material out;
+  out.name = name;
+  out.stiffness = stiffness;
+  return out;
+}
+
+FieldPtr ball(double x, double radius) { return sphere(Vec3(x, 0, 0), radius); }
+
+/// Outside, a shell, a core in it, and a far ball that touches neither.
+SceneDescription onion() {
+  SceneDescription out;
+  out.materials = {material("bone", 2000), material("air", 0)};
+  out.layers = {layer("shell", ball(0, 0.03)), layer("core", ball(0, 0.02), "bone"),
+                layer("far", ball(0.2, 0.03))};
+  return out;
+}
+
+struct Refused {
+  const char* name;
+  std::function<void(SceneDescription&)> spoil;
+  const char* code;
+  const char* told;  ///< part of the message or hint
+};
+
+TEST(Compile, RefusesWithCodePlaceAndRemedy) {
+  const std::vector<Refused> all{
+      {"no field", [](auto& s) { s.layers[1].inside = nullptr; }, "scene.layer_without_field", "core"},
+      {"name twice", [](auto& s) { s.layers[1].name = "shell"; }, "scene.duplicate_layer", "shell"},
+      {"named outside", [](auto& s) { s.layers[1].name = "outside"; }, "scene.duplicate_layer",
+       "outside"},
+      {"wall material", [](auto& s) { s.layers[1].wall.material = "bon"; },
+       "scene.unknown_material", "did you mean 'bone'"},
+      {"content", [](auto& s) { s.layers[1].content = "marrow"; }, "scene.unknown_material", "marrow"},
+      {"soft wall", [](auto& s) { s.layers[1].wall.material = "air"; },
+       "scene.wall_without_stiffness", "stiffness"},
+      {"port from", [](auto& s) { s.ports = {port("p", "shel", "core")}; }, "scene.unknown_layer",
+       "did you mean 'shell'"},
+      {"port to a glob of nothing", [](auto& s) { s.ports = {port("p", "shell", "x*")}; },
+       "scene.unknown_layer", "x*"},
+      {"start", [](auto& s) { s.start_region = "cor"; }, "scene.unknown_layer", "did you mean 'core'"},
+      {"apart", [](auto& s) { s.ports = {port("p", "core", "far")}; }, "scene.regions_do_not_touch",
+       "'core' and 'far'"},
+      {"not neighbours", [](auto& s) { s.ports = {port("p", "outside", "core")}; },
+       "scene.regions_do_not_touch", "outside"},
+      {"after nothing",
+       [](auto& s) {
+         s.ports = {port("door", "shell", "core")};
+         s.ports[0].after = {"dor"};
+       },
+       "scene.unknown_port", "did you mean 'door'"},
+      {"after itself",
+       [](auto& s) {
+         s.ports = {port("p", "shell", "core")};
+         s.ports[0].after = {"p"};
+       },
+       "scene.port_cycle", "'p'"},
+      {"circle of three",
+       [](auto& s) {
+         s.ports = {port("p", "shell", "core"), port("q", "outside", "shell"),
+                    port("r", "outside", "far")};
+         s.ports[0].after = {"q"};
+         s.ports[1].after = {"r"};
+         s.ports[2].after = {"p"};
+       },
+       "scene.port_cycle", "after itself"},
+      {"on a field of no layer",
+       [](auto& s) {
+         s.ports = {port("p", "shell", "core")};
+         s.ports[0].on = source(ball(0, 0.02));
+         s.ports[0].on_name = "lid";
+       },
+       "scene.port_face", "'lid'"},
+      {"on a face of another layer",
+       [](auto& s) {
+         s.ports = {port("p", "shell", "core")};
+         s.ports[0].on = s.layers[2].inside;
+         s.ports[0].on_name = "far";
+       },
+       "scene.port_face", "no part of 'shell' or 'core'"},
+      {"override of nothing",
+       [](auto& s) { s.walls = {{"shell", "cor", {false, "bone"}, {}, {"test.yaml", 4, 2, {}}}}; },
+       "scene.unknown_layer", "cor"},
+      {"override with what is no wall",
+       [](auto& s) { s.walls = {{"shell", "core", {false, "air"}, {}, {"test.yaml", 4, 2, {}}}}; },
+       "scene.wall_without_stiffness", "air"},
+  };
+  for (const Refused& row : all) {
+    SceneDescription spoilt = onion();
+    spoilt.start_place = {"test.yaml", 2, 1, {}};
+    ASSERT_NO_THROW((void)compile(spoilt));
+    row.spoil(spoilt);
+    try {
+      (void)compile(spoilt);
+      ADD_FAILURE() << row.name << " was accepted";
+    } catch (const Error& error) {
+      const Problem& problem = error.problem();
+      EXPECT_EQ(error.kind(), ErrorKind::kInput) << row.name;
+      EXPECT_EQ(problem.code, row.code) << row.name;
+      EXPECT_NE((problem.message + problem.hint).find(row.told), std::string::npos)
+          << row.name << ": " << error.what();
+      EXPECT_EQ(problem.file, "test.yaml") << row.name;
+      EXPECT_GT(problem.line, 0) << row.name;
+    }
+  }
+}
+
+TEST(Compile, WallsAreTheInnerLayersAndOverridesMayDifferBySide) {
+  SceneDescription s = onion();
+  s.materials.push_back(material("soft", 300));
+  s.layers[2].wall = {true, {}};
+  s.walls = {{"*", "core", {false, "soft"}, "core", {}}};
+  const ScenePtr scene = compile(s);
+  const auto felt = [&](RegionId from, RegionId to) {
+    const Wall& wall = scene->passages().wall(from, to);
+    if (wall.absent) return std::string("absent");
+    return scene->materials()[static_cast<std::size_t>(wall.material)].name;
+  };
+  EXPECT_EQ(felt(0, 1), "default wall");
+  EXPECT_EQ(felt(1, 0), "default wall");
+  EXPECT_EQ(felt(1, 2), "bone") << "the inner layer's";
+  EXPECT_EQ(felt(2, 1), "soft") << "overridden as felt from the core";
+  EXPECT_EQ(felt(2, 0), "soft") << "the glob is meant literally";
+  EXPECT_EQ(felt(0, 3), "absent");
+  EXPECT_EQ(felt(3, 1), "absent");
+  const Material& standard = scene->materials()[static_cast<std::size_t>(scene->regions()[1].wall)];
+  EXPECT_EQ(standard.stiffness, 1000.0) << "documented";
+  EXPECT_TRUE(scene->regions()[3].wall_absent);
+}
+
+TEST(Compile, LaterOverridesWin) {
+  SceneDescription s = onion();
+  s.walls = {{"outside", "*", {true, {}}, {}, {}}, {"outside", "shell", {false, "bone"}, {}, {}}};
+  const ScenePtr scene = compile(s);
+  EXPECT_FALSE(scene->passages().wall(0, 1).absent);
+  EXPECT_TRUE(scene->passages().wall(0, 3).absent);
+}
+
+TEST(Compile, TouchAndReachability) {
+  SceneDescription s = onion();
+  s.ports = {port("a", "outside", "shell"), port("b", "shell", "core")};
+  const auto reachable = [](const SceneDescription& description) {
+    std::string out;
+    for (const Region& region : compile(description)->regions()) out += region.reachable ? '1' : '0';
+    return out;
+  };
+  const ScenePtr scene = compile(s);
+  EXPECT_TRUE(scene->touches(0, 1));
+  EXPECT_TRUE(scene->touches(1, 2));
+  EXPECT_TRUE(scene->touches(0, 3));
+  EXPECT_FALSE(scene->touches(0, 2));
+  EXPECT_FALSE(scene->touches(2, 3));
+  EXPECT_FALSE(scene->touches(1, 1));
+  EXPECT_EQ(reachable(s), "1110");
+  s.ports[1].after = {"a"};
+  EXPECT_EQ(reachable(s), "1110");
+  s.ports[0].direction = PortDirection::kOut;
+  EXPECT_EQ(reachable(s), "1000") << "a way out only";
+  s.start_region = "core";
+  EXPECT_EQ(reachable(s), "0010") << "b wants a first, which is behind it";
+  s.ports[1].after = {};
+  EXPECT_EQ(reachable(s), "1110");
+  s.layers[2].wall.absent = true;
+  EXPECT_EQ(reachable(s), "1111") << "an absent wall needs no port";
+  for (const Region& region : compile(s)->regions()) {
+    ASSERT_TRUE(region.has_seed) << region.name;
+    EXPECT_EQ(compile(s)->regions()[compile(s)->regionAt(region.seed)].name, region.name);
+  }
+}
+
+TEST(Compile, SmallAndThinNeighboursAreStillFound) {
+  // A pea in a barrel, and a shell of 20 um.
+  SceneDescription s;
+  s.layers = {layer("barrel", ball(0, 0.5)), layer("pea", ball(0.3, 0.004)),
+              layer("skin", ball(-0.2, 0.03)), layer("flesh", ball(-0.2, 0.02998))};
+  s.ports = {port("a", "barrel", "pea"), port("b", "barrel", "skin"), port("c", "skin", "flesh")};
+  const ScenePtr scene = compile(s);
+  EXPECT_TRUE(scene->touches(1, 2));
+  EXPECT_TRUE(scene->touches(3, 4));
+  EXPECT_FALSE(scene->touches(1, 4)) << "the skin is everywhere between";
+  for (const Region& region : scene->regions()) EXPECT_TRUE(region.has_seed) << region.name;
+}
+
+TEST(Compile, ALayerThatCoversAnotherLeavesNothingOfIt) {
+  SceneDescription s;
+  s.layers = {layer("hidden", ball(0, 0.01)), layer("cover", ball(0, 0.02))};
+  const ScenePtr scene = compile(s);
+  EXPECT_EQ(scene->regionAt(Vec3(0.0)), 2);
+  EXPECT_FALSE(scene->regions()[1].has_seed);
+  EXPECT_FALSE(scene->touches(0, 1));
+}
+
+TEST(Compile, RegionsByName) {
+  const ScenePtr scene = compile(onion());
+  EXPECT_EQ(scene->regionNamed("outside"), kOutside);
+  EXPECT_EQ(scene->regionNamed("core"), 2);
+  EXPECT_THROW((void)scene->regionNamed("Core"), Error);
+  const Box3 box = scene->bounds();
+  EXPECT_NEAR(box.lo.x, -0.03, 1e-12);
+  EXPECT_NEAR(box.hi.x, 0.23, 1e-12);
+}
+
+TEST(LabelGroup, PointsGoToTheSmallestFieldWithNoGapAndNoOverlap) {
+  const FieldPtr a = ball(-0.012, 0.02);
+  const FieldPtr b = ball(0.012, 0.025);
+  const FieldPtr c = sphere(Vec3(0, 0.02, 0), 0.02);
+  SceneDescription s;
+  s.layers = {layer("a", a), layer("b", b), layer("c", c)};
+  for (LayerDescription& l : s.layers) l.label_group = "scan";
+  const ScenePtr scene = compile(s);
+  EXPECT_TRUE(scene->touches(1, 2));
+  EXPECT_TRUE(scene->touches(2, 3));
+  Random random(12);
+  int shared = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 p = random.in({Vec3(-0.045), Vec3(0.045)});
+    const double values[] = {a->value(p), b->value(p), c->value(p)};
+    const auto* least = std::min_element(values, values + 3);
+    const auto expected = *least < 0.0 ? static_cast<RegionId>(least - values + 1) : kOutside;
+    ASSERT_EQ(scene->regionAt(p), expected);
+    int holders = 0;
+    for (RegionId r = 1; r <= 3; ++r) holders += scene->regions()[r].field->value(p) < 0.0 ? 1 : 0;
+    ASSERT_EQ(holders, expected == kOutside ? 0 : 1) << "one owner each";
+    shared += (values[0] < 0.0) + (values[1] < 0.0) + (values[2] < 0.0) > 1 ? 1 : 0;
+  }
+  EXPECT_GT(shared, 500);
+  // At the wall between a and b each field is the other's negative, value and slope.
+  const Field& own = *scene->regions()[1].field;
+  const Field& other = *scene->regions()[2].field;
+  for (double y = -0.01; y < -0.001; y += 0.001) {
+    double lo = -0.012;
+    double hi = 0.012;
+    for (int k = 0; k < 60; ++k) {
+      const double x = 0.5 * (lo + hi);
+      (a->value(Vec3(x, y, 0)) < b->value(Vec3(x, y, 0)) ? lo : hi) = x;
+    }
+    for (const double off : {-1e-5, 0.0, 1e-5}) {
+      const Vec3 p(lo + off, y, 0);
+      EXPECT_NEAR(own.value(p), -other.value(p), 1e-16);
+      EXPECT_LT(glm::length(own.sample(p).gradient + other.sample(p).gradient), 1e-15);
+      EXPECT_EQ(own.value(p), own.sample(p).value);
+    }
+  }
+}
+
+TEST(LabelGroup, ThatIsOneOrApartIsLeftAlone) {
+  SceneDescription s = onion();
+  s.layers[0].label_group = "scan";
+  s.layers[2].label_group = "scan";
+  const ScenePtr scene = compile(s);
+  EXPECT_EQ(scene->regions()[1].field, s.layers[0].inside->get()) << "boxes apart: nothing to share";
+  EXPECT_EQ(scene->regionAt(Vec3(0.0)), 2) << "another layer still wins by its order";
+}
+
+std::vector<FieldCase> sharedCases() {
+  // The share of one label, put through the contract of all fields.
+  const auto made = [] {
+    SceneDescription s;
+    s.layers = {layer("a", ball(-0.012, 0.02)), layer("b", ball(0.012, 0.025))};
+    for (LayerDescription& l : s.layers) l.label_group = "scan";
+    return compile(s);
+  };
+  const auto inside = [](const Vec3& p) {
+    const double a = glm::length(p - Vec3(-0.012, 0, 0)) - 0.02;
+    const double b = glm::length(p - Vec3(0.012, 0, 0)) - 0.025;
+    return a < 0.0 && a < b;
+  };
+  return {{.name = "label_share",
+           .make = [=] { return made()->regions()[1].field; },
+           .region = {Vec3(-0.05), Vec3(0.05)},
+           .inside = inside,
+           .crease_share = 0.2,
+           .unit_gradient = false}};
+}
+
+INSTANTIATE_TEST_SUITE_P(LabelShare, FieldContract, testing::ValuesIn(sharedCases()),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,57 @@
+#pragma once
+/// Readers in place of those of palpate::vdb, which lib's tests do not link: they read the same keys
+/// and give spheres.
+
+#include <memory>
+#include <string>
+
+#include "palpate/fields/primitives.h"
+#include "palpate/scene/scene_file.h"
+
+namespace palpate {
+
+inline SceneRegistry standInReaders() {
+  const auto later = [](const std::string& summary, double radius) {
+    return std::make_shared<FieldSource>(
+        summary, [radius](const Progress&) { return sphere(Vec3(0.0), radius); });
+  };
+  SceneRegistry registry;
+  registry.fields["mesh"] = [later](MapReader& reader) {
+    const std::string file = reader.loader().resolvePath(reader.requireText("file"));
+    (void)reader.textOr("units", "");
+    (void)reader.numberOr("half_width", 4.0);
+    return later("mesh " + file, reader.lengthOr("voxel", 1.0));
+  };
+  registry.fields["grid"] = [later](MapReader& reader) {
+    const std::string file = reader.loader().resolvePath(reader.requireText("file"));
+    (void)reader.textOr("name", "");
+    (void)reader.textOr("units", "");
+    return later("grid " + file, 1.0);
+  };
+  registry.image = [](MapReader& reader) -> std::shared_ptr<void> {
+    auto file = std::make_shared<std::string>(reader.requireText("file"));
+    (void)reader.textOr("names", "");
+    return file;
+  };
+  const auto image = [](MapReader& reader) {
+    const Node& node = reader.require("image");
+    return *std::static_pointer_cast<std::string>(reader.loader().image(node.text, node.mark));
+  };
+  registry.layers["labels"] = [later, image](MapReader& reader, const std::string& name) {
+    const std::string file = image(reader);
+    (void)reader.require("match");
+    return SceneRegistry::LayerSurface{
+        later("labels of " + file + " for " + name, reader.lengthOr("voxel", 1.0)), file};
+  };
+  registry.layers["threshold"] = [later, image](MapReader& reader, const std::string&) {
+    const std::string file = image(reader);
+    (void)reader.requireNumber("above");
+    (void)reader.textOr("keep", "all");
+    (void)reader.boolOr("fill", false);
+    return SceneRegistry::LayerSurface{later("threshold of " + file, reader.lengthOr("voxel", 1.0)),
+                                       ""};
+  };
+  return registry;
+}
+
+}  // namespace palpate

@@ -1,0 +1,190 @@
+// The reader, the schema and the reference page know the same words. What palpate::vdb adds is checked
+// against the schema by its own tests; here readers that stand in for it read the same keys.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "lib/scene/stand_in_readers.h"
+#include "support/scene_vocabulary.h"
+
+namespace palpate {
+namespace {
+
+using testing::allSchemaKeys;
+using testing::kNoKey;
+using testing::readerKeys;
+using testing::schemaKeys;
+
+struct Probe {
+  const char* definition;  ///< of the schema
+  std::string scene;       ///< with '@' where the unknown key goes
+};
+
+const std::vector<Probe>& probes() {
+  const auto field = [](const std::string& value) { return "fields: {f: " + value + "}\n"; };
+  const std::string ball = "{sphere: {center: [0, 0, 0], radius: 1}}";
+  const std::string layers = "layers:\n  - {name: a, inside: " + ball + "}\n";
+  static const std::vector<Probe> kProbes = {
+      {"", "@\n"},
+      {"field_kind", field("{@}")},
+      {"half_space", field("{half_space: {point: [0, 0, 0], normal: [0, 0, 1], @}}")},
+      {"sphere", field("{sphere: {center: [0, 0, 0], radius: 1, @}}")},
+      {"box", field("{box: {center: [0, 0, 0], size: [1, 1, 1], @}}")},
+      {"cylinder",
+       field("{cylinder: {center: [0, 0, 0], axis: [0, 0, 1], radius: 1, height: 1, @}}")},
+      {"ellipsoid", field("{ellipsoid: {center: [0, 0, 0], radii: [1, 1, 1], @}}")},
+      {"transform", field("{transform: {field: " + ball + ", translate: [0, 0, 0], @}}")},
+      {"rotate",
+       field("{transform: {field: " + ball + ", rotate: {axis: [0, 0, 1], degrees: 1, @}}}")},
+      {"mesh", field("{mesh: {file: a.stl, @}}")},
+      {"grid", field("{grid: {file: a.vdb, @}}")},
+      {"material", "materials: {m: {@}}\n"},
+      {"friction", "materials: {m: {friction: {static: 1, @}}}\n"},
+      {"image", "images: {i: {file: a.nii, @}}\n"},
+      {"labels",
+       "images: {i: {file: a.nii}}\nlayers: [{name: a, labels: {image: i, match: [x], @}}]\n"},
+      {"threshold",
+       "images: {i: {file: a.nii}}\nlayers: [{name: a, threshold: {image: i, above: 1, @}}]\n"},
+      {"layer", "layers:\n  - {name: a, inside: " + ball + ", @}\n"},
+      {"wall", layers + "walls:\n  - {between: [a, outside], wall: absent, @}\n"},
+      {"port", layers + "ports:\n  - {name: p, between: [a, outside], @}\n"},
+  };
+  return kProbes;
+}
+
+std::string withUnknownKey(const Probe& probe) {
+  std::string scene = "palpate: 1\nlength: mm\n" + probe.scene;
+  return scene.replace(scene.find('@'), 1, std::string(kNoKey) + ": 1");
+}
+
+TEST(Vocabulary, ReaderAndSchemaKnowTheSameKeys) {
+  const SceneRegistry registry = standInReaders();
+  for (const Probe& probe : probes()) {
+    EXPECT_EQ(readerKeys(withUnknownKey(probe), registry), schemaKeys(probe.definition))
+        << probe.definition;
+  }
+  EXPECT_EQ(readerKeys("palpate: 1\nlength: mm\nstart: {region: outside, " + std::string(kNoKey) +
+                           ": 1}\n",
+                       registry),
+            testing::Words{"region"});
+}
+
+TEST(Vocabulary, EveryMapOfTheSchemaIsProbed) {
+  for (const Node::Entry& definition : testing::sceneSchema().root.find("definitions")->entries) {
+    if (definition.value.find("properties") == nullptr) continue;
+    const bool probed = std::any_of(probes().begin(), probes().end(), [&](const Probe& probe) {
+      return probe.definition == definition.key;
+    });
+    EXPECT_TRUE(probed) << definition.key;
+    // A map that allows any key would accept every slip.
+    const Node* others = definition.value.find("additionalProperties");
+    ASSERT_NE(others, nullptr) << definition.key;
+    EXPECT_EQ(others->text, "false") << definition.key;
+  }
+}
+
+std::string patternOf(const std::string& definition) {
+  return testing::sceneSchema().root.find("definitions")->find(definition)->find("pattern")->text;
+}
+
+TEST(Vocabulary, TheSchemasQuantitiesAreTheReaders) {
+  const std::pair<const char*, Dimension> quantities[] = {{"force", Dimension::kForce},
+                                                          {"stiffness", Dimension::kStiffness},
+                                                          {"damping", Dimension::kDamping},
+                                                          {"velocity", Dimension::kVelocity}};
+  const std::vector<std::string> numbers = {"0",  "1",   "15",  "1.5", ".5",  "5.",  "1e3",  "1E-3",
+                                            "+2", "010", "00",  "1_0", "1,5", "0x1", "e3",   "1e",
+                                            ".",  "",    "inf", "nan", "1 2", "--1", "1.2.3"};
+  std::vector<std::string> units = {"", "x", "N.m"};
+  for (const auto& [name, dimension] : quantities) {
+    // "N/m (also N/mm, N/cm)" -> each unit.
+    std::string help(unitHelp(dimension));
+    for (const std::string_view part : {"(also ", ",", ")"}) {
+      for (std::size_t at = help.find(part); at != std::string::npos; at = help.find(part)) {
+        help.erase(at, part.size());
+      }
+    }
+    std::istringstream words(help);
+    for (std::string unit; words >> unit;) units.push_back(unit);
+  }
+  for (const auto& [name, dimension] : quantities) {
+    const std::regex pattern(patternOf(name));
+    for (const std::string& unit : units) {
+      for (const std::string& number : numbers) {
+        const std::string text = number + " " + unit;
+        EXPECT_EQ(std::regex_match(text, pattern),
+                  parseQuantity(text, dimension).status == Quantity::Status::kOk)
+            << name << " '" << text << "'";
+      }
+    }
+    EXPECT_TRUE(std::regex_match("1" + units.back(), std::regex(patternOf("velocity"))));
+  }
+}
+
+TEST(Vocabulary, TheSchemasNamesAreTheReaders) {
+  const std::regex pattern(patternOf("name"));
+  for (const std::string name : {"a", "3rd ventricle (left)", "Thalamus_L", "a.b-c", "a b", " a",
+                                 "a ", "a*", "a?", "a,b", "a;b", "a/b", "a\"b", "a\\b", ""}) {
+    const auto accepted = [&] {
+      std::string escaped;
+      for (const char c : name)
+        escaped += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+      try {
+        (void)parseScene("palpate: 1\nlength: mm\nlayers: [{name: \"" + escaped +
+                             "\", inside: {sphere: {center: [0, 0, 0], radius: 1}}}]\n",
+                         "test.yaml");
+        return true;
+      } catch (const Error&) {
+        return false;
+      }
+    };
+    EXPECT_EQ(std::regex_match(name, pattern), accepted()) << name;
+  }
+}
+
+std::string referencePage() {
+  std::ifstream file(PALPATE_SOURCE_DIR "/tools/docs/scene.md");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TEST(Vocabulary, TheReferenceNamesEveryKeyAndUnit) {
+  const std::string page = referencePage();
+  ASSERT_FALSE(page.empty());
+  for (const std::string& key : allSchemaKeys()) {
+    EXPECT_NE(page.find("`" + key + "`"), std::string::npos) << key;
+  }
+  for (const Dimension dimension : {Dimension::kLength, Dimension::kForce, Dimension::kStiffness,
+                                    Dimension::kDamping, Dimension::kVelocity}) {
+    EXPECT_NE(page.find(unitHelp(dimension)), std::string::npos) << unitHelp(dimension);
+  }
+}
+
+// The page's examples build up one scene: blocks that begin with `palpate:` stand for themselves.
+TEST(Vocabulary, TheReferencesExamplesAreRead) {
+  const SceneRegistry registry = standInReaders();
+  const std::string page = referencePage();
+  const std::string open = "\n```yaml\n";
+  std::string together = "palpate: 1\nlength: mm\n";
+  int examples = 0;
+  for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at + 1)) {
+    const std::size_t start = at + open.size();
+    const std::string block = page.substr(start, page.find("```\n", start) - start);
+    ++examples;
+    if (block.rfind("palpate:", 0) == 0) {
+      EXPECT_NO_THROW((void)parseScene(block, "example", registry)) << block;
+    } else {
+      together += block;
+    }
+  }
+  EXPECT_GT(examples, 5);
+  EXPECT_NO_THROW((void)parseScene(together, "examples", registry)) << together;
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,221 @@
+// palpate bake: scenes, meshes and images to .vdb files, and how it is stopped.
+
+#include <signal.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "tools/helpers.h"
+#include "vdb/nifti_writer.h"
+
+namespace palpate::testing {
+namespace {
+
+/// A cube of `side`, as an OBJ file with shared vertices and outward triangles.
+std::string cubeObj(double side, std::size_t faces = 12) {
+  std::string text;
+  for (int i = 0; i < 8; ++i) {
+    char line[96];
+    std::snprintf(line, sizeof line, "v %g %g %g\n", (i & 1) != 0 ? side : 0.0,
+                  (i & 2) != 0 ? side : 0.0, (i & 4) != 0 ? side : 0.0);
+    text += line;
+  }
+  static constexpr int kFaces[12][3] = {{1, 3, 4}, {1, 4, 2}, {5, 6, 8}, {5, 8, 7},
+                                        {1, 2, 6}, {1, 6, 5}, {3, 7, 8}, {3, 8, 4},
+                                        {1, 5, 7}, {1, 7, 3}, {2, 4, 8}, {2, 8, 6}};
+  for (std::size_t i = 0; i < faces; ++i) {
+    text += "f " + std::to_string(kFaces[i][0]) + " " + std::to_string(kFaces[i][1]) + " " +
+            std::to_string(kFaces[i][2]) + "\n";
+  }
+  return text;
+}
+
+/// A ball of value 100 (label 3) in an image of 24^3 voxels of 1 mm, and a small one of 60 (label 5).
+vdb::test::NiftiFile balls(bool labels) {
+  vdb::test::NiftiFile file;
+  file.dim = {24, 24, 24};
+  file.sform = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  file.pixdim = {1, 1, 1, 1};
+  for (int k = 0; k < 24; ++k) {
+    for (int j = 0; j < 24; ++j) {
+      for (int i = 0; i < 24; ++i) {
+        const double large = std::hypot(i - 9, j - 10, k - 11);
+        const double small = std::hypot(i - 19, j - 19, k - 19);
+        file.values.push_back(large < 6.5   ? (labels ? 3 : 100)
+                              : small < 2.5 ? (labels ? 5 : 60)
+                                            : 0);
+      }
+    }
+  }
+  return file;
+}
+
+std::string writeImage(const TempFolder& folder, const std::string& name,
+                       const vdb::test::NiftiFile& file) {
+  const auto bytes = vdb::test::bytesOf(file);
+  return folder.file(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+Json onlyFile(const std::string& path) {
+  const CommandResult result = runPalpate({"info", path, "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+  const Json json = parseOnly(result);
+  EXPECT_EQ(json["files"].size(), 1U);
+  return json["files"][0];
+}
+
+TEST(Bake, ASceneGivesOneSurfaceForEachLayer) {
+  const TempFolder folder;
+  (void)folder.file("c.yaml", kContainer);
+  const CommandResult result =
+      runPalpate({"bake", "c.yaml", "-o", "c.vdb", "--voxel", "1", "--json"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  const Json json = parseOnly(result);
+  EXPECT_EQ(json["schema"], "palpate.bake/1");
+  ASSERT_EQ(json["grids"].size(), 1U);
+  EXPECT_EQ(json["grids"][0]["name"], "liquid/surface");
+  EXPECT_NEAR(json["grids"][0]["voxel_size_m"], 1e-3, 1e-12);
+  EXPECT_GT(json["grids"][0]["active_voxels"],
+            10000);  // about 18 000 mm^2 of surface, 8 voxels thick
+
+  const Json info = onlyFile(folder.path("c.vdb"));
+  EXPECT_EQ(info["kind"], "grids");
+  EXPECT_EQ(info["grids"][0]["name"], "liquid/surface");
+  EXPECT_EQ(info["grids"][0]["class"], "level set");
+  EXPECT_EQ(info["grids"][0]["length_unit"], "mm");
+  EXPECT_EQ(info["grids"][0]["metadata"]["layer"], "liquid");
+  EXPECT_EQ(filesIn(folder.path()), (std::vector<std::string>{"c.vdb", "c.yaml"}));
+}
+
+TEST(Bake, OnlyTheLayersAskedFor) {
+  const TempFolder folder;
+  const std::string out = folder.path("v.vdb");
+  const CommandResult result = runPalpate({"bake", scenePath("valve_tube.yaml"), "-o", out,
+                                           "--voxel", "1", "--layer", "downstream", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  ASSERT_EQ(parseOnly(result)["grids"].size(), 1U);
+  EXPECT_EQ(parseOnly(result)["grids"][0]["name"], "downstream/surface");
+
+  const CommandResult slip = runPalpate(
+      {"bake", scenePath("valve_tube.yaml"), "-o", folder.path("w.vdb"), "--layer", "downstraem"});
+  EXPECT_EQ(slip.exit_code, 3);
+  EXPECT_NE(slip.err.find("did you mean 'downstream'?"), std::string::npos) << slip.err;
+}
+
+TEST(Bake, AMeshNeedsItsUnit) {
+  const TempFolder folder;
+  (void)folder.file("cube.obj", cubeObj(1.0));
+  const CommandResult noted =
+      runPalpate({"bake", "cube.obj", "-o", "a.vdb", "--voxel", "0.05"}, folder.path());
+  ASSERT_EQ(noted.exit_code, 0) << noted.err;
+  EXPECT_NE(noted.err.find("taken as 1 mm"), std::string::npos) << noted.err;
+
+  const CommandResult given =
+      runPalpate({"bake", "cube.obj", "-o", "b.vdb", "--voxel", "0.05", "--units", "cm", "--json"},
+                 folder.path());
+  ASSERT_EQ(given.exit_code, 0) << given.err;
+  EXPECT_EQ(given.err, "");
+  const Json grid = parseOnly(given)["grids"][0];
+  EXPECT_EQ(grid["name"], "cube/surface");
+  EXPECT_NEAR(grid["voxel_size_m"], 0.0005, 1e-12);
+  // The band reaches at least one and at most half-width + 1 voxels beyond the cube of 1 cm.
+  EXPECT_GT(grid["bounds_m"]["hi"][0], 0.0105);
+  EXPECT_LT(grid["bounds_m"]["hi"][0], 0.0126);
+}
+
+TEST(Bake, AnImageByThresholdOrByLabel) {
+  const TempFolder folder;
+  const std::string grey = writeImage(folder, "grey.nii", balls(false));
+  const CommandResult skin =
+      runPalpate({"bake", grey, "-o", folder.path("g.vdb"), "--above", "50", "--json"});
+  ASSERT_EQ(skin.exit_code, 0) << skin.err << skin.out;
+  EXPECT_EQ(parseOnly(skin)["grids"][0]["name"], "grey/surface");
+  // Only the large ball, whose radius is 6.5 mm about (9, 10, 11) mm.
+  EXPECT_LT(parseOnly(skin)["grids"][0]["bounds_m"]["hi"][0], 0.0215);
+
+  const CommandResult both = runPalpate(
+      {"bake", grey, "-o", folder.path("h.vdb"), "--above", "50", "--keep", "all", "--json"});
+  ASSERT_EQ(both.exit_code, 0) << both.err << both.out;
+  EXPECT_GT(parseOnly(both)["grids"][0]["bounds_m"]["hi"][0], 0.0215);
+
+  const std::string labels = writeImage(folder, "labels.nii", balls(true));
+  const std::string names = folder.file("names.csv", "value,name\r\n3,kidney\r\n5,stone\r\n");
+  const CommandResult organs = runPalpate({"bake", labels, "-o", folder.path("l.vdb"), "--labels",
+                                           "stone,kidney", "--names", names, "--json"});
+  ASSERT_EQ(organs.exit_code, 0) << organs.err << organs.out;
+  const Json json = parseOnly(organs);
+  ASSERT_EQ(json["grids"].size(), 2U);
+  EXPECT_EQ(json["grids"][0]["name"], "stone/surface");
+  EXPECT_EQ(json["grids"][1]["name"], "kidney/surface");
+  const CommandResult pattern = runPalpate(
+      {"bake", labels, "-o", folder.path("m.vdb"), "--labels", "*", "--names", names, "--json"});
+  ASSERT_EQ(pattern.exit_code, 0) << pattern.err << pattern.out;
+  EXPECT_EQ(parseOnly(pattern)["grids"].size(), 2U);
+
+  const CommandResult slip = runPalpate(
+      {"bake", labels, "-o", folder.path("n.vdb"), "--labels", "kidny", "--names", names});
+  EXPECT_EQ(slip.exit_code, 3);
+  EXPECT_NE(slip.err.find("kidney"), std::string::npos) << slip.err;
+}
+
+TEST(Bake, NothingIsOverwrittenUnlessForced) {
+  const TempFolder folder;
+  (void)folder.file("c.yaml", kContainer);
+  (void)folder.file("c.vdb", "mine");
+  const CommandResult refused =
+      runPalpate({"bake", "c.yaml", "-o", "c.vdb", "--json"}, folder.path());
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_EQ(parseOnly(refused)["error"]["code"], "output.exists");
+  EXPECT_EQ(textOf(folder.path("c.vdb")), "mine");
+  EXPECT_EQ(runPalpate({"bake", "c.yaml", "-o", "c.vdb", "--voxel", "2", "--force"}, folder.path())
+                .exit_code,
+            0);
+  EXPECT_NE(textOf(folder.path("c.vdb")), "mine");
+}
+
+TEST(Bake, AnInterruptStopsItAndLeavesNothing) {
+  // A fine ball that takes far longer than the two seconds after which progress is told.
+  const TempFolder folder;
+  (void)folder.file("ball.yaml", R"(palpate: 1
+length: mm
+fields:
+  ball: {sphere: {center: [0, 0, 0], radius: 40}}
+layers:
+  - {name: ball, inside: ball}
+)");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    bool sent = false;
+    const CommandResult result =
+        runPalpate({"bake", "ball.yaml", "-o", "b.vdb", "--voxel", "0.03", "--json"}, folder.path(),
+                   [&](std::string_view, pid_t process) {
+                     if (!sent) kill(process, signal);
+                     sent = true;
+                   });
+    EXPECT_TRUE(sent) << "it was over before it told any progress";
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_EQ(parseOnly(result)["error"]["code"], "cancelled");
+    EXPECT_EQ(filesIn(folder.path()), std::vector<std::string>{"ball.yaml"});
+  }
+}
+
+TEST(BakeSharedData, RealOrgansAndMeshes) {
+  const std::string data = PALPATE_SOURCE_DIR "/../shared/data/";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no folder " << data;
+  const TempFolder folder;
+  const CommandResult organs =
+      runPalpate({"bake", data + "abdomen/example_seg.nii.gz", "-o", folder.path("o.vdb"),
+                  "--labels", "liver,spleen,kidney_left,kidney_right,aorta", "--names",
+                  data + "abdomen/labels.csv", "--json"});
+  ASSERT_EQ(organs.exit_code, 0) << organs.err << organs.out;
+  ASSERT_EQ(parseOnly(organs)["grids"].size(), 5U);
+  for (const Json& grid : parseOnly(organs)["grids"]) EXPECT_GT(grid["active_voxels"], 100) << grid;
+  for (const char* mesh : {"meshes/brain_region.stl", "meshes/footbones.ply"}) {
+    const CommandResult result = runPalpate(
+        {"bake", data + mesh, "-o", folder.path("m.vdb"), "--units", "mm", "--force", "--json"});
+    ASSERT_EQ(result.exit_code, 0) << mesh << "\n" << result.err << result.out;
+    EXPECT_GT(parseOnly(result)["grids"][0]["active_voxels"], 1000) << mesh;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::testing

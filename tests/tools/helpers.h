@@ -1,0 +1,82 @@
+#pragma once
+// What several tests of the command need.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/run_command.h"
+#include "support/temp_file.h"
+
+namespace palpate::testing {
+
+using Json = nlohmann::json;
+
+/// The whole of stdout as one JSON object; anything else fails the test.
+inline Json parseOnly(const CommandResult& result) {
+  Json json = Json::parse(result.out, nullptr, false);
+  EXPECT_TRUE(json.is_object()) << "stdout is not one JSON object:\n" << result.out << result.err;
+  return json.is_object() ? json : Json::object();
+}
+
+inline std::string textOf(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+inline std::vector<std::string> filesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+inline std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+inline std::vector<std::string> cellsOf(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    if (c == ',') {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+inline std::string scenePath(const std::string& name) {
+  return PALPATE_SOURCE_DIR "/data/scenes/" + name;
+}
+
+/// The paper's container, all its numbers known.
+inline constexpr const char* kContainer = R"(palpate: 1
+length: mm
+fields:
+  bowl: {sphere: {center: [0, 0, 0], radius: 40}}
+  brim: {half_space: {point: [0, 0, 15], normal: [0, 0, 1]}}
+materials:
+  glass: {stiffness: 1500 N/m}
+  syrup: {viscosity: 4 N.s/m}
+layers:
+  - {name: liquid, inside: {intersection: [bowl, brim]}, content: syrup, wall: glass}
+ports:
+  - {name: mouth, between: [outside, liquid], on: brim}
+)";
+
+}  // namespace palpate::testing

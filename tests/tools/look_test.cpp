@@ -1,0 +1,216 @@
+// palpate info, query, explain and render: what they say about known things.
+
+#include <cmath>
+
+#include "tools/helpers.h"
+#include "vdb/nifti_writer.h"
+
+namespace palpate::testing {
+namespace {
+
+Json jsonOf(const std::vector<std::string>& arguments) {
+  std::vector<std::string> all = arguments;
+  all.emplace_back("--json");
+  const CommandResult result = runPalpate(all);
+  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+  return parseOnly(result);
+}
+
+TEST(Info, AnImageWithItsPlaceInSpace) {
+  const TempFolder folder;
+  vdb::test::NiftiFile image;  // 4 x 5 x 6, 2 mm, origin (-3, -4, -5) mm
+  const auto bytes = vdb::test::bytesOf(image);
+  const std::string file =
+      folder.file("i.nii", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const Json json = jsonOf({"info", file});
+  EXPECT_EQ(json["schema"], "palpate.info/1");
+  const Json one = json["files"][0];
+  EXPECT_EQ(one["kind"], "image");
+  EXPECT_EQ(one["size"], Json::array({4, 5, 6}));
+  EXPECT_EQ(one["orientation"], "RAS");
+  EXPECT_NEAR(one["spacing_m"][0], 0.002, 1e-9);
+  EXPECT_NEAR(one["origin_m"][2], -0.005, 1e-9);
+  EXPECT_NEAR(one["bounds_m"]["hi"][0], 0.003, 1e-9);  // centre of the last voxel: -3 + 3 * 2
+  EXPECT_NE(runPalpate({"info", file}).out.find("right, front, up"), std::string::npos);
+}
+
+TEST(Info, AMeshWithItsHoles) {
+  const TempFolder folder;
+  const std::string file =
+      folder.file("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const Json one = jsonOf({"info", file, "--units", "cm"})["files"][0];
+  EXPECT_EQ(one["kind"], "mesh");
+  EXPECT_EQ(one["triangles"], 3);
+  EXPECT_EQ(one["closed"], false);
+  EXPECT_EQ(one["boundary_edges"], 3);
+  EXPECT_NEAR(one["bounds_m"]["hi"][0], 0.01, 1e-12);
+}
+
+TEST(Info, SeveralFilesInOneObject) {
+  const TempFolder folder;
+  const std::string scene = folder.file("c.yaml", kContainer);
+  const Json json = jsonOf({"info", scene, scenePath("valve_tube.yaml")});
+  ASSERT_EQ(json["files"].size(), 2U);
+  EXPECT_EQ(json["files"][0]["layers"][0]["name"], "liquid");
+  EXPECT_EQ(json["files"][0]["ports"][0]["name"], "mouth");
+  EXPECT_EQ(json["files"][1]["layers"].size(), 2U);
+}
+
+TEST(Query, ASceneAtPointsInItsOwnUnit) {
+  const TempFolder folder;
+  const std::string scene = folder.file("c.yaml", kContainer);
+  const Json json = jsonOf({"query", scene, "--at", "0,0,13", "0,0,16"});
+  EXPECT_EQ(json["schema"], "palpate.query/1");
+  EXPECT_EQ(json["length_unit"], "mm");
+  ASSERT_EQ(json["points"].size(), 2U);
+  const Json inside = json["points"][0];
+  EXPECT_EQ(inside["region"], "liquid");
+  EXPECT_EQ(inside["content"]["name"], "syrup");
+  EXPECT_EQ(inside["wall"]["stiffness_N_per_m"], 1500.0);
+  ASSERT_EQ(inside["fields"].size(), 1U);
+  EXPECT_NEAR(inside["fields"][0]["value"], -2.0, 1e-12);  // 2 mm below the brim
+  EXPECT_NEAR(inside["fields"][0]["gradient"][2], 1.0, 1e-12);
+  EXPECT_EQ(json["points"][1]["region"], "outside");
+  EXPECT_TRUE(json["points"][1]["content"].is_null());
+
+  const Json bowl = jsonOf({"query", scene, "--at", "0,0,13", "--field", "bowl"});
+  ASSERT_EQ(bowl["points"][0]["fields"].size(), 1U);
+  EXPECT_NEAR(bowl["points"][0]["fields"][0]["value"], 13.0 - 40.0, 1e-12);
+  EXPECT_EQ(bowl["points"][0]["fields"][0]["metric"], "exact");
+}
+
+TEST(Query, PointsFromAFile) {
+  const TempFolder folder;
+  const std::string scene = folder.file("c.yaml", kContainer);
+  const std::string points = folder.file("p.csv", "x,y,z\r\n0,0,13\r\n\r\n0, 0, 16\r\n");
+  const Json json = jsonOf({"query", scene, "--points", points});
+  ASSERT_EQ(json["points"].size(), 2U);
+  EXPECT_EQ(json["points"][1]["region"], "outside");
+}
+
+TEST(Query, AnImageBetweenItsVoxels) {
+  const TempFolder folder;
+  vdb::test::NiftiFile image;
+  image.values.assign(4 * 5 * 6, 0.0);
+  for (std::size_t i = 0; i < image.values.size(); ++i)
+    image.values[i] = 10.0 * static_cast<double>(i % 4);
+  const auto bytes = vdb::test::bytesOf(image);
+  const std::string file =
+      folder.file("i.nii", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  // x runs from -3 mm in steps of 2 mm, 10 brighter each: at -0.5 mm it is 12.5.
+  const CommandResult result = runPalpate({"query", file, "--at", "-0.5,0,0", "40,0,0", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json json = parseOnly(result);
+  EXPECT_NEAR(json["points"][0]["value"], 12.5, 1e-5);
+  EXPECT_TRUE(json["points"][1]["value"].is_null());
+  EXPECT_NE(result.err.find("1 of 2 points lie outside"), std::string::npos) << result.err;
+}
+
+TEST(Explain, TheContainer) {
+  const TempFolder folder;
+  const std::string scene = folder.file("c.yaml", kContainer);
+  const Json json = jsonOf({"explain", scene});
+  EXPECT_EQ(json["schema"], "palpate.explain/1");
+  EXPECT_EQ(json["start"], "outside");
+  ASSERT_EQ(json["regions"].size(), 2U);
+  EXPECT_EQ(json["regions"][1]["name"], "liquid");
+  EXPECT_EQ(json["regions"][1]["reachable"], true);
+  ASSERT_EQ(json["walls"].size(), 1U);
+  EXPECT_EQ(json["walls"][0]["from_first"]["material"]["name"], "glass");
+  ASSERT_EQ(json["transitions"].size(), 2U);
+  EXPECT_EQ(json["transitions"][0]["from"], "outside");
+  EXPECT_EQ(json["transitions"][0]["port"], "mouth");
+  EXPECT_EQ(json["transitions"][0]["to"], "liquid");
+  EXPECT_EQ(json["transitions"][0]["conditions"], Json::array({"on brim"}));
+}
+
+TEST(Explain, AValveHasNoTransitionBack) {
+  const Json json = jsonOf({"explain", scenePath("valve_tube.yaml")});
+  std::vector<std::string> moves;
+  for (const Json& t : json["transitions"]) {
+    moves.push_back(t["from"].get<std::string>() + ">" + t["to"].get<std::string>());
+  }
+  EXPECT_EQ(moves, (std::vector<std::string>{"outside>upstream", "upstream>downstream",
+                                             "downstream>outside"}));
+  EXPECT_EQ(json["transitions"][1]["conditions"], Json::array({"on leaflets", "after inlet"}));
+}
+
+TEST(Explain, WhatCannotBeEnteredIsNamedWithTheReason) {
+  const TempFolder folder;
+  const std::string scene = folder.file("s.yaml", R"(palpate: 1
+length: mm
+fields:
+  a: {sphere: {center: [0, 0, 0], radius: 20}}
+  b: {sphere: {center: [0, 0, 0], radius: 10}}
+layers:
+  - {name: shell, inside: a}
+  - {name: core, inside: b}
+ports:
+  - {name: hole, between: [outside, shell]}
+)");
+  const Json json = jsonOf({"explain", scene});
+  EXPECT_EQ(json["regions"][1]["reachable"], true);
+  EXPECT_EQ(json["regions"][2]["reachable"], false);
+  EXPECT_EQ(json["regions"][2]["why_unreachable"], "no port leads into it");
+  const std::string text = runPalpate({"explain", scene}).out;
+  EXPECT_NE(text.find("core: no port leads into it"), std::string::npos) << text;
+}
+
+std::uint32_t bigEndian(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value = (value << 8U) | static_cast<unsigned char>(bytes[at + i]);
+  }
+  return value;
+}
+
+TEST(Render, APictureOfTheSizeAskedFor) {
+  const TempFolder folder;
+  const std::string scene = folder.file("c.yaml", kContainer);
+  const std::string out = folder.path("p.png");
+  const Json json = jsonOf({"render", scene, "-o", out, "--size", "640x400", "--plane", "x=5"});
+  EXPECT_EQ(json["schema"], "palpate.render/1");
+  EXPECT_EQ(json["plane"]["normal"], Json::array({1.0, 0.0, 0.0}));
+  EXPECT_NEAR(json["plane"]["point_m"][0], 0.005, 1e-12);
+  const std::string png = textOf(out);
+  ASSERT_GT(png.size(), 2000U);
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_EQ(bigEndian(png, 16), 640U);
+  EXPECT_EQ(bigEndian(png, 20), 400U);
+
+  EXPECT_EQ(runPalpate({"render", scene, "-o", out}).exit_code, 1);  // it exists
+  EXPECT_EQ(textOf(out), png);
+}
+
+TEST(Render, CutsAlongTheTrace) {
+  const TempFolder folder;
+  const std::string scene = folder.file("c.yaml", kContainer);
+  const std::string trace = folder.path("t.csv");
+  // A path in the plane x = 7 mm, not along any axis.
+  ASSERT_EQ(
+      runPalpate({"touch", scene, "--insert", "7,-10,30", "7,0,0", "7,10,10", "--trace", trace})
+          .exit_code,
+      0);
+  const Json json = jsonOf({"render", scene, "-o", folder.path("p.png"), "--trace", trace});
+  EXPECT_NEAR(std::abs(json["plane"]["normal"][0].get<double>()), 1.0, 1e-9);
+  EXPECT_NEAR(json["plane"]["point_m"][0], 0.007, 1e-9);
+}
+
+TEST(Render, AnyPlaneAndScenesWithoutEdges) {
+  const TempFolder folder;
+  const std::string endless = folder.file("h.yaml", R"(palpate: 1
+length: mm
+fields:
+  h: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}
+layers:
+  - {name: ground, inside: h}
+)");
+  const Json json =
+      jsonOf({"render", endless, "-o", folder.path("h.png"), "--cut", "0,0,0,1,1,0.5"});
+  const Json n = json["plane"]["normal"];
+  EXPECT_NEAR(n[0].get<double>(), 1.0 / 1.5, 1e-9);
+  EXPECT_NEAR(n[2].get<double>(), 0.5 / 1.5, 1e-9);
+}
+
+}  // namespace
+}  // namespace palpate::testing

@@ -1,0 +1,197 @@
+// palpate touch: what is felt, what is reported and what is written.
+
+#include <cmath>
+
+#include "tools/helpers.h"
+
+namespace palpate::testing {
+namespace {
+
+constexpr const char* kHeader =
+    "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_"
+    "ns";
+
+/// Without its last column.
+std::string withoutTimes(const std::string& trace) {
+  std::string text;
+  for (const std::string& line : linesOf(trace)) text += line.substr(0, line.rfind(',')) + "\n";
+  return text;
+}
+
+class Touch : public ::testing::Test {
+ protected:
+  Touch() { (void)folder_.file("c.yaml", kContainer); }
+
+  CommandResult touch(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"touch", "c.yaml"});
+    return runPalpate(arguments, folder_.path());
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(Touch, PressingAWallGivesStiffnessTimesDepth) {
+  // 2 mm into the bottom of the bowl, whose wall has 1500 N/m: 3 N at rest.
+  const CommandResult result = touch(
+      {"--press", "0,0,-40", "--normal", "0,0,-1", "--depth", "2", "--hold", "0.1", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json json = parseOnly(result);
+  EXPECT_EQ(json["schema"], "palpate.touch/1");
+  EXPECT_NEAR(json["peak_force_N"], 3.0, 1e-6);
+  ASSERT_EQ(json["regions"].size(), 1U);
+  EXPECT_EQ(json["regions"][0]["region"], "outside");
+  EXPECT_GT(json["contact_ticks"], 100);  // the hold alone is 100 ticks
+  EXPECT_EQ(json["events"].size(), 0U);
+  EXPECT_TRUE(json["trace"].is_null());
+}
+
+TEST_F(Touch, RegionsComeInOrderWithDepthAndPeakForce) {
+  const CommandResult result =
+      touch({"--insert", "0,0,35", "0,0,-10", "--back", "--speed", "50", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json json = parseOnly(result);
+  ASSERT_EQ(json["regions"].size(), 3U) << json;
+  EXPECT_EQ(json["regions"][0]["region"], "outside");
+  EXPECT_EQ(json["regions"][1]["region"], "liquid");
+  EXPECT_EQ(json["regions"][2]["region"], "outside");
+  // From the mouth at z = 15 mm to -10 mm; a tick is 0.05 mm, and the first one inside may be as deep.
+  EXPECT_NEAR(json["regions"][1]["depth_m"], 0.025, 6e-5);
+  EXPECT_NEAR(json["regions"][1]["entry_depth_m"], 0.0, 6e-5);
+  EXPECT_NEAR(json["regions"][1]["peak_force_N"], 4.0 * 0.05, 1e-9);  // drag 4 N.s/m at 50 mm/s
+  ASSERT_EQ(json["events"].size(), 2U);
+  EXPECT_EQ(json["events"][0]["port"], "mouth");
+  EXPECT_EQ(json["events"][1]["port"], "mouth");
+}
+
+TEST_F(Touch, TheTextSaysWhatTheJsonSays) {
+  const CommandResult result = touch({"--insert", "0,0,35", "0,0,-10"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  for (const char* part : {"liquid", "mouth", "25 mm", "0.2 N", "median"}) {
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << " in\n" << result.out;
+  }
+}
+
+TEST_F(Touch, TheTraceHasItsHeaderAndOneRowATick) {
+  const CommandResult result =
+      touch({"--insert", "0,0,35", "0,0,-10", "--trace", "t.csv", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto lines = linesOf(textOf(folder_.path("t.csv")));
+  ASSERT_GT(lines.size(), 1U);
+  EXPECT_EQ(lines[0], kHeader);
+  EXPECT_EQ(lines.size() - 1, parseOnly(result)["ticks"].get<std::size_t>());
+  std::size_t passed = 0;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const auto cells = cellsOf(lines[i]);
+    ASSERT_EQ(cells.size(), 14U) << lines[i];
+    EXPECT_GT(std::stoll(cells[13]), 0);
+    if (cells[12] == "mouth") ++passed;
+  }
+  EXPECT_EQ(passed, 1U);
+}
+
+TEST_F(Touch, TheSameTraceTwiceExceptForTheTimes) {
+  const std::vector<std::string> motion = {"--insert", "3,2,35", "10,-5,-45", "12,0,0", "--back"};
+  for (const char* name : {"a.csv", "b.csv"}) {
+    std::vector<std::string> arguments = motion;
+    arguments.insert(arguments.end(), {"--trace", name});
+    ASSERT_EQ(touch(arguments).exit_code, 0);
+  }
+  const std::string first = withoutTimes(textOf(folder_.path("a.csv")));
+  EXPECT_GT(first.size(), 10000U);
+  EXPECT_EQ(first, withoutTimes(textOf(folder_.path("b.csv"))));
+}
+
+TEST_F(Touch, ARecordedPathIsFollowedRowByRow) {
+  (void)folder_.file("p.csv", "t,x,y,z\n0,0,0,0.05\n0.001,0,0,0.04\n0.002,0.001,0,0.03\n");
+  ASSERT_EQ(touch({"--path", "p.csv", "--trace", "t.csv"}).exit_code, 0);
+  const auto lines = linesOf(textOf(folder_.path("t.csv")));
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_EQ(lines[3].find("0.002,0.001,0,0.03,"), 0U) << lines[3];
+}
+
+TEST_F(Touch, EveryMotionRunsWithBothRenderers) {
+  const std::vector<std::vector<std::string>> motions = {
+      {"--press", "0,0,-40", "--normal", "0,0,-1"},
+      {"--tap", "0,0,-40", "--normal", "0,0,-1", "--taps", "2", "--frequency", "8"},
+      {"--stroke", "-10,0,-39", "10,0,-39", "--repeats", "2"},
+      {"--insert", "0,0,35", "0,0,0", "--hold", "0.05"}};
+  for (auto motion : motions) {
+    for (const char* renderer : {"constraint", "paper"}) {
+      std::vector<std::string> arguments = motion;
+      arguments.insert(arguments.end(), {"--renderer", renderer, "--json"});
+      const CommandResult result = touch(arguments);
+      ASSERT_EQ(result.exit_code, 0) << motion[0] << " " << renderer << "\n"
+                                     << result.err << result.out;
+      EXPECT_EQ(parseOnly(result)["renderer"], renderer);
+      EXPECT_GT(parseOnly(result)["peak_force_N"], 0.0) << motion[0] << " " << renderer;
+    }
+  }
+}
+
+TEST_F(Touch, RealTimeKeepsToTheClockAndReportsOverruns) {
+  const CommandResult result = touch({"--press", "0,0,-40", "--normal", "0,0,-1", "--depth", "0.5",
+                                      "--clearance", "0.5", "--hold", "0", "--realtime", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(parseOnly(result)["realtime"]["overruns"].is_number());
+}
+
+TEST_F(Touch, NothingIsOverwrittenUnlessForced) {
+  (void)folder_.file("t.csv", "mine");
+  const CommandResult refused =
+      touch({"--insert", "0,0,35", "0,0,0", "--trace", "t.csv", "--image", "i.png"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("t.csv"), std::string::npos);
+  EXPECT_NE(refused.err.find("--force"), std::string::npos);
+  EXPECT_EQ(textOf(folder_.path("t.csv")), "mine");
+  EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"c.yaml", "t.csv"}));
+
+  EXPECT_EQ(touch({"--insert", "0,0,35", "0,0,0", "--trace", "t.csv", "--force"}).exit_code, 0);
+  EXPECT_EQ(textOf(folder_.path("t.csv")).find(kHeader), 0U);
+}
+
+TEST_F(Touch, AMissingFolderIsToldBeforeTheWork) {
+  const CommandResult result = touch({"--insert", "0,0,35", "0,0,0", "--trace", "no/such/t.csv"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("no/such"), std::string::npos) << result.err;
+}
+
+TEST_F(Touch, APictureComesWithIt) {
+  ASSERT_EQ(touch({"--insert", "0,0,35", "0,0,-10", "--image", "i.png"}).exit_code, 0);
+  EXPECT_EQ(textOf(folder_.path("i.png")).substr(1, 3), "PNG");
+  EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"c.yaml", "i.png"}));
+}
+
+TEST(TouchScenes, TheShippedScenesRun) {
+  const struct {
+    const char* scene;
+    std::vector<std::string> motion;
+    std::vector<std::string> regions;
+  } runs[] = {
+      {"container.yaml",
+       {"--insert", "0,0,60", "0,0,0", "--back"},
+       {"outside", "liquid", "outside"}},
+      {"csg_part.yaml",
+       {"--insert", "-22,0,30", "-22,0,5", "--back"},
+       {"outside", "chamber", "outside"}},
+      {"valve_tube.yaml",
+       {"--insert", "-60,0,0", "60,0,0"},
+       {"outside", "upstream", "downstream", "outside"}},
+      // The valve refuses the way back: the proxy stays downstream.
+      {"valve_tube.yaml",
+       {"--insert", "-60,0,0", "20,0,0", "--back"},
+       {"outside", "upstream", "downstream"}},
+  };
+  for (const auto& run : runs) {
+    std::vector<std::string> arguments = {"touch", scenePath(run.scene), "--json"};
+    arguments.insert(arguments.end(), run.motion.begin(), run.motion.end());
+    const CommandResult result = runPalpate(arguments);
+    ASSERT_EQ(result.exit_code, 0) << run.scene << "\n" << result.out << result.err;
+    std::vector<std::string> regions;
+    for (const Json& visit : parseOnly(result)["regions"]) regions.push_back(visit["region"]);
+    EXPECT_EQ(regions, run.regions) << run.scene;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::testing

@@ -1,0 +1,55 @@
+// The scanned head of data/scenes, region by region along the needle's path.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "palpate/scene/scene.h"
+#include "palpate/vdb/image.h"
+#include "palpate/vdb/register.h"
+
+namespace palpate::vdb {
+namespace {
+
+constexpr double kMm = 1e-3;
+
+TEST(HeadScene, ANeedlePassesSkinBrainAndThalamusInThatOrder) {
+  std::vector<GridRecord> grids;
+  std::vector<std::string> notes;
+  SceneRegistry registry;
+  registerKinds(registry, {[&](const GridRecord& record) { grids.push_back(record); },
+                           [&](const std::string& note) { notes.push_back(note); }});
+  const ScenePtr scene = compile(readScene(PALPATE_SOURCE_DIR "/data/scenes/head.yaml", registry));
+  EXPECT_EQ(notes.size(), 3U);  // one for each file: unit code 0
+  EXPECT_GE(grids.size(), 3U);
+  for (const GridRecord& grid : grids) {
+    std::printf("  %-40s %9llu voxels, %6.1f MB, %.2f s\n", grid.what.c_str(),
+                static_cast<unsigned long long>(grid.info.active_voxels),
+                static_cast<double>(grid.info.memory) * 1e-6, grid.seconds);
+  }
+
+  const Vec3 from = Vec3(-100, -42, 60) * kMm;
+  const Vec3 to = Vec3(-12, -18, 8) * kMm;
+  const auto nameAt = [&](const Vec3& p) { return scene->regions()[scene->regionAt(p)].name; };
+  std::vector<std::string> order;
+  for (int i = 0; i <= 1050; ++i) {
+    const Vec3 p = from + (to - from) * (i / 1050.0);
+    if (const std::string name = nameAt(p); order.empty() || order.back() != name) {
+      order.push_back(name);
+      std::printf("  %s from %.1f mm\n", name.c_str(), glm::length(p - from) / kMm);
+    }
+  }
+  EXPECT_EQ(order, (std::vector<std::string>{"outside", "skin", "brain", "thalamus"}));
+  // The end is well inside: the tip does not graze the far wall.
+  EXPECT_LT(scene->regions()[scene->regionNamed("thalamus")].field->value(to), -2 * kMm);
+
+  // Every port is open where the path crosses it.
+  for (const Port& port : scene->ports()) {
+    if (port.where) {
+      EXPECT_LT(port.where->value(from + (to - from) * 0.25), -5 * kMm) << port.name;
+      EXPECT_LT(port.where->value(from + (to - from) * 0.42), -5 * kMm) << port.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate::vdb

@@ -1,0 +1,217 @@
+// Scene files that name meshes, grids and images: what is read when, what is told, and where errors point.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "palpate/core/error.h"
+#include "palpate/fields/primitives.h"
+#include "palpate/vdb/bake.h"
+#include "palpate/vdb/io.h"
+#include "palpate/vdb/register.h"
+#include "support/temp_file.h"
+#include "vdb/nifti_writer.h"
+
+namespace palpate::vdb {
+namespace {
+
+constexpr double kMm = 1e-3;
+
+class SceneKinds : public ::testing::Test {
+ protected:
+  SceneKinds() {
+    // Two touching boxes of labels, 2 mm voxels, first centre at (-19, -19, -19) mm, unit code 0.
+    test::NiftiFile file;
+    file.dim = {20, 20, 20};
+    file.units = 0;
+    file.sform = {{{2, 0, 0, -19}, {0, 2, 0, -19}, {0, 0, 2, -19}}};
+    for (int k = 0; k < 20; ++k) {
+      for (int j = 0; j < 20; ++j) {
+        for (int i = 0; i < 20; ++i) {
+          const bool in = i >= 4 && i < 16 && j >= 4 && j < 16 && k >= 4 && k < 16;
+          file.values.push_back(in ? (i < 10 ? 1 : 2) : 0);
+        }
+      }
+    }
+    const test::Bytes bytes = test::bytesOf(file);
+    (void)folder_.file("labels.nii", std::string(bytes.begin(), bytes.end()));
+    (void)folder_.file("names.csv", "value,name\r\n1,left\r\n2,right\r\n7,nowhere\r\n");
+    (void)folder_.file("octahedron.obj",
+                       "v 10 0 0\nv -10 0 0\nv 0 10 0\nv 0 -10 0\nv 0 0 10\nv 0 0 -10\n"
+                       "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n");
+    options_.on_grid = [this](const GridRecord& record) { grids_.push_back(record); };
+    options_.on_note = [this](const std::string& note) { notes_.push_back(note); };
+    registerKinds(registry_, options_);
+  }
+
+  SceneDescription read(const std::string& body) {
+    return readScene(folder_.file("scene.yaml", "palpate: 1\nlength: mm\n" + body), registry_);
+  }
+
+  /// Expects an error of `code` at line and column of the scene, saying `says`.
+  void expectError(const std::string& body, const std::string& code, int line, int column,
+                   const std::string& says) {
+    try {
+      (void)read(body);
+      ADD_FAILURE() << "read without complaint:\n" << body;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kInput);
+      EXPECT_EQ(error.problem().code, code) << error.what();
+      EXPECT_EQ(error.problem().file, folder_.path("scene.yaml")) << error.what();
+      EXPECT_EQ(error.problem().line, line) << error.what();
+      EXPECT_EQ(error.problem().column, column) << error.what();
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+  }
+
+  palpate::testing::TempFolder folder_;
+  std::vector<GridRecord> grids_;
+  std::vector<std::string> notes_;
+  RegisterOptions options_;
+  SceneRegistry registry_;
+};
+
+TEST_F(SceneKinds, LayersOfAnImageAreMadeWhenAskedForAndShareTheirGroup) {
+  const SceneDescription scene = read(
+      "images: {seg: {file: labels.nii, names: names.csv}, again: {file: labels.nii}}\n"
+      "layers:\n"
+      "  - {name: a, labels: {image: seg, match: [left]}}\n"
+      "  - {name: b, labels: {image: seg, match: [\"r*\", 7], voxel: 1}}\n"
+      "  - {name: c, threshold: {image: again, above: 0.5, fill: true}}\n");
+  ASSERT_EQ(scene.layers.size(), 3U);
+  EXPECT_EQ(scene.layers[0].label_group, "seg");
+  EXPECT_EQ(scene.layers[1].label_group, "seg");
+  EXPECT_EQ(scene.layers[2].label_group, "");
+  EXPECT_EQ(scene.layers[1].inside->summary(), "labels 2 7 of labels.nii");
+  EXPECT_EQ(scene.layers[2].inside->summary(), "labels.nii above 0.5");
+  EXPECT_TRUE(grids_.empty());
+  // Unit code 0 is told once, although two images, three layers and their voxels come from the file.
+  ASSERT_EQ(notes_.size(), 1U);
+  EXPECT_NE(notes_[0].find("labels.nii"), std::string::npos);
+  EXPECT_NE(notes_[0].find("taken as mm"), std::string::npos);
+
+  for (const LayerDescription& layer : scene.layers) {
+    EXPECT_FALSE(layer.inside->isMade());
+    (void)layer.inside->get();
+  }
+  EXPECT_EQ(notes_.size(), 1U);
+  ASSERT_EQ(grids_.size(), 3U);
+  EXPECT_EQ(grids_[1].what, "b: labels 2 7 of labels.nii");
+  EXPECT_EQ(grids_[1].info.name, "b/surface");
+  EXPECT_EQ(grids_[1].info.metadata.at("layer"), "b");
+  EXPECT_EQ(grids_[1].info.length_unit, "mm");
+  EXPECT_NEAR(grids_[0].info.voxel_size, 2 * kMm, 1e-12);
+  EXPECT_NEAR(grids_[1].info.voxel_size, 1 * kMm, 1e-12);
+
+  // The labels' box runs from -12 to 12 mm, their common wall is x = 0.
+  const Field& left = *scene.layers[0].inside->get();
+  const Field& right = *scene.layers[1].inside->get();
+  const Field& both = *scene.layers[2].inside->get();
+  EXPECT_LT(left.value(Vec3(-6, 0, 0) * kMm), 0.0);
+  EXPECT_GT(left.value(Vec3(6, 0, 0) * kMm), 0.0);
+  EXPECT_LT(right.value(Vec3(6, 0, 0) * kMm), 0.0);
+  EXPECT_NEAR(left.value(Vec3(0, 1, 2) * kMm), 0.0, 0.02 * kMm);
+  EXPECT_NEAR(right.value(Vec3(0, 1, 2) * kMm), 0.0, 0.02 * kMm);
+  EXPECT_LT(both.value(Vec3(0, 0, 0)), 0.0);
+}
+
+TEST_F(SceneKinds, MeshesAndGridsAreFields) {
+  const FieldPtr ball = sphere(Vec3(1, 2, 3) * kMm, 10 * kMm);
+  const LevelSet baked = bake(*ball, {.voxel_size = 1 * kMm, .name = "ball/surface"});
+  writeVdb(folder_.path("ball.vdb"), std::span(&baked, 1), false);
+  const SceneDescription scene = read(
+      "fields:\n"
+      "  plain: {mesh: {file: octahedron.obj}}\n"
+      "  big: {mesh: {file: octahedron.obj, units: cm, voxel: 2, half_width: 3}}\n"
+      "  ball: {grid: {file: ball.vdb, name: ball/surface}}\n");
+  ASSERT_EQ(scene.fields.size(), 3U);
+  EXPECT_EQ(scene.fields[0].source->summary(), "mesh octahedron.obj");
+  EXPECT_FALSE(scene.fields[0].source->isMade());
+  const FieldPtr& plain = scene.fields[0].source->get();
+  EXPECT_NEAR(plain->featureSize(), 20.0 / 128.0 * kMm, 1e-12);
+  // The octahedron's face lies 10 / sqrt(3) from the origin.
+  const Vec3 on_face = Vec3(10.0 / 3.0) * kMm;
+  EXPECT_NEAR(plain->value(on_face), 0.0, 1e-6 * kMm);
+  const FieldPtr& big = scene.fields[1].source->get();
+  EXPECT_NEAR(big->value(10.0 * on_face), 0.0, 1e-5 * kMm);
+  EXPECT_NEAR(grids_.at(1).info.half_width, 3.0, 1e-6);
+  const FieldPtr& read_back = scene.fields[2].source->get();
+  EXPECT_NEAR(read_back->value(Vec3(11, 2, 3) * kMm), 0.0, 0.03 * kMm);
+  EXPECT_EQ(grids_.at(2).what, "ball.vdb: grid ball.vdb");
+}
+
+TEST_F(SceneKinds, WhatCanBeKnownIsRefusedWhenTheSceneIsRead) {
+  expectError("images: {i: {file: gone.nii}}\n", "nifti.missing", 3, 20, "gone.nii");
+  expectError("images: {i: {file: names.csv}}\n", "nifti.format", 3, 20, "not a NIfTI");
+  expectError("images: {i: {file: labels.nii, names: gone.csv}}\n", "labels.table_missing", 3, 39,
+              "gone.csv");
+  (void)folder_.file("bad.csv", "value,name\n1,a\nx,b\n");
+  expectError("images: {i: {file: labels.nii, names: bad.csv}}\n", "labels.table_row", 3, 39,
+              "bad.csv:3");
+  expectError("fields: {m: {mesh: {file: gone.stl}}}\n", "scene.no_file", 3, 27, "gone.stl");
+  expectError("fields: {m: {mesh: {file: octahedron.obj, units: parsec}}}\n", "scene.unit", 3, 50,
+              "parsec");
+  expectError("fields: {m: {mesh: {file: octahedron.obj, voxel: -1}}}\n", "scene.range", 3, 50,
+              "more than 0");
+  expectError("fields: {m: {mesh: {file: octahedron.obj, half_width: 1}}}\n", "scene.range", 3, 55,
+              "2 voxels");
+  expectError("fields: {m: {mesh: {file: octahedron.obj, voxle: 1}}}\n", "scene.unknown_key", 3, 43,
+              "voxel");
+  expectError("fields: {m: {grid: {file: gone.vdb}}}\n", "scene.no_file", 3, 27, "gone.vdb");
+
+  const std::string images =
+      "images: {seg: {file: labels.nii, names: names.csv}, bare: {file: labels.nii}}\n";
+  const auto layer = [&](const std::string& surface) {
+    return images + "layers:\n  - name: a\n    " + surface + "\n";
+  };
+  expectError(layer("labels: {image: sge, match: [left]}"), "scene.unknown_image", 6, 21, "'seg'");
+  expectError(layer("labels: {image: seg, match: [1, lfet]}"), "labels.unknown", 6, 37, "`left`");
+  expectError(layer("labels: {image: bare, match: [left]}"), "labels.no_names", 6, 35, "names");
+  expectError(layer("labels: {image: seg, match: left}"), "scene.kind", 6, 33, "list");
+  expectError(layer("labels: {image: seg, match: []}"), "scene.kind", 6, 33, "list");
+  expectError(layer("labels: {image: seg}"), "scene.missing_key", 6, 13, "match");
+  expectError(layer("threshold: {image: seg}"), "scene.missing_key", 6, 16, "above");
+  expectError(layer("threshold: {image: seg, above: 1, keep: biggest}"), "scene.kind", 6, 45,
+              "keep: largest");
+  EXPECT_TRUE(grids_.empty());
+}
+
+TEST_F(SceneKinds, WhatOnlyTheVoxelsKnowIsToldAtTheLayer) {
+  const SceneDescription scene = read(
+      "images: {seg: {file: labels.nii, names: names.csv}}\n"
+      "layers:\n"
+      "  - {name: a, labels: {image: seg, match: [nowhere]}}\n"
+      "  - {name: b, threshold: {image: seg, above: 100}}\n");
+  for (const auto& [index, line] : {std::pair{0U, 5}, {1U, 6}}) {
+    try {
+      (void)scene.layers[index].inside->get();
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.problem().code, "scan.empty");
+      EXPECT_EQ(error.problem().file, folder_.path("scene.yaml"));
+      EXPECT_EQ(error.problem().line, line);
+      EXPECT_NE(std::string(error.what()).find("labels.nii"), std::string::npos);
+    }
+  }
+}
+
+TEST_F(SceneKinds, CancellingAMakerLeavesItToBeMadeLater) {
+  const SceneDescription scene = read(
+      "images: {seg: {file: labels.nii}}\n"
+      "layers:\n  - {name: a, threshold: {image: seg, above: 0.5}}\n");
+  std::string first;
+  try {
+    (void)scene.layers[0].inside->get([&](std::string_view what, double) {
+      first = what;
+      return false;
+    });
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kCancelled);
+  }
+  EXPECT_EQ(first, "a: threshold");
+  EXPECT_TRUE(grids_.empty());
+  EXPECT_LT(scene.layers[0].inside->get()->value(Vec3(0.0)), 0.0);
+}
+
+}  // namespace
+}  // namespace palpate::vdb

@@ -1,0 +1,235 @@
+#include "palpate/vdb/register.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include "palpate/scene/units.h"
+#include "palpate/vdb/bake.h"
+#include "palpate/vdb/io.h"
+#include "palpate/vdb/mesh.h"
+#include "palpate/vdb/scan_surface.h"
+#include "scene_image.h"
+
+namespace palpate::vdb {
+namespace {
+
+using GridMaker = std::function<LevelSet(const Progress&)>;
+
+/// What the makers need after the scene file is read and its readers are gone.
+struct Common {
+  RegisterOptions options;
+  std::shared_ptr<Notes> notes;
+  SceneImages images;
+};
+using CommonPtr = std::shared_ptr<Common>;
+
+std::string fileName(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+/// The field of a grid that is made when it is first asked for. What the maker finds wrong is told at
+/// `place` of the scene; `what` names the grid in progress and records.
+FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string summary,
+                         SourcePlace place, GridMaker make) {
+  auto maker = [common, what = std::move(what), summary, place = std::move(place),
+                make = std::move(make)](const Progress& progress) {
+    Progress named;
+    if (progress) {
+      named = [&](std::string_view step, double fraction) {
+        return progress(what + ": " + std::string(step), fraction);
+      };
+    }
+    const auto start = std::chrono::steady_clock::now();
+    LevelSet grid;
+    try {
+      grid = make(named);
+    } catch (const Error& error) {
+      const Problem& problem = error.problem();
+      if (error.kind() != ErrorKind::kInput || problem.file == place.file) throw;
+      throw errorAt(place, problem.code,
+                    (problem.file.empty() ? "" : problem.file + ": ") + problem.message,
+                    problem.hint);
+    }
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    if (common->options.on_grid) {
+      common->options.on_grid({what + ": " + summary, grid.info(), took.count()});
+    }
+    return gridField(grid);
+  };
+  return std::make_shared<FieldSource>(std::move(summary), std::move(maker));
+}
+
+/// A length that must be positive if it is given; 0 if it is not.
+double optionalVoxel(MapReader& reader) {
+  const double voxel = reader.lengthOr("voxel", 0.0);
+  if (reader.has("voxel") && !(voxel > 0.0)) {
+    throw reader.errorAt("voxel", "scene.range", "'voxel' must be more than 0");
+  }
+  return voxel;
+}
+
+/// Path of the file at `key`, which must be there; nothing of it is read.
+std::string existingFile(MapReader& reader, std::string_view key) {
+  const std::string path = reader.loader().resolvePath(reader.requireText(key));
+  std::error_code failure;
+  if (!std::filesystem::exists(path, failure)) {
+    throw reader.errorAt(key, "scene.no_file", "there is no file " + path,
+                         "paths are relative to the folder of the scene");
+  }
+  if (std::filesystem::is_directory(path, failure)) {
+    throw reader.errorAt(key, "scene.no_file", path + " is a directory");
+  }
+  return path;
+}
+
+/// The length unit at `units`, or `fallback`.
+std::string lengthUnitOr(MapReader& reader, std::string fallback) {
+  std::string unit = reader.textOr("units", std::move(fallback));
+  if (!unit.empty() && !metresPer(unit)) {
+    throw reader.errorAt("units", "scene.unit", "'" + unit + "' is no length unit",
+                         "units: " + std::string(unitHelp(Dimension::kLength)));
+  }
+  return unit;
+}
+
+FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
+  const std::string path = existingFile(reader, "file");
+  BakeOptions bake;
+  bake.length_unit = reader.loader().lengthUnit();
+  const double metres = *metresPer(lengthUnitOr(reader, bake.length_unit));
+  bake.voxel_size = optionalVoxel(reader);
+  bake.half_width = reader.numberOr("half_width", bake.half_width);
+  if (!(bake.half_width >= 2.0)) {
+    throw reader.errorAt("half_width", "scene.range", "'half_width' must be 2 voxels or more");
+  }
+  bake.metadata["source"] = path;
+  return lazyField(common, fileName(path), "mesh " + fileName(path),
+                   reader.loader().document().place(reader.node().mark),
+                   [path, metres, bake](const Progress& progress) {
+                     report(progress, "read", 0.0);
+                     const Mesh mesh = readMesh(path, metres);
+                     BakeOptions options = bake;
+                     if (!(options.voxel_size > 0.0)) {
+                       const Vec3 size = checkMesh(mesh).bounds.size();
+                       options.voxel_size = std::max({size.x, size.y, size.z}) / 128.0;
+                     }
+                     return bakeMesh(mesh, options, progress);
+                   });
+}
+
+FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
+  const std::string path = existingFile(reader, "file");
+  const std::string name = reader.textOr("name", "");
+  const std::string unit = lengthUnitOr(reader, "");
+  return lazyField(common, fileName(path), "grid " + fileName(path),
+                   reader.loader().document().place(reader.node().mark),
+                   [path, name, unit](const Progress& progress) {
+                     report(progress, "read", 0.0);
+                     return readVdb(path, name, unit);
+                   });
+}
+
+/// The image a layer names, and what its grid will be called.
+struct LayerImage {
+  std::string name;
+  std::shared_ptr<SceneImage> image;
+  BakeOptions bake;
+  SourcePlace place;
+
+  LayerImage(MapReader& reader, const std::string& layer)
+      : name(reader.requireText("image")),
+        image(std::static_pointer_cast<SceneImage>(
+            reader.loader().image(name, reader.require("image").mark))),
+        place(reader.loader().document().place(reader.node().mark)) {
+    bake.name = layer + "/surface";
+    bake.length_unit = reader.loader().lengthUnit();
+    bake.metadata["layer"] = layer;
+  }
+};
+
+std::vector<int> readMatch(MapReader& reader, const SceneImage& image) {
+  const Node& list = reader.require("match");
+  const Document& document = reader.loader().document();
+  if (list.kind != Node::Kind::kSequence || list.items.empty()) {
+    throw reader.errorAt("match", "scene.kind", "'match' must be a list of label names or values",
+                         "write match: [liver], match: [\"rib_*\", 12]");
+  }
+  std::vector<int> values;
+  for (const Node& item : list.items) {
+    if (item.kind != Node::Kind::kScalar) {
+      throw document.error(item.mark, "scene.kind", "a label is a name or a value");
+    }
+    try {
+      const std::vector<int> found = resolveLabels({item.text}, image.names, image.names_path);
+      values.insert(values.end(), found.begin(), found.end());
+    } catch (const Error& error) {
+      const Problem& problem = error.problem();
+      throw document.error(item.mark, problem.code,
+                           (problem.file.empty() ? "" : problem.file + ": ") + problem.message,
+                           problem.hint);
+    }
+  }
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& reader,
+                                        const std::string& layer) {
+  const LayerImage from(reader, layer);
+  LabelOptions labels;
+  labels.values = readMatch(reader, *from.image);
+  labels.voxel_size = optionalVoxel(reader);
+  std::string summary = labels.values.size() == 1 ? "label" : "labels";
+  for (const int value : labels.values) summary += " " + std::to_string(value);
+  summary += " of " + fileName(from.image->file->path());
+  return {lazyField(common, layer, std::move(summary), from.place,
+                    [file = from.image->file, labels, bake = from.bake](const Progress& progress) {
+                      return surfaceFromLabels(file->image(), labels, bake, progress);
+                    }),
+          from.name};
+}
+
+SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& reader,
+                                           const std::string& layer) {
+  const LayerImage from(reader, layer);
+  ThresholdOptions threshold;
+  const Node& above = reader.require("above");
+  threshold.above = reader.requireNumber("above");
+  const std::string keep = reader.textOr("keep", "largest");
+  if (keep != "largest" && keep != "all") {
+    throw reader.errorAt("keep", "scene.kind", "'keep' is `" + keep + "`",
+                         "write keep: largest or keep: all");
+  }
+  threshold.largest_component = keep == "largest";
+  threshold.fill = reader.boolOr("fill", false);
+  threshold.voxel_size = optionalVoxel(reader);
+  std::string summary = fileName(from.image->file->path()) + " above " + above.text;
+  return {
+      lazyField(common, layer, std::move(summary), from.place,
+                [file = from.image->file, threshold, bake = from.bake](const Progress& progress) {
+                  return surfaceFromThreshold(file->image(), threshold, bake, progress);
+                }),
+      {}};
+}
+
+}  // namespace
+
+void registerKinds(SceneRegistry& registry, RegisterOptions options) {
+  auto notes = std::make_shared<Notes>(options.on_note);
+  const auto common =
+      std::make_shared<Common>(Common{std::move(options), notes, SceneImages(notes)});
+  registry.image = [common](MapReader& reader) { return common->images.read(reader); };
+  registry.fields["mesh"] = [common](MapReader& reader) { return meshField(common, reader); };
+  registry.fields["grid"] = [common](MapReader& reader) { return gridFileField(common, reader); };
+  registry.layers["labels"] = [common](MapReader& reader, const std::string& layer) {
+    return labelsLayer(common, reader, layer);
+  };
+  registry.layers["threshold"] = [common](MapReader& reader, const std::string& layer) {
+    return thresholdLayer(common, reader, layer);
+  };
+}
+
+}  // namespace palpate::vdb
