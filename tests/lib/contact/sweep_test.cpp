@@ -98,8 +98,8 @@ TEST(Sweep, AgainstDenseSamplingFromBothSides) {
       ASSERT_LE(out.at, 1.0);
       // On its own side as far as it says, but for grazes shorter than `graze`: a chord of that length
       // dips by graze^2 / (8 R) = 5e-5 R into a curved wall, and by graze / 2 into an edge.
-      const double dip = (shape.has_edges ? 1e-2 : 1e-4) * shape.field->featureSize() *
-                         shape.field->lipschitz();
+      const double dip =
+          (shape.has_edges ? 1e-2 : 1e-4) * shape.field->featureSize() * shape.field->lipschitz();
       ASSERT_GE(deepest(s, a, b, out.at, 500), -dip) << shape.name << " trial " << trial;
       if (out.kind == Kind::kHit) {
         ++hits;

@@ -55,7 +55,8 @@ TEST(Place, MovesValueGradientAndBounds) {
 
 TEST(Place, ShowsOperandAndPose) {
   const FieldPtr body = box(Vec3(0.0), Vec3(1.0));
-  const FieldStructure structure = place(body, kPose)->structure();
+  const FieldPtr placed = place(body, kPose);
+  const FieldStructure structure = placed->structure();
   ASSERT_EQ(structure.kind, FieldStructure::Kind::kTransform);
   ASSERT_EQ(structure.operands.size(), 1U);
   EXPECT_EQ(structure.operands[0], body);

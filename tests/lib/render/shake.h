@@ -28,8 +28,8 @@ class Hand {
       goal_ = random_.in(box_);
       kind_ = static_cast<int>(random_.uniform(0, 4));
     }
-    if (kind_ == 0) return at_;                              // rests
-    if (kind_ == 1) return at_ = random_.in(box_);           // jumps
+    if (kind_ == 0) return at_;                                 // rests
+    if (kind_ == 1) return at_ = random_.in(box_);              // jumps
     if (kind_ == 2) at_ += 0.3 * speed_ * random_.direction();  // trembles
     const Vec3 way = goal_ - at_;
     const double length = glm::length(way);
@@ -78,7 +78,7 @@ inline bool isExplained(const Scene& scene, RegionId from, const TickResult& out
 struct Bag {
   const char* name;
   ScenePtr scene;
-  double stiffness;  ///< [N/m] of all walls, which have no friction and no damping
+  double stiffness;          ///< [N/m] of all walls, which have no friction and no damping
   int rare = kTicks / 1000;  ///< ticks in which the proxy may still be on its way
 };
 

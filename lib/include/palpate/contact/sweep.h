@@ -25,7 +25,8 @@ struct SweepResult {
   };
   Kind kind = Kind::kFree;
   double at = 1.0;  ///< share of the segment, 0 to 1; on the near side to within the tolerance
-  double end_value = 0.0;  ///< side * S + allowance at the end of what was swept (a lower bound of |S| there)
+  double end_value =
+      0.0;  ///< side * S + allowance at the end of what was swept (a lower bound of |S| there)
 };
 
 /// Sweeps from `a` to `b` [m]. `start` is side * S + allowance at `a`; a start on or beyond the surface counts as a hit

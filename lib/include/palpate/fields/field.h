@@ -35,7 +35,8 @@ enum class Metric {
 class Field;
 using FieldPtr = std::shared_ptr<const Field>;  ///< shared and unchanging, never null in a scene
 
-/// How a field is put together, so that CSG can be taken apart into its smooth leaves.
+/// How a field is put together, so that CSG can be taken apart into its smooth leaves. The operands
+/// are a view into the field that was asked, and live as long as it.
 struct FieldStructure {
   enum class Kind {
     kLeaf,          ///< smooth, or to be taken as it is
