@@ -3,16 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdio>
-
-#include "lib/render/drive.h"
-#include "palpate/fields/primitives.h"
-#include "support/field_contract.h"
+#include "lib/render/shake.h"
 
 namespace palpate::test {
 namespace {
 
+<<<<<<< HEAD
+=======
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr int kTicks = 25'000;
 #else
@@ -126,6 +123,7 @@ void shake(const Bag& bag) {
               unsettled, kTicks);
 }
 
+>>>>>>> main
 TEST(RandomTicks, Container) { shake({"container", sceneOf(containerText()), 1500.0}); }
 
 TEST(RandomTicks, NestedBoxesThatShareFaces) {
@@ -145,32 +143,6 @@ ports:
   - {name: shelf, between: [outside, core], opens_at: 6 N, after: [top]}
 )"),
          1000.0});
-}
-
-TEST(RandomTicks, LabelGroup) {
-  SceneDescription description;
-  const auto layer = [&](const char* name, const Vec3& center) {
-    LayerDescription out;
-    out.name = name;
-    out.inside = std::make_shared<FieldSource>(sphere(center, 0.025));
-    out.label_group = "scan";
-    description.layers.push_back(out);
-  };
-  layer("a", mm(-12, 0, 0));
-  layer("b", mm(12, 0, 0));
-  layer("c", mm(0, 15, 3));
-  const auto port = [&](const char* name, const char* from, const char* to, double force) {
-    PortDescription out;
-    out.name = name;
-    out.from = from;
-    out.to = to;
-    out.opens_at = force;
-    description.ports.push_back(out);
-  };
-  port("skin", "outside", "?", 3.0);
-  port("ab", "a", "b", 0.0);
-  port("bc", "b", "c", 2.0);
-  shake({"label group", compile(description), 1000.0});
 }
 
 TEST(RandomTicks, CompositeCylinder) {

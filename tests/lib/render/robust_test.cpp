@@ -20,11 +20,11 @@ INSTANTIATE_TEST_SUITE_P(Renderers, Robust,
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-const std::vector<HipState> kBroken = {{Vec3(kNan, 0, 0), Vec3(0.0)},
-                                       {Vec3(0, kInfinity, 0), Vec3(0.0)},
-                                       {Vec3(0, 0, -kInfinity), Vec3(0.0)},
-                                       {mm(0, 0, 0), Vec3(kNan)},
-                                       {mm(0, 0, 0), Vec3(kInfinity, 0, 0)}};
+const std::vector<HipState> kBroken = {
+    {Vec3(kNan, 0, 0), Vec3(0.0)},        {Vec3(0, kInfinity, 0), Vec3(0.0)},
+    {Vec3(0, 0, -kInfinity), Vec3(0.0)},  {mm(0, 0, 0), Vec3(kNan)},
+    {mm(0, 0, 0), Vec3(kInfinity, 0, 0)}, {Vec3(1.1e4, 0, 0), Vec3(0.0)},
+    {Vec3(0, 0, -1e300), Vec3(0.0)}};
 
 TEST_P(Robust, BrokenTicksGiveNoForceAndChangeNothing) {
   // Two drives side by side; one hears broken ticks in between, and must not differ in the good ones.
@@ -64,7 +64,7 @@ TEST_P(Robust, ABrokenFirstTickDoesNotStart) {
 }
 
 TEST_P(Robust, HugeJumpsAreFiniteAndForgotten) {
-  for (const double far : {1.0, 1e3, 1e6, 1e9, 1e12, 1e15, 1e100, 1e154, 1e200, 1e308}) {
+  for (const double far : {1.0, 1e3, 9e3, 1e6, 1e9, 1e100, 1e308}) {
     Drive drive(sceneOf(containerText()), GetParam());
     (void)drive.walk(mm(60, 0, 0));
     for (const Vec3& u : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0.5, -0.3, 0.7), Vec3(-1, -1, -1)}) {
@@ -113,8 +113,9 @@ std::vector<Vec3> everything() {
   Vec3 drift(0.0);
   for (int i = 0; i < 20000; ++i) {
     drift = 0.95 * drift + 0.1 * random.direction();
-    p += 1e-3 * drift - 2e-4 * p / std::max(0.01, glm::length(p));
-    path.push_back(i % 500 == 499 ? random.in({Vec3(-0.06), Vec3(0.06)}) : p);
+    // Along the ball, half a millimeter in or out of it, and now and then somewhere else.
+    p = glm::normalize(p + 2e-3 * drift) * (0.04 + 0.001 * std::sin(0.01 * i));
+    path.push_back(i % 100 > 97 ? random.in({Vec3(-0.06), Vec3(0.06)}) : p);
   }
   return path;
 }
