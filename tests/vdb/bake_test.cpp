@@ -59,10 +59,13 @@ std::vector<BakeCase> cases() {
       {"holes", subtract({brick, ball, ring}), 0.4e-3,
        [=](const Vec3& p) {
          const double own = std::max({brick->value(p), -ball->value(p), -ring->value(p)});
-         return std::max(own, brick->bounds().distanceTo(p));
+         return brick->bounds().contains(p) ? own : std::max(own, brick->bounds().distanceTo(p));
        }},
       {"wedge", wedge, 0.5e-3,
-       [=](const Vec3& p) { return std::max(wedge->value(p), wedge->bounds().distanceTo(p)); }},
+       [=](const Vec3& p) {
+         const double own = wedge->value(p);
+         return wedge->bounds().contains(p) ? own : std::max(own, wedge->bounds().distanceTo(p));
+       }},
       {"implicit", implicitBall(8e-3), 0.4e-3,
        [](const Vec3& p) {
          const double r = glm::length(p);

@@ -42,7 +42,10 @@ class Source {
     Value result = fieldAt(p);
     if (is_cut_ || !exact_) {
       const double wall = boxDistance(p);
-      if (wall > result.distance && (is_cut_ || wall > 0.0)) result = {wall, true};
+      if (wall > result.distance && (is_cut_ || wall > 0.0)) {
+        // A known wall decides over a field that is inside, however deep; elsewhere it is a bound.
+        result = {wall, result.known || (is_cut_ && result.distance < 0.0)};
+      }
     }
     return result;
   }
@@ -100,11 +103,13 @@ class FieldBaker {
         progress_(progress),
         plan_(checkOptions(options)),
         domain_(bakeDomain(field, options)),
-        source_(field, domain_, isCut(field, options)),
-        grid_(emptyGrid(plan_, options)) {}
+        source_(field, domain_, isCut(field, options)) {}
 
   LevelSet run() {
-    fillLeaves(findLeaves());
+    const std::vector<Coord> origins = findLeaves();
+    grid_ = emptyGrid(plan_, options_);
+    for (const auto& [origin, size] : inside_) fillInside(origin, size);
+    fillLeaves(origins);
     report(progress_, "bake", 1.0);
     return finishGrid(grid_, plan_, options_);
   }
@@ -181,7 +186,7 @@ class FieldBaker {
     return {std::move(blocks), size};
   }
 
-  /// Blocks of 8^3 voxels that the band can touch. Larger blocks inside become tiles on the way.
+  /// Blocks of 8^3 voxels that the band can touch. Blocks inside are noted on the way.
   std::vector<Coord> findLeaves() {
     const CoordBBox range = voxelRange();
     auto [blocks, size] = topBlocks(range);
@@ -194,7 +199,7 @@ class FieldBaker {
       std::vector<Coord> kept;
       for (std::size_t i = 0; i < blocks.size(); ++i) {
         if (verdicts[i] == Verdict::kKeep) kept.push_back(blocks[i]);
-        if (verdicts[i] == Verdict::kInside) fillInside(blocks[i], size);
+        if (verdicts[i] == Verdict::kInside) inside_.emplace_back(blocks[i], size);
       }
       refuseIfTooLarge(kept.size(), size);
       if (size == 8) return kept;
@@ -215,12 +220,16 @@ class FieldBaker {
     return parts;
   }
 
-  /// Blocks of `size` along a surface of area A number about 2 A / size^2 (they are kept in a shell of
-  /// twice their half diagonal), and leaves as many of size 8. Early levels judge with a wide margin.
+  /// Blocks are kept in a shell of their half diagonal and the band on both sides of the surface, so
+  /// that their number at any size tells the surface's area, and that the number of leaves. Early
+  /// levels are coarse and judge with a wide margin.
   void refuseIfTooLarge(std::size_t blocks, int size) const {
+    const auto shell = [&](double side) {
+      return 2.0 * (0.5 * std::sqrt(3.0) * (side - 1.0) + options_.half_width);
+    };
+    const double area = static_cast<double>(blocks) * std::pow(size, 3) / shell(size);
+    const double bytes = area * shell(8.0) / 512.0 * kLeafBytes;
     constexpr std::size_t kEnoughToCount = 20000;
-    const double ratio = size / 8.0;
-    const double bytes = static_cast<double>(blocks) * ratio * ratio * kLeafBytes;
     const bool sure = size == 8 || (blocks > kEnoughToCount &&
                                     bytes / 8.0 > static_cast<double>(plan_.max_memory));
     if (sure) requireMemory(bytes, plan_);
@@ -294,6 +303,7 @@ class FieldBaker {
   BakePlan plan_;
   Box3 domain_;  ///< [m] holds the surface
   Source source_;
+  std::vector<std::pair<Coord, int>> inside_;  ///< blocks and their sizes
   openvdb::FloatGrid::Ptr grid_;
 };
 
