@@ -82,6 +82,10 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   servo.realtime = options.realtime;
   servo.rate = options.rate;
   servo.elevate = options.realtime;
+  if (options.realtime) {
+    console.note("following the hand's path for " + formatSeconds(path.back().t - path.front().t) +
+                 " in real time");
+  }
   devices::ServoReport servo_report;
   const Trace trace = follow(*renderer, std::move(path), servo, servo_report);
   checkExit(servo_report.exit);

@@ -91,7 +91,8 @@ TEST(PaperContact, IsTheTextStepByStep) {
         for (const double alpha : {1.0, 0.3}) {
           // Printed, the term grows with the slope of S: on the quadric it would throw Po about.
           if (!newton && field->metric() == Metric::kImplicit && alpha > 0.5) continue;
-          const PaperSurface surface{field.get(), side, 1e-6, newton ? alpha : 0.02 * alpha, newton};
+          const PaperSurface surface{field.get(), side, 1e-6, newton ? alpha : 0.02 * alpha,
+                                     newton};
           Text text{surface};
           Random random(4);
           PaperContact mine;

@@ -38,7 +38,8 @@ void expectOptimal(const Vec3& wish, const std::vector<Plane>& planes, const Pla
     const auto k = static_cast<std::size_t>(i);
     const Plane& plane = planes[static_cast<std::size_t>(s.plane[k])];
     EXPECT_GE(s.multiplier[k], 0.0);
-    EXPECT_NEAR(glm::dot(plane.normal, s.step) + plane.gap, 0.0, tolerance) << "holds what it touches";
+    EXPECT_NEAR(glm::dot(plane.normal, s.step) + plane.gap, 0.0, tolerance)
+        << "holds what it touches";
     rebuilt += s.multiplier[k] * plane.normal;
   }
   EXPECT_LT(glm::length(rebuilt - s.step), tolerance);

@@ -50,13 +50,13 @@ TEST(Accuracy, BallConvexAndHollowOfEverySize) {
         // not unique.
         const double rho = radius * (hollow ? 1.0 + share : 1.0 - share);
         const double speed = std::min(0.2, 0.3 * rho / Drive::kTick);
-        Drive drive(sceneOf(oneLayer("sphere: {center: [0, 0, 0], radius: " +
-                                         std::to_string(radius * 1e3) + "}",
-                                     hollow)));
+        Drive drive(sceneOf(oneLayer(
+            "sphere: {center: [0, 0, 0], radius: " + std::to_string(radius * 1e3) + "}", hollow)));
         const Vec3 free = Vec3(radius * (hollow ? 0.5 : 1.5), 0, 0);
         (void)drive.walk(free, 0.1 * radius);
         (void)drive.walk(Vec3(rho, 0, 0), 0.05 * radius);
-        SCOPED_TRACE(testing::Message() << "R " << radius << " hollow " << hollow << " d/R " << share);
+        SCOPED_TRACE(testing::Message()
+                     << "R " << radius << " hollow " << hollow << " d/R " << share);
         stroke(
             drive, speed, 1500, [&](const Vec3& p) { return rho * glm::normalize(p); },
             [&](const Vec3& p) { return radius * glm::normalize(p); }, Vec3(rho, 0, 0));

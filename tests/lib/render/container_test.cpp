@@ -24,7 +24,8 @@ class Container : public testing::TestWithParam<RendererKind> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Renderers, Container,
-                         testing::Values(RendererKind::kPaper, RendererKind::kConstraint), kindName);
+                         testing::Values(RendererKind::kPaper, RendererKind::kConstraint),
+                         kindName);
 
 TEST_P(Container, Row1FromOutsideIsPressedRadially) {
   Random random(1);

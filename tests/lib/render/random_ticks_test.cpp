@@ -31,8 +31,8 @@ class Hand {
       goal_ = random_.in(box_);
       kind_ = static_cast<int>(random_.uniform(0, 4));
     }
-    if (kind_ == 0) return at_;                              // rests
-    if (kind_ == 1) return at_ = random_.in(box_);           // jumps
+    if (kind_ == 0) return at_;                                 // rests
+    if (kind_ == 1) return at_ = random_.in(box_);              // jumps
     if (kind_ == 2) at_ += 0.3 * speed_ * random_.direction();  // trembles
     const Vec3 way = goal_ - at_;
     const double length = glm::length(way);
@@ -81,7 +81,7 @@ bool isExplained(const Scene& scene, RegionId from, const TickResult& out) {
 struct Bag {
   const char* name;
   ScenePtr scene;
-  double stiffness;  ///< [N/m] of all walls, which have no friction and no damping
+  double stiffness;          ///< [N/m] of all walls, which have no friction and no damping
   int rare = kTicks / 1000;  ///< ticks in which the proxy may still be on its way
 };
 
@@ -99,7 +99,12 @@ void shake(const Bag& bag) {
     const TickResult out = drive.renderer().update({hip, Vec3(0.0)});
     SCOPED_TRACE(testing::Message() << bag.name << " tick " << i);
     ASSERT_TRUE(isFinite(out.force));
-    if (i > 228 && i < 236 && std::string(bag.name) == "label group") std::printf("%d hip %.9g %.9g %.9g proxy %.12g %.12g %.12g region %d ev %d f %.9g %.9g %.9g\n", i, hip.x, hip.y, hip.z, out.proxy.x, out.proxy.y, out.proxy.z, out.region, out.event_count, scene.regions()[1].field->value(out.proxy), scene.regions()[2].field->value(out.proxy), scene.regions()[3].field->value(out.proxy));
+    if (i > 228 && i < 236 && std::string(bag.name) == "label group")
+      std::printf(
+          "%d hip %.9g %.9g %.9g proxy %.12g %.12g %.12g region %d ev %d f %.9g %.9g %.9g\n", i,
+          hip.x, hip.y, hip.z, out.proxy.x, out.proxy.y, out.proxy.z, out.region, out.event_count,
+          scene.regions()[1].field->value(out.proxy), scene.regions()[2].field->value(out.proxy),
+          scene.regions()[3].field->value(out.proxy));
     ASSERT_TRUE(isAt(scene, out.region, out.proxy, 2e-8))
         << "says " << out.region << ", is in " << scene.regionAt(out.proxy);
     ASSERT_TRUE(isExplained(scene, region, out)) << region << " to " << out.region;

@@ -15,14 +15,16 @@ namespace {
 
 class Robust : public ::testing::TestWithParam<RendererKind> {};
 INSTANTIATE_TEST_SUITE_P(Renderers, Robust,
-                         ::testing::Values(RendererKind::kPaper, RendererKind::kConstraint), kindName);
+                         ::testing::Values(RendererKind::kPaper, RendererKind::kConstraint),
+                         kindName);
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-const std::vector<HipState> kBroken = {
-    {Vec3(kNan, 0, 0), Vec3(0.0)},      {Vec3(0, kInfinity, 0), Vec3(0.0)},
-    {Vec3(0, 0, -kInfinity), Vec3(0.0)}, {mm(0, 0, 0), Vec3(kNan)},
-    {mm(0, 0, 0), Vec3(kInfinity, 0, 0)}};
+const std::vector<HipState> kBroken = {{Vec3(kNan, 0, 0), Vec3(0.0)},
+                                       {Vec3(0, kInfinity, 0), Vec3(0.0)},
+                                       {Vec3(0, 0, -kInfinity), Vec3(0.0)},
+                                       {mm(0, 0, 0), Vec3(kNan)},
+                                       {mm(0, 0, 0), Vec3(kInfinity, 0, 0)}};
 
 TEST_P(Robust, BrokenTicksGiveNoForceAndChangeNothing) {
   // Two drives side by side; one hears broken ticks in between, and must not differ in the good ones.
@@ -53,7 +55,8 @@ TEST_P(Robust, ABrokenFirstTickDoesNotStart) {
   for (const std::string start : {"outside", "liquid"}) {
     Drive drive(sceneOf(containerText("start: {region: " + start + "}\n")), GetParam());
     const TickResult out = drive.renderer().update(kBroken[0]);
-    EXPECT_EQ(drive.scene().regions()[out.region].name, start) << "nothing was read yet but the scene";
+    EXPECT_EQ(drive.scene().regions()[out.region].name, start)
+        << "nothing was read yet but the scene";
     EXPECT_EQ(out.force, Vec3(0.0));
     (void)drive.walk(start == "liquid" ? mm(0, 0, 0) : mm(60, 0, 0));
     EXPECT_EQ(drive.region(), start);
@@ -86,7 +89,8 @@ TEST(Plate, IsNeverPassedWhateverTheJump) {
   for (const double thickness : {1.0, 0.1, 0.001}) {
     const ScenePtr scene = sceneOf(
         "palpate: 1\nlength: mm\nlayers: [{name: plate, inside: {box: {center: [0, 0, 0], size: "
-        "[1e7, 1e7, " + std::to_string(thickness) + "]}}}]\n");
+        "[1e7, 1e7, " +
+        std::to_string(thickness) + "]}}}]\n");
     for (const double jump : {1e-4, 5e-3, 20e-3, 1.0, 1e3}) {
       Drive drive(scene);
       Random random(6);
@@ -117,9 +121,8 @@ std::vector<Vec3> everything() {
 
 TEST_P(Robust, NeverAllocatesLocksOrThrows) {
   const std::vector<Vec3> path = everything();
-  for (const std::string& text :
-       {containerText(), containerText("start: {region: liquid}\n"),
-        containerText("memory: keep\n")}) {
+  for (const std::string& text : {containerText(), containerText("start: {region: liquid}\n"),
+                                  containerText("memory: keep\n")}) {
     RendererSettings settings;
     settings.kind = GetParam();
     const auto renderer = makeRenderer(sceneOf(text), settings);

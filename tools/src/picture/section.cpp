@@ -175,7 +175,8 @@ Boundary classify(const Scene& scene, const Signs& here, const Signs& there) {
   if (inward.kind == Facet::Kind::kAbsent || outward.kind == Facet::Kind::kAbsent) {
     line.kind = Boundary::Kind::kAbsent;
   } else if (passable(inward) || passable(outward)) {
-    line.kind = Boundary::Kind::kPort;
+    const bool open = inward.kind == Facet::Kind::kOpen || outward.kind == Facet::Kind::kOpen;
+    line.kind = open ? Boundary::Kind::kPort : Boundary::Kind::kPressed;
     line.from_a = passable(inward);
     line.from_b = passable(outward);
     line.port = line.from_a ? inward.port : outward.port;

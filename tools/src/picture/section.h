@@ -31,17 +31,23 @@ struct View {
 
 /// A line between two regions.
 struct Boundary {
-  enum class Kind { kWall, kAbsent, kPort };
+  enum class Kind {
+    kWall,
+    kAbsent,
+    kPort,     ///< open
+    kPressed,  ///< a port that opens when it is pressed
+  };
   RegionId a = kOutside;
   RegionId b = kOutside;
   Kind kind = Kind::kWall;
-  PortId port = 0;      ///< kPort only
-  bool from_a = false;  ///< kPort: passable from a to b ...
+  PortId port = 0;      ///< kPort, kPressed
+  bool from_a = false;  ///< the port leads from a to b ...
   bool from_b = false;  ///< ... and back
   std::vector<Pixel> points;
 
+  [[nodiscard]] bool isPort() const { return kind == Kind::kPort || kind == Kind::kPressed; }
   [[nodiscard]] bool sameLine(const Boundary& o) const {
-    return a == o.a && b == o.b && kind == o.kind && (kind != Kind::kPort || port == o.port);
+    return a == o.a && b == o.b && kind == o.kind && (!isPort() || port == o.port);
   }
 };
 
