@@ -1,6 +1,7 @@
 // .vdb files: what is written comes back, others can read it, and damaged files are named errors.
 
 #include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <sys/resource.h>
 
