@@ -1,6 +1,7 @@
 // The scanned head of data/scenes, region by region along the needle's path.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "palpate/scene/scene.h"
@@ -42,13 +43,13 @@ TEST(HeadScene, ANeedlePassesSkinBrainAndThalamusInThatOrder) {
   // The end is well inside: the tip does not graze the far wall.
   EXPECT_LT(scene->regions()[scene->regionNamed("thalamus")].field->value(to), -2 * kMm);
 
-  // Every port is open where the path crosses it.
-  for (const Port& port : scene->ports()) {
-    if (port.where) {
-      EXPECT_LT(port.where->value(from + (to - from) * 0.25), -5 * kMm) << port.name;
-      EXPECT_LT(port.where->value(from + (to - from) * 0.42), -5 * kMm) << port.name;
-    }
-  }
+  // The incision and the opened dura lie within the burr hole, which is open where the path crosses them.
+  const auto hole = std::find_if(scene->fields().begin(), scene->fields().end(),
+                                 [](const NamedField& field) { return field.name == "burr_hole"; });
+  ASSERT_NE(hole, scene->fields().end());
+  const FieldPtr& burr_hole = hole->source->get();
+  EXPECT_LT(burr_hole->value(from + (to - from) * 0.25), -5 * kMm);
+  EXPECT_LT(burr_hole->value(from + (to - from) * 0.42), -5 * kMm);
 }
 
 }  // namespace
