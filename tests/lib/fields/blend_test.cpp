@@ -56,8 +56,8 @@ std::vector<FieldCase> blendCases() {
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(Blends, FieldContract, testing::ValuesIn(blendCases()),
-                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Blends, FieldContract, ::testing::ValuesIn(blendCases()),
+                         ::testing::PrintToStringParamName());
 
 TEST(Blend, IsPlainCsgAwayFromTheCrease) {
   const FieldPtr a = left();

@@ -129,8 +129,8 @@ std::vector<FieldCase> implicitCases() {
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(Implicit, FieldContract, testing::ValuesIn(implicitCases()),
-                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Implicit, FieldContract, ::testing::ValuesIn(implicitCases()),
+                         ::testing::PrintToStringParamName());
 
 TEST(Heart, HasItsWidthAndIsUpright) {
   const double width = 0.06;

@@ -93,8 +93,8 @@ std::vector<FieldCase> modifiedCases() {
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(Modified, FieldContract, testing::ValuesIn(modifiedCases()),
-                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Modified, FieldContract, ::testing::ValuesIn(modifiedCases()),
+                         ::testing::PrintToStringParamName());
 
 TEST(Scale, KeepsTheTreeAndItsSharing) {
   const FieldPtr ball = sphere(Vec3(0.1, 0, 0), 0.05);

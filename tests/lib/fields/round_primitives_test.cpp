@@ -80,8 +80,8 @@ std::vector<FieldCase> roundCases() {
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(Round, FieldContract, testing::ValuesIn(roundCases()),
-                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(Round, FieldContract, ::testing::ValuesIn(roundCases()),
+                         ::testing::PrintToStringParamName());
 
 TEST(RoundedBox, KeepsItsOuterSize) {
   const FieldPtr field = roundedBox(Vec3(0.0), Vec3(4, 6, 8), 1.0);

@@ -4,6 +4,7 @@
 
 #include "lib/oracle/shapes.h"
 #include "palpate/fields/csg.h"
+#include "palpate/fields/primitives.h"
 #include "palpate/fields/transform.h"
 #include "support/oracle/closed_forms.h"
 
@@ -245,6 +246,17 @@ TEST(Oracle, TransformsAndComplementsAreTakenApart) {
   const Vec3 hip = pose.apply(Vec3(0.015, 0.0, 0.001));
   const Vec3 x = pose.apply(Vec3(0.015, 0.0, 0.0));
   expectProxy(around, pose.apply(Vec3(0.014, 0.001, -0.001)), hip, x);
+}
+
+TEST(Oracle, FieldsThatTellTheirFacesAreTakenApart) {
+  const FeasibleSet room = FeasibleSet::inside(box(Vec3(0.0), Vec3(0.02, 0.04, 0.03)));
+  EXPECT_EQ(room.sides().size(), 6U);
+  EXPECT_EQ(room.branches().size(), 1U);
+  const Vec3 corner(0.01, 0.02, 0.015);
+  const OracleResult result = solveOracle(room, Vec3(0.0), corner + Vec3(0.003, 0.005, 0.001));
+  EXPECT_TRUE(result.smooth);
+  EXPECT_LE(glm::length(result.proxy - corner), 1e-15);
+  EXPECT_EQ(FeasibleSet::outside(box(Vec3(0.0), Vec3(1.0))).branches().size(), 6U);
 }
 
 TEST(Oracle, TheApexOfAHollowConeHolds) {

@@ -56,7 +56,8 @@ FeasibleSet FeasibleSet::of(FieldPtr field, double sign, const Pose& pose) {
     case Kind::kTransform:
       return of(structure.operands[0], sign, pose.after(structure.pose));
     case Kind::kUnion:
-    case Kind::kIntersection: {
+    case Kind::kIntersection:
+    case Kind::kFaces: {
       std::vector<FeasibleSet> sets;
       for (const FieldPtr& operand : structure.operands) sets.push_back(of(operand, sign, pose));
       // Outside a union is outside all its operands; inside it, inside any.

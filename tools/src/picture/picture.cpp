@@ -166,6 +166,9 @@ class PictureMaker {
     points.reserve(line.points.size());
     for (const Pixel& p : line.points) points.push_back(onSheet(p));
     switch (line.kind) {
+      case Boundary::Kind::kNothing:
+        return;
+      case Boundary::Kind::kSheet:
       case Boundary::Kind::kWall:
         canvas_.line(points, {kWallInk, px(2.2)});
         break;
@@ -472,7 +475,7 @@ class PictureMaker {
       y += row;
     };
     std::vector<bool> seen(scene_.regions().size(), false);
-    for (const RegionId region : section_.regions) seen[region] = true;
+    for (const std::uint64_t cell : section_.cells) seen[cell & 0xFFFFU] = true;
     for (std::size_t i = 1; i < scene_.regions().size(); ++i) {
       const Region& region = scene_.regions()[i];
       if (!seen[i]) continue;
@@ -488,7 +491,7 @@ class PictureMaker {
     };
     bool wall = false, absent = false, port = false, pressed = false;
     for (const Boundary& line : section_.boundaries) {
-      wall |= line.kind == Boundary::Kind::kWall;
+      wall |= line.kind == Boundary::Kind::kWall || line.kind == Boundary::Kind::kSheet;
       absent |= line.kind == Boundary::Kind::kAbsent;
       port |= line.kind == Boundary::Kind::kPort;
       pressed |= line.kind == Boundary::Kind::kPressed;

@@ -36,6 +36,8 @@ struct Boundary {
     kAbsent,
     kPort,     ///< open
     kPressed,  ///< a port that opens when it is pressed
+    kSheet,    ///< a wall within one region
+    kNothing,  ///< where a sheet's surface goes on beyond the sheet
   };
   RegionId a = kOutside;
   RegionId b = kOutside;
@@ -54,12 +56,16 @@ struct Boundary {
 struct Section {
   int width = 0;
   int height = 0;
-  std::vector<RegionId> regions;  ///< of the pixels' centres
+  /// Of the pixels' centres: the region, and above it one bit for each sheet, set on its inner side.
+  std::vector<std::uint64_t> cells;
   std::vector<Boundary> boundaries;
 
+  [[nodiscard]] std::uint64_t cell(int x, int y) const {
+    return cells[static_cast<std::size_t>(x) +
+                 static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
+  }
   [[nodiscard]] RegionId at(int x, int y) const {
-    return regions[static_cast<std::size_t>(x) +
-                   static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
+    return static_cast<RegionId>(cell(x, y) & 0xFFFFU);
   }
 };
 

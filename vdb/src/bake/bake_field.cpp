@@ -149,26 +149,6 @@ class FieldBaker {
                          std::sqrt(3.0) * half * plan_.voxel, plan_.band);
   }
 
-  /// Voxels whose values can differ from the background, as a range of indices.
-  [[nodiscard]] CoordBBox voxelRange() const {
-    CoordBBox range;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double lo = std::floor((domain_.lo[axis] - plan_.band) / plan_.voxel);
-      const double hi = std::ceil((domain_.hi[axis] + plan_.band) / plan_.voxel);
-      constexpr double kMost = 1 << 29;  // OpenVDB counts voxels in 32 bits
-      if (!(std::max(std::abs(lo), std::abs(hi)) < kMost)) {
-        throw Error(ErrorKind::kOperation,
-                    {"bake.too_fine",
-                     "'" + options_.name + "' reaches more than 2^29 voxels of " +
-                         inMillimetres(plan_.voxel) + " from the origin",
-                     "use larger voxels; also check that the shape has the length unit it should"});
-      }
-      range.min()[axis] = static_cast<int>(lo);
-      range.max()[axis] = static_cast<int>(hi);
-    }
-    return range;
-  }
-
   static int alignedDown(int value, int size) { return value & ~(size - 1); }
 
   /// Blocks at the top of the hierarchy: few, so that the first level costs nothing.
@@ -188,7 +168,7 @@ class FieldBaker {
 
   /// Blocks of 8^3 voxels that the band can touch. Blocks inside are noted on the way.
   std::vector<Coord> findLeaves() {
-    const CoordBBox range = voxelRange();
+    const CoordBBox range = voxelRange(domain_, plan_, options_.name);
     auto [blocks, size] = topBlocks(range);
     std::vector<Verdict> verdicts;
     for (;; size /= 2) {
@@ -224,15 +204,11 @@ class FieldBaker {
   /// that their number at any size tells the surface's area, and that the number of leaves. Early
   /// levels are coarse and judge with a wide margin.
   void refuseIfTooLarge(std::size_t blocks, int size) const {
-    const auto shell = [&](double side) {
-      return 2.0 * (0.5 * std::sqrt(3.0) * (side - 1.0) + options_.half_width);
-    };
-    const double area = static_cast<double>(blocks) * std::pow(size, 3) / shell(size);
-    const double bytes = area * shell(8.0) / 512.0 * kLeafBytes;
+    const double shell = std::sqrt(3.0) * (size - 1.0) + 2.0 * options_.half_width;
+    const double area = static_cast<double>(blocks) * std::pow(size, 3) / shell;
     constexpr std::size_t kEnoughToCount = 20000;
-    const bool sure = size == 8 || (blocks > kEnoughToCount &&
-                                    bytes / 8.0 > static_cast<double>(plan_.max_memory));
-    if (sure) requireMemory(bytes, plan_);
+    const double margin = size == 8 ? 1.0 : 8.0;
+    if (size == 8 || blocks > kEnoughToCount) requireMemory(area, margin, plan_);
   }
 
   void fillInside(const Coord& origin, int size) {
