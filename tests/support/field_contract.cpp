@@ -117,9 +117,11 @@ bool insideOf(const FieldCase& field_case, const Field& field, const Vec3& p) {
 
 /// Smallest distance found from `p` to a point on the other side, by shooting in all directions and
 /// then ever closer around the best shot: a bound from above that converges to the distance. The
-/// gradient only hints where to shoot first, and how far (`expected`).
+/// gradient only hints where to shoot first, and how far (`claimed`, and a little more: `expected`).
+/// `others` are some points of the other side.
 double shootAtBorder(const FieldCase& field_case, const Field& field, const Vec3& p,
-                     double expected, double reach, Random& random) {
+                     const std::vector<Vec3>& others, double claimed, double expected, double reach,
+                     Random& random) {
   const bool here = insideOf(field_case, field, p);
   double best = reach;
   Vec3 best_direction(0.0);
@@ -143,6 +145,13 @@ double shootAtBorder(const FieldCase& field_case, const Field& field, const Vec3
   const FieldSample s = field.sample(p);
   const Vec3 hint = unitOr(here ? s.gradient : -s.gradient, Vec3(1.0, 0.0, 0.0));
   shoot(hint, expected);  // so that even a plate is not overshot
+  // A shot at a tip leaves it again: aim a little beside, towards points of the other side.
+  const Vec3 tip = p + hint * claimed;
+  for (const Vec3& other : others) {
+    const Vec3 aim = tip + unitOr(other - tip, Vec3(0.0)) * (expected - claimed) - p;
+    const double length = glm::length(aim);
+    if (length > 0.0 && length < best) shoot(aim / length, length);
+  }
   for (int i = 0; i < 150; ++i) shootShorter(random.direction());
   for (double spread = 0.3; spread > 1e-6; spread *= 0.93) {
     if (best_direction == Vec3(0.0)) break;
@@ -325,12 +334,19 @@ AssertionResult checkMetric(const FieldCase& field_case) {
   Random random(13);
   const double tolerance = field_case.distance_tolerance * diagonal(field_case);
   std::vector<Vec3> points = pointsFor(field_case, *field);
+  std::vector<Vec3> inside;
+  std::vector<Vec3> outside;
+  for (const Vec3& p : points) {
+    std::vector<Vec3>& side = insideOf(field_case, *field, p) ? inside : outside;
+    if (side.size() < 20) side.push_back(p);
+  }
   for (std::size_t i = 0; i < points.size(); i += 3) {
     const Vec3& p = points[i];
     const FieldSample s = field->sample(p);
     const double claimed = std::fabs(s.value);
-    const double found = shootAtBorder(field_case, *field, p, claimed + tolerance,
-                                       1.01 * claimed + 4.0 * tolerance, random);
+    const double found =
+        shootAtBorder(field_case, *field, p, s.value < 0.0 ? outside : inside, claimed,
+                      claimed + tolerance, 1.01 * claimed + 4.0 * tolerance, random);
     if (claimed > found + tolerance) {
       return AssertionFailure() << std::setprecision(12) << "at " << text(p) << " the value is "
                                 << s.value << ", but the surface is " << found << " away";

@@ -119,7 +119,7 @@ std::vector<Bad> badInputs() {
        "palpate: 1\nlength: mm\nfields:\n  h: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}\n"
        "layers:\n  - {name: ground, inside: h}\n",
        bake,
-       {"bound"}},
+       {"endless.yaml", "reaches to infinity"}},
       {"PathWithoutHeader",
        "path.csv",
        "0,0,0,0\n",
@@ -150,6 +150,8 @@ std::vector<Bad> badInputs() {
   };
 }
 
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
+
 class BadInput : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(BadInput, OneClearErrorExitThreeNothingLeft) {
@@ -178,7 +180,7 @@ TEST_P(BadInput, OneClearErrorExitThreeNothingLeft) {
   arguments.emplace_back("--json");
   const CommandResult result = runPalpate(arguments, folder.path());
   EXPECT_EQ(result.exit_code, 3);
-  const Json json = parseOnly(result);
+  Json json = parseOnly(result);
   EXPECT_EQ(json["schema"], "palpate.error/1");
   EXPECT_FALSE(json["error"]["message"].get<std::string>().empty());
   EXPECT_EQ(filesIn(folder.path()), before);
@@ -190,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(All, BadInput, ::testing::ValuesIn(badInputs()),
 TEST(BadInputJson, PlacesAreNumbers) {
   const TempFolder folder;
   const std::string file = folder.file("u.yaml", "palpate: 1\nlength: furlong\nlayers: []\n");
-  const Json json = parseOnly(runPalpate({"explain", file, "--json"}));
+  Json json = parseOnly(runPalpate({"explain", file, "--json"}));
   EXPECT_EQ(json["error"]["file"], file);
   EXPECT_EQ(json["error"]["line"], 2);
   EXPECT_EQ(json["error"]["column"], 9);

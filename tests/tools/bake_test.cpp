@@ -59,7 +59,7 @@ std::string writeImage(const TempFolder& folder, const std::string& name,
 Json onlyFile(const std::string& path) {
   const CommandResult result = runPalpate({"info", path, "--json"});
   EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
-  const Json json = parseOnly(result);
+  Json json = parseOnly(result);
   EXPECT_EQ(json["files"].size(), 1U);
   return json["files"][0];
 }
@@ -70,7 +70,7 @@ TEST(Bake, ASceneGivesOneSurfaceForEachLayer) {
   const CommandResult result =
       runPalpate({"bake", "c.yaml", "-o", "c.vdb", "--voxel", "1", "--json"}, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
-  const Json json = parseOnly(result);
+  Json json = parseOnly(result);
   EXPECT_EQ(json["schema"], "palpate.bake/1");
   ASSERT_EQ(json["grids"].size(), 1U);
   EXPECT_EQ(json["grids"][0]["name"], "liquid/surface");
@@ -78,7 +78,7 @@ TEST(Bake, ASceneGivesOneSurfaceForEachLayer) {
   EXPECT_GT(json["grids"][0]["active_voxels"],
             10000);  // about 18 000 mm^2 of surface, 8 voxels thick
 
-  const Json info = onlyFile(folder.path("c.vdb"));
+  Json info = onlyFile(folder.path("c.vdb"));
   EXPECT_EQ(info["kind"], "grids");
   EXPECT_EQ(info["grids"][0]["name"], "liquid/surface");
   EXPECT_EQ(info["grids"][0]["class"], "level set");
@@ -115,7 +115,7 @@ TEST(Bake, AMeshNeedsItsUnit) {
                  folder.path());
   ASSERT_EQ(given.exit_code, 0) << given.err;
   EXPECT_EQ(given.err, "");
-  const Json grid = parseOnly(given)["grids"][0];
+  Json grid = parseOnly(given)["grids"][0];
   EXPECT_EQ(grid["name"], "cube/surface");
   EXPECT_NEAR(grid["voxel_size_m"], 0.0005, 1e-12);
   // The band reaches at least one and at most half-width + 1 voxels beyond the cube of 1 cm.
@@ -143,7 +143,7 @@ TEST(Bake, AnImageByThresholdOrByLabel) {
   const CommandResult organs = runPalpate({"bake", labels, "-o", folder.path("l.vdb"), "--labels",
                                            "stone,kidney", "--names", names, "--json"});
   ASSERT_EQ(organs.exit_code, 0) << organs.err << organs.out;
-  const Json json = parseOnly(organs);
+  Json json = parseOnly(organs);
   ASSERT_EQ(json["grids"].size(), 2U);
   EXPECT_EQ(json["grids"][0]["name"], "stone/surface");
   EXPECT_EQ(json["grids"][1]["name"], "kidney/surface");
@@ -207,8 +207,9 @@ TEST(BakeSharedData, RealOrgansAndMeshes) {
                   "--labels", "liver,spleen,kidney_left,kidney_right,aorta", "--names",
                   data + "abdomen/labels.csv", "--json"});
   ASSERT_EQ(organs.exit_code, 0) << organs.err << organs.out;
-  ASSERT_EQ(parseOnly(organs)["grids"].size(), 5U);
-  for (const Json& grid : parseOnly(organs)["grids"]) EXPECT_GT(grid["active_voxels"], 100) << grid;
+  Json organ_json = parseOnly(organs);
+  ASSERT_EQ(organ_json["grids"].size(), 5U);
+  for (const Json& grid : organ_json["grids"]) EXPECT_GT(grid["active_voxels"], 100) << grid;
   for (const char* mesh : {"meshes/brain_region.stl", "meshes/footbones.ply"}) {
     const CommandResult result = runPalpate(
         {"bake", data + mesh, "-o", folder.path("m.vdb"), "--units", "mm", "--force", "--json"});

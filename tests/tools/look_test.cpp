@@ -22,9 +22,9 @@ TEST(Info, AnImageWithItsPlaceInSpace) {
   const auto bytes = vdb::test::bytesOf(image);
   const std::string file =
       folder.file("i.nii", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  const Json json = jsonOf({"info", file});
+  Json json = jsonOf({"info", file});
   EXPECT_EQ(json["schema"], "palpate.info/1");
-  const Json one = json["files"][0];
+  Json one = json["files"][0];
   EXPECT_EQ(one["kind"], "image");
   EXPECT_EQ(one["size"], Json::array({4, 5, 6}));
   EXPECT_EQ(one["orientation"], "RAS");
@@ -38,7 +38,7 @@ TEST(Info, AMeshWithItsHoles) {
   const TempFolder folder;
   const std::string file =
       folder.file("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
-  const Json one = jsonOf({"info", file, "--units", "cm"})["files"][0];
+  Json one = jsonOf({"info", file, "--units", "cm"})["files"][0];
   EXPECT_EQ(one["kind"], "mesh");
   EXPECT_EQ(one["triangles"], 3);
   EXPECT_EQ(one["closed"], false);
@@ -49,7 +49,7 @@ TEST(Info, AMeshWithItsHoles) {
 TEST(Info, SeveralFilesInOneObject) {
   const TempFolder folder;
   const std::string scene = folder.file("c.yaml", kContainer);
-  const Json json = jsonOf({"info", scene, scenePath("valve_tube.yaml")});
+  Json json = jsonOf({"info", scene, scenePath("valve_tube.yaml")});
   ASSERT_EQ(json["files"].size(), 2U);
   EXPECT_EQ(json["files"][0]["layers"][0]["name"], "liquid");
   EXPECT_EQ(json["files"][0]["ports"][0]["name"], "mouth");
@@ -59,11 +59,11 @@ TEST(Info, SeveralFilesInOneObject) {
 TEST(Query, ASceneAtPointsInItsOwnUnit) {
   const TempFolder folder;
   const std::string scene = folder.file("c.yaml", kContainer);
-  const Json json = jsonOf({"query", scene, "--at", "0,0,13", "0,0,16"});
+  Json json = jsonOf({"query", scene, "--at", "0,0,13", "0,0,16"});
   EXPECT_EQ(json["schema"], "palpate.query/1");
   EXPECT_EQ(json["length_unit"], "mm");
   ASSERT_EQ(json["points"].size(), 2U);
-  const Json inside = json["points"][0];
+  Json inside = json["points"][0];
   EXPECT_EQ(inside["region"], "liquid");
   EXPECT_EQ(inside["content"]["name"], "syrup");
   EXPECT_EQ(inside["wall"]["stiffness_N_per_m"], 1500.0);
@@ -73,7 +73,7 @@ TEST(Query, ASceneAtPointsInItsOwnUnit) {
   EXPECT_EQ(json["points"][1]["region"], "outside");
   EXPECT_TRUE(json["points"][1]["content"].is_null());
 
-  const Json bowl = jsonOf({"query", scene, "--at", "0,0,13", "--field", "bowl"});
+  Json bowl = jsonOf({"query", scene, "--at", "0,0,13", "--field", "bowl"});
   ASSERT_EQ(bowl["points"][0]["fields"].size(), 1U);
   EXPECT_NEAR(bowl["points"][0]["fields"][0]["value"], 13.0 - 40.0, 1e-12);
   EXPECT_EQ(bowl["points"][0]["fields"][0]["metric"], "exact");
@@ -83,7 +83,7 @@ TEST(Query, PointsFromAFile) {
   const TempFolder folder;
   const std::string scene = folder.file("c.yaml", kContainer);
   const std::string points = folder.file("p.csv", "x,y,z\r\n0,0,13\r\n\r\n0, 0, 16\r\n");
-  const Json json = jsonOf({"query", scene, "--points", points});
+  Json json = jsonOf({"query", scene, "--points", points});
   ASSERT_EQ(json["points"].size(), 2U);
   EXPECT_EQ(json["points"][1]["region"], "outside");
 }
@@ -100,7 +100,7 @@ TEST(Query, AnImageBetweenItsVoxels) {
   // x runs from -3 mm in steps of 2 mm, 10 brighter each: at -0.5 mm it is 12.5.
   const CommandResult result = runPalpate({"query", file, "--at", "-0.5,0,0", "40,0,0", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Json json = parseOnly(result);
+  Json json = parseOnly(result);
   EXPECT_NEAR(json["points"][0]["value"], 12.5, 1e-5);
   EXPECT_TRUE(json["points"][1]["value"].is_null());
   EXPECT_NE(result.err.find("1 of 2 points lie outside"), std::string::npos) << result.err;
@@ -109,7 +109,7 @@ TEST(Query, AnImageBetweenItsVoxels) {
 TEST(Explain, TheContainer) {
   const TempFolder folder;
   const std::string scene = folder.file("c.yaml", kContainer);
-  const Json json = jsonOf({"explain", scene});
+  Json json = jsonOf({"explain", scene});
   EXPECT_EQ(json["schema"], "palpate.explain/1");
   EXPECT_EQ(json["start"], "outside");
   ASSERT_EQ(json["regions"].size(), 2U);
@@ -125,7 +125,7 @@ TEST(Explain, TheContainer) {
 }
 
 TEST(Explain, AValveHasNoTransitionBack) {
-  const Json json = jsonOf({"explain", scenePath("valve_tube.yaml")});
+  Json json = jsonOf({"explain", scenePath("valve_tube.yaml")});
   std::vector<std::string> moves;
   for (const Json& t : json["transitions"]) {
     moves.push_back(t["from"].get<std::string>() + ">" + t["to"].get<std::string>());
@@ -148,7 +148,7 @@ layers:
 ports:
   - {name: hole, between: [outside, shell]}
 )");
-  const Json json = jsonOf({"explain", scene});
+  Json json = jsonOf({"explain", scene});
   EXPECT_EQ(json["regions"][1]["reachable"], true);
   EXPECT_EQ(json["regions"][2]["reachable"], false);
   EXPECT_EQ(json["regions"][2]["why_unreachable"], "no port leads into it");
@@ -168,7 +168,7 @@ TEST(Render, APictureOfTheSizeAskedFor) {
   const TempFolder folder;
   const std::string scene = folder.file("c.yaml", kContainer);
   const std::string out = folder.path("p.png");
-  const Json json = jsonOf({"render", scene, "-o", out, "--size", "640x400", "--plane", "x=5"});
+  Json json = jsonOf({"render", scene, "-o", out, "--size", "640x400", "--plane", "x=5"});
   EXPECT_EQ(json["schema"], "palpate.render/1");
   EXPECT_EQ(json["plane"]["normal"], Json::array({1.0, 0.0, 0.0}));
   EXPECT_NEAR(json["plane"]["point_m"][0], 0.005, 1e-12);
@@ -191,7 +191,7 @@ TEST(Render, CutsAlongTheTrace) {
       runPalpate({"touch", scene, "--insert", "7,-10,30", "7,0,0", "7,10,10", "--trace", trace})
           .exit_code,
       0);
-  const Json json = jsonOf({"render", scene, "-o", folder.path("p.png"), "--trace", trace});
+  Json json = jsonOf({"render", scene, "-o", folder.path("p.png"), "--trace", trace});
   EXPECT_NEAR(std::abs(json["plane"]["normal"][0].get<double>()), 1.0, 1e-9);
   EXPECT_NEAR(json["plane"]["point_m"][0], 0.007, 1e-9);
 }
@@ -205,9 +205,8 @@ fields:
 layers:
   - {name: ground, inside: h}
 )");
-  const Json json =
-      jsonOf({"render", endless, "-o", folder.path("h.png"), "--cut", "0,0,0,1,1,0.5"});
-  const Json n = json["plane"]["normal"];
+  Json json = jsonOf({"render", endless, "-o", folder.path("h.png"), "--cut", "0,0,0,1,1,0.5"});
+  Json n = json["plane"]["normal"];
   EXPECT_NEAR(n[0].get<double>(), 1.0 / 1.5, 1e-9);
   EXPECT_NEAR(n[2].get<double>(), 0.5 / 1.5, 1e-9);
 }

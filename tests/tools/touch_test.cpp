@@ -1,5 +1,7 @@
 // palpate touch: what is felt, what is reported and what is written.
 
+#include <signal.h>
+
 #include <cmath>
 
 #include "tools/helpers.h"
@@ -35,7 +37,7 @@ TEST_F(Touch, PressingAWallGivesStiffnessTimesDepth) {
   const CommandResult result = touch(
       {"--press", "0,0,-40", "--normal", "0,0,-1", "--depth", "2", "--hold", "0.1", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Json json = parseOnly(result);
+  Json json = parseOnly(result);
   EXPECT_EQ(json["schema"], "palpate.touch/1");
   EXPECT_NEAR(json["peak_force_N"], 3.0, 1e-6);
   ASSERT_EQ(json["regions"].size(), 1U);
@@ -49,7 +51,7 @@ TEST_F(Touch, RegionsComeInOrderWithDepthAndPeakForce) {
   const CommandResult result =
       touch({"--insert", "0,0,35", "0,0,-10", "--back", "--speed", "50", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Json json = parseOnly(result);
+  Json json = parseOnly(result);
   ASSERT_EQ(json["regions"].size(), 3U) << json;
   EXPECT_EQ(json["regions"][0]["region"], "outside");
   EXPECT_EQ(json["regions"][1]["region"], "liquid");
@@ -136,6 +138,20 @@ TEST_F(Touch, RealTimeKeepsToTheClockAndReportsOverruns) {
   EXPECT_TRUE(parseOnly(result)["realtime"]["overruns"].is_number());
 }
 
+TEST_F(Touch, AnInterruptEndsTheLoopAndLeavesNothing) {
+  bool sent = false;
+  const CommandResult result =
+      runPalpate({"touch", "c.yaml", "--press", "0,0,-40", "--normal", "0,0,-1", "--hold", "3600",
+                  "--realtime", "--trace", "t.csv"},
+                 folder_.path(), [&](std::string_view, pid_t process) {
+                   if (!sent) kill(process, SIGINT);
+                   sent = true;
+                 });
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(filesIn(folder_.path()), std::vector<std::string>{"c.yaml"});
+}
+
 TEST_F(Touch, NothingIsOverwrittenUnlessForced) {
   (void)folder_.file("t.csv", "mine");
   const CommandResult refused =
@@ -188,7 +204,8 @@ TEST(TouchScenes, TheShippedScenesRun) {
     const CommandResult result = runPalpate(arguments);
     ASSERT_EQ(result.exit_code, 0) << run.scene << "\n" << result.out << result.err;
     std::vector<std::string> regions;
-    for (const Json& visit : parseOnly(result)["regions"]) regions.push_back(visit["region"]);
+    Json json = parseOnly(result);
+    for (const Json& visit : json["regions"]) regions.push_back(visit["region"]);
     EXPECT_EQ(regions, run.regions) << run.scene;
   }
 }

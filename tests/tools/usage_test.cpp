@@ -51,6 +51,10 @@ struct Wrong {
   std::string says;  // part of the message or hint
 };
 
+void PrintTo(const Wrong& wrong, std::ostream* out) {
+  for (const std::string& argument : wrong.arguments) *out << argument << " ";
+}
+
 class WrongUsage : public ::testing::TestWithParam<Wrong> {};
 
 TEST_P(WrongUsage, ExitsTwoAndSaysWhy) {
@@ -65,7 +69,7 @@ TEST_P(WrongUsage, ExitsTwoAndSaysWhy) {
   arguments.emplace_back("--json");
   const CommandResult result = runPalpate(arguments, folder.path());
   EXPECT_EQ(result.exit_code, 2);
-  const Json json = parseOnly(result);
+  Json json = parseOnly(result);
   EXPECT_EQ(json["schema"], "palpate.error/1");
   EXPECT_TRUE(json["error"]["code"].is_string());
   EXPECT_TRUE(json["error"]["message"].is_string());
@@ -120,7 +124,7 @@ TEST(Usage, PointsMayBeNegativeAndNeverSwallowWhatFollows) {
   const CommandResult result =
       runPalpate({"query", "--at", "-10,2,3", "-.5,0,0", "c.yaml", "--json"}, folder.path());
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
-  const Json json = parseOnly(result);
+  Json json = parseOnly(result);
   ASSERT_EQ(json["points"].size(), 2U);
   EXPECT_EQ(json["points"][0]["at"], Json::array({-10.0, 2.0, 3.0}));
   EXPECT_EQ(json["points"][1]["at"], Json::array({-0.5, 0.0, 0.0}));

@@ -92,8 +92,8 @@ TEST(BakeLimits, MemoryIsRefusedBeforeItIsTaken) {
 
 TEST(BakeLimits, SuggestedVoxelSizeFits) {
   const FieldPtr ball = sphere(Vec3(0.0), 20e-3);
-  for (const std::uint64_t limit : {2'000'000U, 20'000'000U}) {
-    BakeOptions options = voxels(0.02e-3);
+  for (const std::uint64_t limit : {20'000'000U, 100'000'000U}) {
+    BakeOptions options = voxels(0.01e-3);
     options.max_memory = limit;
     const Error error = bakeError(ball, options);
     ASSERT_EQ(error.problem().code, "bake.memory");
@@ -103,10 +103,18 @@ TEST(BakeLimits, SuggestedVoxelSizeFits) {
     options.voxel_size = suggested;
     const LevelSet set = bake(*ball, options);
     EXPECT_LE(set.info().memory, limit);
-    // Not wastefully larger either: a quarter of that size would be 16 times the memory.
-    options.voxel_size = suggested / 4.0;
+    // Not wastefully larger either: half of that size would take four times the memory.
+    options.voxel_size = suggested / 2.0;
     EXPECT_EQ(bakeError(ball, options).problem().code, "bake.memory");
   }
+}
+
+TEST(BakeLimits, NoVoxelSizeFitsIntoNothing) {
+  BakeOptions options = voxels(1e-3);
+  options.max_memory = 1000;
+  const Error error = bakeError(sphere(Vec3(0.0), 20e-3), options);
+  EXPECT_EQ(error.problem().code, "bake.memory");
+  EXPECT_TRUE(error.problem().hint.starts_with("allow more than 0.0")) << error.what();
 }
 
 TEST(BakeLimits, ProgressComesOnTheCallingThread) {

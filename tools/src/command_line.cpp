@@ -70,7 +70,7 @@ void need(bool there, const char* what) {
 /// A list that takes one value for each mention.
 void addList(CLI::App& app, const char* group, const char* names, const char* what,
              std::vector<std::string>& values, const char* text) {
-  add(app, group, names, what, values, text)->expected(1)->take_all();
+  add(app, group, names, what, values, text)->expected(1)->take_all()->allow_extra_args(false);
 }
 
 void defineTouch(CLI::App& app, Invocation& invocation) {
@@ -116,7 +116,7 @@ void defineBake(CLI::App& app, Invocation& invocation) {
   const char* g = "Output";
   add(app, g, "-o,--output", "FILE.vdb", o.output, "where the grids go (required)");
   add(app, g, "--voxel", "LENGTH", o.voxel,
-      "voxel size, in the input's unit or with a unit: 0.5mm (default: an image's own spacing; "
+      "voxel size, in the input's unit or with a unit: 0.5mm (default: that of an image or grid; "
       "else 1/128 of the longest side)");
   add(app, g, "--half-width", "VOXELS", o.half_width,
       "width of the narrow band on each side of the surface (default 4)")
@@ -135,7 +135,8 @@ void defineBake(CLI::App& app, Invocation& invocation) {
       "one grid for each of these labels: values, names, or patterns such as 'lung*'")
       ->expected(1)
       ->delimiter(',')
-      ->take_all();
+      ->take_all()
+      ->allow_extra_args(false);
   add(app, g, "--names", "FILE", o.names, "name table: lines `index name` or `value,name`");
 }
 

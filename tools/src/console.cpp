@@ -12,7 +12,7 @@ namespace palpate::tools {
 namespace {
 
 constexpr auto kQuietStart = std::chrono::seconds(2);    // shorter work is not worth a line
-constexpr auto kLineInterval = std::chrono::seconds(5);  // between lines in a log
+constexpr auto kLineInterval = std::chrono::seconds(4);  // between lines in a log
 constexpr auto kBarInterval = std::chrono::milliseconds(80);
 constexpr int kBarWidth = 28;
 
@@ -66,11 +66,9 @@ bool Console::onProgress(std::string_view what, double fraction) {
     last_shown_ = now;
     return true;
   }
-  if (now - work_began_ < kQuietStart) return true;
-  if (what == last_what_ && now - last_shown_ < kLineInterval) return true;
+  if (now - work_began_ < kQuietStart || now - last_shown_ < kLineInterval) return true;
   print(std::string(what) +
         (fraction >= 0.0 ? ": " + std::to_string(percent(fraction)) + " %" : "") + "\n");
-  last_what_ = what;
   last_shown_ = now;
   return true;
 }

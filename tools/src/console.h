@@ -35,8 +35,7 @@ class Console {
   bool terminal_;
   bool bar_shown_ = false;
   Clock::time_point work_began_;
-  Clock::time_point last_shown_;
-  std::string last_what_;
+  Clock::time_point last_shown_ = {};
   std::set<std::string> told_;
 };
 

@@ -21,6 +21,8 @@ namespace palpate::tools {
       {"stiffness_N_per_m", m.stiffness},
       {"damping_Ns_per_m", m.damping},
       {"friction", {{"static", m.friction.static_ratio}, {"kinetic", m.friction.kinetic_ratio}}},
+      {"texture", {{"amplitude_m", m.texture.amplitude}, {"wavelength_m", m.texture.wavelength}}},
+      {"shading_m", m.shading},
       {"viscosity_Ns_per_m", m.viscosity},
       {"flow_m_per_s", vectorJson(m.flow)}};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <glm/common.hpp>
 
 #include "palpate/core/error.h"
 #include "palpate/scene/units.h"
@@ -98,6 +99,8 @@ std::string formatVector(const Vec3& v, int digits) {
          formatNumber(v.z, digits) + ")";
 }
 
+std::string formatDirection(const Vec3& v) { return formatVector(glm::round(v * 100.0) / 100.0); }
+
 std::string formatBytes(std::uint64_t bytes) {
   const auto value = static_cast<double>(bytes);
   if (value < 1e3) return std::to_string(bytes) + " B";
@@ -121,8 +124,8 @@ std::string formatNanoseconds(double ns) {
 }
 
 std::string formatSeconds(double seconds) {
-  if (seconds < 1e-3) return formatNumber(seconds * 1e6, 2) + " us";
-  if (seconds < 1.0) return formatNumber(seconds * 1e3, 2) + " ms";
+  if (seconds < 1e-3) return formatNumber(seconds * 1e6, 3) + " us";
+  if (seconds < 0.1) return formatNumber(seconds * 1e3, 3) + " ms";
   return formatNumber(seconds, 3) + " s";
 }
 

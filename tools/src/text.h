@@ -30,10 +30,11 @@ struct LengthUnit {
 // To text.
 [[nodiscard]] std::string formatNumber(double value, int digits = 4);   ///< "%.{digits}g", "inf"
 [[nodiscard]] std::string formatVector(const Vec3& v, int digits = 4);  ///< "(x, y, z)"
+[[nodiscard]] std::string formatDirection(const Vec3& v);               ///< two decimals
 [[nodiscard]] std::string formatBytes(std::uint64_t bytes);  ///< "12.3 MB" (powers of ten)
 [[nodiscard]] std::string formatCount(std::uint64_t count);  ///< "1 234 567"
 [[nodiscard]] std::string formatNanoseconds(double ns);      ///< "830 ns", "1.2 us"
-[[nodiscard]] std::string formatSeconds(double seconds);     ///< "0.41 s", "12 s"
+[[nodiscard]] std::string formatSeconds(double seconds);     ///< "41.2 ms", "0.41 s"
 
 /// Columns of text under headings; numbers to the right.
 class Table {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <set>
 
 #include "input_kind.h"
 #include "json_parts.h"
@@ -35,14 +36,16 @@ void refuse(bool given, const char* option, const char* applies_to) {
   if (given) throw usageError(std::string(option) + " applies to " + applies_to);
 }
 
-double voxelSize(const BakeOptions& options, const LengthUnit& unit, const Box3& bounds,
-                 const std::string& what, Console& console) {
-  if (!options.voxel.empty()) {
-    const double voxel = parseLength(options.voxel, unit, "--voxel");
-    if (!(voxel > 0.0)) throw usageError("--voxel must be greater than 0");
-    return voxel;
-  }
-  if (!bounds.isBounded()) return 0.0;  // refused by bake(), which says why
+/// --voxel [m], or 0 if it was not given. @throws Error (kUsage).
+double askedVoxel(const BakeOptions& options, const LengthUnit& unit) {
+  if (options.voxel.empty()) return 0.0;
+  const double voxel = parseLength(options.voxel, unit, "--voxel");
+  if (!(voxel > 0.0)) throw usageError("--voxel must be greater than 0");
+  return voxel;
+}
+
+double defaultVoxel(const LengthUnit& unit, const Box3& bounds, const std::string& what,
+                    Console& console) {
   const Vec3 size = bounds.size();
   const double voxel = std::max({size.x, size.y, size.z}) / kDefaultVoxelsPerSide;
   console.note(what + ": voxels of " + formatNumber(voxel / unit.metres, 3) + " " + unit.name +
@@ -70,6 +73,26 @@ BakedGrid timed(Make&& make) {
   return baked;
 }
 
+/// The description without what the layers asked for do not depend on. Labels of one image share it, so they
+/// stay together; nothing is entered, so ports and walls go.
+SceneDescription neededFor(const BakeOptions& options, SceneDescription description) {
+  const auto wanted = [&](const LayerDescription& layer) {
+    return options.layers.empty() || std::find(options.layers.begin(), options.layers.end(),
+                                               layer.name) != options.layers.end();
+  };
+  std::set<std::string> groups;
+  for (const auto& layer : description.layers) {
+    if (wanted(layer) && !layer.label_group.empty()) groups.insert(layer.label_group);
+  }
+  std::erase_if(description.layers, [&](const LayerDescription& layer) {
+    return !wanted(layer) && !groups.contains(layer.label_group);
+  });
+  description.ports.clear();
+  description.walls.clear();
+  description.start_region = "outside";
+  return description;
+}
+
 std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
   refuse(!options.units.empty(), "--units", "meshes; a scene names its unit");
   refuse(options.above.has_value(), "--above", "images");
@@ -87,9 +110,8 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
         options.input);
   }
   const LengthUnit unit = loaded.unit();
-  if (!options.voxel.empty()) (void)voxelSize(options, unit, {}, "", console);
-  // The scene's own meaning of a layer counts: labels of one image share it.
-  const ScenePtr scene = loaded.compile();
+  const double asked = askedVoxel(options, unit);
+  const ScenePtr scene = palpate::compile(neededFor(options, description), console.progress());
   std::vector<BakedGrid> grids;
   for (const Region& region : scene->regions()) {
     if (!region.field) continue;
@@ -97,11 +119,20 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
                                              region.name) == options.layers.end()) {
       continue;
     }
+    if (!region.field->bounds().isBounded()) {
+      throw inputError("bake.unbounded", "layer '" + region.name + "' reaches to infinity",
+                       "bake the others with --layer, or cut it in the scene: inside: "
+                       "{intersection: [it, a box]}",
+                       options.input);
+    }
     const std::string source =
         region.source.empty() ? options.input : options.input + ": " + region.source;
     grids.push_back(timed([&] {
-      const double voxel =
-          voxelSize(options, unit, region.field->bounds(), "layer " + region.name, console);
+      // What comes from a grid has a voxel size already.
+      const double voxel = asked > 0.0              ? asked
+                           : !region.source.empty() ? region.field->featureSize()
+                                                    : defaultVoxel(unit, region.field->bounds(),
+                                                                   "layer " + region.name, console);
       return vdb::bake(*region.field, bakeOptions(options, region.name, voxel, unit.name, source),
                        console.progress());
     }));
@@ -123,12 +154,12 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
     console.note(options.input + ": one unit is taken as 1 mm; --units says otherwise");
   }
   const LengthUnit unit = lengthUnit(options.units.empty() ? "mm" : options.units);
-  if (!options.voxel.empty()) (void)voxelSize(options, unit, {}, "", console);
+  const double asked = askedVoxel(options, unit);
   const vdb::Mesh mesh = vdb::readMesh(options.input, unit.metres);
   Box3 bounds;
   for (const Vec3& v : mesh.vertices) bounds.include(v);
   return {timed([&] {
-    const double voxel = voxelSize(options, unit, bounds, options.input, console);
+    const double voxel = asked > 0.0 ? asked : defaultVoxel(unit, bounds, options.input, console);
     return vdb::bakeMesh(mesh, bakeOptions(options, layer, voxel, unit.name, options.input),
                          console.progress());
   })};
@@ -167,7 +198,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   refuse(!options.labels.empty() && !options.layers.empty(), "--layer",
          "--above; labels are called by their names");
   const LengthUnit mm = {"mm", 1e-3};
-  const double asked = options.voxel.empty() ? 0.0 : voxelSize(options, mm, {}, "", console);
+  const double asked = askedVoxel(options, mm);
   const auto layers = labelLayers(options);
 
   const vdb::Image image = vdb::readNifti(options.input);

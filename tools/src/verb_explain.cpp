@@ -187,6 +187,19 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
   }
   report.text += "\nWalls (between regions that touch)\n" + wall_table.text("  ");
 
+  report.json["sheets"] = Json::array();
+  Table sheet_table({"sheet", "wall", "extent"});
+  for (const Sheet& sheet : scene.passages().sheets()) {
+    sheet_table.add({sheet.name, wallText(scene, {false, sheet.material}),
+                     sheet.mask < 0 ? "all of its surface" : "limited"});
+    report.json["sheets"].push_back({{"name", sheet.name},
+                                     {"where", sheet.mask >= 0},
+                                     {"wall", wallJson(scene, {false, sheet.material})}});
+  }
+  if (!sheet_table.empty()) {
+    report.text += "\nSheets (the same region on both sides)\n" + sheet_table.text("  ");
+  }
+
   report.json["ports"] = Json::array();
   for (const Port& port : scene.ports()) {
     const PortDescription* described = describedPort(description, port.name);

@@ -68,7 +68,7 @@ Report run(const RenderOptions& options, const GeneralOptions& general, Console&
       {"width", picture.width},
       {"height", picture.height},
       {"plane", {{"point_m", vectorJson(plane.point)}, {"normal", vectorJson(plane.normal())}}}};
-  report.text = "Cut at " + plane.name + "\nWrote " + options.output + "\n";
+  report.text = "Cut " + plane.name + "\nWrote " + options.output + "\n";
   return report;
 }
 

@@ -26,13 +26,16 @@ RendererSettings rendererSettings(const std::string& name) {
 Trace follow(HapticRenderer& renderer, devices::Path path, const devices::ServoSettings& settings,
              devices::ServoReport& report) {
   Trace trace(path.size());
+  double last_time = path.front().t - 1.0 / settings.rate;
   devices::VirtualDevice device(std::move(path));
   const auto tick = [&](const devices::DeviceState& state) {
     TraceRow row;
     row.t = state.time;
     row.hip = state.position;
+    const double dt = state.time - last_time;
+    last_time = state.time;
     const auto before = std::chrono::steady_clock::now();
-    row.result = renderer.update({state.position, state.velocity});
+    row.result = renderer.update({state.position, state.velocity, dt});
     const auto after = std::chrono::steady_clock::now();
     row.tick_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count();
     trace.add(row);
@@ -82,6 +85,10 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   servo.realtime = options.realtime;
   servo.rate = options.rate;
   servo.elevate = options.realtime;
+  if (options.realtime) {
+    console.note("following the hand's path for " + formatSeconds(path.back().t - path.front().t) +
+                 " in real time");
+  }
   devices::ServoReport servo_report;
   const Trace trace = follow(*renderer, std::move(path), servo, servo_report);
   checkExit(servo_report.exit);

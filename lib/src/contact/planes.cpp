@@ -39,6 +39,9 @@ bool multipliers(std::span<const Plane> planes, const std::array<int, 3>& set, i
   return true;
 }
 
+/// Of the wish: what planes within the angle of kDependent may differ by.
+constexpr double kNearlyFits = 1e-4;
+
 class SetSearch {
  public:
   SetSearch(const Vec3& wish, std::span<const Plane> planes) noexcept
@@ -58,20 +61,26 @@ class SetSearch {
       if (m[k] < 0.0) return false;
       step += m[k] * planes_[static_cast<std::size_t>(set[k])].normal;
     }
+    double beyond = 0.0;
     for (std::size_t j = 0; j < planes_.size(); ++j) {
       const bool held =
           std::find(set.begin(), set.begin() + count, static_cast<int>(j)) != set.begin() + count;
-      if (!held && glm::dot(planes_[j].normal, step) < -planes_[j].gap - slack_) return false;
+      if (!held) beyond = std::max(beyond, -planes_[j].gap - glm::dot(planes_[j].normal, step));
     }
-    solution_ = {step, count, set, m};
-    return true;
+    if (beyond < least_beyond_) {
+      least_beyond_ = beyond;
+      solution_ = {step, count, set, m};
+    }
+    return beyond <= slack_;
   }
 
   [[nodiscard]] int size() const noexcept { return static_cast<int>(planes_.size()); }
   [[nodiscard]] const PlaneSolution& solution() const noexcept { return solution_; }
 
-  /// No set fits: stay, held by the plane that the wish violates most.
+  /// No set fits. Where that is for rounding, among planes nearly parallel, the set that fits best is the
+  /// one; else stay, held by the plane that the wish violates most.
   [[nodiscard]] PlaneSolution stay() const noexcept {
+    if (least_beyond_ <= kNearlyFits * glm::length(wish_)) return solution_;
     PlaneSolution out;
     double worst = 0.0;
     for (std::size_t j = 0; j < planes_.size(); ++j) {
@@ -91,6 +100,7 @@ class SetSearch {
   std::span<const Plane> planes_;
   double slack_;
   PlaneSolution solution_;
+  double least_beyond_ = kInfinity;
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ struct Motion {
 
   [[nodiscard]] double valueAt(double t) noexcept {
     --budget;
-    return surface.side * surface.field->value(from + t * by);
+    return surface.side * surface.field->value(from + t * by) + surface.allowance;
   }
 };
 

@@ -8,37 +8,42 @@
 namespace palpate {
 namespace {
 
+/// The points nearer than `rounding` to a box: with 0 the box itself.
 class Box final : public Field {
  public:
-  Box(const Vec3& center, const Vec3& half_size)
-      : center_(center), half_(half_size), feature_(2.0 * smallest(half_size)) {}
+  Box(const Vec3& center, const Vec3& half_size, double rounding)
+      : center_(center),
+        half_(half_size),
+        rounding_(rounding),
+        feature_(rounding > 0.0 ? rounding : 2.0 * smallest(half_size)) {}
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
     const Vec3 d = p - center_;
     const Vec3 q = glm::abs(d) - half_;
     if (isInside(q)) {
       const int axis = nearestFace(q);
-      FieldSample out{q[axis], Vec3(0.0)};
+      FieldSample out{q[axis] - rounding_, Vec3(0.0)};
       out.gradient[axis] = fields::side(d[axis]);
       return out;
     }
     const fields::Polar away = fields::polar(glm::max(q, Vec3(0.0)), Vec3(1.0, 0.0, 0.0));
-    return {away.length, signedLike(away.direction, d)};
+    return {away.length - rounding_, signedLike(away.direction, d)};
   }
 
   [[nodiscard]] double value(const Vec3& p) const noexcept override {
     const Vec3 q = glm::abs(p - center_) - half_;
-    if (isInside(q)) return q[nearestFace(q)];
-    return fields::length(glm::max(q, Vec3(0.0)));
+    if (isInside(q)) return q[nearestFace(q)] - rounding_;
+    return fields::length(glm::max(q, Vec3(0.0))) - rounding_;
   }
 
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     const FieldSample here = sample(p);
     FieldJet out{here.value, here.gradient, Mat3(0.0)};
     const Vec3 q = glm::abs(p - center_) - half_;
-    if (isInside(q) || !(here.value > 1e-100)) return out;
+    const double distance = fields::length(glm::max(q, Vec3(0.0)));
+    if (isInside(q) || !(distance > 1e-100)) return out;
     // Beyond a face nothing bends; beyond an edge or corner the distance grows from a line or point.
-    const double curvature = 1.0 / here.value;
+    const double curvature = 1.0 / distance;
     out.hessian = outer(here.gradient, here.gradient) * -curvature;
     for (int axis = 0; axis < 3; ++axis) {
       if (q[axis] > 0.0) out.hessian[axis][axis] += curvature;
@@ -46,7 +51,10 @@ class Box final : public Field {
     return out;
   }
 
-  [[nodiscard]] Box3 bounds() const noexcept override { return {center_ - half_, center_ + half_}; }
+  [[nodiscard]] Box3 bounds() const noexcept override {
+    const Vec3 extent = half_ + Vec3(rounding_);
+    return {center_ - extent, center_ + extent};
+  }
   [[nodiscard]] Metric metric() const noexcept override { return Metric::kExact; }
   [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
   [[nodiscard]] double featureSize() const noexcept override { return feature_; }
@@ -66,6 +74,7 @@ class Box final : public Field {
 
   Vec3 center_;
   Vec3 half_;
+  double rounding_;
   double feature_;
 };
 
@@ -82,7 +91,15 @@ FieldPtr box(const Vec3& center, const Vec3& size) {
       faces.push_back(halfSpace(center + 0.5 * size * normal, normal));
     }
   }
-  return withFaces(std::make_shared<Box>(center, 0.5 * size), std::move(faces));
+  return withFaces(std::make_shared<Box>(center, 0.5 * size, 0.0), std::move(faces));
+}
+
+FieldPtr roundedBox(const Vec3& center, const Vec3& size, double rounding) {
+  fields::checkPoint("rounded_box", "center", center);
+  fields::checkLengths("rounded_box", "size", size);
+  fields::checkRange("rounded_box", "rounding", rounding, fields::kSmallestLength,
+                     0.5 * std::min({size.x, size.y, size.z}));
+  return std::make_shared<Box>(center, 0.5 * size - Vec3(rounding), rounding);
 }
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 /// Solids of revolution from a profile in the half-plane (rho, h): rho >= 0 is the distance from the
 /// axis, h the height along it. Private to fields.
 
+#include <algorithm>
 #include <concepts>
 
 #include "fields/vector.h"
@@ -66,7 +67,7 @@ class Revolved final : public Field {
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
     const Vec3 d = p - center_;
     const double height = glm::dot(d, axis_);
-    const Polar radial = polar(d - axis_ * height, across_);
+    const Polar radial = polar(acrossAxis(d, height), across_);
     const ProfileSample s = profile_.sample(radial.length, height);
     return {s.value, radial.direction * s.by_rho + axis_ * s.by_height};
   }
@@ -74,13 +75,13 @@ class Revolved final : public Field {
   [[nodiscard]] double value(const Vec3& p) const noexcept override {
     const Vec3 d = p - center_;
     const double height = glm::dot(d, axis_);
-    return profile_.sample(length(d - axis_ * height), height).value;
+    return profile_.sample(length(acrossAxis(d, height)), height).value;
   }
 
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     const Vec3 d = p - center_;
     const double height = glm::dot(d, axis_);
-    const Polar radial = polar(d - axis_ * height, across_);
+    const Polar radial = polar(acrossAxis(d, height), across_);
     const ProfileJet s = profile_.jet(radial.length, height);
     const Vec3& u = radial.direction;
     const Vec3 around = glm::cross(axis_, u);
@@ -104,6 +105,18 @@ class Revolved final : public Field {
   [[nodiscard]] double featureSize() const noexcept override { return profile_.featureSize(); }
 
  private:
+  /// The part of `d` across the axis. Close to the axis the first difference is partly rounding, and
+  /// not square to it: take the rest of the axis out once more. Closer still it is nothing else.
+  [[nodiscard]] Vec3 acrossAxis(const Vec3& d, double height) const noexcept {
+    const Vec3 radial = d - axis_ * height;
+    const double size = std::max({std::fabs(radial.x), std::fabs(radial.y), std::fabs(radial.z)});
+    const double far = std::fabs(height);
+    if (size > 1e-3 * far) [[likely]]
+      return radial;
+    if (size <= 1e-15 * far) return Vec3(0.0);
+    return radial - axis_ * glm::dot(radial, axis_);
+  }
+
   Vec3 center_;
   Vec3 axis_;
   Vec3 across_;  ///< radial direction of the points on the axis

@@ -16,6 +16,11 @@ constexpr double kOnSurface = 1e-9;
 constexpr double kGraze = 0.02;
 /// Leaves are one facet where both are on the surface and their normals are parallel to this.
 constexpr double kParallel = 1e-6;
+/// What slides on a wall may be this share of the feature size beyond it, and looks out for other sheets
+/// of that wall in steps of the share below.
+constexpr double kSlideDip = 1e-7;
+constexpr double kSlideStride = 0.4;
+constexpr int kEvaluationsPerSlide = 64;
 constexpr int kCrossingsPerTick = 32;
 constexpr int kEvaluationsPerTick = 4096;
 constexpr int kEvaluationsPerSweep = 256;
@@ -141,6 +146,21 @@ CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sl
     cross(hit_leaf, facet);
     if (stop_at_crossing) return Stop::kCrossed;
   }
+}
+
+double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) const noexcept {
+  const Leaf& own = leaves_[leaf];
+  SweepSurface surface;
+  surface.field = own.field.get();
+  surface.side = side(leaf);
+  surface.lipschitz = own.lipschitz;
+  surface.tolerance = tolerance_[leaf];
+  // No sheet of the leaf is thinner than its feature size, so none fits between two steps.
+  surface.graze = kSlideStride * own.feature;
+  surface.allowance = kSlideDip * own.feature * own.lipschitz;
+  const double start = surface.side * own.field->value(a) + surface.allowance;
+  const SweepResult result = sweep(surface, a, b, start, kEvaluationsPerSlide);
+  return result.kind == SweepResult::Kind::kFree ? 1.0 : result.at;
 }
 
 void CellWalker::gather(LeafId leaf) noexcept {

@@ -44,6 +44,9 @@ class CellWalker {
   /// Straight to `target` [m], through what is open. Facets of the leaves in `sliding` are not looked at:
   /// they hold the point already.
   Stop move(const Vec3& target, std::span<const LeafId> sliding, bool stop_at_crossing) noexcept;
+  /// How much of the straight way from `a` to `b` [m] is on the near side of `leaf`, 0 to 1. A leaf may have
+  /// several sheets: the one that holds a sliding point is not the one that stands in its way.
+  [[nodiscard]] double freeShare(LeafId leaf, const Vec3& a, const Vec3& b) const noexcept;
   [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }
 
   /// Calls f(leaf, value, facet) for each leaf within `reach` tolerances of the point, or beyond it.

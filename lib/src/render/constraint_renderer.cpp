@@ -15,6 +15,10 @@ constexpr double kNear = 100.0;
 /// The proxy has arrived when what is left to slide is this share of the depth: 6e-8 degree of the
 /// force's direction.
 constexpr double kSettled = 1e-9;
+/// A slide ends within this share of where the kinetic cone holds it.
+constexpr double kSticksWithin = 1e-6;
+/// A slide that another sheet of the same wall stops within this share of the feature size got nowhere.
+constexpr double kStuck = 1e-6;
 /// Content is felt in full this far behind the facet it was entered through [m], so that hovering in a
 /// mouth does not chatter.
 constexpr double kFadeLength = 0.25e-3;
@@ -28,7 +32,9 @@ double ConstraintRenderer::Contact::load() const noexcept {
 }
 
 ConstraintRenderer::ConstraintRenderer(ScenePtr scene, const RendererSettings& settings)
-    : HapticRenderer(settings.limits), scene_(std::move(scene)), walker_(*scene_) {}
+    : HapticRenderer(settings.limits, scene->startRegion()),
+      scene_(std::move(scene)),
+      walker_(*scene_) {}
 
 void ConstraintRenderer::forget() noexcept {
   started_ = false;
@@ -60,6 +66,7 @@ void ConstraintRenderer::start(const Vec3& hip) noexcept {
 /// Brings the proxy to where |x - P| is smallest in its region, as far as one tick's budget goes.
 void ConstraintRenderer::track(const Vec3& hip) noexcept {
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    tick_begins_ = iteration == 0;
     findContact(hip);
     if (contact_.count == 0) {
       sticking_ = false;
@@ -148,9 +155,13 @@ void ConstraintRenderer::holdByFriction() noexcept {
   if (friction.static_ratio <= 0.0) return;
   const double pull = glm::length(c.pull);
   const double load = c.load();
+  const double kinetic = friction.kinetic_ratio * load;
   if (sticking_ && pull > friction.static_ratio * load) sticking_ = false;
-  if (!sticking_ && pull <= friction.kinetic_ratio * load * (1.0 + kSettled)) sticking_ = true;
-  c.lag = sticking_ ? c.pull : c.pull * (friction.kinetic_ratio * load / pull);
+  // What slides sticks again when the hand no longer pulls it on, which shows when a tick begins: at the
+  // end of its own slide it is always where the cone just holds it, and a hand that moves on would
+  // feel a saw.
+  if (!sticking_ && tick_begins_ && pull <= kinetic * (1.0 + kSticksWithin)) sticking_ = true;
+  c.lag = sticking_ || pull <= kinetic ? c.pull : c.pull * (kinetic / pull);
   c.pull -= c.lag;
 }
 
@@ -170,7 +181,10 @@ bool ConstraintRenderer::puncture() noexcept {
 
 bool ConstraintRenderer::isSettled(const Vec3& hip) const noexcept {
   const double depth = glm::length(hip - walker_.position());
-  if (glm::length(contact_.pull) > kSettled * depth) return false;
+  return glm::length(contact_.pull) <= kSettled * depth && isOnWalls();
+}
+
+bool ConstraintRenderer::isOnWalls() const noexcept {
   for (std::size_t i = 0; i < contact_.count; ++i) {
     const std::size_t k = contact_.index[i];
     const double slack =
@@ -199,8 +213,8 @@ bool ConstraintRenderer::slide(const Vec3& hip) noexcept {
     if (slideBy(hip, by, true)) return true;
     by *= 0.5;
   }
-  // Nothing along the wall comes closer: only settle onto it.
-  return slideBy(hip, Vec3(0.0), false) && !isSettled(hip);
+  // Nothing along the wall comes closer: only settle onto it, where it is not there yet.
+  return !isOnWalls() && slideBy(hip, Vec3(0.0), false);
 }
 
 /// Moves along the held walls by about `by`, on a path that stays on the free side of them. False if
@@ -225,10 +239,23 @@ bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_impr
     if (glm::dot(after, after) > limit * (1.0 + 1e-13)) return false;
   }
   const std::span<const LeafId> sliding(c.sliding.data(), c.sliding_count);
+  // The wall that holds the proxy may stand in its way as well, further on.
+  bool is_clipped = false;
+  const auto go = [&](const Vec3& from, const Vec3& to) {
+    double share = 1.0;
+    for (const LeafId leaf : sliding) share = std::min(share, walker_.freeShare(leaf, from, to));
+    const CellWalker::Stop stop = walker_.move(from + share * (to - from), sliding, true);
+    is_clipped = share < 1.0 && stop == CellWalker::Stop::kArrived;
+    return stop == CellWalker::Stop::kArrived && !is_clipped;
+  };
+  if (!must_improve) {
+    (void)walker_.move(landed, sliding, true);
+    return true;
+  }
   // Over a bulge the tangent runs in the open and comes down; in a hollow the chord is the open way.
-  if (above && walker_.move(ahead, sliding, true) != CellWalker::Stop::kArrived) return true;
-  (void)walker_.move(landed, sliding, true);
-  return true;
+  if (!above || go(x, ahead)) (void)go(walker_.position(), landed);
+  const double moved = glm::length(walker_.position() - x);
+  return !is_clipped || moved > kStuck * walker_.leaf(c.leaf[c.index[0]]).feature;
 }
 
 double ConstraintRenderer::contentShare() const noexcept {

@@ -48,6 +48,7 @@ class ConstraintRenderer final : public HapticRenderer {
   [[nodiscard]] bool slide(const Vec3& hip) noexcept;
   [[nodiscard]] bool slideBy(const Vec3& hip, const Vec3& by, bool must_improve) noexcept;
   [[nodiscard]] bool isSettled(const Vec3& hip) const noexcept;
+  [[nodiscard]] bool isOnWalls() const noexcept;
   [[nodiscard]] Vec3 force(const HipState& hip) const noexcept;
   [[nodiscard]] double contentShare() const noexcept;
   [[nodiscard]] const Material& wallMaterial(const Facet& facet) const noexcept {
@@ -59,6 +60,7 @@ class ConstraintRenderer final : public HapticRenderer {
   Contact contact_;
   bool started_ = false;
   bool sticking_ = false;
+  bool tick_begins_ = false;
 };
 
 }  // namespace palpate

@@ -5,9 +5,18 @@
 #include "paper_renderer.h"
 
 namespace palpate {
+namespace {
+
+/// False for NaN too.
+bool isNear(const Vec3& p) noexcept {
+  constexpr double kFarthest = HapticRenderer::kFarthest;
+  return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest;
+}
+
+}  // namespace
 
 TickResult HapticRenderer::update(const HipState& hip) noexcept {
-  if (isFinite(hip.position) && isFinite(hip.velocity)) {
+  if (isNear(hip.position) && isFinite(hip.velocity)) {
     last_ = step(hip);
     last_.force = guard_.apply(last_.force, hip.dt);
     return last_;
@@ -21,6 +30,7 @@ TickResult HapticRenderer::update(const HipState& hip) noexcept {
 void HapticRenderer::reset() noexcept {
   guard_.reset();
   last_ = {};
+  last_.region = start_;
   forget();
 }
 

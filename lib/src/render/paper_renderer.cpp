@@ -22,7 +22,7 @@ bool isOneOf(const std::vector<LeafId>& leaves, const std::vector<LeafId>& among
 }  // namespace
 
 PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
-    : HapticRenderer(settings.limits),
+    : HapticRenderer(settings.limits, scene->startRegion()),
       scene_(std::move(scene)),
       scratch_(scene_->partition().leaves().size()) {
   for (const Port& port : scene_->ports()) {

@@ -1,5 +1,5 @@
 // The local problem against an independent solver: Dykstra's cyclic projections, which converge to the
-// projection onto an intersection of half-spaces whatever the planes are.
+// projection onto an intersection of half-spaces whatever the planes are, and the conditions of the minimum.
 
 #include "palpate/contact/planes.h"
 
@@ -38,7 +38,8 @@ void expectOptimal(const Vec3& wish, const std::vector<Plane>& planes, const Pla
     const auto k = static_cast<std::size_t>(i);
     const Plane& plane = planes[static_cast<std::size_t>(s.plane[k])];
     EXPECT_GE(s.multiplier[k], 0.0);
-    EXPECT_NEAR(glm::dot(plane.normal, s.step) + plane.gap, 0.0, tolerance) << "holds what it touches";
+    EXPECT_NEAR(glm::dot(plane.normal, s.step) + plane.gap, 0.0, tolerance)
+        << "holds what it touches";
     rebuilt += s.multiplier[k] * plane.normal;
   }
   EXPECT_LT(glm::length(rebuilt - s.step), tolerance);
@@ -47,6 +48,7 @@ void expectOptimal(const Vec3& wish, const std::vector<Plane>& planes, const Pla
 TEST(ClosestStep, RandomPlanesAgainstDykstra) {
   Random random(11);
   int by_count[4] = {};
+  int compared = 0;
   for (int trial = 0; trial < 4000; ++trial) {
     std::vector<Plane> planes(static_cast<std::size_t>(1 + trial % 8));
     for (Plane& plane : planes) {
@@ -58,13 +60,21 @@ TEST(ClosestStep, RandomPlanesAgainstDykstra) {
     ++by_count[s.count];
     // Multipliers grow like 1 / sin of the planes' angle: the tolerance covers 1e-16 at 1e-3 rad squared.
     expectOptimal(wish, planes, s, 1e-9);
-    const Vec3 other = dykstra(wish, planes, 600);
-    // Cyclic projections are slow at sharp edges: compare distances, which converge first.
-    EXPECT_LE(glm::length(s.step - wish), glm::length(other - wish) + 1e-3);
+    const Vec3 other = dykstra(wish, planes, 400);
+    double unfinished = 0.0;
+    for (const Plane& plane : planes) {
+      unfinished = std::max(unfinished, -plane.gap - glm::dot(plane.normal, other));
+    }
+    // Cyclic projections are slow at sharp edges; where they got through, it is the same point.
+    if (unfinished < 1e-9) {
+      ++compared;
+      EXPECT_LE(glm::length(s.step - other), 1e-4);
+    }
     // With all gaps >= 0 staying is allowed, so the minimum is never farther than that.
-    EXPECT_LE(glm::length(s.step - wish), glm::length(wish) * (1.0 + 1e-12));
+    EXPECT_LE(glm::length(s.step - wish), glm::length(wish) * (1.0 + 1e-6));
   }
   for (int count = 0; count <= 3; ++count) EXPECT_GT(by_count[count], 100) << count;
+  EXPECT_GT(compared, 3000);
 }
 
 TEST(ClosestStep, ClosedForms) {

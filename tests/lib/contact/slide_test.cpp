@@ -123,7 +123,8 @@ TEST(PullBack, LandsOnOneTwoAndThreeWalls) {
   const FieldPtr floor = halfSpace(Vec3(0.0), Vec3(0, 0, 1));
   Random random(8);
   for (int trial = 0; trial < 500; ++trial) {
-    const Vec3 crease(0.015, std::sqrt(kR * kR - 0.015 * 0.015), 0.0);  // of both balls, on the floor
+    const Vec3 crease(0.015, std::sqrt(kR * kR - 0.015 * 0.015),
+                      0.0);  // of both balls, on the floor
     const Vec3 from = crease + random.in({Vec3(-0.005), Vec3(0.005)});
     for (const std::size_t count : {1, 2, 3}) {
       std::vector<HeldWall> walls{heldAt(ball, 1.0, crease), heldAt(second, 1.0, crease),
@@ -150,7 +151,9 @@ TEST(PullBack, LandsOnOneTwoAndThreeWalls) {
 
 TEST(PullBack, RefusesWhatHasNoGradientOrNoCommonPoint) {
   struct Flat final : Field {
-    [[nodiscard]] FieldSample sample(const Vec3&) const noexcept override { return {0.5, Vec3(0.0)}; }
+    [[nodiscard]] FieldSample sample(const Vec3&) const noexcept override {
+      return {0.5, Vec3(0.0)};
+    }
     [[nodiscard]] Box3 bounds() const noexcept override { return Box3::everything(); }
     [[nodiscard]] Metric metric() const noexcept override { return Metric::kImplicit; }
     [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }

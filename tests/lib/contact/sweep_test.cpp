@@ -45,14 +45,15 @@ double torus(const Vec3& p) { return std::hypot(std::hypot(p.x, p.y) - 0.03, p.z
 struct Shape {
   const char* name;
   FieldPtr field;
+  bool has_edges = false;
 };
 
 std::vector<Shape> shapes() {
   return {
       {"sphere", sphere(Vec3(0.0), 0.03)},
-      {"box", box(Vec3(0.0), Vec3(0.06, 0.04, 0.02))},
-      {"plate of 0.1 mm", box(Vec3(0.0), Vec3(0.06, 0.06, 1e-4))},
-      {"cylinder", cylinder(Vec3(0.0), Vec3(1, 1, 0), 0.02, 0.05)},
+      {"box", box(Vec3(0.0), Vec3(0.06, 0.04, 0.02)), true},
+      {"plate of 0.1 mm", box(Vec3(0.0), Vec3(0.06, 0.06, 1e-4)), true},
+      {"cylinder", cylinder(Vec3(0.0), Vec3(1, 1, 0), 0.02, 0.05), true},
       {"torus", std::make_shared<FromFunction>(torus, 1.0, 0.01)},
       // Slopes from 0.2 to 40: only a bound of the slope is known, and it is far off nearly everywhere.
       {"uneven", std::make_shared<FromFunction>(
@@ -96,8 +97,9 @@ TEST(Sweep, AgainstDenseSamplingFromBothSides) {
       ASSERT_GE(out.at, 0.0);
       ASSERT_LE(out.at, 1.0);
       // On its own side as far as it says, but for grazes shorter than `graze`: a chord of that length
-      // dips by graze^2 / (8 R) = 5e-5 R into a curved wall and less into anything flat.
-      const double dip = 1e-4 * shape.field->featureSize() * shape.field->lipschitz();
+      // dips by graze^2 / (8 R) = 5e-5 R into a curved wall, and by graze / 2 into an edge.
+      const double dip =
+          (shape.has_edges ? 1e-2 : 1e-4) * shape.field->featureSize() * shape.field->lipschitz();
       ASSERT_GE(deepest(s, a, b, out.at, 500), -dip) << shape.name << " trial " << trial;
       if (out.kind == Kind::kHit) {
         ++hits;
@@ -113,7 +115,7 @@ TEST(Sweep, AgainstDenseSamplingFromBothSides) {
         ++unsure;
       }
     }
-    EXPECT_GT(hits, 300) << shape.name;
+    EXPECT_GT(hits, 150) << shape.name;
     EXPECT_LE(unsure, 6) << shape.name << ": the budget is enough for nearly all";
   }
 }

@@ -102,8 +102,9 @@ TEST(Partition, ATransformUndoneIsTheLeafItself) {
 }
 
 TEST(Partition, LaterLayersWinAndMasksHoldNoRegion) {
-  const std::vector<FieldPtr> layers{ball(0.0), ball(0.02)};
-  const std::vector<FieldPtr> masks{halfSpace(Vec3(0.0), Vec3(0, 0, 1)), ball(0.0)};
+  const FieldPtr first = ball(0.0);
+  const std::vector<FieldPtr> layers{first, ball(0.02)};
+  const std::vector<FieldPtr> masks{halfSpace(Vec3(0.0), Vec3(0, 0, 1)), first};
   const Partition partition(layers, masks);
   EXPECT_EQ(partition.leaves().size(), 3U) << "a mask shares leaves with the layers";
   EXPECT_EQ(regionAt(partition, Vec3(0.0)), 2);

@@ -68,7 +68,8 @@ TEST(PassedPorts, ForgetsTheOldestWhenFull) {
   PassedPorts passed;
   const std::size_t more = PassedPorts::kCapacity + 3;
   for (std::size_t i = 0; i < more; ++i) {
-    passed.pass(static_cast<PortId>(i), static_cast<RegionId>(i), static_cast<RegionId>(i + 1), false);
+    passed.pass(static_cast<PortId>(i), static_cast<RegionId>(i), static_cast<RegionId>(i + 1),
+                false);
   }
   EXPECT_EQ(passed.size(), PassedPorts::kCapacity);
   EXPECT_EQ(passed[0], 3);
@@ -94,8 +95,9 @@ TEST(Port, LeadsByItsDirection) {
     PortDirection direction;
     bool in, out;
   };
-  for (const Row& row : {Row{PortDirection::kBoth, true, true}, Row{PortDirection::kIn, true, false},
-                         Row{PortDirection::kOut, false, true}}) {
+  for (const Row& row :
+       {Row{PortDirection::kBoth, true, true}, Row{PortDirection::kIn, true, false},
+        Row{PortDirection::kOut, false, true}}) {
     port.direction = row.direction;
     EXPECT_EQ(port.leads(1, 2), row.in);
     EXPECT_EQ(port.leads(3, 0), row.out);

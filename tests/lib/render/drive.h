@@ -87,9 +87,9 @@ class Drive {
 
 inline ::testing::AssertionResult isNear(const Vec3& a, const Vec3& b, double tolerance) {
   if (glm::length(a - b) <= tolerance) return ::testing::AssertionSuccess();
-  return ::testing::AssertionFailure() << "(" << a.x << ", " << a.y << ", " << a.z << ") is not ("
-                                     << b.x << ", " << b.y << ", " << b.z << "), off by "
-                                     << glm::length(a - b);
+  return ::testing::AssertionFailure()
+         << "(" << a.x << ", " << a.y << ", " << a.z << ") is not (" << b.x << ", " << b.y << ", "
+         << b.z << "), off by " << glm::length(a - b);
 }
 
 inline std::string kindName(const ::testing::TestParamInfo<RendererKind>& info) {

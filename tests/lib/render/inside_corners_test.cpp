@@ -44,7 +44,8 @@ TEST(InsideCorners, BoxFacesEdgesAndCorners) {
 }
 
 TEST(InsideCorners, CylinderRims) {
-  Drive drive(sceneOf(room("cylinder: {center: [0, 0, 0], axis: [0, 0, 1], radius: 20, height: 30}")));
+  Drive drive(
+      sceneOf(room("cylinder: {center: [0, 0, 0], axis: [0, 0, 1], radius: 20, height: 30}")));
   (void)drive.to(Vec3(0.0));
   Random random(32);
   Vec3 p(0.0);
@@ -70,8 +71,9 @@ TEST(InsideCorners, CylinderRims) {
 
 TEST(InsideCorners, ConcaveCreaseOfTwoBallsFromOutside) {
   // The ring where two balls meet holds a hand that presses between them: x = 0, and the radius of the ring.
-  Drive drive(sceneOf(room("complement: {union: [{sphere: {center: [-15, 0, 0], radius: 25}}, "
-                           "{sphere: {center: [15, 0, 0], radius: 25}}]}")));
+  Drive drive(
+      sceneOf(room("complement: {union: [{sphere: {center: [-15, 0, 0], radius: 25}}, "
+                   "{sphere: {center: [15, 0, 0], radius: 25}}]}")));
   const double ring = 0.02;
   (void)drive.to(mm(0, 30, 0));
   for (double angle = 0.0; angle < 6.0; angle += 0.01) {

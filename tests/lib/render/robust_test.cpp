@@ -15,14 +15,16 @@ namespace {
 
 class Robust : public ::testing::TestWithParam<RendererKind> {};
 INSTANTIATE_TEST_SUITE_P(Renderers, Robust,
-                         ::testing::Values(RendererKind::kPaper, RendererKind::kConstraint), kindName);
+                         ::testing::Values(RendererKind::kPaper, RendererKind::kConstraint),
+                         kindName);
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<HipState> kBroken = {
-    {Vec3(kNan, 0, 0), Vec3(0.0)},      {Vec3(0, kInfinity, 0), Vec3(0.0)},
-    {Vec3(0, 0, -kInfinity), Vec3(0.0)}, {mm(0, 0, 0), Vec3(kNan)},
-    {mm(0, 0, 0), Vec3(kInfinity, 0, 0)}};
+    {Vec3(kNan, 0, 0), Vec3(0.0)},        {Vec3(0, kInfinity, 0), Vec3(0.0)},
+    {Vec3(0, 0, -kInfinity), Vec3(0.0)},  {mm(0, 0, 0), Vec3(kNan)},
+    {mm(0, 0, 0), Vec3(kInfinity, 0, 0)}, {Vec3(1.1e4, 0, 0), Vec3(0.0)},
+    {Vec3(0, 0, -1e300), Vec3(0.0)}};
 
 TEST_P(Robust, BrokenTicksGiveNoForceAndChangeNothing) {
   // Two drives side by side; one hears broken ticks in between, and must not differ in the good ones.
@@ -53,7 +55,8 @@ TEST_P(Robust, ABrokenFirstTickDoesNotStart) {
   for (const std::string start : {"outside", "liquid"}) {
     Drive drive(sceneOf(containerText("start: {region: " + start + "}\n")), GetParam());
     const TickResult out = drive.renderer().update(kBroken[0]);
-    EXPECT_EQ(drive.scene().regions()[out.region].name, start) << "nothing was read yet but the scene";
+    EXPECT_EQ(drive.scene().regions()[out.region].name, start)
+        << "nothing was read yet but the scene";
     EXPECT_EQ(out.force, Vec3(0.0));
     (void)drive.walk(start == "liquid" ? mm(0, 0, 0) : mm(60, 0, 0));
     EXPECT_EQ(drive.region(), start);
@@ -61,7 +64,7 @@ TEST_P(Robust, ABrokenFirstTickDoesNotStart) {
 }
 
 TEST_P(Robust, HugeJumpsAreFiniteAndForgotten) {
-  for (const double far : {1.0, 1e3, 1e6, 1e9, 1e12, 1e15, 1e100, 1e154, 1e200, 1e308}) {
+  for (const double far : {1.0, 1e3, 9e3, 1e6, 1e9, 1e100, 1e308}) {
     Drive drive(sceneOf(containerText()), GetParam());
     (void)drive.walk(mm(60, 0, 0));
     for (const Vec3& u : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0.5, -0.3, 0.7), Vec3(-1, -1, -1)}) {
@@ -86,7 +89,8 @@ TEST(Plate, IsNeverPassedWhateverTheJump) {
   for (const double thickness : {1.0, 0.1, 0.001}) {
     const ScenePtr scene = sceneOf(
         "palpate: 1\nlength: mm\nlayers: [{name: plate, inside: {box: {center: [0, 0, 0], size: "
-        "[1e7, 1e7, " + std::to_string(thickness) + "]}}}]\n");
+        "[1e7, 1e7, " +
+        std::to_string(thickness) + "]}}}]\n");
     for (const double jump : {1e-4, 5e-3, 20e-3, 1.0, 1e3}) {
       Drive drive(scene);
       Random random(6);
@@ -109,17 +113,17 @@ std::vector<Vec3> everything() {
   Vec3 drift(0.0);
   for (int i = 0; i < 20000; ++i) {
     drift = 0.95 * drift + 0.1 * random.direction();
-    p += 1e-3 * drift - 2e-4 * p / std::max(0.01, glm::length(p));
-    path.push_back(i % 500 == 499 ? random.in({Vec3(-0.06), Vec3(0.06)}) : p);
+    // Along the ball, half a millimeter in or out of it, and now and then somewhere else.
+    p = glm::normalize(p + 2e-3 * drift) * (0.04 + 0.001 * std::sin(0.01 * i));
+    path.push_back(i % 100 > 97 ? random.in({Vec3(-0.06), Vec3(0.06)}) : p);
   }
   return path;
 }
 
 TEST_P(Robust, NeverAllocatesLocksOrThrows) {
   const std::vector<Vec3> path = everything();
-  for (const std::string& text :
-       {containerText(), containerText("start: {region: liquid}\n"),
-        containerText("memory: keep\n")}) {
+  for (const std::string& text : {containerText(), containerText("start: {region: liquid}\n"),
+                                  containerText("memory: keep\n")}) {
     RendererSettings settings;
     settings.kind = GetParam();
     const auto renderer = makeRenderer(sceneOf(text), settings);

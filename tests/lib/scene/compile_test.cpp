@@ -1,7 +1,5 @@
 // What compile() refuses, and what it makes of the rest: walls, reachability, shared labels.
 
-#include "palpate/scene/scene.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
+#include "palpate/scene/scene.h"
 #include "support/field_contract.h"
 
 namespace palpate::test {
@@ -62,20 +61,23 @@ struct Refused {
 
 TEST(Compile, RefusesWithCodePlaceAndRemedy) {
   const std::vector<Refused> all{
-      {"no field", [](auto& s) { s.layers[1].inside = nullptr; }, "scene.layer_without_field", "core"},
+      {"no field", [](auto& s) { s.layers[1].inside = nullptr; }, "scene.layer_without_field",
+       "core"},
       {"name twice", [](auto& s) { s.layers[1].name = "shell"; }, "scene.duplicate_layer", "shell"},
       {"named outside", [](auto& s) { s.layers[1].name = "outside"; }, "scene.duplicate_layer",
        "outside"},
       {"wall material", [](auto& s) { s.layers[1].wall.material = "bon"; },
        "scene.unknown_material", "did you mean 'bone'"},
-      {"content", [](auto& s) { s.layers[1].content = "marrow"; }, "scene.unknown_material", "marrow"},
+      {"content", [](auto& s) { s.layers[1].content = "marrow"; }, "scene.unknown_material",
+       "marrow"},
       {"soft wall", [](auto& s) { s.layers[1].wall.material = "air"; },
        "scene.wall_without_stiffness", "stiffness"},
       {"port from", [](auto& s) { s.ports = {port("p", "shel", "core")}; }, "scene.unknown_layer",
        "did you mean 'shell'"},
       {"port to a glob of nothing", [](auto& s) { s.ports = {port("p", "shell", "x*")}; },
        "scene.unknown_layer", "x*"},
-      {"start", [](auto& s) { s.start_region = "cor"; }, "scene.unknown_layer", "did you mean 'core'"},
+      {"start", [](auto& s) { s.start_region = "cor"; }, "scene.unknown_layer",
+       "did you mean 'core'"},
       {"apart", [](auto& s) { s.ports = {port("p", "core", "far")}; }, "scene.regions_do_not_touch",
        "'core' and 'far'"},
       {"not neighbours", [](auto& s) { s.ports = {port("p", "outside", "core")}; },
@@ -116,10 +118,14 @@ TEST(Compile, RefusesWithCodePlaceAndRemedy) {
        },
        "scene.port_face", "no part of 'shell' or 'core'"},
       {"override of nothing",
-       [](auto& s) { s.walls = {{"shell", "cor", {false, "bone"}, {}, {"test.yaml", 4, 2, {}}}}; },
+       [](auto& s) {
+         s.walls = {{"shell", "cor", {false, "bone"}, {}, {"test.yaml", 4, 2, {}}}};
+       },
        "scene.unknown_layer", "cor"},
       {"override with what is no wall",
-       [](auto& s) { s.walls = {{"shell", "core", {false, "air"}, {}, {"test.yaml", 4, 2, {}}}}; },
+       [](auto& s) {
+         s.walls = {{"shell", "core", {false, "air"}, {}, {"test.yaml", 4, 2, {}}}};
+       },
        "scene.wall_without_stiffness", "air"},
   };
   for (const Refused& row : all) {
@@ -178,7 +184,8 @@ TEST(Compile, TouchAndReachability) {
   s.ports = {port("a", "outside", "shell"), port("b", "shell", "core")};
   const auto reachable = [](const SceneDescription& description) {
     std::string out;
-    for (const Region& region : compile(description)->regions()) out += region.reachable ? '1' : '0';
+    for (const Region& region : compile(description)->regions())
+      out += region.reachable ? '1' : '0';
     return out;
   };
   const ScenePtr scene = compile(s);
@@ -285,7 +292,8 @@ TEST(LabelGroup, ThatIsOneOrApartIsLeftAlone) {
   s.layers[0].label_group = "scan";
   s.layers[2].label_group = "scan";
   const ScenePtr scene = compile(s);
-  EXPECT_EQ(scene->regions()[1].field, s.layers[0].inside->get()) << "boxes apart: nothing to share";
+  EXPECT_EQ(scene->regions()[1].field, s.layers[0].inside->get())
+      << "boxes apart: nothing to share";
   EXPECT_EQ(scene->regionAt(Vec3(0.0)), 2) << "another layer still wins by its order";
 }
 

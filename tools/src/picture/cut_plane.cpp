@@ -99,8 +99,8 @@ CutPlane planeAcross(int axis, double value, const LengthUnit& unit) {
   plane.up_axis = kUp[axis];
   plane.right = axisVector(plane.right_axis);
   plane.up = axisVector(plane.up_axis);
-  plane.name =
-      std::string(1, "xyz"[axis]) + " = " + formatNumber(value / unit.metres) + " " + unit.name;
+  plane.name = "at " + std::string(1, "xyz"[axis]) + " = " + formatNumber(value / unit.metres) +
+               " " + unit.name;
   return plane;
 }
 
@@ -120,7 +120,7 @@ CutPlane planeThrough(const Vec3& point, const Vec3& normal, const LengthUnit& u
   plane.up = glm::normalize(wish - glm::dot(wish, n) * n);
   plane.right = glm::cross(plane.up, n);
   plane.name = "through " + formatVector(point / unit.metres, 3) + " " + unit.name + " across " +
-               formatVector(n, 2);
+               formatDirection(n);
   plane.right_axis = alignedAxis(plane.right);
   plane.up_axis = alignedAxis(plane.up);
   return plane;

@@ -14,7 +14,7 @@ struct CutPlane {
   Vec3 point{0.0};            ///< [m]
   Vec3 right{1.0, 0.0, 0.0};  ///< unit
   Vec3 up{0.0, 0.0, 1.0};     ///< unit; right x up points at the viewer
-  std::string name;           ///< "y = 12 mm"
+  std::string name;           ///< "at y = 12 mm"
   int right_axis = -1;        ///< world axis that `right` is, or -1
   int up_axis = -1;
 

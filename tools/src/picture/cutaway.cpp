@@ -17,7 +17,8 @@ constexpr double kPitch = 24.0 * std::numbers::pi / 180.0;
 constexpr double kAmbient = 0.42;
 constexpr double kFaceShade = 0.97;
 constexpr int kMostSteps = 4000;
-constexpr int kFiner = 2;  // rays a pixel, along each side
+constexpr int kFiner = 2;   // rays a pixel, along each side
+constexpr int kTrial = 64;  // [pixels] of the first look
 constexpr double kEdgeShade = 0.45;
 
 /// The part of a ray within a box, as distances along it.
@@ -57,7 +58,9 @@ class Marcher {
         paint_(paint),
         here_(scene.partition().leaves().size()),
         there_(here_),
-        light_(glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right)) {}
+        light_(glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right)) {
+    for (const Leaf& leaf : scene.partition().leaves()) bounds_.push_back(leaf.field->bounds());
+  }
 
   Hit cast(double x, double y) {
     const Vec3 origin = camera_.center +
@@ -98,6 +101,12 @@ class Marcher {
     double safe = kInfinity;
     const auto leaves = scene_.partition().leaves();
     for (std::size_t i = 0; i < leaves.size(); ++i) {
+      const double away = bounds_[i].distanceTo(p);
+      if (away > 0.0) {  // outside a leaf's box it is not worth a look
+        out.set(static_cast<LeafId>(i), false);
+        safe = std::min(safe, away);
+        continue;
+      }
       const double value = leaves[i].field->value(p);
       out.set(static_cast<LeafId>(i), value < 0.0);
       safe = std::min(safe, std::abs(value) / leaves[i].lipschitz);
@@ -154,12 +163,14 @@ class Marcher {
   const Paint& paint_;
   Signs here_, there_;
   Vec3 light_;
+  std::vector<Box3> bounds_;
   double before_ = 0.0;
 };
 
 }  // namespace
 
-Camera cameraFor(const CutPlane& plane, const Box3& box, int width, int height) {
+Camera cameraFor(const Scene& scene, const CutPlane& plane, const Box3& box,
+                 const std::vector<Vec3>& points, int width, int height) {
   Camera camera;
   const Vec3 n = plane.normal();
   camera.toward =
@@ -167,27 +178,39 @@ Camera cameraFor(const CutPlane& plane, const Box3& box, int width, int height) 
                      std::sin(kPitch) * plane.up);
   camera.right = glm::normalize(glm::cross(plane.up, camera.toward));
   camera.up = glm::cross(camera.toward, camera.right);
+  camera.center = box.center();
+
+  // A first, coarse look at everything shows how much of the picture is empty.
+  camera.width = kTrial;
+  camera.height = kTrial;
+  camera.step = glm::length(box.size()) / kTrial;
+  const Paint plain(nullptr);
+  Marcher marcher(scene, plane, box, camera, plain);
+  double left = kInfinity, right = -kInfinity, low = kInfinity, high = -kInfinity;
+  const auto include = [&](double x, double y, double margin) {
+    left = std::min(left, x - margin);
+    right = std::max(right, x + margin);
+    low = std::min(low, y - margin);
+    high = std::max(high, y + margin);
+  };
+  for (int y = 0; y < kTrial; ++y) {
+    for (int x = 0; x < kTrial; ++x) {
+      if (marcher.cast(x + 0.5, y + 0.5).part < 0) continue;
+      include((x + 0.5 - 0.5 * kTrial) * camera.step, (0.5 * kTrial - y - 0.5) * camera.step,
+              camera.step);
+    }
+  }
+  for (const Vec3& p : points) {
+    include(glm::dot(p - camera.center, camera.right), glm::dot(p - camera.center, camera.up), 0.0);
+  }
+  if (left < right && low < high) {
+    camera.center += 0.5 * (left + right) * camera.right + 0.5 * (low + high) * camera.up;
+    camera.step = 1.04 * std::max((right - left) / width, (high - low) / height);
+  } else {
+    camera.step *= static_cast<double>(kTrial) / std::min(width, height);
+  }
   camera.width = width;
   camera.height = height;
-  camera.center = box.center();
-  double left = kInfinity, right = -kInfinity, low = kInfinity, high = -kInfinity;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3 p = box.lo;
-    for (int i = 0; i < 3; ++i) {
-      if (((corner >> i) & 1) != 0) p[i] = box.hi[i];
-    }
-    // What is cut away needs no room: a corner in front of the plane counts where it meets the plane.
-    const double front = glm::dot(p - plane.point, n);
-    if (front > 0.0) p -= front * n;
-    const double x = glm::dot(p - camera.center, camera.right);
-    const double y = glm::dot(p - camera.center, camera.up);
-    left = std::min(left, x);
-    right = std::max(right, x);
-    low = std::min(low, y);
-    high = std::max(high, y);
-  }
-  camera.center += 0.5 * (left + right) * camera.right + 0.5 * (low + high) * camera.up;
-  camera.step = 1.02 * std::max((right - left) / width, (high - low) / height);
   return camera;
 }
 

@@ -25,8 +25,9 @@ struct Camera {
   }
 };
 
-/// A camera that sees all of `box` that is behind the plane.
-[[nodiscard]] Camera cameraFor(const CutPlane& plane, const Box3& box, int width, int height);
+/// A camera that sees all of the scene within `box` that is behind the plane, and all of `points`.
+[[nodiscard]] Camera cameraFor(const Scene& scene, const CutPlane& plane, const Box3& box,
+                               const std::vector<Vec3>& points, int width, int height);
 
 /// What is behind the plane within `box`: the cut face flat, everything else by Lambert's law.
 [[nodiscard]] Raster drawCutaway(const Scene& scene, const CutPlane& plane, const Box3& box,

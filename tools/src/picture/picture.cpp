@@ -28,6 +28,16 @@ double niceBelow(double value) {
   return (share >= 5.0 ? 5.0 : share >= 2.0 ? 2.0 : 1.0) * power;
 }
 
+/// From the segment between `a` and `b` to `p`.
+double distanceTo(const Pixel& a, const Pixel& b, const Pixel& p) {
+  const double dx = b.x - a.x;
+  const double dy = b.y - a.y;
+  const double squared = dx * dx + dy * dy;
+  const double share =
+      squared > 0.0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0) : 0.0;
+  return std::hypot(a.x + share * dx - p.x, a.y + share * dy - p.y);
+}
+
 Box3 contentBox(const Scene& scene, const Track& track) {
   Box3 box = scene.bounds();
   box = box.unitedWith(track.bounds());
@@ -123,7 +133,7 @@ class PictureMaker {
     TextStyle head = font(23);
     head.bold = true;
     canvas_.text({left_, px(38)}, options_.title, head);
-    std::string line = "cut at " + plane_.name;
+    std::string line = "cut " + plane_.name;
     if (options_.image) line += "; grey values of " + fileName(options_.image->source);
     if (zoomed_) line += "; close to where the hand moved (the frame on the right)";
     canvas_.text({left_, px(64)}, line, font(15, kFaintInk));
@@ -156,6 +166,9 @@ class PictureMaker {
     points.reserve(line.points.size());
     for (const Pixel& p : line.points) points.push_back(onSheet(p));
     switch (line.kind) {
+      case Boundary::Kind::kNothing:
+        return;
+      case Boundary::Kind::kSheet:
       case Boundary::Kind::kWall:
         canvas_.line(points, {kWallInk, px(2.2)});
         break;
@@ -165,9 +178,13 @@ class PictureMaker {
       case Boundary::Kind::kPort:
         canvas_.line(points, {rgb(0xFFFFFF, 0.85), px(7)});
         canvas_.line(points, {kPortInk, px(4)});
-        if (line.from_a != line.from_b) oneWay(line);
+        break;
+      case Boundary::Kind::kPressed:
+        canvas_.line(points, {kWallInk, px(2.2)});
+        canvas_.line(points, {kPortInk, px(4), {px(5), px(7)}});
         break;
     }
+    if (line.isPort() && line.from_a != line.from_b) oneWay(line);
   }
 
   /// A small arrow through a one-way port, away from its middle, where hands go.
@@ -226,19 +243,20 @@ class PictureMaker {
     for (const auto& p : points) peak_ = std::max(peak_, glm::length(p.force));
     if (!(peak_ > 0.0)) return;
     const double longest = 0.13 * view_.height;
-    std::vector<Pixel> tails;
+    std::vector<std::pair<Pixel, Pixel>> drawn;
     const auto draw = [&](const Track::Point& p) {
       const double length = longest * glm::length(p.force) / peak_;
-      if (length < px(5) || tails.size() >= kMostForces) return;
+      if (length < px(12) || drawn.size() >= kMostForces) return;
       const Pixel tail = onSheet(view_.pixel(p.proxy));
-      // Where arrows would lie on one another the first, the strongest, stands for all.
-      const bool taken = std::any_of(tails.begin(), tails.end(), [&](const Pixel& other) {
-        return std::hypot(tail.x - other.x, tail.y - other.y) < px(13);
-      });
-      if (taken) return;
       const Pixel tip{tail.x + longest / peak_ * glm::dot(p.force, plane_.right),
                       tail.y - longest / peak_ * glm::dot(p.force, plane_.up)};
-      tails.push_back(tail);
+      // Where arrows would lie on one another the first stands for all.
+      const bool taken = std::any_of(drawn.begin(), drawn.end(), [&](const auto& other) {
+        return distanceTo(other.first, other.second, tail) < px(13) ||
+               distanceTo(tail, tip, other.first) < px(13);
+      });
+      if (taken) return;
+      drawn.emplace_back(tail, tip);
       canvas_.arrow(tail, tip, {kForceInk, px(2)}, px(9));
       busy_.push_back({tail, tip});
     };
@@ -270,7 +288,7 @@ class PictureMaker {
 
   [[nodiscard]] std::string axisName(const Vec3& direction, int axis) const {
     static constexpr const char* kWords[] = {"right", "front", "up"};
-    if (axis < 0) return "along " + formatVector(direction, 2) + " [" + unit_.name + "]";
+    if (axis < 0) return "along " + formatDirection(direction) + " [" + unit_.name + "]";
     std::string text = std::string(1, "xyz"[axis]) + " [" + unit_.name + "]";
     if (options_.anatomical) text += ", to the " + std::string(kWords[axis]);
     if (options_.anatomical && axis == 2) text = "z [" + unit_.name + "], up";
@@ -352,22 +370,40 @@ class PictureMaker {
     ports(placer);
   }
 
-  /// Every port in view is named once, at its longest line.
+  /// Every port in view is named once: where the hand passed nearest, else on its longest line.
   void ports(LabelPlacer& placer) {
     for (std::size_t i = 0; i < scene_.ports().size(); ++i) {
       const Port& port = scene_.ports()[i];
-      const Boundary* longest = nullptr;
-      for (const Boundary& line : section_.boundaries) {
-        if (line.kind == Boundary::Kind::kPort && line.port == i &&
-            (longest == nullptr || line.points.size() > longest->points.size())) {
-          longest = &line;
-        }
-      }
-      if (longest == nullptr) continue;
+      const auto anchor = portAnchor(static_cast<PortId>(i));
+      if (!anchor) continue;
       std::string text = port.name;
       if (port.opens_at > 0.0) text += " (" + formatNumber(port.opens_at) + " N)";
-      callout(placer, longest->points[longest->points.size() / 3], text, kPortInk);
+      callout(placer, *anchor, text, kPortInk);
     }
+  }
+
+  [[nodiscard]] std::optional<Pixel> portAnchor(PortId port) const {
+    std::optional<Pixel> anchor;
+    std::size_t longest = 0;
+    double nearest = kInfinity;
+    for (const Boundary& line : section_.boundaries) {
+      if (!line.isPort() || line.port != port) continue;
+      if (options_.track.points.empty() && line.points.size() > longest) {
+        longest = line.points.size();
+        anchor = line.points[longest / 3];
+      }
+      const std::size_t step = std::max<std::size_t>(1, options_.track.points.size() / 500);
+      for (std::size_t i = 0; i < options_.track.points.size(); i += step) {
+        const Pixel hand = view_.pixel(options_.track.points[i].proxy);
+        for (const Pixel& p : line.points) {
+          const double distance = std::hypot(p.x - hand.x, p.y - hand.y);
+          if (distance >= nearest) continue;
+          nearest = distance;
+          anchor = p;
+        }
+      }
+    }
+    return anchor;
   }
 
   void callout(LabelPlacer& placer, const Pixel& anchor, const std::string& text,
@@ -396,7 +432,12 @@ class PictureMaker {
     const double y = top_;
     const int width = static_cast<int>(side_ - px(24));
     const int height = static_cast<int>(px(370));
-    const Camera camera = cameraFor(plane_, box, width, height);
+    std::vector<Vec3> path;
+    const std::size_t stride = std::max<std::size_t>(1, options_.track.points.size() / 2000);
+    for (std::size_t i = 0; i < options_.track.points.size(); i += stride) {
+      path.push_back(options_.track.points[i].proxy);
+    }
+    const Camera camera = cameraFor(scene_, plane_, box, path, width, height);
     const Raster raster = drawCutaway(scene_, plane_, box, camera, paint_, console_.progress());
     canvas_.image(raster, x, y);
     canvas_.clip(x, y, width, height);
@@ -405,10 +446,7 @@ class PictureMaker {
       return Pixel{q.x + x, q.y + y};
     };
     std::vector<Pixel> line;
-    const std::size_t step = std::max<std::size_t>(1, options_.track.points.size() / 2000);
-    for (std::size_t i = 0; i < options_.track.points.size(); i += step) {
-      line.push_back(at(options_.track.points[i].proxy));
-    }
+    for (const Vec3& p : path) line.push_back(at(p));
     canvas_.line(line, {rgb(0xFFFFFF, 0.8), px(4.5)});
     canvas_.line(line, {kProxyInk, px(2.2)});
     if (zoomed_) {
@@ -437,7 +475,7 @@ class PictureMaker {
       y += row;
     };
     std::vector<bool> seen(scene_.regions().size(), false);
-    for (const RegionId region : section_.regions) seen[region] = true;
+    for (const std::uint64_t cell : section_.cells) seen[cell & 0xFFFFU] = true;
     for (std::size_t i = 1; i < scene_.regions().size(); ++i) {
       const Region& region = scene_.regions()[i];
       if (!seen[i]) continue;
@@ -451,15 +489,22 @@ class PictureMaker {
     const auto stroke = [&](const Stroke& s) {
       return [&, s](double at) { canvas_.line({{x, at}, {x + px(34), at}}, s); };
     };
-    bool wall = false, absent = false, port = false;
+    bool wall = false, absent = false, port = false, pressed = false;
     for (const Boundary& line : section_.boundaries) {
-      wall |= line.kind == Boundary::Kind::kWall;
+      wall |= line.kind == Boundary::Kind::kWall || line.kind == Boundary::Kind::kSheet;
       absent |= line.kind == Boundary::Kind::kAbsent;
       port |= line.kind == Boundary::Kind::kPort;
+      pressed |= line.kind == Boundary::Kind::kPressed;
     }
     if (wall) entry("wall", "", stroke({kWallInk, px(2.2)}));
     if (absent) entry("no wall", "free to cross", stroke({kAbsentInk, px(1.5), {px(6), px(5)}}));
     if (port) entry("port", "an opening in a wall", stroke({kPortInk, px(4)}));
+    if (pressed) {
+      entry("port", "opens when it is pressed", [&](double at) {
+        canvas_.line({{x, at}, {x + px(34), at}}, {kWallInk, px(2.2)});
+        canvas_.line({{x, at}, {x + px(34), at}}, {kPortInk, px(4), {px(5), px(7)}});
+      });
+    }
     if (options_.track.points.empty()) return;
     entry("hand", "where the device was", stroke({kHipInk, px(1.7), {px(7), px(4)}}));
     entry("proxy", "the tip, held by the walls", stroke({kProxyInk, px(3)}));

@@ -1,7 +1,7 @@
 #include "picture/section.h"
 
+#include <algorithm>
 #include <array>
-#include <map>
 #include <unordered_map>
 
 #include "picture/parallel_rows.h"
@@ -10,6 +10,30 @@ namespace palpate::tools {
 namespace {
 
 constexpr int kHalvings = 10;  // of a pixel: to a thousandth of it
+
+constexpr std::size_t kMostSheets = 48;  // more are not drawn
+
+std::uint64_t cellOf(const Scene& scene, const Signs& signs) {
+  std::uint64_t cell = scene.partition().regionOf(signs);
+  const auto sheets = scene.passages().sheets();
+  for (std::size_t i = 0; i < std::min(sheets.size(), kMostSheets); ++i) {
+    if (scene.partition().maskHolds(static_cast<std::size_t>(sheets[i].solid), signs)) {
+      cell |= std::uint64_t{1} << (16U + i);
+    }
+  }
+  return cell;
+}
+
+/// True if a sheet lies between two cells of one region.
+bool sheetBetween(const Scene& scene, const Signs& here, const Signs& there) {
+  const Partition& partition = scene.partition();
+  const auto sheets = scene.passages().sheets();
+  return std::any_of(sheets.begin(), sheets.end(), [&](const Sheet& sheet) {
+    const auto solid = static_cast<std::size_t>(sheet.solid);
+    return partition.maskHolds(solid, here) != partition.maskHolds(solid, there) &&
+           (sheet.mask < 0 || partition.maskHolds(static_cast<std::size_t>(sheet.mask), there));
+  });
+}
 
 /// Finds the lines by looking at every square of four pixel centres: each side whose ends are in different
 /// regions is crossed once, at a point found by halving.
@@ -59,11 +83,11 @@ class Tracer {
     double high = 1.0;
     signs(low, low_);
     signs(high, high_);
-    const RegionId first = scene_.partition().regionOf(low_);
+    const std::uint64_t first = cellOf(scene_, low_);
     for (int i = 0; i < kHalvings; ++i) {
       const double half = 0.5 * (low + high);
       signs(half, middle_);
-      if (scene_.partition().regionOf(middle_) == first) {
+      if (cellOf(scene_, middle_) == first) {
         low = half;
         std::swap(low_, middle_);
       } else {
@@ -76,8 +100,8 @@ class Tracer {
   }
 
   void square(int x, int y) {
-    const RegionId a = section_.at(x, y), b = section_.at(x + 1, y);
-    const RegionId c = section_.at(x, y + 1), d = section_.at(x + 1, y + 1);
+    const std::uint64_t a = section_.cell(x, y), b = section_.cell(x + 1, y);
+    const std::uint64_t c = section_.cell(x, y + 1), d = section_.cell(x + 1, y + 1);
     if (a == b && a == c && a == d) return;
     std::array<std::size_t, 4> met{};
     std::size_t count = 0;
@@ -154,6 +178,11 @@ Boundary classify(const Scene& scene, const Signs& here, const Signs& there) {
   line.b = partition.regionOf(there);
   const Signs* first = &here;
   const Signs* second = &there;
+  if (line.a == line.b) {
+    line.kind =
+        sheetBetween(scene, here, there) ? Boundary::Kind::kSheet : Boundary::Kind::kNothing;
+    return line;
+  }
   if (line.a > line.b) {
     std::swap(line.a, line.b);
     std::swap(first, second);
@@ -175,7 +204,8 @@ Boundary classify(const Scene& scene, const Signs& here, const Signs& there) {
   if (inward.kind == Facet::Kind::kAbsent || outward.kind == Facet::Kind::kAbsent) {
     line.kind = Boundary::Kind::kAbsent;
   } else if (passable(inward) || passable(outward)) {
-    line.kind = Boundary::Kind::kPort;
+    const bool open = inward.kind == Facet::Kind::kOpen || outward.kind == Facet::Kind::kOpen;
+    line.kind = open ? Boundary::Kind::kPort : Boundary::Kind::kPressed;
     line.from_a = passable(inward);
     line.from_b = passable(outward);
     line.port = line.from_a ? inward.port : outward.port;
@@ -187,15 +217,15 @@ Section cutSection(const Scene& scene, const View& view, const Progress& progres
   Section section;
   section.width = view.width;
   section.height = view.height;
-  section.regions.resize(static_cast<std::size_t>(view.width) *
-                         static_cast<std::size_t>(view.height));
+  section.cells.resize(static_cast<std::size_t>(view.width) *
+                       static_cast<std::size_t>(view.height));
   std::vector<Signs> scratch(workerCount(), Signs(scene.partition().leaves().size()));
   parallelRows(view.height, progress, "cutting the scene", [&](int y, std::size_t worker) {
     for (int x = 0; x < view.width; ++x) {
       scene.partition().signsAt(view.world(x + 0.5, y + 0.5), scratch[worker]);
-      section.regions[static_cast<std::size_t>(x) +
-                      static_cast<std::size_t>(view.width) * static_cast<std::size_t>(y)] =
-          scene.partition().regionOf(scratch[worker]);
+      section.cells[static_cast<std::size_t>(x) +
+                    static_cast<std::size_t>(view.width) * static_cast<std::size_t>(y)] =
+          cellOf(scene, scratch[worker]);
     }
   });
   section.boundaries = Tracer(scene, view, section).trace();

@@ -31,29 +31,41 @@ struct View {
 
 /// A line between two regions.
 struct Boundary {
-  enum class Kind { kWall, kAbsent, kPort };
+  enum class Kind {
+    kWall,
+    kAbsent,
+    kPort,     ///< open
+    kPressed,  ///< a port that opens when it is pressed
+    kSheet,    ///< a wall within one region
+    kNothing,  ///< where a sheet's surface goes on beyond the sheet
+  };
   RegionId a = kOutside;
   RegionId b = kOutside;
   Kind kind = Kind::kWall;
-  PortId port = 0;      ///< kPort only
-  bool from_a = false;  ///< kPort: passable from a to b ...
+  PortId port = 0;      ///< kPort, kPressed
+  bool from_a = false;  ///< the port leads from a to b ...
   bool from_b = false;  ///< ... and back
   std::vector<Pixel> points;
 
+  [[nodiscard]] bool isPort() const { return kind == Kind::kPort || kind == Kind::kPressed; }
   [[nodiscard]] bool sameLine(const Boundary& o) const {
-    return a == o.a && b == o.b && kind == o.kind && (kind != Kind::kPort || port == o.port);
+    return a == o.a && b == o.b && kind == o.kind && (!isPort() || port == o.port);
   }
 };
 
 struct Section {
   int width = 0;
   int height = 0;
-  std::vector<RegionId> regions;  ///< of the pixels' centres
+  /// Of the pixels' centres: the region, and above it one bit for each sheet, set on its inner side.
+  std::vector<std::uint64_t> cells;
   std::vector<Boundary> boundaries;
 
+  [[nodiscard]] std::uint64_t cell(int x, int y) const {
+    return cells[static_cast<std::size_t>(x) +
+                 static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
+  }
   [[nodiscard]] RegionId at(int x, int y) const {
-    return regions[static_cast<std::size_t>(x) +
-                   static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
+    return static_cast<RegionId>(cell(x, y) & 0xFFFFU);
   }
 };
 

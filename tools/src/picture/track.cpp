@@ -29,6 +29,7 @@ Track trackOf(std::span<const TraceRow> rows) {
   Track track;
   track.points.reserve(rows.size());
   for (const TraceRow& row : rows) {
+    if (!isFinite(row.hip)) continue;  // a broken sensor's reading has no place
     track.points.push_back({row.hip, row.result.proxy, row.result.force});
   }
   return track;
@@ -57,13 +58,18 @@ Track readTrack(const std::string& file) {
     chop();
     if (line.empty()) continue;
     const auto parts = split(line, ',');
-    if (parts.size() != kColumns) throw bad("a row of a trace has 14 columns", "");
+    // Names may hold commas of their own; the numbers come before them.
+    if (parts.size() < kColumns) throw bad("a row of a trace has 14 columns", "");
     double numbers[10] = {};
+    bool finite = true;
     for (std::size_t i = 0; i < 10; ++i) {
       const auto value = parseNumber(parts[i]);
-      if (!value) throw bad("'" + std::string(parts[i]) + "' is not a number", "");
-      numbers[i] = *value;
+      const bool broken = parts[i] == "nan" || parts[i] == "inf" || parts[i] == "-inf";
+      if (!value && !broken) throw bad("'" + std::string(parts[i]) + "' is not a number", "");
+      finite = finite && !broken;
+      numbers[i] = value.value_or(0.0);
     }
+    if (!finite) continue;  // a broken sensor's reading has no place
     track.points.push_back({Vec3(numbers[1], numbers[2], numbers[3]),
                             Vec3(numbers[4], numbers[5], numbers[6]),
                             Vec3(numbers[7], numbers[8], numbers[9])});

@@ -42,7 +42,10 @@ class Source {
     Value result = fieldAt(p);
     if (is_cut_ || !exact_) {
       const double wall = boxDistance(p);
-      if (wall > result.distance && (is_cut_ || wall > 0.0)) result = {wall, true};
+      if (wall > result.distance && (is_cut_ || wall > 0.0)) {
+        // A known wall decides over a field that is inside, however deep; elsewhere it is a bound.
+        result = {wall, result.known || (is_cut_ && result.distance < 0.0)};
+      }
     }
     return result;
   }
@@ -100,11 +103,13 @@ class FieldBaker {
         progress_(progress),
         plan_(checkOptions(options)),
         domain_(bakeDomain(field, options)),
-        source_(field, domain_, isCut(field, options)),
-        grid_(emptyGrid(plan_, options)) {}
+        source_(field, domain_, isCut(field, options)) {}
 
   LevelSet run() {
-    fillLeaves(findLeaves());
+    const std::vector<Coord> origins = findLeaves();
+    grid_ = emptyGrid(plan_, options_);
+    for (const auto& [origin, size] : inside_) fillInside(origin, size);
+    fillLeaves(origins);
     report(progress_, "bake", 1.0);
     return finishGrid(grid_, plan_, options_);
   }
@@ -144,26 +149,6 @@ class FieldBaker {
                          std::sqrt(3.0) * half * plan_.voxel, plan_.band);
   }
 
-  /// Voxels whose values can differ from the background, as a range of indices.
-  [[nodiscard]] CoordBBox voxelRange() const {
-    CoordBBox range;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double lo = std::floor((domain_.lo[axis] - plan_.band) / plan_.voxel);
-      const double hi = std::ceil((domain_.hi[axis] + plan_.band) / plan_.voxel);
-      constexpr double kMost = 1 << 29;  // OpenVDB counts voxels in 32 bits
-      if (!(std::max(std::abs(lo), std::abs(hi)) < kMost)) {
-        throw Error(ErrorKind::kOperation,
-                    {"bake.too_fine",
-                     "'" + options_.name + "' reaches more than 2^29 voxels of " +
-                         inMillimetres(plan_.voxel) + " from the origin",
-                     "use larger voxels; also check that the shape has the length unit it should"});
-      }
-      range.min()[axis] = static_cast<int>(lo);
-      range.max()[axis] = static_cast<int>(hi);
-    }
-    return range;
-  }
-
   static int alignedDown(int value, int size) { return value & ~(size - 1); }
 
   /// Blocks at the top of the hierarchy: few, so that the first level costs nothing.
@@ -181,9 +166,9 @@ class FieldBaker {
     return {std::move(blocks), size};
   }
 
-  /// Blocks of 8^3 voxels that the band can touch. Larger blocks inside become tiles on the way.
+  /// Blocks of 8^3 voxels that the band can touch. Blocks inside are noted on the way.
   std::vector<Coord> findLeaves() {
-    const CoordBBox range = voxelRange();
+    const CoordBBox range = voxelRange(domain_, plan_, options_.name);
     auto [blocks, size] = topBlocks(range);
     std::vector<Verdict> verdicts;
     for (;; size /= 2) {
@@ -194,7 +179,7 @@ class FieldBaker {
       std::vector<Coord> kept;
       for (std::size_t i = 0; i < blocks.size(); ++i) {
         if (verdicts[i] == Verdict::kKeep) kept.push_back(blocks[i]);
-        if (verdicts[i] == Verdict::kInside) fillInside(blocks[i], size);
+        if (verdicts[i] == Verdict::kInside) inside_.emplace_back(blocks[i], size);
       }
       refuseIfTooLarge(kept.size(), size);
       if (size == 8) return kept;
@@ -215,15 +200,15 @@ class FieldBaker {
     return parts;
   }
 
-  /// Blocks of `size` along a surface of area A number about 2 A / size^2 (they are kept in a shell of
-  /// twice their half diagonal), and leaves as many of size 8. Early levels judge with a wide margin.
+  /// Blocks are kept in a shell of their half diagonal and the band on both sides of the surface, so
+  /// that their number at any size tells the surface's area, and that the number of leaves. Early
+  /// levels are coarse and judge with a wide margin.
   void refuseIfTooLarge(std::size_t blocks, int size) const {
+    const double shell = std::sqrt(3.0) * (size - 1.0) + 2.0 * options_.half_width;
+    const double area = static_cast<double>(blocks) * std::pow(size, 3) / shell;
     constexpr std::size_t kEnoughToCount = 20000;
-    const double ratio = size / 8.0;
-    const double bytes = static_cast<double>(blocks) * ratio * ratio * kLeafBytes;
-    const bool sure = size == 8 || (blocks > kEnoughToCount &&
-                                    bytes / 8.0 > static_cast<double>(plan_.max_memory));
-    if (sure) requireMemory(bytes, plan_);
+    const double margin = size == 8 ? 1.0 : 8.0;
+    if (size == 8 || blocks > kEnoughToCount) requireMemory(area, margin, plan_);
   }
 
   void fillInside(const Coord& origin, int size) {
@@ -294,6 +279,7 @@ class FieldBaker {
   BakePlan plan_;
   Box3 domain_;  ///< [m] holds the surface
   Source source_;
+  std::vector<std::pair<Coord, int>> inside_;  ///< blocks and their sizes
   openvdb::FloatGrid::Ptr grid_;
 };
 

@@ -64,10 +64,7 @@ double area(const Mesh& mesh) {
 LevelSet bakeMesh(const Mesh& mesh, const BakeOptions& options, const Progress& progress) {
   const BakePlan plan = checkOptions(options);
   requireClosed(mesh);
-  // Leaves that a band on either side of a surface touches, three times over while OpenVDB works.
-  const double leaves =
-      area(mesh) / (plan.voxel * plan.voxel) * (2.0 * options.half_width + 12.0) / 512.0;
-  requireMemory(3.0 * leaves * kLeafBytes, plan);
+  requireMemory(area(mesh) / (plan.voxel * plan.voxel), 1.0, plan);
   const openvdb::FloatGrid::Ptr model = emptyGrid(plan, options);
   Interrupter interrupter;
   const auto width = static_cast<float>(options.half_width);

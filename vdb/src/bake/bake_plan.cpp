@@ -68,11 +68,31 @@ BakePlan checkOptions(const BakeOptions& options) {
   }
   BakePlan plan;
   plan.voxel = options.voxel_size;
+  plan.half_width = options.half_width;
   plan.band = options.half_width * options.voxel_size;
   plan.metres_per_unit = *metres;
   plan.background = static_cast<float>(plan.band / *metres);
   plan.max_memory = options.max_memory > 0 ? options.max_memory : defaultMemory();
   return plan;
+}
+
+openvdb::CoordBBox voxelRange(const Box3& bounds, const BakePlan& plan, const std::string& name) {
+  openvdb::CoordBBox range;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lo = std::floor((bounds.lo[axis] - plan.band) / plan.voxel);
+    const double hi = std::ceil((bounds.hi[axis] + plan.band) / plan.voxel);
+    constexpr double kMost = 1 << 29;
+    if (!(std::max(std::abs(lo), std::abs(hi)) < kMost)) {
+      throw Error(ErrorKind::kOperation,
+                  {"bake.too_fine",
+                   "'" + name + "' reaches more than 2^29 voxels of " + inMillimetres(plan.voxel) +
+                       " from the origin",
+                   "use larger voxels; also check that the shape has the length unit it should"});
+    }
+    range.min()[axis] = static_cast<int>(lo);
+    range.max()[axis] = static_cast<int>(hi);
+  }
+  return range;
 }
 
 openvdb::FloatGrid::Ptr emptyGrid(const BakePlan& plan, const BakeOptions& options) {
@@ -100,16 +120,32 @@ LevelSet finishGrid(openvdb::FloatGrid::Ptr grid, const BakePlan& plan,
   return makeLevelSet(std::move(grid), options.length_unit, metadata);
 }
 
-void requireMemory(double bytes, const BakePlan& plan) {
+void requireMemory(double area, double margin, const BakePlan& plan) {
+  using Tree = openvdb::FloatTree;
+  using Leaf = Tree::LeafNodeType;
+  using Lower = Tree::RootNodeType::ChildNodeType::ChildNodeType;
+  using Upper = Tree::RootNodeType::ChildNodeType;
+  // How many cubes of a side touch the band: those whose half diagonal reaches it, from both sides.
+  const auto touched = [&](double side) {
+    return area * (std::sqrt(3.0) * (side - 1.0) + 2.0 * plan.half_width) / std::pow(side, 3.0);
+  };
+  // A few of the upper nodes are there however small the grid is: eight around the origin.
+  const double fixed = 8.0 * sizeof(Upper);
+  const double growing = touched(Leaf::DIM) * (sizeof(Leaf) + Leaf::SIZE * sizeof(float)) +
+                         touched(Lower::DIM) * sizeof(Lower) + touched(Upper::DIM) * sizeof(Upper);
   const auto limit = static_cast<double>(plan.max_memory);
-  if (bytes <= limit) return;
-  const double fits = roundedUp(1.1 * plan.voxel * std::sqrt(bytes / limit));
+  if (growing + fixed <= margin * limit) return;
+  std::string hint = "allow more than " + inGigabytes(2.0 * fixed);
+  if (limit > 2.0 * fixed) {
+    const double fits = 1.1 * plan.voxel * std::sqrt(growing / (limit - fixed));
+    hint = "voxels of " + inMillimetres(roundedUp(fits)) +
+           " should fit; also check that the shape has the length unit it should";
+  }
   throw Error(ErrorKind::kOperation,
               {"bake.memory",
-               "voxels of " + inMillimetres(plan.voxel) + " need about " + inGigabytes(bytes) +
-                   "; " + inGigabytes(limit) + " are allowed",
-               "voxels of " + inMillimetres(fits) +
-                   " should fit; also check that the shape has the length unit it should"});
+               "voxels of " + inMillimetres(plan.voxel) + " need about " +
+                   inGigabytes(growing + fixed) + "; " + inGigabytes(limit) + " are allowed",
+               hint});
 }
 
 }  // namespace palpate::vdb

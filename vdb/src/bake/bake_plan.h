@@ -18,17 +18,20 @@ namespace palpate::vdb {
 /// BakeOptions, checked and put into numbers.
 struct BakePlan {
   double voxel = 0.0;            ///< [m]
-  double band = 0.0;             ///< [m] half width
+  double half_width = 0.0;       ///< [voxels] of the band, each side
+  double band = 0.0;             ///< [m] the same
   double metres_per_unit = 1.0;  ///< [m] of the grid's length unit
   float background = 0.0F;       ///< [units]
   std::uint64_t max_memory = 0;  ///< [bytes]
 };
 
-/// Bytes that one allocated leaf takes, with its share of a branch node.
-inline constexpr double kLeafBytes = sizeof(openvdb::FloatTree::LeafNodeType) + 512 * 4 + 64;
-
 /// @throws Error (kInput) naming the option, its value and what it may be.
 [[nodiscard]] BakePlan checkOptions(const BakeOptions& options);
+
+/// The voxels that a band around a surface within `bounds` [m] can touch.
+/// @throws Error (kOperation) if they cannot be counted in 32 bits.
+[[nodiscard]] openvdb::CoordBBox voxelRange(const Box3& bounds, const BakePlan& plan,
+                                            const std::string& name);
 
 /// A grid without voxels; voxel (0, 0, 0) has its centre at the world's origin.
 [[nodiscard]] openvdb::FloatGrid::Ptr emptyGrid(const BakePlan& plan, const BakeOptions& options);
@@ -37,9 +40,10 @@ inline constexpr double kLeafBytes = sizeof(openvdb::FloatTree::LeafNodeType) + 
 [[nodiscard]] LevelSet finishGrid(openvdb::FloatGrid::Ptr grid, const BakePlan& plan,
                                   const BakeOptions& options);
 
-/// @throws Error (kOperation) naming voxel sizes if `bytes` is more than the plan allows; a band grid
-/// grows as 1 / voxel^2.
-void requireMemory(double bytes, const BakePlan& plan);
+/// The memory of a band around a surface of `area` [voxels^2].
+/// @throws Error (kOperation), naming a voxel size that fits, if it is more than `margin` times what
+/// the plan allows.
+void requireMemory(double area, double margin, const BakePlan& plan);
 
 /// "0.25 mm"
 [[nodiscard]] std::string inMillimetres(double metres);

@@ -84,7 +84,7 @@ class Ply {
 
   void readHeader() {
     bool has_format = false;
-    for (;;) {
+    for (;; ++input_.line) {
       std::istringstream words(headerLine());
       std::string key, word;
       words >> key;
@@ -110,6 +110,7 @@ class Ply {
       }
     }
     if (!has_format) refuse("the header does not name the format");
+    ++input_.line;
     is_text_ = format_is_text_;
     requireParts();
   }
@@ -153,7 +154,6 @@ class Ply {
     if (end == std::string_view::npos) refuse("the header has no 'end_header'", "mesh.truncated");
     std::string text(input_.text.substr(input_.at, end - input_.at));
     input_.at = end + 1;
-    ++input_.line;
     return text;
   }
 

@@ -14,6 +14,7 @@ struct SweepSurface {
   double lipschitz = 1.0;  ///< of the field
   double tolerance = 0.0;  ///< |S| that counts as on the surface
   double graze = 0.0;      ///< [m] shortest step: below it a passage in and out again is let go
+  double allowance = 0.0;  ///< |S| beyond the surface that still counts as on the near side
 };
 
 struct SweepResult {
@@ -24,10 +25,11 @@ struct SweepResult {
   };
   Kind kind = Kind::kFree;
   double at = 1.0;  ///< share of the segment, 0 to 1; on the near side to within the tolerance
-  double end_value = 0.0;  ///< side * S at the end of what was swept (a lower bound of |S| there)
+  double end_value =
+      0.0;  ///< side * S + allowance at the end of what was swept (a lower bound of |S| there)
 };
 
-/// Sweeps from `a` to `b` [m]. `start` is side * S at `a`; a start on or beyond the surface counts as a hit
+/// Sweeps from `a` to `b` [m]. `start` is side * S + allowance at `a`; a start on or beyond the surface counts as a hit
 /// if the motion leads further beyond, and as free to go if it leads away. At most `budget`
 /// evaluations.
 [[nodiscard]] SweepResult sweep(const SweepSurface& surface, const Vec3& a, const Vec3& b,

@@ -23,4 +23,18 @@ namespace palpate {
 /// Hyperellipsoid", 2013).
 [[nodiscard]] FieldPtr ellipsoid(const Vec3& center, const Vec3& radii);
 
+/// Box whose edges and corners are rounded off by `rounding`, at most half its smallest size, which
+/// stays its outer size. Exact; smooth (C1), so one leaf.
+[[nodiscard]] FieldPtr roundedBox(const Vec3& center, const Vec3& size, double rounding);
+
+/// Cone on a disc of `radius` about `base`, its tip at base + height * axis / |axis|. Exact.
+[[nodiscard]] FieldPtr cone(const Vec3& base, const Vec3& axis, double radius, double height);
+
+/// Ring: a tube of radius `tube` around the circle of `radius` about `center` across `axis`;
+/// tube < radius. Exact.
+[[nodiscard]] FieldPtr torus(const Vec3& center, const Vec3& axis, double radius, double tube);
+
+/// All points nearer than `radius` to the segment between two different points. Exact.
+[[nodiscard]] FieldPtr capsule(const Vec3& from, const Vec3& to, double radius);
+
 }  // namespace palpate

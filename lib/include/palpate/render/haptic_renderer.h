@@ -49,19 +49,27 @@ struct RendererSettings {
 /// never allocate, lock, throw or block.
 class HapticRenderer {
  public:
+  /// [m] No hand is that far away: such a position is a broken one. Beyond it double precision no longer
+  /// tells one side of a wall from the other along the way there.
+  static constexpr double kFarthest = 1e4;
+
   virtual ~HapticRenderer() = default;
   HapticRenderer(const HapticRenderer&) = delete;
   HapticRenderer& operator=(const HapticRenderer&) = delete;
 
-  /// One tick. A non-finite position or velocity gives zero force and changes no state; the next good
-  /// tick goes on from where the proxy was. The force is finite and within the limits.
+  /// One tick. A non-finite position or velocity, or a position more than kFarthest from the origin in any
+  /// coordinate, gives zero force and changes no state; the next good tick goes on from where the proxy
+  /// was. The force is finite and within the limits.
   [[nodiscard]] TickResult update(const HipState& hip) noexcept;
 
   /// Back to the start region; the next update() is a first tick.
   void reset() noexcept;
 
  protected:
-  explicit HapticRenderer(const ForceLimits& limits) : guard_(limits) {}
+  /// `start` is the region told until the first good tick.
+  HapticRenderer(const ForceLimits& limits, RegionId start) : guard_(limits), start_(start) {
+    last_.region = start;
+  }
 
  private:
   /// The algorithm's own tick: `hip` is finite, the force is not limited yet.
@@ -69,6 +77,7 @@ class HapticRenderer {
   virtual void forget() noexcept = 0;
 
   ForceGuard guard_;
+  RegionId start_;
   TickResult last_;
 };
 

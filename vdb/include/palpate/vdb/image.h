@@ -16,10 +16,11 @@ namespace palpate::vdb {
 struct Image {
   std::string source;
   std::array<int, 3> size{};
-  std::vector<float> values;     ///< after scl_slope and scl_inter
-  Mat3 axes{1.0};                ///< [m per voxel] columns: step along i, j, k
-  Vec3 origin{0.0, 0.0, 0.0};    ///< [m] centre of voxel (0, 0, 0)
-  std::vector<std::string> notes;  ///< what was assumed ("unit code 0 taken as mm"), to be told once
+  std::vector<float> values;   ///< after scl_slope and scl_inter
+  Mat3 axes{1.0};              ///< [m per voxel] columns: step along i, j, k
+  Vec3 origin{0.0, 0.0, 0.0};  ///< [m] centre of voxel (0, 0, 0)
+  std::vector<std::string>
+      notes;  ///< what was assumed ("unit code 0 taken as mm"), to be told once
 
   [[nodiscard]] float at(int i, int j, int k) const noexcept {
     return values[static_cast<std::size_t>(i) +

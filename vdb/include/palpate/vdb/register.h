@@ -11,14 +11,14 @@ namespace palpate::vdb {
 
 /// What a scene's heavy fields came to, for reports: one record for each grid that was made or read.
 struct GridRecord {
-  std::string what;       ///< layer or field, and its source
+  std::string what;  ///< layer or field, and its source
   LevelSetInfo info;
-  double seconds = 0.0;   ///< [s] it took, reading its file included
+  double seconds = 0.0;  ///< [s] it took, reading its file included
 };
 
 struct RegisterOptions {
-  std::function<void(const GridRecord&)> on_grid = {};      ///< told of each grid when it is ready
-  std::function<void(const std::string&)> on_note = {};     ///< told what was assumed, once each
+  std::function<void(const GridRecord&)> on_grid = {};   ///< told of each grid when it is ready
+  std::function<void(const std::string&)> on_note = {};  ///< told what was assumed, once each
 };
 
 /// Adds `mesh` and `grid` to the field kinds, `labels` and `threshold` to the layer kinds, and the image

@@ -11,10 +11,10 @@
 namespace palpate::vdb {
 
 struct ThresholdOptions {
-  double above = 0.0;               ///< inside is where the image is greater
-  bool largest_component = true;    ///< keep only the largest (6-connected) piece
-  bool fill = false;                ///< close enclosed cavities
-  double voxel_size = 0.0;          ///< [m] 0: the image's smallest spacing
+  double above = 0.0;             ///< inside is where the image is greater
+  bool largest_component = true;  ///< keep only the largest (6-connected) piece
+  bool fill = false;              ///< close enclosed cavities
+  double voxel_size = 0.0;        ///< [m] 0: the image's smallest spacing
 };
 
 /// @throws Error (kInput) if nothing lies above the threshold.
@@ -22,8 +22,8 @@ struct ThresholdOptions {
                                             const BakeOptions& bake, const Progress& progress = {});
 
 struct LabelOptions {
-  std::vector<int> values;   ///< the union of these labels
-  double voxel_size = 0.0;   ///< [m] 0: the image's smallest spacing
+  std::vector<int> values;  ///< the union of these labels
+  double voxel_size = 0.0;  ///< [m] 0: the image's smallest spacing
 };
 
 /// @throws Error (kInput) if no voxel has one of the labels.

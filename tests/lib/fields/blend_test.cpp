@@ -1,0 +1,123 @@
+#include "palpate/fields/blend.h"
+
+#include <gtest/gtest.h>
+
+#include "palpate/core/error.h"
+#include "palpate/fields/csg.h"
+#include "palpate/fields/primitives.h"
+#include "support/field_contract.h"
+
+namespace palpate::test {
+namespace {
+
+const Vec3 kLeft(-0.02, 0, 0);
+const Vec3 kRight(0.02, 0.005, 0);
+constexpr double kBlend = 0.01;
+
+FieldPtr left() { return sphere(kLeft, 0.03); }
+FieldPtr right() { return ellipsoid(kRight, Vec3(0.03, 0.02, 0.025)); }
+FieldPtr body() { return box(Vec3(0.0), Vec3(0.06, 0.05, 0.04)); }
+
+std::vector<FieldCase> blendCases() {
+  const Box3 region{Vec3(-0.07), Vec3(0.07)};
+  std::vector<FieldCase> cases;
+  cases.push_back({.name = "smooth_union",
+                   .make =
+                       [] {
+                         return smoothUnite({left(), right()}, kBlend);
+                       },
+                   .region = region,
+                   .awkward = {kLeft, kRight}});
+  cases.push_back({.name = "smooth_union_of_three",
+                   .make =
+                       [] {
+                         return smoothUnite({left(), right(), body()}, kBlend);
+                       },
+                   .region = region});
+  cases.push_back({.name = "smooth_intersection",
+                   .make =
+                       [] {
+                         return smoothIntersect({left(), right(), body()}, kBlend);
+                       },
+                   .region = region});
+  cases.push_back({.name = "smooth_difference",
+                   .make =
+                       [] {
+                         return smoothSubtract({body(), left(), right()}, kBlend);
+                       },
+                   .region = region});
+  cases.push_back(
+      {.name = "smooth_union_of_bounds",
+       .make =
+           [] {
+             return smoothUnite({unite({left(), right()}), sphere(Vec3(0, 0.03, 0), 0.02)}, 0.02);
+           },
+       .region = region});
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Blends, FieldContract, ::testing::ValuesIn(blendCases()),
+                         ::testing::PrintToStringParamName());
+
+TEST(Blend, IsPlainCsgAwayFromTheCrease) {
+  const FieldPtr a = left();
+  const FieldPtr b = right();
+  const FieldPtr smooth = smoothUnite({a, b}, kBlend);
+  const FieldPtr sharp = unite({a, b});
+  int apart = 0;
+  Random random(1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p = random.in({Vec3(-0.06), Vec3(0.06)});
+    const double gap = std::fabs(a->value(p) - b->value(p));
+    if (gap >= kBlend) {
+      ++apart;
+      EXPECT_EQ(smooth->value(p), sharp->value(p));
+    } else {
+      EXPECT_LE(smooth->value(p), sharp->value(p));
+      EXPECT_GE(smooth->value(p), sharp->value(p) - kBlend / 6.0 - 1e-17);
+    }
+  }
+  EXPECT_GT(apart, 100);
+}
+
+TEST(Blend, GradientAndCurvatureAreContinuousAcrossTheCrease) {
+  // Two half-spaces at a right angle: walk over the crease at equal values.
+  const FieldPtr corner = smoothIntersect(
+      {halfSpace(Vec3(0.0), Vec3(1, 0, 0)), halfSpace(Vec3(0.0), Vec3(0, 1, 0))}, kBlend);
+  const double step = 1e-6;
+  FieldJet before = corner->jet(Vec3(-2 * kBlend, 0, 0));
+  for (double x = -2 * kBlend; x < 2 * kBlend; x += step) {
+    const FieldJet now = corner->jet(Vec3(x, -x, 0));
+    if (x > -2 * kBlend) {
+      // The second derivative is 1/radius, the third 1/radius^2, times sqrt(2) for each derivative.
+      EXPECT_LT(glm::length(now.gradient - before.gradient), 4.0 * step / kBlend);
+      EXPECT_LT(std::fabs(now.hessian[0][0] - before.hessian[0][0]),
+                4.0 * step / (kBlend * kBlend));
+    }
+    before = now;
+  }
+}
+
+TEST(Blend, DeMorganHolds) {
+  const FieldPtr a = smoothIntersect({left(), body()}, kBlend);
+  const FieldPtr b = complement(smoothUnite({complement(left()), complement(body())}, kBlend));
+  const FieldPtr c = smoothSubtract({left(), complement(body())}, kBlend);
+  Random random(2);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p = random.in({Vec3(-0.06), Vec3(0.06)});
+    EXPECT_EQ(a->value(p), b->value(p));
+    EXPECT_EQ(a->value(p), c->value(p));
+  }
+}
+
+TEST(Blend, ChecksItsParameters) {
+  EXPECT_THROW(static_cast<void>(smoothUnite({}, kBlend)), Error);
+  EXPECT_THROW(static_cast<void>(smoothUnite({left(), nullptr}, kBlend)), Error);
+  EXPECT_THROW(static_cast<void>(smoothSubtract({left(), right()}, 0.0)), Error);
+  EXPECT_THROW(static_cast<void>(smoothIntersect({left(), right()}, -1.0)), Error);
+  const FieldPtr only = left();
+  EXPECT_EQ(smoothUnite({only}, kBlend), only);
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,31 @@
+#pragma once
+// The exact nearest allowed point to a point that is not far from one.
+
+#include <optional>
+#include <vector>
+
+#include "support/oracle/feasible_set.h"
+
+namespace palpate::testing {
+
+struct LocalPoint {
+  Vec3 point{0.0, 0.0, 0.0};
+  std::vector<std::size_t> active = {};  ///< sides of the set on whose surfaces it lies
+  std::vector<double> multipliers = {};  ///< point - q = sum multiplier * gradient of side
+  bool smooth = true;  ///< false: found by searching directions (a cusp, a kink inside a field)
+};
+
+/// The point of `set` nearest to `q` among those within `radius` of it. One must exist; `allowed` is
+/// one, if any is known. All subsets of up to three sides are tried in every branch, each solved to
+/// rounding: alternating projections stall at creases. Where no subset has a solution (a cusp, an
+/// apex, a kink), directions are searched by values alone, which takes some milliseconds.
+[[nodiscard]] LocalPoint projectLocally(const FeasibleSet& set, const Vec3& q, double radius,
+                                        const std::optional<Vec3>& allowed = {});
+
+/// True if all sides of a branch are kept at `p`, to 1e-11 of their feature sizes.
+[[nodiscard]] bool isAllowed(const FeasibleSet& set, const Vec3& p);
+
+/// Solves the n x n system a x = b in place, n = b.size(), row major; false if singular.
+[[nodiscard]] bool solveLinear(std::vector<double>& a, std::vector<double>& b);
+
+}  // namespace palpate::testing

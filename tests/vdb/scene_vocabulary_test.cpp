@@ -1,0 +1,46 @@
+// The kinds of palpate::vdb read exactly the keys that the schema of scene files allows.
+#include "support/scene_vocabulary.h"
+
+#include <gtest/gtest.h>
+
+#include "palpate/vdb/register.h"
+#include "support/temp_file.h"
+#include "vdb/nifti_writer.h"
+
+namespace palpate::vdb {
+namespace {
+
+using palpate::testing::kNoKey;
+using palpate::testing::readerKeys;
+using palpate::testing::schemaKeys;
+
+TEST(SceneVocabulary, KindsOfVdbAndTheSchemaKnowTheSameKeys) {
+  const palpate::testing::TempFolder folder;
+  test::NiftiFile image;
+  image.dim = {2, 2, 2};
+  image.values.assign(8, 1);
+  const test::Bytes bytes = test::bytesOf(image);
+  (void)folder.file("i.nii", std::string(bytes.begin(), bytes.end()));
+  // Only looked for when the scene is read.
+  (void)folder.file("m.stl", "");
+  (void)folder.file("g.vdb", "");
+
+  SceneRegistry registry;
+  registerKinds(registry);
+  const auto keysIn = [&](const std::string& body) {
+    std::string scene = "palpate: 1\nlength: mm\n" + body;
+    scene.replace(scene.find('@'), 1, std::string(kNoKey) + ": 1");
+    return readerKeys(scene, registry, folder.path("scene.yaml"));
+  };
+  EXPECT_EQ(keysIn("fields: {f: {mesh: {file: m.stl, @}}}\n"), schemaKeys("mesh"));
+  EXPECT_EQ(keysIn("fields: {f: {grid: {file: g.vdb, @}}}\n"), schemaKeys("grid"));
+  EXPECT_EQ(keysIn("fields: {f: {@}}\n"), schemaKeys("field_kind"));
+  EXPECT_EQ(keysIn("images: {i: {file: i.nii, @}}\n"), schemaKeys("image"));
+  const std::string layer = "images: {i: {file: i.nii}}\nlayers:\n  - {name: a, ";
+  EXPECT_EQ(keysIn(layer + "labels: {image: i, match: [1], @}}\n"), schemaKeys("labels"));
+  EXPECT_EQ(keysIn(layer + "threshold: {image: i, above: 0, @}}\n"), schemaKeys("threshold"));
+  EXPECT_EQ(keysIn(layer + "labels: {image: i, match: [1]}, @}\n"), schemaKeys("layer"));
+}
+
+}  // namespace
+}  // namespace palpate::vdb
