@@ -38,55 +38,44 @@ struct Row {
   const char* why;
 };
 
-std::vector<Row> rows(){return {
-    {"press from outside",
-     {mm(50, 0, 0), mm(39, 0, 0), mm(50, 0, 0)},
-     "o0 o+ o0",
-     "o0 o+ o0",
-     "alike"},
-    {"dip in and out by the mouth",
-     {mm(0, 0, 30), mm(0, 0, 0), mm(0, 0, 30)},
-     "o0 l~ o0",
-     "o0 l0 l~ o0",
-     "the drag of the constraint renderer fades in behind the mouth"},
-    {"wall from within, and out again",
-     {mm(0, 0, 30), mm(0, 0, -42), mm(0, 0, 30)},
-     "o0 l~ l- l~ o0",
-     "o0 l0 l~ l- l+ l~ l0 o0",
-     "row 3 of the paper is the wall alone; the constraint renderer adds the drag of the syrup, "
-     "which on "
-     "the way back is more than the wall's last push"},
-    {"through the glass at the side, up inside, down again by the mouth",
-     {mm(50, 0, 0), mm(30, 0, 0), mm(30, 0, 20), mm(30, 0, 0)},
-     "o0 o+ o0 l~",
-<<<<<<< HEAD
-     "o0 o+ l~ o0 l0 l~",
-     "the HIP leaves the glass through the mouth; the proxy slides over the rim before it, and "
-     "drops in"},
-    {"out through the wall from within, over the brim's plane, and down outside (the leak 1-3-4)",
-     {mm(0, 0, 30), mm(0, 0, 0), mm(45, 0, 0), mm(45, 0, 25), mm(60, 0, 25), mm(60, 0, 0)},
-     "o0 l~ l- l0 l-",
-     "o0 l0 l~ l- o0",
-     "the paper keeps ENTER_PORT in row 4 and then pulls from outside; the proxy went over the "
-     "rim"},
-=======
-     "o0 o+ l~ o0 l~",
-     "the HIP leaves the glass through the mouth; the proxy slides over the rim before it, and "
-     "drops in"},
-    {"out through the wall from within, over the brim's plane, and down outside (the leak 1-3-4)",
-     {mm(0, 0, 30), mm(0, 0, 0), mm(45, 0, 0), mm(45, 0, 25), mm(60, 0, 25), mm(60, 0, 0)},
-     "o0 l~ l- l0 l-",
-     "o0 l~ l- o0",
-     "the paper keeps ENTER_PORT in row 4 and then pulls from outside; the proxy went over the "
-     "rim"},
->>>>>>> main
-    {"one tick from above the ball into the syrup",
-     {mm(0, 0, 50), mm(0, 0, 49.9)},
-     "o0",
-     "o0",
-     "alike (the jump itself is below)"},
-};
-}  // namespace
+std::vector<Row> rows() {
+  return {
+      {"press from outside",
+       {mm(50, 0, 0), mm(39, 0, 0), mm(50, 0, 0)},
+       "o0 o+ o0",
+       "o0 o+ o0",
+       "alike"},
+      {"dip in and out by the mouth",
+       {mm(0, 0, 30), mm(0, 0, 0), mm(0, 0, 30)},
+       "o0 l~ o0",
+       "o0 l0 l~ o0",
+       "the drag of the constraint renderer fades in behind the mouth"},
+      {"wall from within, and out again",
+       {mm(0, 0, 30), mm(0, 0, -42), mm(0, 0, 30)},
+       "o0 l~ l- l~ o0",
+       "o0 l0 l~ l- l+ l~ l0 o0",
+       "row 3 of the paper is the wall alone; the constraint renderer adds the drag of the syrup, "
+       "which on "
+       "the way back is more than the wall's last push"},
+      {"through the glass at the side, up inside, down again by the mouth",
+       {mm(50, 0, 0), mm(30, 0, 0), mm(30, 0, 20), mm(30, 0, 0)},
+       "o0 o+ o0 l~",
+       "o0 o+ l~ o0 l0 l~",
+       "the HIP leaves the glass through the mouth; the proxy slides over the rim before it, and "
+       "drops in"},
+      {"out through the wall from within, over the brim's plane, and down outside (the leak 1-3-4)",
+       {mm(0, 0, 30), mm(0, 0, 0), mm(45, 0, 0), mm(45, 0, 25), mm(60, 0, 25), mm(60, 0, 0)},
+       "o0 l~ l- l0 l-",
+       "o0 l0 l~ l- o0",
+       "the paper keeps ENTER_PORT in row 4 and then pulls from outside; the proxy went over the "
+       "rim"},
+      {"one tick from above the ball into the syrup",
+       {mm(0, 0, 50), mm(0, 0, 49.9)},
+       "o0",
+       "o0",
+       "alike (the jump itself is below)"},
+  };
+}
 
 TEST(Differences, TickClassesOnTheContainer) {
   for (const Row& row : rows()) {
@@ -168,5 +157,5 @@ ports: [{name: cut, between: [outside, skin], opens_at: 1 N}]
   EXPECT_THROW(Drive(scene, RendererKind::kPaper), Error);
 }
 
-}  // namespace palpate::test
+}  // namespace
 }  // namespace palpate::test

@@ -38,13 +38,8 @@ ScenePtr sceneOfLeaf(FieldPtr field, double feature) {
 
 TEST(OneLeaf, SlidingOnAFloorDoesNotPassTheThinWallThatStandsOnIt) {
   // A floor 100 mm wide and a wall of 1 mm across it, 60 mm high.
-<<<<<<< HEAD
   const auto floor =
       unite({box(mm(0, 0, -10), mm(200, 200, 20)), box(mm(0, 0, 25), mm(1, 200, 70))});
-=======
-  const auto floor =
-      unite({box(mm(0, 0, -10), mm(200, 200, 20)), box(mm(0, 0, 30), mm(1, 200, 60))});
->>>>>>> main
   for (const double step : {0.1e-3, 0.4e-3, 1e-3, 3e-3, 10e-3, 40e-3}) {
     for (const double depth : {0.2e-3, 2e-3, 10e-3}) {
       Drive drive(sceneOfLeaf(floor, 1e-3));
