@@ -150,6 +150,7 @@ CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sl
 
 double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) const noexcept {
   const Leaf& own = leaves_[leaf];
+  if (glm::length(b - a) <= kGraze * own.feature) return 1.0;  // as short as what a sweep lets go
   SweepSurface surface;
   surface.field = own.field.get();
   surface.side = side(leaf);

@@ -7,8 +7,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Closest point of the triangle a, a + ab, a + ac to p, relative to a (C. Ericson, "Real-Time Collision
-/// Detection", 2005, 5.1.5: by the Voronoi region that p lies in).
+/// Closest point of the triangle a, a + ab, a + ac to p, relative to a (C. Ericson, "Real-Time
+/// Collision Detection", 2005, 5.1.5: by the Voronoi region that p lies in).
 Vec3 closestOffset(const Vec3& ap, const Vec3& ab, const Vec3& ac) noexcept {
   const double d1 = glm::dot(ab, ap);
   const double d2 = glm::dot(ac, ap);
@@ -43,7 +43,8 @@ struct NetField::Closest {
   std::uint32_t triangle = kNone;
 };
 
-/// Tells the nodes their triangles: first those around each triangle, then from neighbour to neighbour.
+/// Tells the nodes their triangles: first those around each triangle, then from neighbour to
+/// neighbour.
 class NetField::Spreader {
  public:
   Spreader(NetField& field, double limit) : f_(field), limit2_(static_cast<float>(limit * limit)) {}
@@ -130,7 +131,8 @@ NetField::NetField(const Mesh& net, const Lattice& lattice, const Image& image, 
   for (const Vec3& v : net.vertices) bounds_.include(v);
   makeFans();
   markBlocks();
-  // All eight nodes around a point within reach have to know; the margin holds those off the lattice.
+  // All eight nodes around a point within reach have to know; the margin holds those off the
+  // lattice.
   const double limit = reach_ + diagonal_;
   const Mat3 rows = glm::transpose(to_index_);
   for (int axis = 0; axis < 3; ++axis) {
@@ -169,8 +171,8 @@ std::size_t NetField::blockIndex(const std::array<int, 3>& block) const noexcept
               static_cast<std::size_t>(block_count_[1]) * static_cast<std::size_t>(block[2]));
 }
 
-// Chessboard distance of each block to the next one with a vertex, in two passes. A triangle reaches less
-// than a block beyond its vertices; farSample() allows for that.
+// Chessboard distance of each block to the next one with a vertex, in two passes. A triangle
+// reaches less than a block beyond its vertices; farSample() allows for that.
 void NetField::markBlocks() {
   const Vec3 size = bounds_.size();
   for (int axis = 0; axis < 3; ++axis) {
@@ -299,7 +301,8 @@ FieldSample NetField::sample(const Vec3& p) const noexcept {
   }
   if (count == 0) return farSample(p);
   walk(p, best);
-  // The walk may end in a dale; another start may lie in a deeper one. Near the surface that must not be.
+  // The walk may end in a dale; another start may lie in a deeper one. Near the surface that must
+  // not be.
   for (std::size_t n = 0; n < count && best.distance2 < diagonal_ * diagonal_; ++n) {
     if (touch(starts[n], best.triangle)) continue;
     Closest other;
@@ -309,7 +312,8 @@ FieldSample NetField::sample(const Vec3& p) const noexcept {
   }
   const double distance = std::sqrt(best.distance2);
   if (distance > reach_) return farSample(p);  // not all nodes around have been told
-  // From one cell's diagonal on, the nearest lattice point lies on the same side, clear of the surface.
+  // From one cell's diagonal on, the nearest lattice point lies on the same side, clear of the
+  // surface.
   const bool inside = distance > diagonal_ ? latticeInside(p) : best.side < 0.0;
   const double sign = inside ? -1.0 : 1.0;
   return {sign * distance, unitOr(sign * best.to_p, Vec3(1.0, 0.0, 0.0)), true};

@@ -11,15 +11,17 @@
 
 namespace palpate::vdb {
 
-/// Distance to the triangles of a surface net, negative inside, cavities included, for points nearer than
-/// `reach`; farther away the value is a lower bound of it, at least `reach`, with the right sign.
+/// Distance to the triangles of a surface net, negative inside, cavities included, for points
+/// nearer than `reach`; farther away the value is a lower bound of it, at least `reach`, with the
+/// right sign.
 ///
-/// Each lattice point within reach learns its closest triangle from its neighbours; a query walks from
-/// those of the eight points around it to adjacent triangles while they are closer. Within a cell's
-/// diagonal of the surface that finds the closest one; farther out, where the surface is rough, a few
-/// points in a thousand get one that is up to 0.2 voxels farther away. Near the
-/// surface the sign comes from the closest triangle; where several share the closest point (an edge, a
-/// corner), from the one whose plane is seen most squarely. Farther away it is the lattice's.
+/// Each lattice point within reach learns its closest triangle from its neighbours; a query walks
+/// from those of the eight points around it to adjacent triangles while they are closer. Within a
+/// cell's diagonal of the surface that finds the closest one; farther out, where the surface is
+/// rough, a few points in a thousand get one that is up to 0.2 voxels farther away. Near the
+/// surface the sign comes from the closest triangle; where several share the closest point (an
+/// edge, a corner), from the one whose plane is seen most squarely. Farther away it is the
+/// lattice's.
 class NetField final : public Field {
  public:
   /// All must outlive the field. `reach` in [m].

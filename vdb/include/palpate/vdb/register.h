@@ -9,7 +9,8 @@
 
 namespace palpate::vdb {
 
-/// What a scene's heavy fields came to, for reports: one record for each grid that was made or read.
+/// What a scene's heavy fields came to, for reports: one record for each grid that was made or
+/// read.
 struct GridRecord {
   std::string what;  ///< layer or field, and its source
   LevelSetInfo info;
@@ -27,10 +28,10 @@ struct RegisterOptions {
 ///   images  NAME: {file, names}
 ///   layers  labels: {image, match: [..], voxel}      its label group is the image's name
 ///           threshold: {image, above, keep: largest | all, fill, voxel}
-/// Reading a scene looks at files only as far as it is quick: that they are there, image headers, name
-/// tables. Grids are made when their field is first asked for; an image is then read once for all its
-/// layers. Errors of either point at the scene's file, line and column.
-/// The functions in `options` must stay callable as long as the registry and the fields it made are used.
+/// Reading a scene looks at files only as far as it is quick: that they are there, image headers,
+/// name tables. Grids are made when their field is first asked for; an image is then read once for
+/// all its layers. Errors of either point at the scene's file, line and column. The functions in
+/// `options` must stay callable as long as the registry and the fields it made are used.
 void registerKinds(SceneRegistry& registry, RegisterOptions options = {});
 
 }  // namespace palpate::vdb
