@@ -190,7 +190,7 @@ TEST(VdbIo, PythonReadsIt) {
     EXPECT_EQ(rest.back() == '1', active);
   }
   EXPECT_EQ(asked, voxels_asked.size());
-  EXPECT_EQ(told["names"], "bone/surface,skin/surface");  // the oracle sorts them
+  EXPECT_EQ(told["names"], "bone/surface,skin/surface");  // in no promised order: by name here
   EXPECT_EQ(told["class"], "level set");
   EXPECT_EQ(told["type"], "FloatGrid");
   EXPECT_EQ(told["active"], std::to_string(set.info().active_voxels));
