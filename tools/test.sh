@@ -51,14 +51,16 @@ count_check() { # STATUS: a lane that is one check
 }
 
 count_tests() { # JUNIT_FILE: adds up what ctest ran; false if it ran nothing or something failed
-  local head tests fails skips
-  head=$(tr '\n' ' ' < "$1" | grep --only-matching '<testsuite [^>]*>') || return 1
+  local head tests fails skips disabled
+  head=$(tr '\n\t' '  ' < "$1" | grep --only-matching '<testsuite [^>]*>')
   number() { sed -n "s/.* $1=\"\([0-9]*\)\".*/\1/p" <<< "$head"; }
-  tests=$(number tests) fails=$(number failures) skips=$(($(number skipped) + $(number disabled)))
+  tests=$(number tests) fails=$(number failures) skips=$(number skipped) disabled=$(number disabled)
+  skips=$((${skips:-0} + ${disabled:-0}))
+  [ "${tests:-0}" -gt 0 ] && [ -n "$fails" ] || { lane_note="no test ran"; return 1; }
   passed=$((passed + tests - fails - skips)) failed=$((failed + fails)) skipped=$((skipped + skips))
   lane_note="$((tests - fails - skips)) passed, $fails failed"
   [ "$skips" = 0 ] || lane_note+=", $skips skipped"
-  [ "$tests" -gt 0 ] && [ "$fails" = 0 ]
+  [ "$fails" = 0 ]
 }
 
 build_and_test() { # PRESET
@@ -124,7 +126,14 @@ use_ccache
 for lane in "${lanes[@]}"; do
   say "$lane"
   began=$SECONDS lane_note=
-  if "lane_$lane"; then word=ok; else word=FAILED; failed_lanes+=("$lane"); fi
+  failed_before=$failed
+  if "lane_$lane"; then
+    word=ok
+  else
+    word=FAILED failed_lanes+=("$lane")
+    # Whatever went wrong, a lane that failed is never counted as nothing.
+    [ "$failed" -gt "$failed_before" ] || failed=$((failed + 1))
+  fi
   report+=("$(printf '%-8s %-7s %5d s  %s' "$lane" $word $((SECONDS - began)) "$lane_note")")
   printf '%s\n' "${report[-1]}"
 done

@@ -1,8 +1,10 @@
 // The scanned head of data/scenes, region by region along the needle's path.
 #include <gtest/gtest.h>
 
-#include <set>
+#include <cmath>
+#include <cstdio>
 
+#include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene.h"
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/register.h"
@@ -42,13 +44,28 @@ TEST(HeadScene, ANeedlePassesSkinBrainAndThalamusInThatOrder) {
   // The end is well inside: the tip does not graze the far wall.
   EXPECT_LT(scene->regions()[scene->regionNamed("thalamus")].field->value(to), -2 * kMm);
 
-  // Every port is open where the path crosses it.
-  for (const Port& port : scene->ports()) {
-    if (port.where) {
-      EXPECT_LT(port.where->value(from + (to - from) * 0.25), -5 * kMm) << port.name;
-      EXPECT_LT(port.where->value(from + (to - from) * 0.42), -5 * kMm) << port.name;
+  // There and back at 50 mm/s: every port is open where the path crosses it, and nothing else is passed.
+  const std::unique_ptr<HapticRenderer> renderer = makeRenderer(scene);
+  std::vector<std::string> felt;
+  std::vector<std::string> passed;
+  constexpr int kTicks = 2100;
+  Vec3 last = from;
+  for (int tick = 0; tick <= 2 * kTicks; ++tick) {
+    const double share = 1.0 - std::abs(tick - kTicks) / static_cast<double>(kTicks);
+    const Vec3 hip = from + share * (to - from);
+    const TickResult result = renderer->update({hip, (hip - last) / 1e-3, 1e-3});
+    last = hip;
+    const std::string& name = scene->regions()[result.region].name;
+    if (felt.empty() || felt.back() != name) felt.push_back(name);
+    for (int e = 0; e < result.event_count; ++e) {
+      passed.push_back(scene->ports()[result.events[static_cast<std::size_t>(e)]].name);
     }
+    ASSERT_FALSE(result.contact) << "a wall is in the way at tick " << tick;
   }
+  EXPECT_EQ(felt, (std::vector<std::string>{"outside", "skin", "brain", "thalamus", "brain", "skin",
+                                            "outside"}));
+  EXPECT_EQ(passed, (std::vector<std::string>{"incision", "opened_dura", "thalamus_surface",
+                                              "thalamus_surface", "opened_dura", "incision"}));
 }
 
 }  // namespace

@@ -47,8 +47,8 @@ double worstCorner(const std::array<int, 3>& size, const Mat3& axes, const Vec3&
   return worst;
 }
 
-// Affines are float32 in the file; both sides read them into double, so only the qform's square root
-// and products may differ: far below 1e-5 mm.
+// Affines are float32 in the file; both sides read them into double, so only the qform's square
+// root and products may differ: far below 1e-5 mm.
 void expectAffinesAsNibabel(const std::vector<std::string>& files) {
   ASSERT_FALSE(files.empty());
   const auto affines = test::askPython("affine", files);

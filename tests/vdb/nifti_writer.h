@@ -1,6 +1,6 @@
 #pragma once
-/// NIfTI files of any kind, good and bad, for tests. Written by hand from the published header layout,
-/// so that the reader is not tested against the library it uses.
+/// NIfTI files of any kind, good and bad, for tests. Written by hand from the published header
+/// layout, so that the reader is not tested against the library it uses.
 
 #include <array>
 #include <cstdint>
@@ -34,8 +34,8 @@ using Bytes = std::vector<unsigned char>;
 [[nodiscard]] Bytes bytesOf(const NiftiFile& file);
 [[nodiscard]] Bytes gzipped(const Bytes& content);
 
-/// Writes `content` to `name` in a folder that goes when the tests end; its path. A name is used again
-/// and again.
+/// Writes `content` to `name` in a folder that goes when the tests end; its path. A name is used
+/// again and again.
 std::string writeTemporary(const std::string& name, const Bytes& content);
 std::string writeTemporary(const std::string& name, const std::string& content);
 

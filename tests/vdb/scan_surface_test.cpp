@@ -121,9 +121,10 @@ TEST(ScanSurface, BallThroughAnAwkwardAffine) {
       "  threshold: bias %+.3f mm, rms %.3f mm, normal %.2f degrees\n"
       "  labels:    bias %+.3f mm, rms %.3f mm, normal %.2f degrees\n",
       g.bias / kMm, g.rms / kMm, g.normal, l.bias / kMm, l.rms / kMm, l.normal);
-  // Chords of triangles as long as a voxel's diagonal (d = 2.1 mm): d^2 / (8 R) = 0.03 mm too deep, and
-  // d / (2 R) = 3 degrees at most from the facet to the sphere, 1.2 in the mean.
-  EXPECT_LT(std::abs(g.bias), 0.03 * kMm);
+  // Chords of triangles as long as a voxel's diagonal (d = 2.1 mm) lie up to d^2 / (8 R) = 0.028 mm too
+  // deep, and a linear interpolant of the distance (step h = 0.8 mm) h^2 / (4 R) = 0.008 mm deeper still;
+  // facets lean up to d / (2 R) = 3 degrees against the sphere, 1.5 in the mean.
+  EXPECT_LT(std::abs(g.bias), 0.036 * kMm);
   EXPECT_LT(g.rms, 0.04 * kMm);
   EXPECT_LT(g.normal, 1.5);
   // Labels know the sphere only to a voxel: measured, with a margin of a fifth.
@@ -159,8 +160,8 @@ TEST(ScanSurface, IsClosedHalfAVoxelBeyondTheImagesBorder) {
         EXPECT_NEAR(field->sample(wall).gradient[axis], side, 1e-5);
       }
     }
-    // All voxels, less what rounding takes at the twelve edges.
-    EXPECT_NEAR(volumeOf(*field, kMm), 10 * 12 * 14 * 8e-9, 0.02 * 10 * 12 * 14 * 8e-9);
+    // All voxels, less a quarter of a voxel's face along the twelve edges (144 voxels), which are cut.
+    EXPECT_NEAR(volumeOf(*field, kMm), (10 * 12 * 14 - 36) * 8e-9, 0.01 * 10 * 12 * 14 * 8e-9);
   }
 }
 
@@ -248,17 +249,6 @@ TEST(ScanSurface, KeepsASheetOneVoxelThick) {
   }
 }
 
-// bakeMesh() refuses an open mesh, so a bake is a proof. Noise has every case of the eight corners.
-TEST(ScanSurface, AnyNoiseGivesAClosedSurface) {
-  std::mt19937 random(5);
-  for (int run = 0; run < 12; ++run) {
-    std::bernoulli_distribution inside(0.1 + 0.07 * run);
-    const Image image = cubeImage(10, [&](const Vec3&) { return inside(random) ? 1 : 0; });
-    EXPECT_NO_THROW((void)thresholdField(image, {.above = 0.5, .largest_component = false}));
-    EXPECT_NO_THROW((void)labelField(image, {1}));
-  }
-}
-
 TEST(ScanSurface, RecordsWhatItIs) {
   const Image image =
       cubeImage(20, [](const Vec3& p) { return ball(p, Vec3(9.5), 6) > 0 ? 4 : 0; });
@@ -330,28 +320,45 @@ TEST(ScanSurface, FiveOrgansByNameKeepTheirVolume) {
   for (const char* name : {"liver", "spleen", "kidney_right", "stomach", "aorta"}) {
     const std::vector<int> values = resolveLabels({name}, names, "labels.csv");
     ASSERT_EQ(values.size(), 1U);
+    const auto is_in = [&](int i, int j, int k) {
+      const auto [nx, ny, nz] = image.size;
+      const bool in_image = i >= 0 && j >= 0 && k >= 0 && i < nx && j < ny && k < nz;
+      return in_image && image.at(i, j, k) == static_cast<float>(values[0]);
+    };
     std::size_t voxels = 0;
-    std::size_t agree = 0;
+    std::size_t outside = 0;
+    std::size_t faces = 0;
+    double worst = 0.0;
     const FieldPtr field = labelField(image, values);
     for (int k = 0; k < image.size[2]; ++k) {
       for (int j = 0; j < image.size[1]; ++j) {
         for (int i = 0; i < image.size[0]; ++i) {
-          if (image.at(i, j, k) != static_cast<float>(values[0])) continue;
+          if (!is_in(i, j, k)) continue;
           ++voxels;
-          agree += field->value(image.toWorld(Vec3(i, j, k))) < 0.0 ? 1U : 0U;
+          faces += 6U - static_cast<unsigned>(is_in(i - 1, j, k) + is_in(i + 1, j, k) +
+                                              is_in(i, j - 1, k) + is_in(i, j + 1, k) +
+                                              is_in(i, j, k - 1) + is_in(i, j, k + 1));
+          const double value = field->value(image.toWorld(Vec3(i, j, k)));
+          outside += value > 0.0 ? 1U : 0U;
+          worst = std::max(worst, value);
         }
       }
     }
     ASSERT_GT(voxels, 200U) << name;
+    const double spacing = 3 * kMm;
     const double counted = static_cast<double>(voxels) * 27e-9;
-    const double enclosed = volumeOf(*field, 1.5 * kMm);
+    const double enclosed = volumeOf(*field, 0.5 * spacing);
+    // Voxel faces overstate the area of a surface of all directions by 3 / 2.
+    const double area = static_cast<double>(faces) * spacing * spacing / 1.5;
+    const double offset = (enclosed - counted) / area / spacing;
     std::printf(
-        "  %-13s %6zu voxels, %8.2f ml counted, %8.2f ml enclosed (%+.1f %%), %.2f %% of the "
-        "voxel centres inside\n",
-        name, voxels, counted * 1e6, enclosed * 1e6, 100 * (enclosed / counted - 1),
-        100.0 * static_cast<double>(agree) / static_cast<double>(voxels));
-    EXPECT_NEAR(enclosed / counted, 1.0, 0.08) << name;
-    EXPECT_GT(static_cast<double>(agree), 0.97 * static_cast<double>(voxels)) << name;
+        "  %-13s %6zu voxels, %8.2f ml counted, %8.2f ml enclosed (%+.1f %%: wall %+.3f voxel off "
+        "in the mean), %.1f %% of the voxel centres outside, by %.2f voxel at most\n",
+        name, voxels, counted * 1e6, enclosed * 1e6, 100 * (enclosed / counted - 1), offset,
+        100.0 * static_cast<double>(outside) / static_cast<double>(voxels), worst / spacing);
+    // The label ball of R = 20 mm above has 0.07 / 0.8 = 0.09; the aorta has a radius of 3.5 voxels.
+    EXPECT_LT(std::abs(offset), 0.2) << name;
+    EXPECT_LT(worst, 0.5 * spacing) << name;
   }
 }
 

@@ -116,7 +116,10 @@ TEST_F(SceneKinds, LayersOfAnImageAreMadeWhenAskedForAndShareTheirGroup) {
 
 TEST_F(SceneKinds, MeshesAndGridsAreFields) {
   const FieldPtr ball = sphere(Vec3(1, 2, 3) * kMm, 10 * kMm);
-  const LevelSet baked = bake(*ball, {.voxel_size = 1 * kMm, .name = "ball/surface"});
+  BakeOptions options;
+  options.voxel_size = 1 * kMm;
+  options.name = "ball/surface";
+  const LevelSet baked = bake(*ball, options);
   writeVdb(folder_.path("ball.vdb"), std::span(&baked, 1), false);
   const SceneDescription scene = read(
       "fields:\n"

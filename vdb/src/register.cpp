@@ -29,8 +29,8 @@ std::string fileName(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-/// The field of a grid that is made when it is first asked for. What the maker finds wrong is told at
-/// `place` of the scene; `what` names the grid in progress and records.
+/// The field of a grid that is made when it is first asked for. What the maker finds wrong is told
+/// at `place` of the scene; `what` names the grid in progress and records.
 FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string summary,
                          SourcePlace place, GridMaker make) {
   auto maker = [common, what = std::move(what), summary, place = std::move(place),

@@ -1,6 +1,6 @@
 #pragma once
-/// `images:` of a scene: files that are looked at when the scene is read, and read when a layer needs
-/// their voxels.
+/// `images:` of a scene: files that are looked at when the scene is read, and read when a layer
+/// needs their voxels.
 
 #include <functional>
 #include <map>

@@ -27,6 +27,10 @@ void VdbArchive::open(std::istream& stream) {
   setLibraryVersion(stream);
   setDataCompression(stream);
   openvdb::MetaMap().readMeta(stream);
+  const std::istream::pos_type here = stream.tellg();
+  stream.seekg(0, std::ios::end);
+  const std::int64_t size = stream.tellg();
+  stream.seekg(here);
   const std::int32_t count = readGridCount(stream);
   for (std::int32_t i = 0; i < count; ++i) {
     Entry entry;
@@ -38,6 +42,7 @@ void VdbArchive::open(std::istream& stream) {
           entry.descriptor.getEndPos() <= entry.descriptor.getGridPos()) {
         throw std::runtime_error("its table of contents makes no sense");
       }
+      if (entry.descriptor.getEndPos() > size) throw std::runtime_error("it is cut short");
       entry.descriptor.seekToGrid(stream);
       readGridCompression(stream);
       entry.grid->readMeta(stream);

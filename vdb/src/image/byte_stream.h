@@ -11,8 +11,9 @@
 
 namespace palpate::vdb {
 
-/// libnifti and zlib's gz* calls both hand out data whose checksum is wrong or whose end is missing;
-/// this reader does neither. Errors carry codes "nifti.*", since NIfTI files are what it is for.
+/// libnifti and zlib's gz* calls both hand out data whose checksum is wrong or whose end is
+/// missing; this reader does neither. Errors carry codes "nifti.*", since NIfTI files are what it
+/// is for.
 class ByteStream {
  public:
   /// @throws Error (kInput): missing, a directory, empty, not readable.
@@ -25,7 +26,8 @@ class ByteStream {
   /// @throws Error (kInput) for damaged gzip data. A gzip stream that breaks off just ends.
   std::size_t read(std::span<unsigned char> out);
 
-  /// Reads on to the end of gzip data, so that its checksum is verified; nothing to do for plain files.
+  /// Reads on to the end of gzip data, so that its checksum is verified; nothing to do for plain
+  /// files.
   /// @throws Error (kInput) if the data break off or the checksum is wrong.
   void verifyEnd();
 

@@ -54,7 +54,8 @@ void checkMagic(const char* magic, char version, const std::string& path) {
   throw notNifti(path);
 }
 
-/// dim[] before libnifti sees it: libnifti prints its complaints to stderr, whatever its debug level.
+/// dim[] before libnifti sees it: libnifti prints its complaints to stderr, whatever its debug
+/// level.
 template <typename Header>
 void checkDimensions(const Header& header, const std::string& path) {
   if (header.dim[0] < 1 || header.dim[0] > 7) {
@@ -152,7 +153,8 @@ Affine affineOf(const nifti_dmat44& m, double scale) {
   return a;
 }
 
-/// Volume of a voxel against that of a box with the same edges: 1 for orthogonal axes, 0 for flat ones.
+/// Volume of a voxel against that of a box with the same edges: 1 for orthogonal axes, 0 for flat
+/// ones.
 double solidity(const Mat3& axes) {
   const double edges = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
   return edges > 0.0 ? std::abs(glm::determinant(axes)) / edges : 0.0;

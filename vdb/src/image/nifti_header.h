@@ -50,8 +50,8 @@ struct NiftiHeader {
 };
 
 /// Reads the header at the front of `stream`; `consumed` becomes the number of bytes taken from it.
-/// @throws Error (kInput) for whatever cannot be placed in space or read as scalars; also if the file
-/// is certainly too short for its voxels.
+/// @throws Error (kInput) for whatever cannot be placed in space or read as scalars; also if the
+/// file is certainly too short for its voxels.
 [[nodiscard]] NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path,
                                           std::uint64_t& consumed);
 

@@ -99,8 +99,9 @@ Lattice latticeOfThreshold(const Image& image, double above, const Mask& mask) {
 }
 
 Lattice latticeOfLabels(const Mask& mask) {
-  // A voxel centre that the blur puts on the wrong side goes as far to the right one, and so much more:
-  // a sheet of one voxel keeps its thickness, and the steps of a voxelised slope are still smoothed.
+  // A voxel centre that the blur puts on the wrong side goes as far to the right one, and so much
+  // more: a sheet of one voxel keeps its thickness, and the steps of a voxelised slope are still
+  // smoothed.
   constexpr float kHold = 0.02F;
   Lattice lattice{mask.first, mask.box, std::vector<float>(mask.inside.begin(), mask.inside.end())};
   std::vector<float>& blurred = lattice.values;

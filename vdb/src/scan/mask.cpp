@@ -21,8 +21,8 @@ std::size_t flood(std::vector<std::uint8_t>& voxels, std::ptrdiff_t seed, std::u
     ++count;
     for (const std::ptrdiff_t step : steps) {
       const std::ptrdiff_t next = here + step;
-      // Inside voxels never lie in the frame. A flood of the outside does reach it, and may there step
-      // round the end of a row: into the frame again, which is all one piece.
+      // Inside voxels never lie in the frame. A flood of the outside does reach it, and may there
+      // step round the end of a row: into the frame again, which is all one piece.
       if (next < 0 || next >= size || voxels[static_cast<std::size_t>(next)] != from) continue;
       voxels[static_cast<std::size_t>(next)] = to;
       stack.push_back(next);

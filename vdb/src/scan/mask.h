@@ -10,11 +10,11 @@
 
 namespace palpate::vdb {
 
-/// Inside or outside for each voxel of a box of an image, in a frame of outside voxels one thick, so that
-/// every voxel of the box has its neighbours.
+/// Inside or outside for each voxel of a box of an image, in a frame of outside voxels one thick,
+/// so that every voxel of the box has its neighbours.
 ///
-/// Connectedness is that of the surface drawn around the mask (surface_net.h): two inside voxels hang
-/// together across a face, two outside voxels across a face or an edge.
+/// Connectedness is that of the surface drawn around the mask (surface_net.h): two inside voxels
+/// hang together across a face, two outside voxels across a face or an edge.
 struct Mask {
   std::array<int, 3> first{};        ///< image index of the box's first voxel
   std::array<int, 3> box{};          ///< voxels of the box along i, j, k
@@ -30,15 +30,16 @@ struct Mask {
   }
 };
 
-/// The voxels whose value passes `test`, in the smallest box of the image that holds them and `margin`
-/// voxels around, as far as the image goes. The box is empty if there are none.
+/// The voxels whose value passes `test`, in the smallest box of the image that holds them and
+/// `margin` voxels around, as far as the image goes. The box is empty if there are none.
 [[nodiscard]] Mask maskOf(const Image& image, const std::function<bool(float)>& test, int margin);
 
-/// Leaves only the largest piece (the first in voxel order if two are equal); returns how many there were.
+/// Leaves only the largest piece (the first in voxel order if two are equal); returns how many
+/// there were.
 std::size_t keepLargestPiece(Mask& mask);
 
-/// Fills all outside voxels that no path of outside voxels joins to the border of the box: what an air
-/// path leads into stays open. Returns how many were filled.
+/// Fills all outside voxels that no path of outside voxels joins to the border of the box: what an
+/// air path leads into stays open. Returns how many were filled.
 std::size_t fillCavities(Mask& mask);
 
 }  // namespace palpate::vdb

@@ -9,8 +9,8 @@
 namespace palpate::vdb {
 namespace {
 
-// Corner c of a cell is at (c & 1, c >> 1 & 1, c >> 2 & 1). Edge 4 a + n runs along axis a from the n-th
-// corner whose bit a is 0; n counts the other two bits, the lower axis first.
+// Corner c of a cell is at (c & 1, c >> 1 & 1, c >> 2 & 1). Edge 4 a + n runs along axis a from the
+// n-th corner whose bit a is 0; n counts the other two bits, the lower axis first.
 
 constexpr int lowCorner(int edge) {
   const int axis = edge / 4;

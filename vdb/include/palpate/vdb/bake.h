@@ -12,8 +12,9 @@ namespace palpate::vdb {
 struct BakeOptions {
   double voxel_size = 0.0;  ///< [m] must be positive
   double half_width = 4.0;  ///< [voxels] at least 2
-  std::optional<Box3> box;  ///< [m] where to bake; needed for unbounded fields. What reaches out of
-                            ///< it is cut off by its faces, so that the result is closed
+  /// [m] where to bake; needed for unbounded fields. What reaches out of it is cut off by its faces,
+  /// so that the result is closed.
+  std::optional<Box3> box = {};
   std::string name = "surface";
   std::string length_unit = "mm";  ///< unit that the grid's world coordinates are stored in
   std::uint64_t max_memory = 0;    ///< [bytes] 0: 80 % of the machine's

@@ -11,8 +11,8 @@
 
 namespace palpate::vdb {
 
-/// A 3-D image. Voxel (i, j, k) is values[i + nx (j + ny k)] and its centre lies at affine applied to
-/// (i, j, k): RAS, [m]. Sheared, oblique and left-handed affines are kept as they are.
+/// A 3-D image. Voxel (i, j, k) is values[i + nx (j + ny k)] and its centre lies at affine applied
+/// to (i, j, k): RAS, [m]. Sheared, oblique and left-handed affines are kept as they are.
 struct Image {
   std::string source;
   std::array<int, 3> size{};
@@ -32,15 +32,24 @@ struct Image {
   [[nodiscard]] Vec3 toIndex(const Vec3& world) const noexcept {
     return glm::inverse(axes) * (world - origin);
   }
-  /// Trilinear between voxel centres (scipy map_coordinates, order 1); outside the centres' box: NaN.
+  /// Trilinear between voxel centres (scipy map_coordinates, order 1); outside the centres' box:
+  /// NaN.
   [[nodiscard]] double interpolate(const Vec3& world) const noexcept;
 };
 
-/// NIfTI-1 and -2, .nii and .nii.gz (libnifti). sform if its code > 0, else qform; neither is an error.
-/// @throws Error (kInput): missing, not NIfTI, truncated, bad checksum, 4-D, singular affine, ...
+/// NIfTI-1 and -2, .nii and .nii.gz, either byte order, every integer and float type of 8 to 64
+/// bits, scaled by scl_slope and scl_inter (libnifti reads the header). The place is the sform if
+/// its code is above 0, else the qform; if both are set they must agree within 0.1 voxel at the
+/// image's corners. Units scale spacing and origin; without a unit (code 0) mm is taken, with a
+/// note. NaN voxels stay NaN, with a note; surfaces take them as outside. Dimensions beyond the
+/// third must be 1.
+/// @throws Error (kInput, codes "nifti.*"): missing, empty, not NIfTI, cut short, wrong gzip
+/// checksum, 4-D or 2-D, colour or complex voxels, neither form set or both in conflict, singular
+/// affine, a detached .hdr / .img pair, ...
 [[nodiscard]] Image readNifti(const std::string& path);
 
-/// Header only, for `info`: no voxel is read.
+/// Header only, for `info`: no voxel is read, so that only what the header and the file's size tell
+/// is checked. Throws as readNifti() does.
 struct ImageInfo {
   std::array<int, 3> size{};
   Mat3 axes{1.0};              ///< [m per voxel]
@@ -54,8 +63,11 @@ struct ImageInfo {
 /// Label value -> name.
 using NameTable = std::map<int, std::string>;
 
-/// `index name [code]` separated by blanks, or CSV `value,name` with or without a header line; CRLF too.
-/// @throws Error (kInput) naming file and line.
+/// `index name [code]` separated by blanks (or tabs, if names hold blanks), or CSV `value,name`
+/// with or without a header line. LF or CR LF; a byte order mark, blank lines and lines from # on
+/// are skipped; further numeric columns (colours) are ignored.
+/// @throws Error (kInput, codes "labels.*") naming file and line: a value that is no integer or has
+/// two names, a missing name, a column that does not belong.
 [[nodiscard]] NameTable readNameTable(const std::string& path);
 
 }  // namespace palpate::vdb

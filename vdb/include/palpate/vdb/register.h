@@ -9,7 +9,8 @@
 
 namespace palpate::vdb {
 
-/// What a scene's heavy fields came to, for reports: one record for each grid that was made or read.
+/// What a scene's heavy fields came to, for reports: one record for each grid that was made or
+/// read.
 struct GridRecord {
   std::string what;  ///< layer or field, and its source
   LevelSetInfo info;
@@ -21,8 +22,16 @@ struct RegisterOptions {
   std::function<void(const std::string&)> on_note = {};  ///< told what was assumed, once each
 };
 
-/// Adds `mesh` and `grid` to the field kinds, `labels` and `threshold` to the layer kinds, and the image
-/// reader. The functions given must outlive the registry.
+/// Adds to a scene's vocabulary (paths are relative to the scene file, lengths in its unit):
+///   fields  mesh: {file, units, voxel, half_width}   units: the scene's; voxel: longest side / 128
+///           grid: {file, name, units}                units: only if the file does not say
+///   images  NAME: {file, names}
+///   layers  labels: {image, match: [..], voxel}      its label group is the image's name
+///           threshold: {image, above, keep: largest | all, fill, voxel}
+/// Reading a scene looks at files only as far as it is quick: that they are there, image headers,
+/// name tables. Grids are made when their field is first asked for; an image is then read once for
+/// all its layers. Errors of either point at the scene's file, line and column. The functions in
+/// `options` must stay callable as long as the registry and the fields it made are used.
 void registerKinds(SceneRegistry& registry, RegisterOptions options = {});
 
 }  // namespace palpate::vdb
