@@ -184,9 +184,8 @@ TEST(Compile, TouchAndReachability) {
   s.ports = {port("a", "outside", "shell"), port("b", "shell", "core")};
   const auto reachable = [](const SceneDescription& description) {
     std::string out;
-    const ScenePtr scene = compile(description);
-    for (const Region& region : scene->regions())
-      out += region.reachable ? '1' : '0';
+    const ScenePtr made = compile(description);
+    for (const Region& region : made->regions()) out += region.reachable ? '1' : '0';
     return out;
   };
   const ScenePtr scene = compile(s);
