@@ -184,8 +184,8 @@ TEST(Compile, TouchAndReachability) {
   s.ports = {port("a", "outside", "shell"), port("b", "shell", "core")};
   const auto reachable = [](const SceneDescription& description) {
     std::string out;
-    for (const Region& region : compile(description)->regions())
-      out += region.reachable ? '1' : '0';
+    const ScenePtr made = compile(description);
+    for (const Region& region : made->regions()) out += region.reachable ? '1' : '0';
     return out;
   };
   const ScenePtr scene = compile(s);
@@ -206,9 +206,10 @@ TEST(Compile, TouchAndReachability) {
   EXPECT_EQ(reachable(s), "1110");
   s.layers[2].wall.absent = true;
   EXPECT_EQ(reachable(s), "1111") << "an absent wall needs no port";
-  for (const Region& region : compile(s)->regions()) {
+  const ScenePtr open = compile(s);
+  for (const Region& region : open->regions()) {
     ASSERT_TRUE(region.has_seed) << region.name;
-    EXPECT_EQ(compile(s)->regions()[compile(s)->regionAt(region.seed)].name, region.name);
+    EXPECT_EQ(open->regions()[open->regionAt(region.seed)].name, region.name);
   }
 }
 
