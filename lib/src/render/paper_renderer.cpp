@@ -223,7 +223,7 @@ void PaperRenderer::touch(std::size_t layer, double side, const HipState& hip,
   contact_layer_ = layer;
   contact_side_ = side;
 
-  RegionId beyond = static_cast<RegionId>(layer + 1);
+  auto beyond = static_cast<RegionId>(layer + 1);
   RegionId here = state();
   if (side < 0.0) {
     here = beyond;

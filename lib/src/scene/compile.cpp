@@ -246,7 +246,7 @@ class SceneCompiler {
   }
 
   std::vector<LeafId> facetLeaves(const PortDescription& given, const Port& port) {
-    const std::vector<LeafId> leaves = scene_->partition_.leavesOf(given.on->get().get());
+    std::vector<LeafId> leaves = scene_->partition_.leavesOf(given.on->get().get());
     const auto bounds = [&](const std::vector<RegionId>& sides) {
       return std::any_of(sides.begin(), sides.end(), [&](RegionId region) {
         const auto own = scene_->partition_.leavesOfRegion(region);
