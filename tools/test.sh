@@ -4,13 +4,14 @@
 #   arrows    no include against the arrows between modules and layers (cmake script, seconds)
 #   dev       assertions on, warnings are errors, every public header compiles alone
 #   release   what users get: optimised code, installed and used by an outside project
-#   asan      memory errors and undefined behaviour
+#   asan      memory errors and undefined behaviour; lib and devices, and with --all everything
+# With --all or --lane only, since they have not passed whole on every module yet:
 #   tsan      data races (without vdb: TBB is not instrumented)
 #   tidy      names and bug patterns, by clang-tidy, in the sources that changed
 # Options:
 #   --quick         format, arrows and dev only
 #   --lane NAME     only this lane; may be given several times
-#   --all           tidy on all sources, and the slow sweeps (PALPATE_SLOW_TESTS=1)
+#   --all           every lane; tidy and asan on everything, and the slow sweeps (PALPATE_SLOW_TESTS=1)
 #   --changed REF   what counts as changed for tidy: since REF. Default: since the branch left origin/main,
 #                   or on main itself, in the day up to its newest commit
 # The last line says 'N passed, N failed' over all lanes; the exit status is 0 if none failed.
@@ -36,7 +37,12 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-[ ${#lanes[@]} -gt 0 ] || lanes=("${all_lanes[@]}")
+if [ ${#lanes[@]} = 0 ]; then
+  lanes=(format arrows dev release asan)
+  [ $tidy_all = 0 ] || lanes=("${all_lanes[@]}")
+fi
+asan_options=(-DPALPATE_VDB=OFF)
+[ $tidy_all = 0 ] || asan_options=(-DPALPATE_VDB=ON)
 
 results=$root/build/test-results
 mkdir -p "$results"
@@ -63,15 +69,16 @@ count_tests() { # JUNIT_FILE: adds up what ctest ran; false if it ran nothing or
   [ "$fails" = 0 ]
 }
 
-build_and_test() { # PRESET
-  local junit=$results/$1.xml
+build_and_test() { # PRESET [CONFIGURE_OPTION...]
+  local preset=$1 junit=$results/$1.xml
+  shift
   rm -f "$junit"
-  if ! configure "$1" -DPALPATE_TESTS=ON || ! cmake --build --preset "$1" -- -k 0; then
+  if ! configure "$preset" -DPALPATE_TESTS=ON "$@" || ! cmake --build --preset "$preset" -- -k 0; then
     lane_note="does not build"
     count_check 1
     return
   fi
-  ctest --preset "$1" --output-junit "$junit"
+  ctest --preset "$preset" --output-junit "$junit"
   local status=$?
   count_tests "$junit" && [ $status = 0 ]
 }
@@ -80,7 +87,7 @@ lane_format() { sources | xargs --no-run-if-empty clang-format --dry-run --Werro
 lane_arrows() { cmake -D ROOT="$root" -P tests/architecture/check_arrows.cmake; count_check $?; }
 lane_dev() { build_and_test dev; }
 lane_release() { build_and_test release; }
-lane_asan() { build_and_test asan; }
+lane_asan() { build_and_test asan "${asan_options[@]}"; }
 lane_tsan() { build_and_test tsan; }
 
 # The sources clang-tidy has to look at: all that changed, and for each header that changed one that includes it.
