@@ -245,6 +245,7 @@ bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_impr
     double share = 1.0;
     for (const LeafId leaf : sliding) share = std::min(share, walker_.freeShare(leaf, from, to));
     const CellWalker::Stop stop = walker_.move(from + share * (to - from), sliding, true);
+    if (stop == CellWalker::Stop::kCrossed) letGoAtRim();
     is_clipped = share < 1.0 && stop == CellWalker::Stop::kArrived;
     return stop == CellWalker::Stop::kArrived && !is_clipped;
   };
@@ -256,6 +257,19 @@ bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_impr
   if (!above || go(x, ahead)) (void)go(walker_.position(), landed);
   const double moved = glm::length(walker_.position() - x);
   return !is_clipped || moved > kStuck * walker_.leaf(c.leaf[c.index[0]]).feature;
+}
+
+/// The slide went over a rim: where a held wall is no wall any more, the pull that pressed the proxy against
+/// it takes it through, here and now. Left to the next straight move, the facet just crossed could be
+/// crossed back first, and the proxy would hang on the rim.
+void ConstraintRenderer::letGoAtRim() noexcept {
+  for (std::size_t i = 0; i < contact_.count; ++i) {
+    const LeafId leaf = contact_.leaf[contact_.index[i]];
+    const double value = walker_.leaf(leaf).field->value(walker_.position());
+    if (std::fabs(value) > kNear * walker_.tolerance(leaf)) continue;
+    const Facet facet = walker_.facetAt(leaf);
+    if (!facet.isClosed()) walker_.cross(leaf, facet);
+  }
 }
 
 double ConstraintRenderer::contentShare() const noexcept {

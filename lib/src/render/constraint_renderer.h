@@ -47,6 +47,7 @@ class ConstraintRenderer final : public HapticRenderer {
   [[nodiscard]] bool puncture() noexcept;
   [[nodiscard]] bool slide(const Vec3& hip) noexcept;
   [[nodiscard]] bool slideBy(const Vec3& hip, const Vec3& by, bool must_improve) noexcept;
+  void letGoAtRim() noexcept;
   [[nodiscard]] bool isSettled(const Vec3& hip) const noexcept;
   [[nodiscard]] bool isOnWalls() const noexcept;
   [[nodiscard]] Vec3 force(const HipState& hip) const noexcept;
