@@ -15,6 +15,8 @@ constexpr double kNear = 100.0;
 /// The proxy has arrived when what is left to slide is this share of the depth: 6e-8 degree of the
 /// force's direction.
 constexpr double kSettled = 1e-9;
+/// A slope below this share of the Lipschitz bound is not made up for in tolerances.
+constexpr double kFlattest = 1e-3;
 /// A slide ends within this share of where the kinetic cone holds it.
 constexpr double kSticksWithin = 1e-6;
 /// A slide that another sheet of the same wall stops within this share of the feature size got nowhere.
@@ -121,7 +123,9 @@ void ConstraintRenderer::findContact(const Vec3& hip) noexcept {
     HeldWall& wall = c.held[c.count];
     wall.field = walker_.leaf(c.leaf[k]).field.get();
     wall.side = walker_.side(c.leaf[k]);
-    wall.tolerance = walker_.tolerance(c.leaf[k]);
+    // As a distance, where the field rises less than its bound; but never down to rounding.
+    const double share = glm::length(c.jet[k].gradient) / walker_.leaf(c.leaf[k]).lipschitz;
+    wall.tolerance = walker_.tolerance(c.leaf[k]) * std::clamp(share, kFlattest, 1.0);
     wall.jet = c.jet[k];
     wall.normal = c.plane[k].normal;
     wall.multiplier = multiplier;
