@@ -77,7 +77,9 @@ void CellWalker::beginTick() noexcept {
 
 double CellWalker::measure(LeafId leaf) noexcept {
   const double value = leaves_[leaf].field->value(x_);
-  due_[leaf] = travel_ + std::fabs(value) / leaves_[leaf].lipschitz;
+  // Beyond a surface that was never crossed (a field that lies about its bound) nothing is out of reach:
+  // the point is to be brought back.
+  due_[leaf] = travel_ + std::max(0.0, side(leaf) * value) / leaves_[leaf].lipschitz;
   return value;
 }
 

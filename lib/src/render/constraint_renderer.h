@@ -50,6 +50,7 @@ class ConstraintRenderer final : public HapticRenderer {
   void letGoAtRim() noexcept;
   [[nodiscard]] bool isSettled(const Vec3& hip) const noexcept;
   [[nodiscard]] bool isOnWalls() const noexcept;
+  [[nodiscard]] Vec3 shaded(const HeldWall& held, const Facet& facet, double radius) const noexcept;
   [[nodiscard]] Vec3 force(const HipState& hip) const noexcept;
   [[nodiscard]] double contentShare() const noexcept;
   [[nodiscard]] const Material& wallMaterial(const Facet& facet) const noexcept {
