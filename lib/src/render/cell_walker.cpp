@@ -73,6 +73,9 @@ void CellWalker::beginTick() noexcept {
     travel_ = 0.0;
     cold_due_ = 0.0;
   }
+  // One leaf a tick is looked at whether it can have been met or not: a field whose bound is false may
+  // have let the point through, and a hand at rest would leave it there.
+  if (hot_count_ > 0) (void)measure(hot_[audited_++ % hot_count_]);
 }
 
 double CellWalker::measure(LeafId leaf) noexcept {

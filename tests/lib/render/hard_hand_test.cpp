@@ -141,6 +141,32 @@ TEST(HardHand, NoLimitCycleThatAPerfectRendererHasNot) {
   }
 }
 
+TEST(HardHand, InDeepHollowsThePaperSwingsAndTheConstraintRendererRests) {
+  // A light hand pressed `share` R beyond the wall of a hollow of 5 mm, a millimeter aside of its middle.
+  const double radius = 0.005;
+  SimulatedHand hand;
+  hand.mass = 0.02;
+  hand.damping = 2.0;
+  Material wall;
+  wall.stiffness = 3000.0;
+  const FieldPtr hollow = sphere(Vec3(0.0), radius);
+  for (const double share : {0.5, 1.0, 2.0, 4.0}) {
+    const Vec3 to(radius * (1.0 + share) + wall.stiffness * radius * share / hand.stiffness, 1e-3,
+                  0.5e-3);
+    const auto swing = [&](RendererKind kind) {
+      Drive drive(sceneOfSolid(hollow, true, wall), kind);
+      (void)drive.to(Vec3(0.0));
+      return glm::length(press(hand, Vec3(0.0), to, 0.0, rendererOf(drive)).swing);
+    };
+    EXPECT_LE(swing(RendererKind::kConstraint), 1e-3) << share;
+    if (share < 2.0) {
+      EXPECT_LE(swing(RendererKind::kPaper), 1e-3) << share;
+    } else {
+      EXPECT_GT(swing(RendererKind::kPaper), 5.0) << "a limit cycle, at kappa d = " << share;
+    }
+  }
+}
+
 TEST(HardHand, SlidesOffABallBelowTheLateralStiffnessOfTheContact) {
   // Pressed d deep with F = K d, a ball of R pushes sideways by F / (R - d) a meter: a hand softer than that
   // slides off, whatever the renderer, and a stiffer one stays.
