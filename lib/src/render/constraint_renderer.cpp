@@ -312,8 +312,8 @@ Vec3 ConstraintRenderer::force(const HipState& hip) const noexcept {
       const HeldWall& held = c.held[i];
       const double multiplier = held.multiplier;
       const Vec3& x = walker_.position();
-      const Vec3 n = wall.shading > 0.0 ? shaded(held, c.facet[c.index[i]], wall.shading)
-                                        : held.normal;
+      const Vec3 n =
+          wall.shading > 0.0 ? shaded(held, c.facet[c.index[i]], wall.shading) : held.normal;
       force += wall.stiffness * (multiplier + textureHeight(wall.texture, x, multiplier)) * n;
       outward += multiplier * held.normal;
       total += multiplier;

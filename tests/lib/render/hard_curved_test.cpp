@@ -20,16 +20,19 @@ struct Curved {
   const char* name;
   FieldPtr field;
   bool from_within;
-  Vec3 free;     ///< [m] where the hand begins
-  Vec3 lo, hi;   ///< [m] box between whose faces it wanders
-  double speed;  ///< [m/s]
+  Vec3 free;      ///< [m] where the hand begins
+  Vec3 lo, hi;    ///< [m] box between whose faces it wanders
+  double speed;   ///< [m/s]
   int share = 1;  ///< 1 of so many ticks: where the curvature jumps the oracle takes 30 ms
+  std::function<bool(const Vec3&)> judged{};
 };
 
 /// A smooth random walk from face to face of a box.
 void wander(const Curved& c, int seed) {
-  SCOPED_TRACE(::testing::Message() << c.name << (c.from_within ? " from within" : " from outside"));
+  SCOPED_TRACE(::testing::Message()
+               << c.name << (c.from_within ? " from within" : " from outside"));
   Judge judge(c.field, c.from_within);
+  judge.onlyWhere(c.judged);
   judge.begin(c.free);
   Random random(static_cast<std::uint64_t>(seed));
   Vec3 p = c.free;
@@ -51,8 +54,6 @@ void wander(const Curved& c, int seed) {
   }
   EXPECT_GT(judge.contacts(), judge.ticks() / 5);
   EXPECT_LT(judge.ambiguous(), judge.ticks() / 5);
-  std::printf("%-28s %5d ticks %5d contacts %4d ambiguous worst %.2e\n", c.name, judge.ticks(),
-              judge.contacts(), judge.ambiguous(), judge.worst());
 }
 
 TEST(HardCurved, EllipsoidExact) {
@@ -80,19 +81,26 @@ TEST(HardCurved, Hyperboloid) {
   c.constant = -0.02 * 0.02;
   const FieldPtr field = quadric(Vec3(0.0), c, 0.2);
   wander({"hyperboloid", field, false, mm(50, 0, 0), mm(5, -20, -30), mm(30, 20, 30), 0.2}, 5);
-  wander({"hyperboloid within", field, true, mm(0, 0, 0), mm(-35, -35, -20), mm(35, 35, 20), 0.2}, 6);
+  wander({"hyperboloid within", field, true, mm(0, 0, 0), mm(-35, -35, -20), mm(35, 35, 20), 0.2},
+         6);
 }
 
 TEST(HardCurved, Torus) {
   const FieldPtr field = torus(Vec3(0.0), Vec3(0, 0, 1), 0.03, 0.01);
-  wander({"torus", field, false, mm(50, 0, 0), mm(-36, -36, -7), mm(36, 36, 7), 0.2}, 7);
+  const auto within_reach = [](const Vec3& p) {
+    return std::hypot(std::hypot(p.x, p.y) - 0.03, p.z) > 0.1 * 0.01;
+  };
+  wander(
+      {"torus", field, false, mm(50, 0, 0), mm(-36, -36, -7), mm(36, 36, 7), 0.2, 1, within_reach},
+      7);
   wander({"torus within", field, true, mm(30, 0, 0), mm(-45, -45, -15), mm(45, 45, 15), 0.2}, 8);
 }
 
 TEST(HardCurved, Capsule) {
   const FieldPtr field = capsule(mm(-20, 0, 0), mm(20, 0, 0), 0.01);
   wander({"capsule", field, false, mm(0, 20, 0), mm(-26, -7, -7), mm(26, 7, 7), 0.8, 4}, 9);
-  wander({"capsule within", field, true, mm(0, 0, 0), mm(-35, -15, -15), mm(35, 15, 15), 0.8, 4}, 10);
+  wander({"capsule within", field, true, mm(0, 0, 0), mm(-35, -15, -15), mm(35, 15, 15), 0.8, 4},
+         10);
 }
 
 TEST(HardCurved, RoundedBoxWithinByClosedForm) {
@@ -128,7 +136,8 @@ TEST(HardCurved, RoundedBoxWithinByClosedForm) {
 
 TEST(HardCurved, RoundedBoxFromOutside) {
   const FieldPtr field = roundedBox(Vec3(0.0), mm(60, 40, 20), 0.005);
-  wander({"rounded box", field, false, mm(50, 0, 0), mm(-32, -22, -12), mm(32, 22, 12), 1.6, 8}, 12);
+  wander({"rounded box", field, false, mm(50, 0, 0), mm(-32, -22, -12), mm(32, 22, 12), 1.6, 8},
+         12);
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ std::vector<Golden> goldens() {
   waist.constant = -0.02 * 0.02;
   std::vector<FieldPtr> balls;
   Random random(1);
-  for (int i = 0; i < 100; ++i) balls.push_back(sphere(random.in({Vec3(-0.04), Vec3(0.04)}), 0.006));
+  for (int i = 0; i < 100; ++i)
+    balls.push_back(sphere(random.in({Vec3(-0.04), Vec3(0.04)}), 0.006));
   const FieldPtr saddle =
       metaballs({{mm(-15, 0, 0), 0.04, 1.0}, {mm(15, 0, 0), 0.04, 1.0}}, FallOff::kWyvill, 0.6);
   return {{"container", sceneNamed("container")},
@@ -59,11 +60,10 @@ std::vector<Golden> goldens() {
           {"heart", sceneOfSolid(heart(Vec3(0.0), 0.06))},
           {"metaballs", sceneOfSolid(saddle, false, rough)},
           {"waist", sceneOfSolid(quadric(Vec3(0.0), waist, 0.2))},
-          {"gyroid", sceneOfSolid(intersect({gyroidWall(Vec3(0.0), 0.04, 0.004),
-                                             sphere(Vec3(0.0), 0.03)}))},
-          {"blend", sceneOfSolid(smoothUnite({box(Vec3(0.0), mm(40, 40, 10)),
-                                              sphere(mm(0, 0, 10), 0.012)},
-                                             0.005))},
+          {"gyroid",
+           sceneOfSolid(intersect({gyroidWall(Vec3(0.0), 0.04, 0.004), sphere(Vec3(0.0), 0.03)}))},
+          {"blend", sceneOfSolid(smoothUnite(
+                        {box(Vec3(0.0), mm(40, 40, 10)), sphere(mm(0, 0, 10), 0.012)}, 0.005))},
           {"hundred balls", sceneOfSolid(unite(balls))},
           {"sheet and plate", sheetAndPlate()}};
 }

@@ -94,29 +94,29 @@ std::vector<Case> cases() {
   const Vec3 up(0, 0, 1);
   const Vec3 half = mm(30, 20, 10);
   std::vector<Case> out;
-  out.push_back({"plane", halfSpace(o, up), false, [=](const Vec3& p) { return testing::planeMinima(p, o, up); },
-                 mm(0, 0, 10), mm(5, 3, -20)});
+  out.push_back({"plane", halfSpace(o, up), false,
+                 [=](const Vec3& p) { return testing::planeMinima(p, o, up); }, mm(0, 0, 10),
+                 mm(5, 3, -20)});
   out.push_back({"ball", sphere(o, 0.05), false,
                  [=](const Vec3& p) { return testing::sphereMinima(p, o, 0.05, Held::kOutside); },
                  mm(2, 1, 60), mm(3, -2, 44)});
   for (const double radius : {0.05, 0.01, 0.002}) {
-    out.push_back({"hollow", sphere(o, radius), true,
-                   [=](const Vec3& p) { return testing::sphereMinima(p, o, radius, Held::kInside); },
-                   Vec3(0, 0, 0.1 * radius), mm(3, -2, 1e3 * radius + 20)});
+    out.push_back(
+        {"hollow", sphere(o, radius), true,
+         [=](const Vec3& p) { return testing::sphereMinima(p, o, radius, Held::kInside); },
+         Vec3(0, 0, 0.1 * radius), mm(3, -2, 1e3 * radius + 20)});
   }
   out.push_back({"room", box(o, 2.0 * half), true,
                  [=](const Vec3& p) { return testing::boxMinima(p, -half, half, Held::kInside); },
                  mm(0, 0, 0), mm(40, 35, 15)});
-  out.push_back({"torus", torus(o, up, 0.03, 0.01), false,
-                 [=](const Vec3& p) {
-                   return testing::torusMinima(p, o, up, 0.03, 0.01, Held::kOutside);
-                 },
-                 mm(30, 1, 20), mm(29, 2, 7)});
-  out.push_back({"torus within", torus(o, up, 0.03, 0.01), true,
-                 [=](const Vec3& p) {
-                   return testing::torusMinima(p, o, up, 0.03, 0.01, Held::kInside);
-                 },
-                 mm(30, 0, 0), mm(45, 20, 12)});
+  out.push_back(
+      {"torus", torus(o, up, 0.03, 0.01), false,
+       [=](const Vec3& p) { return testing::torusMinima(p, o, up, 0.03, 0.01, Held::kOutside); },
+       mm(30, 1, 20), mm(29, 2, 7)});
+  out.push_back(
+      {"torus within", torus(o, up, 0.03, 0.01), true,
+       [=](const Vec3& p) { return testing::torusMinima(p, o, up, 0.03, 0.01, Held::kInside); },
+       mm(30, 0, 0), mm(45, 20, 12)});
   return out;
 }
 
@@ -146,7 +146,7 @@ TEST(HardHand, InDeepHollowsThePaperSwingsAndTheConstraintRendererRests) {
   const double radius = 0.005;
   SimulatedHand hand;
   hand.mass = 0.02;
-  hand.damping = 2.0;
+  hand.damping = 1.6;  // still above K T / 2
   Material wall;
   wall.stiffness = 3000.0;
   const FieldPtr hollow = sphere(Vec3(0.0), radius);
@@ -158,9 +158,18 @@ TEST(HardHand, InDeepHollowsThePaperSwingsAndTheConstraintRendererRests) {
       (void)drive.to(Vec3(0.0));
       return glm::length(press(hand, Vec3(0.0), to, 0.0, rendererOf(drive)).swing);
     };
-    EXPECT_LE(swing(RendererKind::kConstraint), 1e-3) << share;
+    const double perfect =
+        glm::length(press(hand, Vec3(0.0), to, 0.0,
+                          oracleOf(
+                              wall.stiffness,
+                              [=](const Vec3& p) {
+                                return testing::sphereMinima(p, Vec3(0.0), radius, Held::kInside);
+                              },
+                              Vec3(0.0)))
+                        .swing);
+    EXPECT_LE(swing(RendererKind::kConstraint), 1.1 * perfect + 1e-3) << share;
     if (share < 2.0) {
-      EXPECT_LE(swing(RendererKind::kPaper), 1e-3) << share;
+      EXPECT_LE(swing(RendererKind::kPaper), 1.1 * perfect + 1e-3) << share;
     } else {
       EXPECT_GT(swing(RendererKind::kPaper), 5.0) << "a limit cycle, at kappa d = " << share;
     }
@@ -184,13 +193,14 @@ TEST(HardHand, SlidesOffABallBelowTheLateralStiffnessOfTheContact) {
     Drive drive(sceneOfSolid(sphere(Vec3(0.0), radius)));
     (void)drive.to(from);
     const Felt felt = press(hand, from, to, 0.0, rendererOf(drive));
-    const Felt perfect = press(hand, from, to, 0.0,
-                               oracleOf(kDefaultK,
-                                        [=](const Vec3& p) {
-                                          return testing::sphereMinima(p, Vec3(0.0), radius,
-                                                                       Held::kOutside);
-                                        },
-                                        from));
+    const Felt perfect =
+        press(hand, from, to, 0.0,
+              oracleOf(
+                  kDefaultK,
+                  [=](const Vec3& p) {
+                    return testing::sphereMinima(p, Vec3(0.0), radius, Held::kOutside);
+                  },
+                  from));
     const double off = std::hypot(felt.end.x, felt.end.y);
     if (share > 1.0) {
       EXPECT_LT(off, 1e-4) << "stays";

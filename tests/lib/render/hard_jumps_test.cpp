@@ -29,18 +29,19 @@ std::vector<Solid> solids() {
   egg.yy = 1.0 / (0.06 * 0.06);
   egg.zz = 1.0 / (0.055 * 0.055);
   egg.constant = -1.0;
-  return {{"ball", sphere(Vec3(0.0), 0.06), mm(0, 0, 80)},
-          {"box", box(Vec3(0.0), mm(160, 140, 120)), mm(0, 0, 80)},
-          {"torus", torus(Vec3(0.0), Vec3(0, 0, 1), 0.1, 0.055), mm(100, 0, 80)},
-          {"can", cylinder(Vec3(0.0), Vec3(0, 0, 1), 0.06, 0.12), mm(0, 0, 80)},
-          {"quadric", quadric(Vec3(0.0), egg), mm(0, 0, 80)},
-          {"capsule", capsule(mm(-40, 0, 0), mm(40, 0, 0), 0.055), mm(0, 0, 80)},
-          {"two balls", unite({sphere(mm(-30, 0, 0), 0.06), sphere(mm(30, 0, 0), 0.06)}),
-           mm(30, 0, 80)},
-          {"metaballs",
-           metaballs({{mm(-30, 0, 0), 0.12, 1.0}, {mm(30, 0, 0), 0.12, 1.0}}, FallOff::kWyvill, 0.5),
-           mm(30, 0, 100)},
-          {"cone", cone(mm(0, 0, -60), Vec3(0, 0, 1), 0.08, 0.14), mm(0, 0, 100)}};
+  return {
+      {"ball", sphere(Vec3(0.0), 0.06), mm(0, 0, 80)},
+      {"box", box(Vec3(0.0), mm(160, 140, 120)), mm(0, 0, 80)},
+      {"torus", torus(Vec3(0.0), Vec3(0, 0, 1), 0.1, 0.055), mm(100, 0, 80)},
+      {"can", cylinder(Vec3(0.0), Vec3(0, 0, 1), 0.06, 0.12), mm(0, 0, 80)},
+      {"quadric", quadric(Vec3(0.0), egg), mm(0, 0, 80)},
+      {"capsule", capsule(mm(-40, 0, 0), mm(40, 0, 0), 0.055), mm(0, 0, 80)},
+      {"two balls", unite({sphere(mm(-30, 0, 0), 0.06), sphere(mm(30, 0, 0), 0.06)}),
+       mm(30, 0, 80)},
+      {"metaballs",
+       metaballs({{mm(-30, 0, 0), 0.12, 1.0}, {mm(30, 0, 0), 0.12, 1.0}}, FallOff::kWyvill, 0.5),
+       mm(30, 0, 100)},
+      {"cone", cone(mm(0, 0, -60), Vec3(0, 0, 1), 0.08, 0.14), mm(0, 0, 100)}};
 }
 
 TEST(HardJumps, FiveCentimetersDeepSlowlyAndAtOnce) {
@@ -77,9 +78,7 @@ TEST(HardJumps, AcrossTheObjectAsTheOracleJumps) {
     judge.begin(solid.free);
     Random random(5);
     const Box3 around = solid.field->bounds().grownBy(0.02);
-    int late = 0;
     int ambiguous = 0;
-    double worst = 0.0;
     for (int i = 0; i < 60; ++i) {
       const Vec3 hip = random.in(around);
       const auto oracle =
@@ -94,12 +93,10 @@ TEST(HardJumps, AcrossTheObjectAsTheOracleJumps) {
         ++ambiguous;
         continue;
       }
-      late += glm::length(first - out.proxy) > 1e-6 ? 1 : 0;
-      worst = std::max(worst, glm::length(out.proxy - oracle.proxy));
       EXPECT_TRUE(isNear(out.proxy, oracle.proxy, 1e-6 * glm::length(oracle.proxy - hip) + 1e-9))
           << i << " " << Judge::text(hip);
     }
-    std::printf("%-12s ambiguous %d late %d worst %g\n", solid.name, ambiguous, late, worst);
+    EXPECT_LE(ambiguous, 3);
   }
 }
 
@@ -127,8 +124,9 @@ TEST(HardJumps, ForceIsCappedWhateverComes) {
 TEST(HardJumps, ContactIsAsBeforeAfterABadDevice) {
   // NaN, infinity and jumps far away in the middle of a press; then the same press again, from free space.
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Vec3> bad{Vec3(nan), Vec3(kInfinity, 0, 0), Vec3(0, -kInfinity, 0), Vec3(1e308),
-                              Vec3(9e3, -9e3, 9e3), Vec3(0.0), mm(0, 0, -300)};
+  const std::vector<Vec3> bad{Vec3(nan),     Vec3(kInfinity, 0, 0), Vec3(0, -kInfinity, 0),
+                              Vec3(1e308),   Vec3(9e3, -9e3, 9e3),  Vec3(0.0),
+                              mm(0, 0, -300)};
   for (const Solid& solid : solids()) {
     SCOPED_TRACE(solid.name);
     const Vec3 down(0.011, 0.007, -1.0);

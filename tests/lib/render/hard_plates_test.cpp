@@ -29,8 +29,8 @@ int tunnelled(const ScenePtr& scene, const Pose& pose, double half, double speed
   int passed = 0;
   const double step = speed * Drive::kTick;
   const double side = from_below ? -1.0 : 1.0;
-  const Vec3 way = glm::normalize(
-      Vec3(std::sin(slant * kDegree), 0.3 * std::sin(slant * kDegree), -side * std::cos(slant * kDegree)));
+  const Vec3 way = glm::normalize(Vec3(std::sin(slant * kDegree), 0.3 * std::sin(slant * kDegree),
+                                       -side * std::cos(slant * kDegree)));
   for (int phase = 0; phase < kPhases; ++phase) {
     Drive drive(scene);
     const Vec3 hit = mm(-15, 5, 0);
@@ -53,8 +53,7 @@ int tunnelled(const ScenePtr& scene, const Pose& pose, double half, double speed
 TEST(HardPlates, AnalyticPlatesAreNeverTunnelled) {
   const Pose turned{rotationAbout(Vec3(1, 2, 3), 0.8), mm(10, -20, 5)};
   for (const double thickness : {1e-3, 0.1e-3}) {
-    const ScenePtr scene =
-        sceneOfSolid(place(box(Vec3(0.0), Vec3(0.3, 0.3, thickness)), turned));
+    const ScenePtr scene = sceneOfSolid(place(box(Vec3(0.0), Vec3(0.3, 0.3, thickness)), turned));
     for (const double speed : {1.0, 5.0, 20.0}) {
       for (const double slant : {0.0, 30.0, 60.0}) {
         for (const bool below : {false, true}) {

@@ -41,7 +41,8 @@ TEST(HardRim, FreeTicksChangeRegionOnlyThroughTheMouth) {
     const Vec3 hip = hand.next();
     const TickResult out = drive.renderer().update({hip, Vec3(0.0)});
     const bool was_free = before.proxy == last && !before.contact;
-    if (was_free && !out.contact && out.proxy == hip && out.event_count == 1 && crossesMouth(last, hip)) {
+    if (was_free && !out.contact && out.proxy == hip && out.event_count == 1 &&
+        crossesMouth(last, hip)) {
       ASSERT_NE(out.region, before.region) << i;
       ++judged;
     }

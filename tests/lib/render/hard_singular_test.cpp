@@ -33,8 +33,6 @@ void judgeWalk(Judge& judge, const Vec3& free, const Box3& box, double speed, in
   }
   EXPECT_GT(judge.contacts(), judge.ticks() / 10);
   EXPECT_LT(judge.ambiguous(), judge.ticks() / 10);
-  std::printf("%5d ticks %5d contacts %4d ambiguous worst %.2e\n", judge.ticks(), judge.contacts(),
-              judge.ambiguous(), judge.worst());
 }
 
 TEST(HardSingular, MetaballSaddle) {
@@ -82,6 +80,9 @@ TEST(HardSingular, ConeApexFromOutside) {
   const FieldPtr field = cone(Vec3(0.0), Vec3(0, 0, 1), 0.015, 0.04);
   Judge judge(field, false);
   judge.stepOracleBy(100e-6);
+  judge.onlyWhere([](const Vec3& p) {
+    return p.z > 0.04 || std::hypot(p.x, p.y) > 0.1 * (0.04 - p.z) * 0.015 / 0.04;
+  });
   judgeWalk(judge, mm(0, 0, 60), {mm(-6, -6, 10), mm(6, 6, 45)}, 0.2, 5, walkTicks());
 }
 
@@ -119,14 +120,14 @@ TEST(HardSingular, HollowConeApex) {
     if (i < 5) continue;
     worst = std::max(worst, glm::length(out.proxy - mm(0, 0, 40)) / glm::length(p - mm(0, 0, 40)));
   }
-  std::printf("hollow apex worst %g\n", worst);
   EXPECT_LE(worst, 1e-6);
 }
 
 TEST(HardSingular, HeartFromOutside) {
   const FieldPtr field = heart(Vec3(0.0), 0.06);
   Judge judge(field, false);
-  judge.stepOracleBy(200e-6);  // its feature, the radius of the tip, is a hundredth of what matters here
+  judge.stepOracleBy(
+      200e-6);  // its feature, the radius of the tip, is a hundredth of what matters here
   judgeWalk(judge, mm(0, 30, 10), {mm(-26, -10, -22), mm(26, 10, 25)}, 0.4, 7, walkTicks() / 3);
 }
 

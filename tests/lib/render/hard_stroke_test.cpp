@@ -72,7 +72,8 @@ TEST(HardStroke, TheSameMotionAtOneAndAtTenKilohertz) {
   Drive slow(sceneOfSolid(sphere(Vec3(0.0), kRadius)));
   Drive fast(sceneOfSolid(sphere(Vec3(0.0), kRadius)));
   const auto at = [](double t) {
-    const Vec3 u(std::cos(4.0 * t), std::sin(4.0 * t) * std::cos(t), std::sin(4.0 * t) * std::sin(t));
+    const Vec3 u(std::cos(4.0 * t), std::sin(4.0 * t) * std::cos(t),
+                 std::sin(4.0 * t) * std::sin(t));
     return (kRadius - kDepth * (1.0 + std::sin(9.0 * t))) * u;
   };
   for (Drive* drive : {&slow, &fast}) (void)drive->to(at(0.0) * 1.1);
