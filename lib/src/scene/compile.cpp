@@ -16,6 +16,18 @@ constexpr std::size_t kPatientSurveyLines = 4096;
 
 std::string quoted(const std::string& text) { return "'" + text + "'"; }
 
+void checkTexture(const Material& material) {
+  const Texture& texture = material.texture;
+  if (texture.amplitude == 0.0) return;
+  if (texture.amplitude > 0.0 &&
+      texture.amplitude <= Texture::highestAmplitude(texture.wavelength)) {
+    return;
+  }
+  throw inputError("scene.texture",
+                   "the texture of material " + quoted(material.name) + " is too high",
+                   "its amplitude must be from 0 to its wavelength / 2 pi");
+}
+
 std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress) {
   std::vector<FieldPtr> fields;
   std::map<std::string, std::vector<std::size_t>> groups;
@@ -152,6 +164,7 @@ class SceneCompiler {
   }
 
   void materials() {
+    for (const Material& m : description_.materials) checkTexture(m);
     scene_->materials_ = description_.materials;
     Material standard;
     standard.name = "default wall";
@@ -260,8 +273,10 @@ class SceneCompiler {
           given.place, "scene.port_face",
           "port " + quoted(given.name) + " is on " + quoted(given.on_name) +
               ", which is no part of " + quoted(given.from) + " or " + quoted(given.to),
-          "name a field that the layer's `inside` is made from, or use `where:` for an opening "
-          "of any shape");
+          given.on_note.empty()
+              ? "name a field that the layer's `inside` is made from, or use `where:` for an "
+                "opening of any shape"
+              : given.on_note + ", or use `where:` for an opening of any shape");
     }
     return leaves;
   }
