@@ -107,6 +107,10 @@ class SceneCompiler {
       if (port.where) masks.push_back(port.where->get(progress));
     }
     for (const SheetDescription& sheet : description_.sheets) {
+      if (!sheet.on) {
+        throw errorAt(sheet.place, "scene.sheet_without_field",
+                      "sheet " + quoted(sheet.name) + " has no field that it is on");
+      }
       sheet_mask_of_.push_back(sheet.where ? static_cast<int>(masks.size()) : -1);
       if (sheet.where) masks.push_back(sheet.where->get(progress));
       sheet_solid_of_.push_back(static_cast<int>(masks.size()));
