@@ -257,6 +257,9 @@ class SceneCompiler {
       sheet.solid = sheet_solid_of_[i];
       sheet.mask = sheet_mask_of_[i];
       sheet.material = wall({false, given.material}, given.place).material;
+      Box3 box = given.on->get()->bounds();
+      if (given.where) box = box.intersectedWith(given.where->get()->bounds());
+      if (box.isBounded()) scene_->sheet_bounds_ = scene_->sheet_bounds_.unitedWith(box);
       sheets.push_back(std::move(sheet));
     }
     return sheets;
