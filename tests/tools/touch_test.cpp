@@ -253,7 +253,7 @@ TEST(TouchScenes, TheShippedScenesRun) {
        {"--insert", "-60,0,0", "60,0,0"},
        {"outside", "upstream", "downstream", "outside"}},
       {"fields.yaml", {"--stroke", "-120,30,14", "120,30,14"}, {"outside"}},
-      {"sponge.yaml", {"--insert", "3,3,40", "3,3,-2", "--back"}, {"outside", "jelly", "outside"}},
+      {"sponge.yaml", {"--insert", "-6,0,40", "-6,0,-16", "--back"}, {"outside", "jelly", "outside"}},
       {"flag.yaml",
        {"--insert", "30,0,15", "-5,0,15", "-5,0,-15", "30,0,-15"},
        {"outside", "water"}},

@@ -65,11 +65,12 @@ TEST(ExampleScenes, TheSpongesMazesAreApart) {
   const FieldPtr side = gyroid(Vec3(0.0), 0.024);
   const FieldPtr block = box(mm(0, 0, -4), mm(36, 36, 36));
   Drive hand(scene);
-  (void)hand.walk(mm(3, 3, 40));
-  (void)hand.walk(mm(3, 3, 16));
+  (void)hand.walk(mm(-6, 0, 40));
+  (void)hand.walk(mm(-6, 0, 16));
   EXPECT_EQ(hand.region(), "jelly");
   EXPECT_EQ(hand.events(), "top");
-  (void)hand.walk(mm(3, 3, 3));
+  (void)hand.walk(mm(-6, 0, -4));
+  EXPECT_FALSE(hand.last().contact);
   int contacts = 0;
   int changes = 0;
   int ticks_in_block = 0;

@@ -381,7 +381,7 @@ TEST(SceneFile, TheProjectsScenesHoldWhatTheyShow) {
   EXPECT_EQ(regionIn("fields.yaml", -98, -30, 16), "outside");     // beside it
   EXPECT_EQ(regionIn("fields.yaml", 0, -30, 15), "outside");       // in the egg cup
   EXPECT_EQ(regionIn("fields.yaml", 0, -30, -2), "egg cup");       // its bottom
-  EXPECT_EQ(regionIn("fields.yaml", 105, -30, 12), "little heart");
+  EXPECT_EQ(regionIn("fields.yaml", 105, -30, 9), "little heart");
 }
 
 TEST(SceneFile, EverySceneOfTheProjectIsRead) {
