@@ -146,6 +146,10 @@ TEST(Explain, SheetsAndTheirMaterials) {
   EXPECT_NEAR(canvas["texture"]["wavelength_m"], 2e-3, 1e-15);
   const std::string text = runPalpate({"explain", scenePath("flag.yaml")}).out;
   EXPECT_NE(text.find("flag      canvas (600 N/m)"), std::string::npos) << text;
+  Json info = jsonOf({"info", scenePath("flag.yaml")})["files"][0];
+  ASSERT_EQ(info["sheets"].size(), 2U);
+  EXPECT_EQ(info["sheets"][1]["name"], "membrane");
+  EXPECT_EQ(info["sheets"][1]["wall"], "skin");
 }
 
 // Whatever the fields are made of: explain, info, query and render take every shipped analytic scene.
@@ -157,7 +161,7 @@ TEST(EveryVerb, TakesTheShippedScenes) {
     EXPECT_EQ(jsonOf({"info", scene})["files"][0]["kind"], "scene") << name;
     EXPECT_EQ(jsonOf({"query", scene, "--at", "0,0,14"})["points"].size(), 1U) << name;
     const CommandResult drawn = runPalpate(
-        {"render", scene, "-o", "s.png", "--plane", "y=0", "--size", "320x240"}, folder.path());
+        {"render", scene, "-o", "s.png", "--plane", "y=0", "--size", "480x360"}, folder.path());
     EXPECT_EQ(drawn.exit_code, 0) << name << drawn.err;
   }
 }
