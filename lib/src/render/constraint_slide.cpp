@@ -14,6 +14,14 @@ namespace {
 constexpr double kStuck = 1e-6;
 constexpr int kMaxHalvings = 12;
 
+/// Whether the middle of the way from one point of `walls` to another is on their free side.
+bool isOpenHalfway(const Vec3& a, const Vec3& b, std::span<const HeldWall> walls) noexcept {
+  const Vec3 middle = 0.5 * (a + b);
+  return std::all_of(walls.begin(), walls.end(), [&](const HeldWall& wall) {
+    return wall.side * wall.field->value(middle) >= -wall.tolerance;
+  });
+}
+
 }  // namespace
 
 bool ConstraintRenderer::slide(const Vec3& hip) noexcept {
@@ -83,8 +91,8 @@ bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_impr
   }
   // Over a bulge the tangent runs in the open and comes down; in a hollow the chord is the open way.
   bool on_way = !above || go(x, ahead);
-  if (in_crease && !above) {
-    // Of the walls of a crease one may bulge and the other be hollow: then only above both it is open.
+  if (!above && walls.size() > 1 && !isOpenHalfway(x, landed, walls)) {
+    // Of several walls one may bulge and another be hollow: then only above all of them it is open.
     Vec3 up(0.0);
     for (const HeldWall& wall : walls) up += wall.normal;
     const Vec3 lift = 2.0 * glm::length(landed - ahead) * unitOr(up, Vec3(0.0));
