@@ -28,7 +28,7 @@ const std::vector<Probe>& probes() {
   const auto field = [](const std::string& value) { return "fields: {f: " + value + "}\n"; };
   const std::string ball = "{sphere: {center: [0, 0, 0], radius: 1}}";
   const std::string layers = "layers:\n  - {name: a, inside: " + ball + "}\n";
-  static const std::vector<Probe> kProbes = {
+  static const std::vector<Probe> probes = {
       {"", "@\n"},
       {"field_kind", field("{@}")},
       {"half_space", field("{half_space: {point: [0, 0, 0], normal: [0, 0, 1], @}}")},
@@ -74,7 +74,7 @@ const std::vector<Probe>& probes() {
       {"sheet", "sheets:\n  - {name: s, on: " + ball + ", @}\n"},
       {"port", layers + "ports:\n  - {name: p, between: [a, outside], @}\n"},
   };
-  return kProbes;
+  return probes;
 }
 
 std::string withUnknownKey(const Probe& probe) {
