@@ -41,10 +41,10 @@ ForceLimits forceLimits(const TouchOptions& o) {
 }
 
 Json limitsJson(const ForceLimits& limits) {
-  const auto orNull = [](double value, bool given) { return given ? Json(value) : Json(); };
-  return {{"max_force_N", orNull(limits.max_force, std::isfinite(limits.max_force))},
-          {"slew_N_per_s", orNull(limits.max_growth, std::isfinite(limits.max_growth))},
-          {"ramp_s", orNull(limits.ramp, limits.ramp > 0.0)}};
+  const auto or_null = [](double value, bool given) { return given ? Json(value) : Json(); };
+  return {{"max_force_N", or_null(limits.max_force, std::isfinite(limits.max_force))},
+          {"slew_N_per_s", or_null(limits.max_growth, std::isfinite(limits.max_growth))},
+          {"ramp_s", or_null(limits.ramp, limits.ramp > 0.0)}};
 }
 
 std::string limitsText(const ForceLimits& limits) {

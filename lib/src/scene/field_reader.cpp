@@ -187,7 +187,7 @@ FieldReader::Built FieldReader::build(const Node& node) {
   }
   if (node.kind == Node::Kind::kScalar) {
     ++depth_;
-    const Built built = buildNamed(readText(document, node, "a field"), node.mark);
+    Built built = buildNamed(readText(document, node, "a field"), node.mark);
     --depth_;
     return built;
   }
@@ -252,14 +252,14 @@ FieldReader::Built FieldReader::buildBlend(const Node::Entry& kind, MapReader& r
   const Node& fields = reader.require("fields");
   const double radius = positiveLength(reader, "radius");
   reader.finish();
-  const auto blendBy = [&](FieldPtr (*blend)(std::vector<FieldPtr>, double)) {
+  const auto blended = [&](FieldPtr (*blend)(std::vector<FieldPtr>, double)) {
     return combine(kind, fields, [=](std::vector<FieldPtr> operands) {
       return blend(std::move(operands), radius);
     });
   };
-  if (kind.key == "smooth_union") return blendBy(smoothUnite);
-  if (kind.key == "smooth_intersection") return blendBy(smoothIntersect);
-  return blendBy(smoothSubtract);
+  if (kind.key == "smooth_union") return blended(smoothUnite);
+  if (kind.key == "smooth_intersection") return blended(smoothIntersect);
+  return blended(smoothSubtract);
 }
 
 FieldReader::Built FieldReader::combine(const Node::Entry& kind, const Node& operands,
