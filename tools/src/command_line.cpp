@@ -104,6 +104,14 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1.0, 100000.0));
   addFlag(app, g, "--realtime", o.realtime,
           "keep to the clock (default: as fast as the machine goes)");
+  g = "Limits of the force, in this order (default: none)";
+  add(app, g, "--max-force", "FORCE", o.max_force,
+      "shorten longer forces to this, direction kept: 3 (N), 500mN");
+  add(app, g, "--slew", "FORCE/s", o.slew,
+      "let the force grow by no more than this a second: 100 (N/s); it may drop at once");
+  add(app, g, "--ramp", "TIME", o.ramp,
+      "start without force, and reach all of it after this: "
+      "0.2 (s), 200ms");
   g = "Output files";
   add(app, g, "--trace", "FILE.csv", o.trace, "write one row a tick (SI units)");
   add(app, g, "--image", "FILE.png", o.image,
@@ -314,7 +322,7 @@ std::string verbHelp(const Verb& verb) {
   bool unused = false;
   app->add_flag("-h,--help", unused, "print this")->group("General");
   std::string text = app->help();
-  for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);
+  for (std::size_t at = 0; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);
   return text;
 }
 
@@ -424,7 +432,7 @@ Invocation parseCommandLine(const std::vector<std::string>& arguments) {
   if (at == arguments.size()) {
     throw usageError("a verb is missing", "palpate --help lists them");
   }
-  const std::string word = arguments[at];
+  const std::string& word = arguments[at];
   if (word == "--help" || word == "-h") {
     invocation.print = overview();
     return invocation;

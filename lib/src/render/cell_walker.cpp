@@ -112,29 +112,39 @@ CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sl
     double nearest = 1.0;
     bool hit = false;
     bool unsure = false;
+    bool is_second = false;
     LeafId hit_leaf = 0;
-    for (std::size_t k = 0; k < hot_count_; ++k) {
-      const LeafId leaf = hot_[k];
-      if (due_[leaf] > travel_ + nearest * length) continue;
-      if (std::find(sliding.begin(), sliding.end(), leaf) != sliding.end()) continue;
-      SweepSurface surface;
-      surface.field = leaves_[leaf].field.get();
-      surface.side = side(leaf);
-      surface.lipschitz = leaves_[leaf].lipschitz;
-      surface.tolerance = tolerance_[leaf];
-      surface.graze = kGraze * leaves_[leaf].feature;
-      const Vec3 end = nearest < 1.0 ? x_ + nearest * (target - x_) : target;
-      const double start = surface.side * measure(leaf);
-      const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
-      if (budget <= 8) return Stop::kSpent;
-      const SweepResult result = sweep(surface, x_, end, start, budget);
-      if (result.kind == SweepResult::Kind::kFree) continue;
-      evaluations_left_ -= 8;
-      nearest *= result.at;
-      hit = result.kind == SweepResult::Kind::kHit;
-      unsure = !hit;
-      if (unsure) evaluations_left_ -= budget;
-      hit_leaf = leaf;
+    // A sweep lets go of a short passage in and out again. Where another leaf stops the motion amid one,
+    // it is a hit after all: so long as there was a hit, all look at where it stops once more.
+    for (bool again = true; again;) {
+      again = false;
+      for (std::size_t k = 0; k < hot_count_; ++k) {
+        const LeafId leaf = hot_[k];
+        if (due_[leaf] > travel_ + nearest * length) continue;
+        if (isIdle(leaf) || std::find(sliding.begin(), sliding.end(), leaf) != sliding.end()) {
+          continue;
+        }
+        const Vec3 end = nearest < 1.0 ? x_ + nearest * (target - x_) : target;
+        if (is_second) {
+          if (leaf == hit_leaf ||
+              side(leaf) * leaves_[leaf].field->value(end) >= -tolerance_[leaf]) {
+            continue;
+          }
+        }
+        const double start = side(leaf) * measure(leaf);
+        const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
+        if (budget <= 8) return Stop::kSpent;
+        const SweepResult result = sweep(surfaceOf(leaf), x_, end, start, budget);
+        if (result.kind == SweepResult::Kind::kFree) continue;
+        evaluations_left_ -= 8;
+        nearest *= result.at;
+        hit = result.kind == SweepResult::Kind::kHit;
+        unsure = !hit;
+        if (unsure) evaluations_left_ -= budget;
+        hit_leaf = leaf;
+        again = hot_count_ > 1 && nearest > 0.0;
+      }
+      is_second = true;
     }
     if (!hit && !unsure) {
       jump(target);
@@ -153,14 +163,20 @@ CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sl
   }
 }
 
+SweepSurface CellWalker::surfaceOf(LeafId leaf) const noexcept {
+  SweepSurface surface;
+  surface.field = leaves_[leaf].field.get();
+  surface.side = side(leaf);
+  surface.lipschitz = leaves_[leaf].lipschitz;
+  surface.tolerance = tolerance_[leaf];
+  surface.graze = kGraze * leaves_[leaf].feature;
+  return surface;
+}
+
 double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) const noexcept {
   const Leaf& own = leaves_[leaf];
   if (glm::length(b - a) <= kGraze * own.feature) return 1.0;  // as short as what a sweep lets go
-  SweepSurface surface;
-  surface.field = own.field.get();
-  surface.side = side(leaf);
-  surface.lipschitz = own.lipschitz;
-  surface.tolerance = tolerance_[leaf];
+  SweepSurface surface = surfaceOf(leaf);
   // No sheet of the leaf is thinner than its feature size, so none fits between two steps.
   surface.graze = kSlideStride * own.feature;
   surface.allowance = kSlideDip * own.feature * own.lipschitz;
@@ -178,7 +194,7 @@ void CellWalker::gather(LeafId leaf) noexcept {
   Vec3 normal(0.0);
   for (std::size_t k = 0; k < hot_count_ && crossing_count_ < crossing_.size(); ++k) {
     const LeafId other = hot_[k];
-    if (other == leaf) continue;
+    if (other == leaf || isIdle(other)) continue;
     const double near = 4.0 * (tolerance_[other] / leaves_[other].lipschitz +
                                tolerance_[leaf] / leaves_[leaf].lipschitz);
     if (due_[other] - travel_ > near) continue;
@@ -193,12 +209,20 @@ void CellWalker::gather(LeafId leaf) noexcept {
   }
 }
 
+void CellWalker::flip(LeafId leaf, Signs& signs) const noexcept {
+  signs.flip(leaf);
+  for (const LeafId wall : scene_.partition().between(leaf)) {
+    const bool first = signs.inside(leaves_[wall].ends[0]);
+    if (first != signs.inside(leaves_[wall].ends[1])) signs.set(wall, first);
+  }
+}
+
 Facet CellWalker::facetAt(LeafId leaf) noexcept {
   gather(leaf);
   Known& known = known_[leaf];
   if (crossing_count_ == 1 && known.state == state_) return known.facet;
   beyond_ = signs_;  // same size: copies words, allocates nothing
-  for (std::size_t i = 0; i < crossing_count_; ++i) beyond_.flip(crossing_[i]);
+  for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], beyond_);
   const Facet facet =
       scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_, beyond_,
                               std::span(crossing_.data(), crossing_count_), passed_);
@@ -245,7 +269,7 @@ void CellWalker::updateHolding() noexcept {
 
 void CellWalker::cross(LeafId leaf, const Facet& facet) noexcept {
   gather(leaf);
-  for (std::size_t i = 0; i < crossing_count_; ++i) signs_.flip(crossing_[i]);
+  for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], signs_);
   updateHolding();
   --crossings_left_;
   ++state_;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "palpate/contact/sweep.h"
 #include "palpate/interior/port_machine.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene.h"
@@ -56,6 +57,7 @@ class CellWalker {
     refresh(0.0);
     for (std::size_t k = 0; k < hot_count_; ++k) {
       const LeafId leaf = hot_[k];
+      if (isIdle(leaf)) continue;
       const double far = reach * tolerance_[leaf];
       if (due_[leaf] - travel_ > far / leaves_[leaf].lipschitz) continue;
       const double value = side(leaf) * measure(leaf);
@@ -76,6 +78,13 @@ class CellWalker {
   [[nodiscard]] int mouth() const noexcept { return mouth_; }
 
  private:
+  /// True if the leaf means nothing here (Leaf::is_between).
+  [[nodiscard]] bool isIdle(LeafId leaf) const noexcept {
+    const Leaf& own = leaves_[leaf];
+    return own.is_between && !(signs_.inside(own.ends[0]) && signs_.inside(own.ends[1]));
+  }
+  /// Changes the side of `leaf`, and of those between it and another.
+  void flip(LeafId leaf, Signs& signs) const noexcept;
   /// S of the leaf at the point, and until where that keeps it out of reach.
   double measure(LeafId leaf) noexcept;
   /// Sees to it that every leaf that a motion of `length` could reach is in the hot list.
@@ -86,6 +95,7 @@ class CellWalker {
   /// The leaves that change side together with `leaf` where they coincide at the point.
   void gather(LeafId leaf) noexcept;
   void jump(const Vec3& x) noexcept;
+  [[nodiscard]] SweepSurface surfaceOf(LeafId leaf) const noexcept;
 
   const Scene& scene_;
   std::span<const Leaf> leaves_;

@@ -16,7 +16,20 @@ constexpr std::size_t kPatientSurveyLines = 4096;
 
 std::string quoted(const std::string& text) { return "'" + text + "'"; }
 
-std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress) {
+void checkTexture(const Material& material) {
+  const Texture& texture = material.texture;
+  if (texture.amplitude == 0.0) return;
+  if (texture.amplitude > 0.0 &&
+      texture.amplitude <= Texture::highestAmplitude(texture.wavelength)) {
+    return;
+  }
+  throw inputError("scene.texture",
+                   "the texture of material " + quoted(material.name) + " is too high",
+                   "its amplitude must be from 0 to its wavelength / 2 pi");
+}
+
+std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress,
+                                  std::vector<LeafBetween>& between) {
   std::vector<FieldPtr> fields;
   std::map<std::string, std::vector<std::size_t>> groups;
   const std::size_t count = description.layers.size();
@@ -33,8 +46,9 @@ std::vector<FieldPtr> layerFields(const SceneDescription& description, const Pro
   for (const auto& [group, members] : groups) {
     std::vector<FieldPtr> own;
     for (const std::size_t i : members) own.push_back(fields[i]);
-    const std::vector<FieldPtr> shared = shareLabels(own);
-    for (std::size_t k = 0; k < members.size(); ++k) fields[members[k]] = shared[k];
+    const SharedLabels shared = shareLabels(own);
+    for (std::size_t k = 0; k < members.size(); ++k) fields[members[k]] = shared.fields[k];
+    between.insert(between.end(), shared.walls.begin(), shared.walls.end());
   }
   return fields;
 }
@@ -62,7 +76,7 @@ class SceneCompiler {
  public:
   SceneCompiler(const SceneDescription& description, const Progress& progress)
       : description_(description),
-        layers_(layerFields(description, progress)),
+        layers_(layerFields(description, progress, between_)),
         scene_(new Scene(makePartition(progress))) {}
 
   ScenePtr build() {
@@ -95,12 +109,16 @@ class SceneCompiler {
       if (port.where) masks.push_back(port.where->get(progress));
     }
     for (const SheetDescription& sheet : description_.sheets) {
+      if (!sheet.on) {
+        throw errorAt(sheet.place, "scene.sheet_without_field",
+                      "sheet " + quoted(sheet.name) + " has no field that it is on");
+      }
       sheet_mask_of_.push_back(sheet.where ? static_cast<int>(masks.size()) : -1);
       if (sheet.where) masks.push_back(sheet.where->get(progress));
       sheet_solid_of_.push_back(static_cast<int>(masks.size()));
       masks.push_back(sheet.on->get(progress));
     }
-    return Partition(layers_, masks);
+    return Partition(layers_, masks, between_);
   }
 
   void regions() {
@@ -152,6 +170,7 @@ class SceneCompiler {
   }
 
   void materials() {
+    for (const Material& m : description_.materials) checkTexture(m);
     scene_->materials_ = description_.materials;
     Material standard;
     standard.name = "default wall";
@@ -240,6 +259,9 @@ class SceneCompiler {
       sheet.solid = sheet_solid_of_[i];
       sheet.mask = sheet_mask_of_[i];
       sheet.material = wall({false, given.material}, given.place).material;
+      Box3 box = given.on->get()->bounds();
+      if (given.where) box = box.intersectedWith(given.where->get()->bounds());
+      if (box.isBounded()) scene_->sheet_bounds_ = scene_->sheet_bounds_.unitedWith(box);
       sheets.push_back(std::move(sheet));
     }
     return sheets;
@@ -260,8 +282,10 @@ class SceneCompiler {
           given.place, "scene.port_face",
           "port " + quoted(given.name) + " is on " + quoted(given.on_name) +
               ", which is no part of " + quoted(given.from) + " or " + quoted(given.to),
-          "name a field that the layer's `inside` is made from, or use `where:` for an opening "
-          "of any shape");
+          given.on_note.empty()
+              ? "name a field that the layer's `inside` is made from, or use `where:` for an "
+                "opening of any shape"
+              : given.on_note + ", or use `where:` for an opening of any shape");
     }
     return leaves;
   }
@@ -371,6 +395,7 @@ class SceneCompiler {
   }
 
   const SceneDescription& description_;
+  std::vector<LeafBetween> between_;  // filled with the layers
   std::vector<FieldPtr> layers_;
   std::vector<int> mask_of_;
   std::vector<int> sheet_mask_of_;
