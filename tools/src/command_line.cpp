@@ -322,7 +322,7 @@ std::string verbHelp(const Verb& verb) {
   bool unused = false;
   app->add_flag("-h,--help", unused, "print this")->group("General");
   std::string text = app->help();
-  for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);
+  for (std::size_t at = 0; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);
   return text;
 }
 
@@ -432,7 +432,7 @@ Invocation parseCommandLine(const std::vector<std::string>& arguments) {
   if (at == arguments.size()) {
     throw usageError("a verb is missing", "palpate --help lists them");
   }
-  const std::string word = arguments[at];
+  const std::string& word = arguments[at];
   if (word == "--help" || word == "-h") {
     invocation.print = overview();
     return invocation;

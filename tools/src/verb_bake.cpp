@@ -261,6 +261,7 @@ Report run(const BakeOptions& options, const GeneralOptions& general, Console& c
 
   const std::vector<BakedGrid> baked = bakeInput(options, console);
   std::vector<vdb::LevelSet> grids;
+  grids.reserve(baked.size());
   for (const BakedGrid& one : baked) grids.push_back(one.grid);
   checkStop();
   vdb::writeVdb(files.temporary(options.output), grids, true);

@@ -125,15 +125,15 @@ class Rebuild {
   FieldPtr make(const FieldPtr& field) {
     const FieldStructure structure = field->structure();
     std::vector<FieldPtr> operands;
-    const auto visitAll = [&] {
+    const auto visit_all = [&] {
       for (const FieldPtr& operand : structure.operands) operands.push_back(visit(operand));
       return std::move(operands);
     };
     switch (structure.kind) {
       case Kind::kUnion:
-        return unite(visitAll());
+        return unite(visit_all());
       case Kind::kIntersection:
-        return intersect(visitAll());
+        return intersect(visit_all());
       case Kind::kComplement:
         return complement(change_.complemented(structure.operands.front()));
       case Kind::kTransform:
@@ -142,7 +142,7 @@ class Rebuild {
             {structure.pose.rotation, structure.pose.translation * change_.translation_factor});
       case Kind::kFaces:
         if (!change_.opens_faces) break;
-        return withFaces(change_.leaf(field), visitAll());
+        return withFaces(change_.leaf(field), visit_all());
       case Kind::kLeaf:
         break;
     }
@@ -156,7 +156,7 @@ class Rebuild {
 }  // namespace
 
 FieldPtr scale(FieldPtr field, double factor) {
-  const FieldPtr operand = fields::checkedOperand("scale", std::move(field));
+  FieldPtr operand = fields::checkedOperand("scale", std::move(field));
   fields::checkRange("scale", "factor", factor, 1e-6, 1e6);
   if (factor == 1.0) return operand;
   return Rebuild::of(
@@ -166,7 +166,7 @@ FieldPtr scale(FieldPtr field, double factor) {
 }
 
 FieldPtr offset(FieldPtr field, double distance) {
-  const FieldPtr operand = fields::checkedOperand("offset", std::move(field));
+  FieldPtr operand = fields::checkedOperand("offset", std::move(field));
   fields::checkRange("offset", "distance", distance, -fields::kLargestLength,
                      fields::kLargestLength);
   if (std::fabs(distance) < fields::kSmallestLength) return operand;

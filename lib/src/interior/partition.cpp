@@ -140,7 +140,8 @@ struct Partition::Builder {
   std::map<const Field*, std::vector<LeafId>> parts;
 };
 
-Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr> masks)
+Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr> masks,
+                     std::span<const LeafBetween> between)
     : layer_count_(layers.size()) {
   if (layers.size() > kMaxLayers) {
     throw inputError("scene.too_many_layers", "the scene has more than 65534 layers");
@@ -156,6 +157,17 @@ Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr>
     const auto region = static_cast<RegionId>(i + 1);
     for (const LeafId leaf : programs_[i].leaves) regions_of_leaf_[leaf].push_back(region);
     if (evaluate(programs_[i], nowhere)) hold_empty_.push_back(region);
+  }
+  between_.resize(leaves_.size());
+  for (const LeafBetween& each : between) {
+    const std::vector<LeafId> wall = leavesOf(each.wall.get());
+    const std::vector<LeafId> first = leavesOf(each.first.get());
+    const std::vector<LeafId> second = leavesOf(each.second.get());
+    if (wall.size() != 1 || first.size() != 1 || second.size() != 1) continue;
+    leaves_[wall[0]].is_between = true;
+    leaves_[wall[0]].ends = {first[0], second[0]};
+    between_[first[0]].push_back(wall[0]);
+    between_[second[0]].push_back(wall[0]);
   }
   std::vector<Box3> boxes;
   for (const Leaf& leaf : leaves_) boxes.push_back(leaf.field->bounds());

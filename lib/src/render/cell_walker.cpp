@@ -116,7 +116,9 @@ CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sl
       for (std::size_t k = 0; k < hot_count_; ++k) {
         const LeafId leaf = hot_[k];
         if (due_[leaf] > travel_ + nearest * length) continue;
-        if (std::find(sliding.begin(), sliding.end(), leaf) != sliding.end()) continue;
+        if (isIdle(leaf) || std::find(sliding.begin(), sliding.end(), leaf) != sliding.end()) {
+          continue;
+        }
         const Vec3 end = nearest < 1.0 ? x_ + nearest * (target - x_) : target;
         if (is_second) {
           if (leaf == hit_leaf ||
@@ -187,7 +189,7 @@ void CellWalker::gather(LeafId leaf) noexcept {
   Vec3 normal(0.0);
   for (std::size_t k = 0; k < hot_count_ && crossing_count_ < crossing_.size(); ++k) {
     const LeafId other = hot_[k];
-    if (other == leaf) continue;
+    if (other == leaf || isIdle(other)) continue;
     const double near = 4.0 * (tolerance_[other] / leaves_[other].lipschitz +
                                tolerance_[leaf] / leaves_[leaf].lipschitz);
     if (due_[other] - travel_ > near) continue;
@@ -202,12 +204,20 @@ void CellWalker::gather(LeafId leaf) noexcept {
   }
 }
 
+void CellWalker::flip(LeafId leaf, Signs& signs) const noexcept {
+  signs.flip(leaf);
+  for (const LeafId wall : scene_.partition().between(leaf)) {
+    const bool first = signs.inside(leaves_[wall].ends[0]);
+    if (first != signs.inside(leaves_[wall].ends[1])) signs.set(wall, first);
+  }
+}
+
 Facet CellWalker::facetAt(LeafId leaf) noexcept {
   gather(leaf);
   Known& known = known_[leaf];
   if (crossing_count_ == 1 && known.state == state_) return known.facet;
   beyond_ = signs_;  // same size: copies words, allocates nothing
-  for (std::size_t i = 0; i < crossing_count_; ++i) beyond_.flip(crossing_[i]);
+  for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], beyond_);
   const Facet facet =
       scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_, beyond_,
                               std::span(crossing_.data(), crossing_count_), passed_);
@@ -254,7 +264,7 @@ void CellWalker::updateHolding() noexcept {
 
 void CellWalker::cross(LeafId leaf, const Facet& facet) noexcept {
   gather(leaf);
-  for (std::size_t i = 0; i < crossing_count_; ++i) signs_.flip(crossing_[i]);
+  for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], signs_);
   updateHolding();
   --crossings_left_;
   ++state_;

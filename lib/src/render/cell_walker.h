@@ -56,6 +56,7 @@ class CellWalker {
     refresh(0.0);
     for (std::size_t k = 0; k < hot_count_; ++k) {
       const LeafId leaf = hot_[k];
+      if (isIdle(leaf)) continue;
       const double far = reach * tolerance_[leaf];
       if (due_[leaf] - travel_ > far / leaves_[leaf].lipschitz) continue;
       const double value = side(leaf) * measure(leaf);
@@ -76,6 +77,13 @@ class CellWalker {
   [[nodiscard]] int mouth() const noexcept { return mouth_; }
 
  private:
+  /// True if the leaf means nothing here (Leaf::is_between).
+  [[nodiscard]] bool isIdle(LeafId leaf) const noexcept {
+    const Leaf& own = leaves_[leaf];
+    return own.is_between && !(signs_.inside(own.ends[0]) && signs_.inside(own.ends[1]));
+  }
+  /// Changes the side of `leaf`, and of those between it and another.
+  void flip(LeafId leaf, Signs& signs) const noexcept;
   /// S of the leaf at the point, and until where that keeps it out of reach.
   double measure(LeafId leaf) noexcept;
   /// Sees to it that every leaf that a motion of `length` could reach is in the hot list.

@@ -28,7 +28,8 @@ void checkTexture(const Material& material) {
                    "its amplitude must be from 0 to its wavelength / 2 pi");
 }
 
-std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress) {
+std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress,
+                                  std::vector<LeafBetween>& between) {
   std::vector<FieldPtr> fields;
   std::map<std::string, std::vector<std::size_t>> groups;
   const std::size_t count = description.layers.size();
@@ -45,8 +46,9 @@ std::vector<FieldPtr> layerFields(const SceneDescription& description, const Pro
   for (const auto& [group, members] : groups) {
     std::vector<FieldPtr> own;
     for (const std::size_t i : members) own.push_back(fields[i]);
-    const std::vector<FieldPtr> shared = shareLabels(own);
-    for (std::size_t k = 0; k < members.size(); ++k) fields[members[k]] = shared[k];
+    const SharedLabels shared = shareLabels(own);
+    for (std::size_t k = 0; k < members.size(); ++k) fields[members[k]] = shared.fields[k];
+    between.insert(between.end(), shared.walls.begin(), shared.walls.end());
   }
   return fields;
 }
@@ -74,7 +76,7 @@ class SceneCompiler {
  public:
   SceneCompiler(const SceneDescription& description, const Progress& progress)
       : description_(description),
-        layers_(layerFields(description, progress)),
+        layers_(layerFields(description, progress, between_)),
         scene_(new Scene(makePartition(progress))) {}
 
   ScenePtr build() {
@@ -116,7 +118,7 @@ class SceneCompiler {
       sheet_solid_of_.push_back(static_cast<int>(masks.size()));
       masks.push_back(sheet.on->get(progress));
     }
-    return Partition(layers_, masks);
+    return Partition(layers_, masks, between_);
   }
 
   void regions() {
@@ -393,6 +395,7 @@ class SceneCompiler {
   }
 
   const SceneDescription& description_;
+  std::vector<LeafBetween> between_;  // filled with the layers
   std::vector<FieldPtr> layers_;
   std::vector<int> mask_of_;
   std::vector<int> sheet_mask_of_;

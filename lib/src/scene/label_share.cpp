@@ -144,8 +144,9 @@ class LabelShare final : public Field {
 
 }  // namespace
 
-std::vector<FieldPtr> shareLabels(const std::vector<FieldPtr>& fields) {
-  if (fields.size() < 2) return fields;
+SharedLabels shareLabels(const std::vector<FieldPtr>& fields) {
+  if (fields.size() < 2) return {fields, {}};
+  SharedLabels out;
   const std::size_t count = fields.size();
   std::vector<std::vector<FieldPtr>> others(count);
   std::vector<std::vector<FieldPtr>> faces(count);
@@ -159,20 +160,20 @@ std::vector<FieldPtr> shareLabels(const std::vector<FieldPtr>& fields) {
       // One leaf for both: where both are negative its sign tells whose the point is. Elsewhere it says
       // nothing, so that the skin of either is closed on both sides of where the two meet.
       const auto wall = std::make_shared<LabelWall>(fields[i], fields[j], box);
+      out.walls.push_back({wall, fields[i], fields[j]});
       others[i].push_back(fields[j]);
       others[j].push_back(fields[i]);
       faces[i].push_back(complement(intersect({fields[j], complement(wall)})));
       faces[j].push_back(complement(intersect({fields[i], wall})));
     }
   }
-  std::vector<FieldPtr> out;
   for (std::size_t i = 0; i < count; ++i) {
     if (others[i].empty()) {
-      out.push_back(fields[i]);
+      out.fields.push_back(fields[i]);
       continue;
     }
     faces[i].insert(faces[i].begin(), fields[i]);
-    out.push_back(
+    out.fields.push_back(
         std::make_shared<LabelShare>(fields[i], std::move(others[i]), std::move(faces[i])));
   }
   return out;

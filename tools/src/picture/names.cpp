@@ -71,6 +71,7 @@ void drawNames(Sheet& s) {
   LabelPlacer placer(s.section);
   for (const auto& line : s.busy) {
     std::vector<Pixel> local;
+    local.reserve(line.size());
     for (const Pixel& p : line) local.push_back({p.x - s.left, p.y - s.top});
     placer.markBusy(local);
   }

@@ -18,11 +18,11 @@ void parallelRows(int rows, const Progress& progress, const char* what,
   std::vector<std::jthread> helpers;
   for (std::size_t worker = 1; worker < workerCount(); ++worker) {
     helpers.emplace_back([&, worker] {
-      for (int y; !stopped.load() && (y = next.fetch_add(1)) < rows;) row(y, worker);
+      for (int y = 0; !stopped.load() && (y = next.fetch_add(1)) < rows;) row(y, worker);
     });
   }
   try {
-    for (int y; (y = next.fetch_add(1)) < rows;) {
+    for (int y = 0; (y = next.fetch_add(1)) < rows;) {
       report(progress, what, static_cast<double>(y) / rows);
       row(y, 0);
     }

@@ -115,6 +115,7 @@ double drawInset(Sheet& s, const Box3& box, Console& console) {
     return Pixel{q.x + x, q.y + y};
   };
   std::vector<Pixel> line;
+  line.reserve(path.size());
   for (const Vec3& p : path) line.push_back(at(p));
   s.canvas.line(line, {rgb(0xFFFFFF, 0.8), s.px(4.5)});
   s.canvas.line(line, {kProxyInk, s.px(2.2)});

@@ -2,6 +2,7 @@
 /// Space cut into regions. Each layer is a Boolean expression over smooth leaf fields; the leaves' signs
 /// at a point say which layers hold it, and the last of those is its region (DESIGN.md section 2).
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -24,6 +25,18 @@ struct Leaf {
   FieldPtr field;
   double lipschitz = 1.0;  ///< Field::lipschitz()
   double feature = 1.0;    ///< [m] Field::featureSize(): the unit of tolerances at this leaf
+  /// A leaf between two others means something only where both of them are inside; where just one is, it is
+  /// inside with the first of them and outside with the second.
+  bool is_between = false;
+  std::array<LeafId, 2> ends{};
+};
+
+/// Tells that `wall` is a leaf between `first` and `second`: all three vanish in one line, and without this
+/// rounding could see cells there that do not exist. Ignored where one of the two is not a single leaf.
+struct LeafBetween {
+  FieldPtr wall;
+  FieldPtr first;   ///< inside wherever the wall is inside and `second` is
+  FieldPtr second;  ///< inside wherever the wall is outside and `first` is
 };
 
 /// One bit for each leaf: true is inside (negative). Its size is fixed at set-up.
@@ -68,7 +81,8 @@ class Partition {
   /// extent of a port or sheet: its leaves cut cells, but it holds no region. A leaf that several of
   /// them use (the same field at the same place) is one leaf. @throws Error (kInput) for more
   /// leaves or layers than the id types hold.
-  explicit Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr> masks = {});
+  explicit Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr> masks = {},
+                     std::span<const LeafBetween> between = {});
 
   [[nodiscard]] std::span<const Leaf> leaves() const noexcept { return leaves_; }
   [[nodiscard]] std::size_t regionCount() const noexcept { return layer_count_ + 1; }
@@ -83,6 +97,11 @@ class Partition {
   /// Regions whose layer's expression uses `leaf`.
   [[nodiscard]] std::span<const RegionId> regionsOf(LeafId leaf) const noexcept {
     return regions_of_leaf_[leaf];
+  }
+
+  /// Leaves that lie between `leaf` and another one.
+  [[nodiscard]] std::span<const LeafId> between(LeafId leaf) const noexcept {
+    return between_[leaf];
   }
 
   /// Which leaves' insides may come near a point: items are leaf ids.
@@ -120,6 +139,7 @@ class Partition {
   std::vector<Program> programs_;  ///< the layers', then the masks'
   std::size_t layer_count_ = 0;
   std::vector<std::vector<RegionId>> regions_of_leaf_;
+  std::vector<std::vector<LeafId>> between_;  ///< by either end
   std::vector<RegionId>
       hold_empty_;  ///< regions that hold the cell outside all leaves (complements)
   BoundsTree tree_;
