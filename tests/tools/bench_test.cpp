@@ -111,7 +111,9 @@ TEST(Bench, WritesATableAndAPlot) {
     EXPECT_EQ(row["scene"], "groove");
     EXPECT_EQ(row["renderer"], i == 1 ? "constraint" : "paper");
     EXPECT_GT(std::stod(row["median_ns"]), 0.0);
-    if (i == 1) EXPECT_LE(std::stod(row["force_error_max"]), 1e-6);
+    if (i == 1) {
+      EXPECT_LE(std::stod(row["force_error_max"]), 1e-6);
+    }
   }
 
   const std::string svg = textOf(folder.path() + "/a.svg");
