@@ -99,10 +99,9 @@ void ConstraintRenderer::findContact(const Vec3& hip) noexcept {
   c.planes = 0;
   c.count = 0;
   c.sliding_count = 0;
-  const Vec3& x = walker_.position();
   walker_.forNear(kNear, [&](LeafId leaf, double value, const Facet& facet) {
     if (!facet.isClosed() || c.planes == kMaxPlanes) return;
-    const FieldJet jet = walker_.leaf(leaf).field->jet(x);
+    const FieldJet& jet = walker_.jetHere(leaf);
     const double slope = glm::length(jet.gradient);
     if (!(slope > 0.0)) return;
     c.leaf[c.planes] = leaf;
@@ -111,7 +110,7 @@ void ConstraintRenderer::findContact(const Vec3& hip) noexcept {
     c.plane[c.planes] = {walker_.side(leaf) / slope * jet.gradient, value / slope};
     ++c.planes;
   });
-  const Vec3 wish = hip - x;
+  const Vec3 wish = hip - walker_.position();
   const PlaneSolution solution = closestStep(wish, std::span(c.plane.data(), c.planes));
   c.step = solution.step;
   for (int i = 0; i < solution.count; ++i) {
