@@ -68,6 +68,8 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
   report.has_locked_memory = elevation.hasLockedMemory();
   report.elevated = report.has_priority && report.has_locked_memory;
 
+  // A maximum that is not a number is no permission.
+  const double limit = device.info().max_force > 0.0 ? device.info().max_force : 0.0;
   DeviceState last;
   bool has_reading = false;
   const std::int64_t period = settings.realtime ? std::llround(1e9 / settings.rate) : 1;
@@ -93,6 +95,9 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
       if (!isFinite(force) || !isFinite(last.position) || !isFinite(last.velocity)) {
         force = Vec3(0.0);
         ++report.zeroed;
+      } else if (const double length = glm::length(force); length > limit) {
+        force *= limit / length;
+        ++report.shortened;
       }
     }
     if (ends(device.write(force), report.exit)) break;

@@ -21,7 +21,7 @@ VirtualDevice::VirtualDevice(Path path) : path_(std::move(path)) {
     if (isFinite(path_[i].position)) info_.workspace.include(path_[i].position);
   }
   info_.name = "virtual";
-  info_.max_force = kInfinity;
+  info_.max_force = kMaxForce;
 }
 
 void VirtualDevice::open() {

@@ -137,6 +137,23 @@ TEST(RunServo, AForceThatIsNotFiniteIsWrittenAsZeroAndTheLoopGoesOn) {
   }
 }
 
+TEST(RunServo, AForceBeyondTheDevicesMaximumIsShortenedAndKeepsItsDirection) {
+  ScriptedDevice device;  // holds 10 N
+  device.reads.assign(3, kOk);
+  const Vec3 forces[] = {{0.0, 6.0, 8.0}, {0.0, -30.0, 40.0}, {1e300, 0.0, 0.0}};
+  std::size_t tick = 0;
+  const ServoReport report = runServo(
+      device, [&](const DeviceState& /*state*/) { return forces[tick++]; }, {}, kNeverStop);
+  EXPECT_EQ(report.shortened, 2U);
+  EXPECT_EQ(report.zeroed, 0U);
+  ASSERT_EQ(device.written.size(), 4U);
+  EXPECT_EQ(device.written[0], forces[0]);
+  EXPECT_NEAR(device.written[1].y, -6.0, 1e-14);
+  EXPECT_NEAR(device.written[1].z, 8.0, 1e-14);
+  EXPECT_LE(glm::length(device.written[2]), 10.0);  // its square overflows: at most the maximum
+  expectAtRest(device);
+}
+
 TEST(RunServo, ANanPositionGivesZeroForceWhateverTheTickSays) {
   ScriptedDevice device;
   device.reads.assign(3, kOk);

@@ -9,24 +9,13 @@
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
+#include "support/error_of.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {
 namespace {
 
 using namespace palpate::vdb::test;  // NOLINT(google-build-using-namespace)
-
-/// The problem that `work` ends in.
-template <typename Work>
-Error errorOf(const Work& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no error";
-  return inputError("none", "none");
-}
 
 Error bakeError(const FieldPtr& field, const BakeOptions& options) {
   return errorOf([&] { static_cast<void>(bake(*field, options)); });

@@ -23,6 +23,7 @@
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "support/error_of.h"
 #include "support/temp_file.h"
 #include "vdb/shapes.h"
 
@@ -50,17 +51,6 @@ std::vector<std::string> namesIn(const TempFolder& folder) {
     names.push_back(entry.path().filename().string());
   }
   return names;
-}
-
-template <typename Work>
-Error errorOf(const Work& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no error";
-  return inputError("none", "none");
 }
 
 Error readError(const std::string& path, const std::string& name = "",

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "palpate/scene/scene_file.h"
+#include "support/error_of.h"
 
 namespace palpate {
 
@@ -28,15 +29,10 @@ inline std::ostream& operator<<(std::ostream& out, const Refusal& refusal) {
 
 /// Runs `read` and returns what it threw; an empty problem, and a failure, if it did not.
 template <typename Read>
-Problem problemOf(Read&& read) {
-  try {
-    read();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::kInput);
-    return error.problem();
-  }
-  ADD_FAILURE() << "it was accepted";
-  return {};
+Problem problemOf(const Read& read) {
+  const Error error = errorOf(read);
+  EXPECT_EQ(error.kind(), ErrorKind::kInput);
+  return error.problem();
 }
 
 inline void expectRefusal(const Refusal& refusal, const Problem& problem) {

@@ -26,7 +26,7 @@ enum class DeviceStatus : std::uint8_t {
 
 struct DeviceInfo {
   std::string name;
-  double max_force = 0.0;  ///< [N] continuous
+  double max_force = 0.0;  ///< [N] continuous; the servo loop never writes a longer force
   Box3 workspace;          ///< [m, device]
 };
 

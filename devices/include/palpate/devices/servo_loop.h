@@ -31,6 +31,7 @@ struct ServoReport {
   bool has_locked_memory = false;  ///< ran with locked memory because of `elevate`
   bool elevated = false;           ///< both
   std::uint64_t zeroed = 0;        ///< forces that were not finite and were written as zero
+  std::uint64_t shortened = 0;  ///< forces longer than the device's maximum, written at that length
 };
 
 /// Runs the loop on the calling thread until the path ends, the device fails or `stop` becomes true.
@@ -38,7 +39,7 @@ struct ServoReport {
 /// contract, too), the last thing written to the device is zero force.
 ///
 /// - A force that is not finite, or that answers a position or velocity that is not finite, is written
-///   as zero.
+///   as zero. One longer than DeviceInfo::max_force is shortened to it, its direction kept.
 /// - kStale: the tick gets the previous reading again; before the first reading it is not called.
 /// - kTimeout, kDisconnected, kFault and kEnd, from read() or write(), end the loop.
 /// - realtime: tick k is due at start + k / rate by the monotonic clock. After an overrun the ticks

@@ -9,9 +9,13 @@ namespace palpate::devices {
 /// One read() is one row of the path. The velocity is the backward difference of the rows (0 at the
 /// first), the time is the row's. After the last row read() answers kEnd and leaves its argument alone.
 /// While it is not open, read() and write() answer kDisconnected. open() starts the path anew.
-/// Its maximum force is infinite, its workspace the box of the path.
+/// Its maximum force is kMaxForce, its workspace the box of the path.
 class VirtualDevice final : public Device {
  public:
+  /// [N] A hundred times what desktop devices hold, so that closed forms hold in every sane scene, and
+  /// yet a limit, as every device has one.
+  static constexpr double kMaxForce = 1000.0;
+
   /// @throws Error (kInput) for an empty path or times that do not rise. Positions are taken as they
   /// are, so that a NaN from a broken sensor can be played.
   explicit VirtualDevice(Path path);

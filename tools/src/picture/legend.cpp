@@ -1,0 +1,84 @@
+#include <vector>
+
+#include "picture/palette.h"
+#include "picture/sheet.h"
+
+namespace palpate::tools {
+namespace {
+
+std::string feelOf(const Sheet& s, const Region& region) {
+  std::string text;
+  if (region.wall_absent) text = "no wall";
+  if (region.wall >= 0) {
+    text = "wall " +
+           formatNumber(s.scene.materials()[static_cast<std::size_t>(region.wall)].stiffness) +
+           " N/m";
+  }
+  if (region.content >= 0) {
+    const Material& m = s.scene.materials()[static_cast<std::size_t>(region.content)];
+    if (m.viscosity > 0.0) text += ", drag " + formatNumber(m.viscosity) + " N.s/m";
+  }
+  return text;
+}
+
+}  // namespace
+
+void drawLegend(Sheet& s, double y) {
+  const double x = s.options.width - s.side + s.px(4);
+  const double limit = s.options.height - s.px(20);
+  const double row = s.px(25);
+  y += s.px(26);
+  const auto entry = [&](const std::string& name, const std::string& detail, const auto& swatch) {
+    if (y > limit) return;
+    swatch(y - s.px(5));
+    const TextStyle bold = s.font(15);
+    s.canvas.text({x + s.px(46), y}, name, bold);
+    if (!detail.empty()) {
+      s.canvas.text({x + s.px(46) + s.canvas.textWidth(name, bold) + s.px(9), y}, detail,
+                    s.font(13, kFaintInk));
+    }
+    y += row;
+  };
+  std::vector<bool> seen(s.scene.regions().size(), false);
+  for (const std::uint64_t cell : s.section.cells) seen[cell & 0xFFFFU] = true;
+  for (std::size_t i = 1; i < s.scene.regions().size(); ++i) {
+    const Region& region = s.scene.regions()[i];
+    if (!seen[i]) continue;
+    entry(region.name, feelOf(s, region), [&](double at) {
+      s.canvas.rectangle(x, at - s.px(8), s.px(34), s.px(17), regionColor(static_cast<RegionId>(i)),
+                         s.px(3));
+      s.canvas.frame(x, at - s.px(8), s.px(34), s.px(17), {rgb(0x9A9AA2), s.px(0.8)});
+    });
+  }
+  y += s.px(8);
+  const auto stroke = [&](const Stroke& s) {
+    return [&, s](double at) { s.canvas.line({{x, at}, {x + s.px(34), at}}, s); };
+  };
+  bool wall = false, absent = false, port = false, pressed = false;
+  for (const Boundary& line : s.section.boundaries) {
+    wall |= line.kind == Boundary::Kind::kWall || line.kind == Boundary::Kind::kSheet;
+    absent |= line.kind == Boundary::Kind::kAbsent;
+    port |= line.kind == Boundary::Kind::kPort;
+    pressed |= line.kind == Boundary::Kind::kPressed;
+  }
+  if (wall) entry("wall", "", stroke({kWallInk, s.px(2.2)}));
+  if (absent)
+    entry("no wall", "free to cross", stroke({kAbsentInk, s.px(1.5), {s.px(6), s.px(5)}}));
+  if (port) entry("port", "an opening in a wall", stroke({kPortInk, s.px(4)}));
+  if (pressed) {
+    entry("port", "opens when it is pressed", [&](double at) {
+      s.canvas.line({{x, at}, {x + s.px(34), at}}, {kWallInk, s.px(2.2)});
+      s.canvas.line({{x, at}, {x + s.px(34), at}}, {kPortInk, s.px(4), {s.px(5), s.px(7)}});
+    });
+  }
+  if (s.options.track.points.empty()) return;
+  entry("hand", "where the device was", stroke({kHipInk, s.px(1.7), {s.px(7), s.px(4)}}));
+  entry("proxy", "the tip, held by the walls", stroke({kProxyInk, s.px(3)}));
+  if (s.peak > 0.0) {
+    entry("force on the hand", "longest " + formatNumber(s.peak, 3) + " N", [&](double at) {
+      s.canvas.arrow({x, at}, {x + s.px(34), at}, {kForceInk, s.px(2)}, s.px(9));
+    });
+  }
+}
+
+}  // namespace palpate::tools

@@ -1,0 +1,60 @@
+#pragma once
+/// Sheet: what the parts of a picture share, and those parts in the order in which they are painted.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "picture/canvas.h"
+#include "picture/paint.h"
+#include "picture/palette.h"
+#include "picture/picture.h"
+#include "picture/section.h"
+#include "text.h"
+
+namespace palpate::tools {
+
+/// One picture being drawn. The section lies at (left, top), the view in space and the legend in a column of width
+/// `side` on the right. Lengths in pixels of the sheet unless noted.
+struct Sheet {
+  const Scene& scene;
+  const PictureOptions& options;
+  LengthUnit unit;
+  double scale;  ///< of everything that is not to scale with the scene: 1 at 1600 x 1000
+  Canvas canvas;
+  Paint paint;
+  CutPlane plane;
+  View view;
+  Section section;
+  double side = 0.0, left = 0.0, top = 0.0;
+  double peak = 0.0;                     ///< [N] largest force of the track
+  bool zoomed = false;                   ///< only the surroundings of the track are in view
+  std::vector<std::vector<Pixel>> busy;  ///< lines that names stay off
+
+  Sheet(const Scene& the_scene, const PictureOptions& the_options)
+      : scene(the_scene),
+        options(the_options),
+        unit{the_scene.lengthUnit(), the_scene.metresPerUnit()},
+        scale(std::clamp(std::min(the_options.width / 1600.0, the_options.height / 1000.0), 0.45,
+                         4.0)),
+        canvas(the_options.width, the_options.height),
+        paint(the_options.image) {}
+
+  [[nodiscard]] double px(double at_full_size) const { return at_full_size * scale; }
+  [[nodiscard]] Pixel onSheet(const Pixel& p) const { return {p.x + left, p.y + top}; }
+  [[nodiscard]] TextStyle font(double size, const Color& color = kInk) const {
+    TextStyle style;
+    style.size = px(size);
+    style.color = color;
+    return style;
+  }
+};
+
+void drawBoundaries(Sheet& s);        ///< walls, ports, sheets of the section
+void drawTrack(Sheet& s);             ///< hand, proxy and forces; sets `peak`
+void drawScaleBar(Sheet& s);          ///< in the section's lower left corner
+void drawAxes(Sheet& s);              ///< coordinates around the section
+void drawNames(Sheet& s);             ///< of regions and ports, where there is room
+void drawLegend(Sheet& s, double y);  ///< below `y` in the right column
+
+}  // namespace palpate::tools
