@@ -51,8 +51,8 @@ void drawLegend(Sheet& s, double y) {
     });
   }
   y += s.px(8);
-  const auto stroke = [&](const Stroke& s) {
-    return [&, s](double at) { s.canvas.line({{x, at}, {x + s.px(34), at}}, s); };
+  const auto stroke = [&](const Stroke& pen) {
+    return [&, pen](double at) { s.canvas.line({{x, at}, {x + s.px(34), at}}, pen); };
   };
   bool wall = false, absent = false, port = false, pressed = false;
   for (const Boundary& line : s.section.boundaries) {
