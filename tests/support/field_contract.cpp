@@ -137,7 +137,7 @@ double shootAtBorder(const FieldCase& field_case, const Field& field, const Vec3
     best_direction = u;
     return true;
   };
-  const auto shootShorter = [&](const Vec3& u) {
+  const auto shoot_shorter = [&](const Vec3& u) {
     // A few lengths: a thin part may begin and end short of `best`.
     static_cast<void>(shoot(u, best * (1.0 - 1e-9)) || shoot(u, best * 0.97) ||
                       shoot(u, best * 0.8));
@@ -152,10 +152,10 @@ double shootAtBorder(const FieldCase& field_case, const Field& field, const Vec3
     const double length = glm::length(aim);
     if (length > 0.0 && length < best) shoot(aim / length, length);
   }
-  for (int i = 0; i < 150; ++i) shootShorter(random.direction());
+  for (int i = 0; i < 150; ++i) shoot_shorter(random.direction());
   for (double spread = 0.3; spread > 1e-6; spread *= 0.93) {
     if (best_direction == Vec3(0.0)) break;
-    shootShorter(glm::normalize(best_direction + random.direction() * spread));
+    shoot_shorter(glm::normalize(best_direction + random.direction() * spread));
   }
   return best;
 }
@@ -179,7 +179,7 @@ AssertionResult checkGradient(const FieldCase& field_case) {
       ++at_crease;
       continue;
     }
-    const auto isOff = [&] {
+    const auto is_off = [&] {
       // What the differences themselves are off by: rounding of the value over the step, and the
       // square of step times curvature, which is the jump.
       const double noise =
@@ -188,11 +188,11 @@ AssertionResult checkGradient(const FieldCase& field_case) {
       return !(glm::length(stencil.slope - s.gradient) <=
                field_case.gradient_tolerance * scale + noise + bend);
     };
-    if (!isOff()) continue;
+    if (!is_off()) continue;
     // Near a caustic the curvature itself changes within the step.
     step /= 16.0;
     stencil = stencilAt(*field, p, step);
-    if (isOff()) {
+    if (is_off()) {
       return AssertionFailure() << "at " << text(p) << " the gradient is " << text(s.gradient)
                                 << ", differences give " << text(stencil.slope);
     }
@@ -244,19 +244,19 @@ AssertionResult checkBounds(const FieldCase& field_case) {
       // The lowest point of the plane just beyond the face, from the best of many.
       const double beyond = 1e-6 * diagonal(field_case);
       const double plane = face == bounds.lo[axis] ? face - beyond : face + beyond;
-      const auto onPlane = [&](Vec3 p) {
+      const auto on_plane = [&](Vec3 p) {
         p = glm::clamp(p, window.lo, window.hi);
         p[axis] = plane;
         return p;
       };
-      Vec3 lowest = onPlane(window.center());
+      Vec3 lowest = on_plane(window.center());
       for (int i = 0; i < 300; ++i) {
-        const Vec3 p = onPlane(random.in(window));
+        const Vec3 p = on_plane(random.in(window));
         if (field->value(p) < field->value(lowest)) lowest = p;
       }
       double spread = 0.1 * diagonal(field_case);
       for (int i = 0; i < 300; ++i) {
-        const Vec3 p = onPlane(lowest + random.direction() * spread);
+        const Vec3 p = on_plane(lowest + random.direction() * spread);
         if (field->value(p) < field->value(lowest)) {
           lowest = p;
         } else {

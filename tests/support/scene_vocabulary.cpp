@@ -8,8 +8,8 @@ namespace palpate::testing {
 
 const Document& sceneSchema() {
   // JSON is a subset of what the scene reader reads.
-  static const auto kSchema = readDocument(PALPATE_SOURCE_DIR "/data/schema/scene-1.json");
-  return *kSchema;
+  static const auto schema = readDocument(PALPATE_SOURCE_DIR "/data/schema/scene-1.json");
+  return *schema;
 }
 
 Words schemaKeys(const std::string& definition) {

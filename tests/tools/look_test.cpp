@@ -135,6 +135,37 @@ TEST(Explain, AValveHasNoTransitionBack) {
   EXPECT_EQ(json["transitions"][1]["conditions"], Json::array({"on leaflets", "after inlet"}));
 }
 
+TEST(Explain, SheetsAndTheirMaterials) {
+  Json json = jsonOf({"explain", scenePath("flag.yaml")});
+  ASSERT_EQ(json["sheets"].size(), 2U);
+  EXPECT_EQ(json["sheets"][0]["name"], "flag");
+  EXPECT_EQ(json["sheets"][0]["where"], true);
+  Json canvas = json["sheets"][0]["wall"]["material"];
+  EXPECT_EQ(canvas["name"], "canvas");
+  EXPECT_NEAR(canvas["texture"]["amplitude_m"], 1e-4, 1e-15);
+  EXPECT_NEAR(canvas["texture"]["wavelength_m"], 2e-3, 1e-15);
+  const std::string text = runPalpate({"explain", scenePath("flag.yaml")}).out;
+  EXPECT_NE(text.find("flag      canvas (600 N/m)"), std::string::npos) << text;
+  Json info = jsonOf({"info", scenePath("flag.yaml")})["files"][0];
+  ASSERT_EQ(info["sheets"].size(), 2U);
+  EXPECT_EQ(info["sheets"][1]["name"], "membrane");
+  EXPECT_EQ(info["sheets"][1]["wall"], "skin");
+}
+
+// Whatever the fields are made of: explain, info, query and render take every shipped analytic scene.
+TEST(EveryVerb, TakesTheShippedScenes) {
+  for (const char* name : {"container", "csg_part", "valve_tube", "fields", "sponge", "flag"}) {
+    const TempFolder folder;
+    const std::string scene = scenePath(std::string(name) + ".yaml");
+    EXPECT_GE(jsonOf({"explain", scene})["regions"].size(), 2U) << name;
+    EXPECT_EQ(jsonOf({"info", scene})["files"][0]["kind"], "scene") << name;
+    EXPECT_EQ(jsonOf({"query", scene, "--at", "0,0,14"})["points"].size(), 1U) << name;
+    const CommandResult drawn = runPalpate(
+        {"render", scene, "-o", "s.png", "--plane", "y=0", "--size", "480x360"}, folder.path());
+    EXPECT_EQ(drawn.exit_code, 0) << name << drawn.err;
+  }
+}
+
 TEST(Explain, WhatCannotBeEnteredIsNamedWithTheReason) {
   const TempFolder folder;
   const std::string scene = folder.file("s.yaml", R"(palpate: 1

@@ -131,6 +131,65 @@ TEST_F(Touch, EveryMotionRunsWithBothRenderers) {
   }
 }
 
+// The wall gives 3 N at 2 mm; the limits come between it and the hand.
+TEST_F(Touch, LimitsOfTheForce) {
+  const std::vector<std::string> motion = {"--press", "0,0,-40", "--normal", "0,0,-1",
+                                           "--depth", "2",       "--hold",   "0.5",
+                                           "--trace", "t.csv",   "--force",  "--json"};
+  const auto forces = [&](std::vector<std::string> limits, Json& json) {
+    limits.insert(limits.begin(), motion.begin(), motion.end());
+    const CommandResult result = touch(limits);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    json = parseOnly(result);
+    std::vector<double> all;
+    const auto lines = linesOf(textOf(folder_.path("t.csv")));
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      const auto cells = cellsOf(lines[i]);
+      all.push_back(std::hypot(std::stod(cells[7]), std::stod(cells[8]), std::stod(cells[9])));
+    }
+    return all;
+  };
+  Json json;
+  const std::vector<double> plain = forces({}, json);
+  EXPECT_NEAR(json["peak_force_N"], 3.0, 1e-6);
+  EXPECT_TRUE(json["limits"]["max_force_N"].is_null());
+  EXPECT_TRUE(json["limits"]["slew_N_per_s"].is_null());
+  EXPECT_TRUE(json["limits"]["ramp_s"].is_null());
+
+  const std::vector<double> clamped = forces({"--max-force", "1.2"}, json);
+  EXPECT_EQ(json["limits"]["max_force_N"], 1.2);
+  EXPECT_NEAR(json["peak_force_N"], 1.2, 1e-12);
+  ASSERT_EQ(clamped.size(), plain.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_NEAR(clamped[i], std::min(plain[i], 1.2), 1e-12) << i;
+  }
+  (void)forces({"--max-force", "1200mN"}, json);
+  EXPECT_EQ(json["limits"]["max_force_N"], 1.2);
+
+  // 10 N/s at 1 kHz: 0.01 N a tick, and down at once.
+  const std::vector<double> slewed = forces({"--slew", "10N/s"}, json);
+  EXPECT_EQ(json["limits"]["slew_N_per_s"], 10.0);
+  bool was_held_back = false;
+  for (std::size_t i = 1; i < plain.size(); ++i) {
+    EXPECT_LE(slewed[i] - slewed[i - 1], 0.01 + 1e-12) << i;
+    EXPECT_LE(slewed[i], plain[i] + 1e-12) << i;
+    was_held_back = was_held_back || slewed[i] < plain[i] - 0.1;
+  }
+  EXPECT_TRUE(was_held_back);
+
+  // The motion lasts well over 0.1 s before it rests at 3 N.
+  const std::vector<double> ramped = forces({"--ramp", "400ms"}, json);
+  EXPECT_EQ(json["limits"]["ramp_s"], 0.4);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_NEAR(ramped[i], plain[i] * std::min(1.0, static_cast<double>(i) / 400.0), 1e-2) << i;
+  }
+  const std::string text = touch({"--press", "0,0,-40", "--normal", "0,0,-1", "--max-force", "2",
+                                  "--slew", "50", "--ramp", "0.1"})
+                               .out;
+  EXPECT_NE(text.find("at most 2 N, growing by at most 50 N/s, from 0 in 0.1 s"), std::string::npos)
+      << text;
+}
+
 TEST_F(Touch, RealTimeKeepsToTheClockAndReportsOverruns) {
   const CommandResult result = touch({"--press", "0,0,-40", "--normal", "0,0,-1", "--depth", "0.5",
                                       "--clearance", "0.5", "--hold", "0", "--realtime", "--json"});
@@ -193,6 +252,11 @@ TEST(TouchScenes, TheShippedScenesRun) {
       {"valve_tube.yaml",
        {"--insert", "-60,0,0", "60,0,0"},
        {"outside", "upstream", "downstream", "outside"}},
+      {"fields.yaml", {"--stroke", "-120,30,14", "120,30,14"}, {"outside"}},
+      {"sponge.yaml", {"--insert", "-6,0,40", "-6,0,-16", "--back"}, {"outside", "jelly", "outside"}},
+      {"flag.yaml",
+       {"--insert", "30,0,15", "-5,0,15", "-5,0,-15", "30,0,-15"},
+       {"outside", "water"}},
       // The valve refuses the way back: the proxy stays downstream.
       {"valve_tube.yaml",
        {"--insert", "-60,0,0", "20,0,0", "--back"},
@@ -207,6 +271,7 @@ TEST(TouchScenes, TheShippedScenesRun) {
     Json json = parseOnly(result);
     for (const Json& visit : json["regions"]) regions.push_back(visit["region"]);
     EXPECT_EQ(regions, run.regions) << run.scene;
+    EXPECT_GT(json["peak_force_N"], 0.0) << run.scene;
   }
 }
 

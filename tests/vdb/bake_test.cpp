@@ -45,7 +45,7 @@ std::vector<BakeCase> cases() {
       intersect({halfSpace(Vec3(0.0), Vec3(-s, c, 0.0)), halfSpace(Vec3(0.0), Vec3(-s, -c, 0.0)),
                  box(Vec3(10e-3, 0.0, 0.0), Vec3(20e-3, 20e-3, 10e-3))});
   const Box3 corner{Vec3(-4e-3, -20e-3, -20e-3), Vec3(20e-3, 5e-3, 20e-3)};
-  const auto signedBox = [](const Box3& b, const Vec3& p) {
+  const auto signed_box = [](const Box3& b, const Vec3& p) {
     const Vec3 q = glm::max(b.lo - p, p - b.hi);
     return glm::length(glm::max(q, Vec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0);
   };
@@ -76,18 +76,18 @@ std::vector<BakeCase> cases() {
       {"cut_by_a_box", ball, 0.5e-3,
        [=](const Vec3& p) {
          const Box3 domain = corner.intersectedWith(ball->bounds());
-         return std::max(ball->value(p), signedBox(domain, p));
+         return std::max(ball->value(p), signed_box(domain, p));
        },
        corner},
       {"unbounded", halfSpace(Vec3(0.1e-3), Vec3(1.0, 2.0, 3.0)), 0.5e-3,
        [=](const Vec3& p) {
          const Vec3 n = glm::normalize(Vec3(1.0, 2.0, 3.0));
-         return std::max(glm::dot(p - Vec3(0.1e-3), n), signedBox(corner, p));
+         return std::max(glm::dot(p - Vec3(0.1e-3), n), signed_box(corner, p));
        },
        corner},
       {"inside_out", complement(ball), 0.5e-3,
        [=](const Vec3& p) {
-         return std::max(-ball->value(p), signedBox({Vec3(-12e-3), Vec3(12e-3)}, p));
+         return std::max(-ball->value(p), signed_box({Vec3(-12e-3), Vec3(12e-3)}, p));
        },
        Box3{Vec3(-12e-3), Vec3(12e-3)}},
   };

@@ -31,11 +31,11 @@ TEST(HeadScene, ANeedlePassesSkinBrainAndThalamusInThatOrder) {
 
   const Vec3 from = Vec3(-100, -42, 60) * kMm;
   const Vec3 to = Vec3(-12, -18, 8) * kMm;
-  const auto nameAt = [&](const Vec3& p) { return scene->regions()[scene->regionAt(p)].name; };
+  const auto name_at = [&](const Vec3& p) { return scene->regions()[scene->regionAt(p)].name; };
   std::vector<std::string> order;
   for (int i = 0; i <= 1050; ++i) {
     const Vec3 p = from + (to - from) * (i / 1050.0);
-    if (const std::string name = nameAt(p); order.empty() || order.back() != name) {
+    if (const std::string name = name_at(p); order.empty() || order.back() != name) {
       order.push_back(name);
       std::printf("  %s from %.1f mm\n", name.c_str(), glm::length(p - from) / kMm);
     }

@@ -100,7 +100,7 @@ TEST(ResolveLabels, TakesValuesNamesAndGlobs) {
 }
 
 TEST(ResolveLabels, NamesWhatMatchesNothing) {
-  const auto problemOf = [](std::vector<std::string> match, const NameTable& names) {
+  const auto problem_of = [](std::vector<std::string> match, const NameTable& names) {
     try {
       (void)resolveLabels(match, names, "labels.csv");
     } catch (const Error& error) {
@@ -108,14 +108,14 @@ TEST(ResolveLabels, NamesWhatMatchesNothing) {
     }
     return Problem{};
   };
-  const Problem slip = problemOf({"5", "livr"}, kNames);
+  const Problem slip = problem_of({"5", "livr"}, kNames);
   EXPECT_EQ(slip.code, "labels.unknown");
   EXPECT_NE(slip.message.find("`livr`"), std::string::npos);
   EXPECT_NE(slip.hint.find("`liver`"), std::string::npos) << slip.hint;
   EXPECT_EQ(slip.file, "labels.csv");
-  EXPECT_EQ(problemOf({"Liver"}, kNames).code, "labels.unknown");
-  EXPECT_EQ(problemOf({"spine_*"}, kNames).code, "labels.unknown");
-  EXPECT_EQ(problemOf({"liver"}, {}).code, "labels.no_names");
+  EXPECT_EQ(problem_of({"Liver"}, kNames).code, "labels.unknown");
+  EXPECT_EQ(problem_of({"spine_*"}, kNames).code, "labels.unknown");
+  EXPECT_EQ(problem_of({"liver"}, {}).code, "labels.no_names");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Scene files that name meshes, grids and images: what is read when, what is told, and where errors point.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "palpate/core/error.h"
@@ -112,6 +113,35 @@ TEST_F(SceneKinds, LayersOfAnImageAreMadeWhenAskedForAndShareTheirGroup) {
   EXPECT_NEAR(left.value(Vec3(0, 1, 2) * kMm), 0.0, 0.02 * kMm);
   EXPECT_NEAR(right.value(Vec3(0, 1, 2) * kMm), 0.0, 0.02 * kMm);
   EXPECT_LT(both.value(Vec3(0, 0, 0)), 0.0);
+}
+
+// A grid knows distances in its band alone: what is made of it must not reach farther.
+TEST_F(SceneKinds, OffsetsShellsAndBlendsStayInTheBandOfAMesh) {
+  const SceneDescription scene = read(
+      "fields:\n"
+      "  jewel: {mesh: {file: octahedron.obj, voxel: 0.5, half_width: 6}}\n"
+      "  near: {offset: {field: jewel, distance: 1}}\n"
+      "  peel: {shell: {field: jewel, thickness: 2}}\n"
+      "  far: {offset: {field: jewel, distance: 5}}\n"
+      "  soft: {smooth_union: {fields: [jewel, peel], radius: 5}}\n");
+  EXPECT_EQ(scene.fields[1].source->summary(), "mesh octahedron.obj");
+  // The face x + y + z = 10 mm is 2 / sqrt(3) mm from (4, 4, 4); flat, so the grid has it well.
+  EXPECT_NEAR(scene.fields[1].source->get()->value(Vec3(4) * kMm), (2 / std::sqrt(3.0) - 1) * kMm,
+              0.01 * kMm);
+  const Field& peel = *scene.fields[2].source->get();
+  EXPECT_GT(peel.value(Vec3(0)), 0.0);
+  EXPECT_LT(peel.value(Vec3(3) * kMm), 0.0);
+  for (const auto& [index, line] : {std::pair{3U, 6}, std::pair{4U, 7}}) {
+    try {
+      (void)scene.fields[index].source->get();
+      ADD_FAILURE() << scene.fields[index].name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.problem().code, "field.band_too_narrow") << error.what();
+      EXPECT_EQ(error.problem().file, folder_.path("scene.yaml"));
+      EXPECT_EQ(error.problem().line, line);
+      EXPECT_NE(error.problem().hint.find("band wider"), std::string::npos);
+    }
+  }
 }
 
 TEST_F(SceneKinds, MeshesAndGridsAreFields) {

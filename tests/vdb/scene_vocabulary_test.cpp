@@ -27,19 +27,19 @@ TEST(SceneVocabulary, KindsOfVdbAndTheSchemaKnowTheSameKeys) {
 
   SceneRegistry registry;
   registerKinds(registry);
-  const auto keysIn = [&](const std::string& body) {
+  const auto keys_in = [&](const std::string& body) {
     std::string scene = "palpate: 1\nlength: mm\n" + body;
     scene.replace(scene.find('@'), 1, std::string(kNoKey) + ": 1");
     return readerKeys(scene, registry, folder.path("scene.yaml"));
   };
-  EXPECT_EQ(keysIn("fields: {f: {mesh: {file: m.stl, @}}}\n"), schemaKeys("mesh"));
-  EXPECT_EQ(keysIn("fields: {f: {grid: {file: g.vdb, @}}}\n"), schemaKeys("grid"));
-  EXPECT_EQ(keysIn("fields: {f: {@}}\n"), schemaKeys("field_kind"));
-  EXPECT_EQ(keysIn("images: {i: {file: i.nii, @}}\n"), schemaKeys("image"));
+  EXPECT_EQ(keys_in("fields: {f: {mesh: {file: m.stl, @}}}\n"), schemaKeys("mesh"));
+  EXPECT_EQ(keys_in("fields: {f: {grid: {file: g.vdb, @}}}\n"), schemaKeys("grid"));
+  EXPECT_EQ(keys_in("fields: {f: {@}}\n"), schemaKeys("field_kind"));
+  EXPECT_EQ(keys_in("images: {i: {file: i.nii, @}}\n"), schemaKeys("image"));
   const std::string layer = "images: {i: {file: i.nii}}\nlayers:\n  - {name: a, ";
-  EXPECT_EQ(keysIn(layer + "labels: {image: i, match: [1], @}}\n"), schemaKeys("labels"));
-  EXPECT_EQ(keysIn(layer + "threshold: {image: i, above: 0, @}}\n"), schemaKeys("threshold"));
-  EXPECT_EQ(keysIn(layer + "labels: {image: i, match: [1]}, @}\n"), schemaKeys("layer"));
+  EXPECT_EQ(keys_in(layer + "labels: {image: i, match: [1], @}}\n"), schemaKeys("labels"));
+  EXPECT_EQ(keys_in(layer + "threshold: {image: i, above: 0, @}}\n"), schemaKeys("threshold"));
+  EXPECT_EQ(keys_in(layer + "labels: {image: i, match: [1]}, @}\n"), schemaKeys("layer"));
 }
 
 }  // namespace

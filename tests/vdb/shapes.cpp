@@ -60,13 +60,13 @@ Mesh ballMesh(const Vec3& center, double radius, int levels) {
     }
   }
   // The faces of an icosahedron: the triples of corners that are an edge (2) apart.
-  const auto isEdge = [&](std::uint32_t i, std::uint32_t j) {
+  const auto is_edge = [&](std::uint32_t i, std::uint32_t j) {
     return std::abs(glm::distance(mesh.vertices[i], mesh.vertices[j]) - 2.0) < 1e-9;
   };
   for (std::uint32_t i = 0; i < 12; ++i) {
     for (std::uint32_t j = i + 1; j < 12; ++j) {
       for (std::uint32_t k = j + 1; k < 12; ++k) {
-        if (!isEdge(i, j) || !isEdge(j, k) || !isEdge(i, k)) continue;
+        if (!is_edge(i, j) || !is_edge(j, k) || !is_edge(i, k)) continue;
         const Vec3 normal =
             glm::cross(mesh.vertices[j] - mesh.vertices[i], mesh.vertices[k] - mesh.vertices[i]);
         const bool outwards = glm::dot(normal, mesh.vertices[i]) > 0.0;

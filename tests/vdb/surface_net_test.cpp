@@ -86,11 +86,11 @@ double windingNumber(const Mesh& mesh, const Vec3& p) {
 
 /// Distance to a triangle by its plane and its three edges.
 double distanceTo(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto toSegment = [&](const Vec3& u, const Vec3& v) {
+  const auto to_segment = [&](const Vec3& u, const Vec3& v) {
     const double t = std::clamp(glm::dot(p - u, v - u) / glm::dot(v - u, v - u), 0.0, 1.0);
     return glm::length(p - u - t * (v - u));
   };
-  double best = std::min({toSegment(a, b), toSegment(b, c), toSegment(c, a)});
+  double best = std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
   const Vec3 n = glm::normalize(glm::cross(b - a, c - a));
   const Vec3 foot = p - glm::dot(p - a, n) * n;
   const bool over = glm::dot(glm::cross(b - a, foot - a), n) >= 0.0 &&

@@ -104,6 +104,14 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1.0, 100000.0));
   addFlag(app, g, "--realtime", o.realtime,
           "keep to the clock (default: as fast as the machine goes)");
+  g = "Limits of the force, in this order (default: none)";
+  add(app, g, "--max-force", "FORCE", o.max_force,
+      "shorten longer forces to this, direction kept: 3 (N), 500mN");
+  add(app, g, "--slew", "FORCE/s", o.slew,
+      "let the force grow by no more than this a second: 100 (N/s); it may drop at once");
+  add(app, g, "--ramp", "TIME", o.ramp,
+      "start without force, and reach all of it after this: "
+      "0.2 (s), 200ms");
   g = "Output files";
   add(app, g, "--trace", "FILE.csv", o.trace, "write one row a tick (SI units)");
   add(app, g, "--image", "FILE.png", o.image,

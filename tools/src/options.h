@@ -38,6 +38,9 @@ struct TouchOptions {
   std::string renderer;  ///< empty: as the scene says
   bool realtime = false;
   double rate = 1000.0;  ///< [Hz]
+  std::string max_force;
+  std::string slew;
+  std::string ramp;
   std::string trace;
   std::string image;
 };

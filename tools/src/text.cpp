@@ -56,6 +56,27 @@ double parseSpeed(std::string_view text, const LengthUnit& unit, const char* wha
   return parseWithUnit(trimmed(text), Dimension::kVelocity, unit.metres, unit.name + "/s", what);
 }
 
+double parseForce(std::string_view text, const char* what) {
+  return parseWithUnit(trimmed(text), Dimension::kForce, 1.0, "N", what);
+}
+
+double parseForceRate(std::string_view text, const char* what) {
+  text = trimmed(text);
+  if (const auto plain = parseNumber(text)) return *plain;
+  constexpr std::string_view kPerSecond = "/s";
+  if (text.ends_with(kPerSecond)) {
+    const Quantity force =
+        parseQuantity(text.substr(0, text.size() - kPerSecond.size()), Dimension::kForce);
+    if (force.status == Quantity::Status::kOk) return force.si;
+  }
+  throw usageError(what, "'" + std::string(text) + "' is not a number or a force per second",
+                   "a number means N/s; or write the unit: N/s (also mN/s, kN/s)");
+}
+
+double parseTime(std::string_view text, const char* what) {
+  return parseWithUnit(trimmed(text), Dimension::kTime, 1.0, "s", what);
+}
+
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (;;) {

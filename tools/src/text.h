@@ -21,6 +21,10 @@ struct LengthUnit {
 // From text. `what` names the option in the message. @throws Error (kUsage).
 [[nodiscard]] double parseLength(std::string_view text, const LengthUnit& unit, const char* what);
 [[nodiscard]] double parseSpeed(std::string_view text, const LengthUnit& unit, const char* what);
+/// A plain number is in N, N/s and s.
+[[nodiscard]] double parseForce(std::string_view text, const char* what);
+[[nodiscard]] double parseForceRate(std::string_view text, const char* what);
+[[nodiscard]] double parseTime(std::string_view text, const char* what);
 /// "X,Y,Z": three numbers, unitless.
 [[nodiscard]] Vec3 parseVector(std::string_view text, const char* what);
 /// "X,Y,Z" in `unit`; to [m].

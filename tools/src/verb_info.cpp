@@ -35,10 +35,12 @@ FileReport sceneInfo(const std::string& file, Console& console) {
   out.json = {{"file", file}, {"kind", "scene"}, {"length_unit", d.length_unit}};
   out.json["layers"] = Json::array();
   out.text = file + ": a scene, lengths in " + d.length_unit + "\n";
+  const auto sourceOf = [](const FieldSource& field) {
+    return field.summary().empty() ? std::string("formula") : field.summary();
+  };
   Table layers({"layer", "made from", "wall", "content"});
   for (const auto& layer : d.layers) {
-    const std::string source =
-        layer.inside->summary().empty() ? "formula" : layer.inside->summary();
+    const std::string source = sourceOf(*layer.inside);
     const std::string wall = layer.wall.absent             ? "absent"
                              : layer.wall.material.empty() ? "default"
                                                            : layer.wall.material;
@@ -49,7 +51,15 @@ FileReport sceneInfo(const std::string& file, Console& console) {
          {"wall", wall},
          {"content", layer.content.empty() ? Json() : Json(layer.content)}});
   }
-  out.text += layers.text("  ");
+  if (!layers.empty()) out.text += layers.text("  ");
+  out.json["sheets"] = Json::array();
+  for (const auto& sheet : d.sheets) {
+    const std::string wall = sheet.material.empty() ? "default" : sheet.material;
+    out.text +=
+        "  sheet " + sheet.name + " made from " + sourceOf(*sheet.on) + ", wall " + wall + "\n";
+    out.json["sheets"].push_back(
+        {{"name", sheet.name}, {"source", sourceOf(*sheet.on)}, {"wall", wall}});
+  }
   out.json["ports"] = Json::array();
   for (const auto& port : d.ports) {
     out.text += "  port " + port.name + " between " + port.from + " and " + port.to + "\n";

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 
 #include "input_kind.h"
@@ -10,6 +11,7 @@
 #include "palpate/render/trace.h"
 #include "picture/picture.h"
 #include "stop_signal.h"
+#include "text.h"
 #include "touch_summary.h"
 #include "verbs.h"
 
@@ -20,6 +22,41 @@ RendererSettings rendererSettings(const std::string& name) {
   if (name == "paper") return {RendererKind::kPaper};
   if (name == "constraint") return {RendererKind::kConstraint};
   return {};
+}
+
+double positive(double value, const char* what) {
+  if (value > 0.0) return value;
+  throw Error(ErrorKind::kUsage, {"usage.touch", std::string(what) + " must be greater than 0",
+                                  "leave it out for no limit"});
+}
+
+ForceLimits forceLimits(const TouchOptions& o) {
+  ForceLimits limits;
+  if (!o.max_force.empty()) {
+    limits.max_force = positive(parseForce(o.max_force, "--max-force"), "--max-force");
+  }
+  if (!o.slew.empty()) limits.max_growth = positive(parseForceRate(o.slew, "--slew"), "--slew");
+  if (!o.ramp.empty()) limits.ramp = positive(parseTime(o.ramp, "--ramp"), "--ramp");
+  return limits;
+}
+
+Json limitsJson(const ForceLimits& limits) {
+  const auto orNull = [](double value, bool given) { return given ? Json(value) : Json(); };
+  return {{"max_force_N", orNull(limits.max_force, std::isfinite(limits.max_force))},
+          {"slew_N_per_s", orNull(limits.max_growth, std::isfinite(limits.max_growth))},
+          {"ramp_s", orNull(limits.ramp, limits.ramp > 0.0)}};
+}
+
+std::string limitsText(const ForceLimits& limits) {
+  std::string text;
+  const auto add = [&](bool given, const std::string& part) {
+    if (given) text += (text.empty() ? "" : ", ") + part;
+  };
+  add(std::isfinite(limits.max_force), "at most " + formatNumber(limits.max_force) + " N");
+  add(std::isfinite(limits.max_growth),
+      "growing by at most " + formatNumber(limits.max_growth) + " N/s");
+  add(limits.ramp > 0.0, "from 0 in " + formatSeconds(limits.ramp));
+  return text.empty() ? text : "Force       " + text + "\n";
 }
 
 /// Runs the loop over the whole path and keeps every tick.
@@ -64,6 +101,7 @@ void checkExit(devices::ServoExit exit) {
 
 Report run(const TouchOptions& options, const GeneralOptions& general, Console& console) {
   checkMotion(options);
+  const ForceLimits limits = forceLimits(options);
   OutputFiles files(general.force);
   const std::vector<std::string> inputs = {options.scene, options.path};
   if (!options.trace.empty()) files.announce(options.trace, inputs);
@@ -78,7 +116,8 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   LoadedScene loaded(options.scene, console);
   devices::Path path = makeMotion(options, loaded.unit());
   const ScenePtr scene = loaded.compile();
-  const RendererSettings settings = rendererSettings(options.renderer);
+  RendererSettings settings = rendererSettings(options.renderer);
+  settings.limits = limits;
   const auto renderer = makeRenderer(scene, settings);
 
   devices::ServoSettings servo;
@@ -117,11 +156,12 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
                                {"worst_lateness_s", servo_report.worst_lateness},
                                {"elevated", servo_report.elevated}};
   }
+  report.json["limits"] = limitsJson(limits);
   report.json["grids"] = loaded.gridsJson();
   report.json["trace"] = options.trace.empty() ? Json() : Json(options.trace);
   report.json["image"] = options.image.empty() ? Json() : Json(options.image);
 
-  report.text = summaryText(summary, *scene);
+  report.text = summaryText(summary, *scene) + limitsText(limits);
   if (options.realtime) {
     report.text += "Real time   " + std::to_string(servo_report.overruns) +
                    " overruns, worst start " + formatSeconds(servo_report.worst_lateness) +

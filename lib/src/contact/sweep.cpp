@@ -5,6 +5,9 @@
 namespace palpate {
 namespace {
 
+/// Sine of the angle to the surface below which a motion counts as along it.
+constexpr double kAlong = 1e-12;
+
 /// The motion along one segment.
 struct Motion {
   const SweepSurface& surface;
@@ -79,7 +82,8 @@ SweepResult sweep(const SweepSurface& surface, const Vec3& a, const Vec3& b, dou
   if (start <= surface.tolerance) {
     const double slope = surface.side * glm::dot(surface.field->sample(a).gradient, motion.by);
     --motion.budget;
-    if (slope < 0.0) return {SweepResult::Kind::kHit, 0.0, start};
+    // Along the surface, to rounding, is not through it: the steps below tell.
+    if (slope < -kAlong * reach) return {SweepResult::Kind::kHit, 0.0, start};
     // Leaving the surface: tiny steps at first, so that a fold close by is not jumped.
     stride = std::min(surface.graze, 8.0 * surface.tolerance / surface.lipschitz);
   }

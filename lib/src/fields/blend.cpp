@@ -16,64 +16,66 @@ struct Sides {
   double result = 1.0;
 };
 
-/// result * smin(first * a, second * b) with the cubic smooth minimum
+/// From the first operand on, result * smin(first * so far, second * next) with the cubic smooth minimum
 ///   smin(A, B) = min(A, B) - h^3 k / 6,  h = max(0, 1 - |A - B| / k),
 /// whose partial derivatives are never negative and add up to 1.
 class Blend final : public Field, public fields::LevelBounded {
  public:
-  Blend(FieldPtr a, FieldPtr b, double radius, const Sides& signs)
-      : a_(std::move(a)), b_(std::move(b)), radius_(radius), signs_(signs) {
-    if (signs_.first > 0.0) {
-      bounds_ = below(0.0);
-    } else {
-      bounds_ = a_->bounds();  // intersection: inside a, and inside b or outside it
-      if (signs_.second < 0.0) bounds_ = bounds_.intersectedWith(b_->bounds());
-      if (bounds_.isEmpty()) bounds_ = Box3{};
+  Blend(std::vector<FieldPtr> operands, double radius, const Sides& signs)
+      : operands_(std::move(operands)), radius_(radius), signs_(signs) {
+    bounds_ = below(0.0);
+    feature_ = radius_;
+    for (const FieldPtr& operand : operands_) {
+      if (operand->metric() == Metric::kImplicit) metric_ = Metric::kImplicit;
+      lipschitz_ = std::max(lipschitz_, operand->lipschitz());
+      lipschitz_domain_ = lipschitz_domain_.intersectedWith(operand->lipschitzDomain());
+      feature_ = std::min(feature_, operand->featureSize());
     }
-    const bool is_bound = a_->metric() != Metric::kImplicit && b_->metric() != Metric::kImplicit;
-    metric_ = is_bound ? Metric::kBound : Metric::kImplicit;
   }
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
-    const FieldSample a = a_->sample(p);
-    const FieldSample b = b_->sample(p);
-    const Mix mix = mixOf(a.value, b.value);
-    FieldSample out{mix.value, Vec3(0.0), isInBand(mix, a.in_band, b.in_band)};
-    if (out.in_band) out.gradient = a.gradient * mix.of_a + b.gradient * mix.of_b;
+    FieldSample out = operands_.front()->sample(p);
+    for (std::size_t i = 1; i < operands_.size(); ++i) {
+      const FieldSample next = operands_[i]->sample(p);
+      const Mix mix = mixOf(out.value, next.value);
+      out.in_band = isInBand(mix, out.in_band, next.in_band);
+      out.value = mix.value;
+      out.gradient = out.in_band ? out.gradient * mix.of_a + next.gradient * mix.of_b : Vec3(0.0);
+    }
     return out;
   }
   [[nodiscard]] double value(const Vec3& p) const noexcept override {
-    return mixOf(a_->value(p), b_->value(p)).value;
+    double out = operands_.front()->value(p);
+    for (std::size_t i = 1; i < operands_.size(); ++i) {
+      out = mixOf(out, operands_[i]->value(p)).value;
+    }
+    return out;
   }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
-    const FieldJet a = a_->jet(p);
-    const FieldJet b = b_->jet(p);
-    const Mix mix = mixOf(a.value, b.value);
-    FieldJet out{mix.value, Vec3(0.0), Mat3(0.0), isInBand(mix, a.in_band, b.in_band)};
-    if (!out.in_band) return out;
-    out.gradient = a.gradient * mix.of_a + b.gradient * mix.of_b;
-    const Vec3 apart = a.gradient * signs_.first - b.gradient * signs_.second;
-    out.hessian = a.hessian * mix.of_a + b.hessian * mix.of_b -
-                  outer(apart, apart) * (signs_.result * mix.bend);
+    FieldJet out = operands_.front()->jet(p);
+    for (std::size_t i = 1; i < operands_.size(); ++i) {
+      const FieldJet next = operands_[i]->jet(p);
+      const Mix mix = mixOf(out.value, next.value);
+      out.in_band = isInBand(mix, out.in_band, next.in_band);
+      out.value = mix.value;
+      if (!out.in_band) {
+        out.gradient = Vec3(0.0);
+        out.hessian = Mat3(0.0);
+        continue;
+      }
+      const Vec3 apart = out.gradient * signs_.first - next.gradient * signs_.second;
+      out.hessian = out.hessian * mix.of_a + next.hessian * mix.of_b -
+                    outer(apart, apart) * (signs_.result * mix.bend);
+      out.gradient = out.gradient * mix.of_a + next.gradient * mix.of_b;
+    }
     return out;
   }
   [[nodiscard]] Box3 bounds() const noexcept override { return bounds_; }
   [[nodiscard]] Metric metric() const noexcept override { return metric_; }
-  [[nodiscard]] double lipschitz() const noexcept override {
-    return std::max(a_->lipschitz(), b_->lipschitz());
-  }
-  [[nodiscard]] Box3 lipschitzDomain() const noexcept override {
-    return a_->lipschitzDomain().intersectedWith(b_->lipschitzDomain());
-  }
-  [[nodiscard]] double featureSize() const noexcept override {
-    return std::min({a_->featureSize(), b_->featureSize(), radius_});
-  }
-  [[nodiscard]] Box3 boundsBelow(double level) const override {
-    if (signs_.first > 0.0) return below(level);
-    Box3 box = fields::boundsBelow(*a_, level);
-    if (signs_.second < 0.0) box = box.intersectedWith(fields::boundsBelow(*b_, level));
-    return box.isEmpty() ? Box3{} : box;
-  }
+  [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  [[nodiscard]] Box3 lipschitzDomain() const noexcept override { return lipschitz_domain_; }
+  [[nodiscard]] double featureSize() const noexcept override { return feature_; }
+  [[nodiscard]] Box3 boundsBelow(double level) const override { return below(level); }
 
  private:
   struct Mix {
@@ -101,43 +103,58 @@ class Blend final : public Field, public fields::LevelBounded {
     return (a || mix.of_a == 0.0) && (b || mix.of_b == 0.0);
   }
 
-  /// The smooth union is at most radius / 6 below the smaller operand.
+  /// Each step of a smooth union is at most radius / 6 below the smaller operand; intersections and
+  /// differences are never below what they are made of.
   [[nodiscard]] Box3 below(double level) const {
-    const double most = level + radius_ / 6.0;
-    return fields::boundsBelow(*a_, most).unitedWith(fields::boundsBelow(*b_, most));
+    if (signs_.first > 0.0) {
+      Box3 box;
+      double most = level;
+      for (std::size_t i = operands_.size(); i-- > 0;) {
+        if (i > 0) most += radius_ / 6.0;
+        box = box.unitedWith(fields::boundsBelow(*operands_[i], most));
+      }
+      return box;
+    }
+    Box3 box = fields::boundsBelow(*operands_.front(), level);
+    if (signs_.second < 0.0) {
+      for (const FieldPtr& operand : operands_) {
+        box = box.intersectedWith(fields::boundsBelow(*operand, level));
+      }
+    }
+    return box.isEmpty() ? Box3{} : box;
   }
 
-  FieldPtr a_;
-  FieldPtr b_;
+  std::vector<FieldPtr> operands_;
   double radius_;
   Sides signs_;
   Box3 bounds_;
   Metric metric_ = Metric::kBound;
+  double lipschitz_ = 0.0;
+  Box3 lipschitz_domain_ = Box3::everything();
+  double feature_ = 0.0;
 };
 
-FieldPtr fold(const char* shape, std::vector<FieldPtr> operands, double radius,
-              const Sides& signs) {
+FieldPtr blended(const char* shape, std::vector<FieldPtr> operands, double radius,
+                 const Sides& signs) {
   fields::checkOperands(shape, operands, 1);
   fields::checkLength(shape, "radius", radius);
-  FieldPtr out = operands.front();
-  for (std::size_t i = 1; i < operands.size(); ++i) {
-    out = std::make_shared<Blend>(std::move(out), std::move(operands[i]), radius, signs);
-  }
-  return out;
+  if (operands.size() == 1) return operands.front();
+  for (const FieldPtr& operand : operands) fields::checkBand(shape, *operand, radius);
+  return std::make_shared<Blend>(std::move(operands), radius, signs);
 }
 
 }  // namespace
 
 FieldPtr smoothUnite(std::vector<FieldPtr> operands, double radius) {
-  return fold("smooth_union", std::move(operands), radius, {1.0, 1.0, 1.0});
+  return blended("smooth_union", std::move(operands), radius, {1.0, 1.0, 1.0});
 }
 
 FieldPtr smoothIntersect(std::vector<FieldPtr> operands, double radius) {
-  return fold("smooth_intersection", std::move(operands), radius, {-1.0, -1.0, -1.0});
+  return blended("smooth_intersection", std::move(operands), radius, {-1.0, -1.0, -1.0});
 }
 
 FieldPtr smoothSubtract(std::vector<FieldPtr> operands, double radius) {
-  return fold("smooth_difference", std::move(operands), radius, {-1.0, 1.0, -1.0});
+  return blended("smooth_difference", std::move(operands), radius, {-1.0, 1.0, -1.0});
 }
 
 }  // namespace palpate

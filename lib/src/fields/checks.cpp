@@ -24,6 +24,11 @@ std::string place(std::string_view shape, std::string_view parameter) {
   return std::string(shape) + ": " + std::string(parameter);
 }
 
+bool hasBand(const Field& field, const Box3& bounds) {
+  const Box3 around = bounds.grownBy(glm::length(bounds.size()));
+  return !field.sample(around.lo).in_band || !field.sample(around.hi).in_band;
+}
+
 bool isLength(double value) { return value >= kSmallestLength && value <= kLargestLength; }
 
 std::string lengthRange() {
@@ -102,6 +107,26 @@ void checkOperands(std::string_view shape, const std::vector<FieldPtr>& operands
     throw inputError("field.null_operand",
                      std::string(shape) + ": operand " + std::to_string(i + 1) + " of " +
                          std::to_string(operands.size()) + " is null, permitted is a field");
+  }
+}
+
+void checkBand(std::string_view shape, const Field& field, double reach) {
+  const FieldStructure structure = field.structure();
+  for (const FieldPtr& operand : structure.operands) checkBand(shape, *operand, reach);
+  const Box3 bounds = field.bounds();
+  if (!structure.operands.empty() || !bounds.isBounded() || !hasBand(field, bounds)) return;
+  // Deep inside and between the surface and its box are places enough to notice.
+  constexpr int kSteps = 32;
+  for (int i = 0; i < (kSteps + 1) * (kSteps + 1) * (kSteps + 1); ++i) {
+    const Vec3 share(i % (kSteps + 1), i / (kSteps + 1) % (kSteps + 1),
+                     i / (kSteps + 1) / (kSteps + 1));
+    const FieldSample s = field.sample(bounds.lo + share * (1.0 / kSteps) * bounds.size());
+    if (s.in_band || std::fabs(s.value) >= reach) continue;
+    throw inputError("field.band_too_narrow",
+                     std::string(shape) + ": it needs its field up to " + text(reach) +
+                         " m from the surface, permitted is up to " + text(std::fabs(s.value)) +
+                         " m, where the band of its grid ends",
+                     "make the band wider, or the voxels larger");
   }
 }
 

@@ -176,6 +176,7 @@ FieldPtr offset(FieldPtr field, double distance) {
   fields::checkRange("offset", "distance", distance, -fields::kLargestLength,
                      fields::kLargestLength);
   if (std::fabs(distance) < fields::kSmallestLength) return operand;
+  fields::checkBand("offset", *operand, std::fabs(distance));
   // A box that shrinks stays a box; one that grows gets round edges and is smooth.
   return Rebuild::of(
       operand, {.leaf = [=](const FieldPtr& f) { return std::make_shared<Offset>(f, distance); },

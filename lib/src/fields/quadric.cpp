@@ -137,7 +137,8 @@ double steepestIn(const Box3& box, const Form& form) {
 
 }  // namespace
 
-FieldPtr quadric(const Vec3& center, const QuadricCoefficients& q, double reach) {
+FieldPtr quadric(const Vec3& center, const QuadricCoefficients& coefficients, double reach) {
+  const QuadricCoefficients& q = coefficients;
   fields::checkPoint("quadric", "center", center);
   fields::checkLength("quadric", "reach", reach);
   double largest = 0.0;

@@ -43,7 +43,18 @@ void PassedPorts::pass(PortId port, RegionId from, RegionId to, bool keep) noexc
 }
 
 void PassedPorts::arrive(RegionId to, bool keep) noexcept {
-  if (to == kOutside && !keep) clear();
+  if (keep) return;
+  if (to == kOutside) {
+    clear();
+    return;
+  }
+  // An absent wall counts for nothing: back where a passage began is back before it, and before all since.
+  for (std::size_t i = size_; i > 0; --i) {
+    if (stack_[i - 1].from == to) {
+      size_ = i - 1;
+      return;
+    }
+  }
 }
 
 bool operator==(const PassedPorts& a, const PassedPorts& b) noexcept {

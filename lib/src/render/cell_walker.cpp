@@ -111,29 +111,37 @@ CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sl
     double nearest = 1.0;
     bool hit = false;
     bool unsure = false;
+    bool is_second = false;
     LeafId hit_leaf = 0;
-    for (std::size_t k = 0; k < hot_count_; ++k) {
-      const LeafId leaf = hot_[k];
-      if (due_[leaf] > travel_ + nearest * length) continue;
-      if (std::find(sliding.begin(), sliding.end(), leaf) != sliding.end()) continue;
-      SweepSurface surface;
-      surface.field = leaves_[leaf].field.get();
-      surface.side = side(leaf);
-      surface.lipschitz = leaves_[leaf].lipschitz;
-      surface.tolerance = tolerance_[leaf];
-      surface.graze = kGraze * leaves_[leaf].feature;
-      const Vec3 end = nearest < 1.0 ? x_ + nearest * (target - x_) : target;
-      const double start = surface.side * measure(leaf);
-      const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
-      if (budget <= 8) return Stop::kSpent;
-      const SweepResult result = sweep(surface, x_, end, start, budget);
-      if (result.kind == SweepResult::Kind::kFree) continue;
-      evaluations_left_ -= 8;
-      nearest *= result.at;
-      hit = result.kind == SweepResult::Kind::kHit;
-      unsure = !hit;
-      if (unsure) evaluations_left_ -= budget;
-      hit_leaf = leaf;
+    // A sweep lets go of a short passage in and out again. Where another leaf stops the motion amid one,
+    // it is a hit after all: so long as there was a hit, all look at where it stops once more.
+    for (bool again = true; again;) {
+      again = false;
+      for (std::size_t k = 0; k < hot_count_; ++k) {
+        const LeafId leaf = hot_[k];
+        if (due_[leaf] > travel_ + nearest * length) continue;
+        if (std::find(sliding.begin(), sliding.end(), leaf) != sliding.end()) continue;
+        const Vec3 end = nearest < 1.0 ? x_ + nearest * (target - x_) : target;
+        if (is_second) {
+          if (leaf == hit_leaf ||
+              side(leaf) * leaves_[leaf].field->value(end) >= -tolerance_[leaf]) {
+            continue;
+          }
+        }
+        const double start = side(leaf) * measure(leaf);
+        const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
+        if (budget <= 8) return Stop::kSpent;
+        const SweepResult result = sweep(surfaceOf(leaf), x_, end, start, budget);
+        if (result.kind == SweepResult::Kind::kFree) continue;
+        evaluations_left_ -= 8;
+        nearest *= result.at;
+        hit = result.kind == SweepResult::Kind::kHit;
+        unsure = !hit;
+        if (unsure) evaluations_left_ -= budget;
+        hit_leaf = leaf;
+        again = hot_count_ > 1 && nearest > 0.0;
+      }
+      is_second = true;
     }
     if (!hit && !unsure) {
       jump(target);
@@ -152,14 +160,20 @@ CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sl
   }
 }
 
+SweepSurface CellWalker::surfaceOf(LeafId leaf) const noexcept {
+  SweepSurface surface;
+  surface.field = leaves_[leaf].field.get();
+  surface.side = side(leaf);
+  surface.lipschitz = leaves_[leaf].lipschitz;
+  surface.tolerance = tolerance_[leaf];
+  surface.graze = kGraze * leaves_[leaf].feature;
+  return surface;
+}
+
 double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) noexcept {
   const Leaf& own = leaves_[leaf];
   if (glm::length(b - a) <= kGraze * own.feature) return 1.0;  // as short as what a sweep lets go
-  SweepSurface surface;
-  surface.field = own.field.get();
-  surface.side = side(leaf);
-  surface.lipschitz = own.lipschitz;
-  surface.tolerance = tolerance_[leaf];
+  SweepSurface surface = surfaceOf(leaf);
   // No sheet of the leaf is thinner than its feature size, so none fits between two steps.
   surface.graze = kSlideStride * own.feature;
   surface.allowance = kSlideDip * own.feature * own.lipschitz;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "palpate/contact/sweep.h"
 #include "palpate/interior/port_machine.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene.h"
@@ -98,6 +99,7 @@ class CellWalker {
   /// The leaves that change side together with `leaf` where they coincide at the point.
   void gather(LeafId leaf) noexcept;
   void jump(const Vec3& x) noexcept;
+  [[nodiscard]] SweepSurface surfaceOf(LeafId leaf) const noexcept;
 
   const Scene& scene_;
   std::span<const Leaf> leaves_;

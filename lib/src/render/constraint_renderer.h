@@ -26,8 +26,10 @@ class ConstraintRenderer final : public HapticRenderer {
     std::array<FieldJet, kMaxPlanes> jet{};
     std::array<Plane, kMaxPlanes> plane{};
     std::size_t planes = 0;
-    std::array<HeldWall, 3> held{};      ///< the working set
-    std::array<std::size_t, 3> index{};  ///< of held walls among the planes
+    std::array<Vec3, kMaxPlanes> probe{};   ///< HeldWall::probe
+    std::array<bool, kMaxPlanes> slides{};  ///< parallel to a wall that holds
+    std::array<HeldWall, 3> held{};         ///< the working set
+    std::array<std::size_t, 3> index{};     ///< of held walls among the planes
     std::size_t count = 0;
     std::array<LeafId, kMaxPlanes>
         sliding{};  ///< leaves that motion along the held walls must not see
@@ -40,13 +42,33 @@ class ConstraintRenderer final : public HapticRenderer {
     [[nodiscard]] double load() const noexcept;  ///< [m] length of the sum of multiplier * normal
   };
 
+  /// One of the walls that meet in a crease of a leaf at the proxy.
+  struct Piece {
+    LeafId leaf = 0;
+    Vec3 normal{0.0, 0.0, 0.0};  ///< [-] as last felt
+    Vec3 probe{0.0, 0.0, 0.0};   ///< [-] where to ask for it, see HeldWall
+    bool is_felt = false;
+    std::size_t plane = 0;  ///< of the contact's
+  };
+  static constexpr std::size_t kMaxPieces = 6;
+
   void start(const Vec3& hip) noexcept;
   void track(const Vec3& hip) noexcept;
   void findContact(const Vec3& hip) noexcept;
+  [[nodiscard]] bool feelPieces(LeafId leaf, const Facet& facet) noexcept;
+  void forgetPieces() noexcept;
+  void aimProbes() noexcept;
+  /// [m] how far beside a crease its walls are asked for.
+  [[nodiscard]] double reachOf(LeafId leaf) const noexcept;
   void holdByFriction() noexcept;
   [[nodiscard]] bool puncture() noexcept;
   [[nodiscard]] bool slide(const Vec3& hip) noexcept;
-  [[nodiscard]] bool slideBy(const Vec3& hip, const Vec3& by, bool must_improve) noexcept;
+  [[nodiscard]] bool slideBy(const Vec3& hip, const Vec3& by, bool must_improve,
+                             std::span<const HeldWall> walls) noexcept;
+  [[nodiscard]] bool unfold(const Vec3& hip, const Vec3& toward) noexcept;
+  [[nodiscard]] bool unfoldLeaf(const Vec3& hip, LeafId leaf, const Vec3& toward) noexcept;
+  [[nodiscard]] bool unfoldAround(const Vec3& hip) noexcept;
+  [[nodiscard]] bool hasTurned(bool impatient) const noexcept;
   [[nodiscard]] bool isSettled(const Vec3& hip) const noexcept;
   [[nodiscard]] bool isOnWalls() const noexcept;
   [[nodiscard]] Vec3 force(const HipState& hip) const noexcept;
@@ -58,9 +80,18 @@ class ConstraintRenderer final : public HapticRenderer {
   ScenePtr scene_;
   CellWalker walker_;
   Contact contact_;
+  std::array<Piece, kMaxPieces> pieces_{};
+  std::size_t piece_count_ = 0;
+  int unfolds_left_ = 0;
+  struct {
+    Vec3 position{0.0, 0.0, 0.0};
+    Vec3 normal{0.0, 0.0, 0.0};
+    LeafId leaf = 0;
+  } before_;  ///< the slide before: where it began, on what
   bool started_ = false;
   bool sticking_ = false;
   bool tick_begins_ = false;
+  bool is_pressed_ = false;  ///< walls within the tolerance count as reached
 };
 
 }  // namespace palpate

@@ -33,6 +33,12 @@ PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
           "use the constraint renderer, or leave out opens_at and back");
     }
   }
+  if (!scene_->passages().sheets().empty()) {
+    throw inputError("render.paper_sheet",
+                     "the paper's renderer has no sheets, and the scene has the sheet '" +
+                         scene_->passages().sheets().front().name + "'",
+                     "use the constraint renderer");
+  }
   for (std::size_t i = 1; i < scene_->regions().size(); ++i) {
     const auto region = static_cast<RegionId>(i);
     Table table;

@@ -16,6 +16,18 @@ constexpr std::size_t kPatientSurveyLines = 4096;
 
 std::string quoted(const std::string& text) { return "'" + text + "'"; }
 
+void checkTexture(const Material& material) {
+  const Texture& texture = material.texture;
+  if (texture.amplitude == 0.0) return;
+  if (texture.amplitude > 0.0 &&
+      texture.amplitude <= Texture::highestAmplitude(texture.wavelength)) {
+    return;
+  }
+  throw inputError("scene.texture",
+                   "the texture of material " + quoted(material.name) + " is too high",
+                   "its amplitude must be from 0 to its wavelength / 2 pi");
+}
+
 std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress) {
   std::vector<FieldPtr> fields;
   std::map<std::string, std::vector<std::size_t>> groups;
@@ -95,6 +107,10 @@ class SceneCompiler {
       if (port.where) masks.push_back(port.where->get(progress));
     }
     for (const SheetDescription& sheet : description_.sheets) {
+      if (!sheet.on) {
+        throw errorAt(sheet.place, "scene.sheet_without_field",
+                      "sheet " + quoted(sheet.name) + " has no field that it is on");
+      }
       sheet_mask_of_.push_back(sheet.where ? static_cast<int>(masks.size()) : -1);
       if (sheet.where) masks.push_back(sheet.where->get(progress));
       sheet_solid_of_.push_back(static_cast<int>(masks.size()));
@@ -152,6 +168,7 @@ class SceneCompiler {
   }
 
   void materials() {
+    for (const Material& m : description_.materials) checkTexture(m);
     scene_->materials_ = description_.materials;
     Material standard;
     standard.name = "default wall";
@@ -240,6 +257,9 @@ class SceneCompiler {
       sheet.solid = sheet_solid_of_[i];
       sheet.mask = sheet_mask_of_[i];
       sheet.material = wall({false, given.material}, given.place).material;
+      Box3 box = given.on->get()->bounds();
+      if (given.where) box = box.intersectedWith(given.where->get()->bounds());
+      if (box.isBounded()) scene_->sheet_bounds_ = scene_->sheet_bounds_.unitedWith(box);
       sheets.push_back(std::move(sheet));
     }
     return sheets;
@@ -260,8 +280,10 @@ class SceneCompiler {
           given.place, "scene.port_face",
           "port " + quoted(given.name) + " is on " + quoted(given.on_name) +
               ", which is no part of " + quoted(given.from) + " or " + quoted(given.to),
-          "name a field that the layer's `inside` is made from, or use `where:` for an opening "
-          "of any shape");
+          given.on_note.empty()
+              ? "name a field that the layer's `inside` is made from, or use `where:` for an "
+                "opening of any shape"
+              : given.on_note + ", or use `where:` for an opening of any shape");
     }
     return leaves;
   }

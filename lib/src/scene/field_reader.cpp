@@ -5,10 +5,12 @@
 #include <limits>
 #include <numbers>
 
+#include "palpate/fields/blend.h"
 #include "palpate/fields/csg.h"
-#include "palpate/fields/primitives.h"
+#include "palpate/fields/modify.h"
 #include "palpate/fields/transform.h"
 #include "scene/messages.h"
+#include "scene/shape_reader.h"
 #include "scene/source_text.h"
 #include "scene/values.h"
 
@@ -18,9 +20,11 @@ namespace {
 // Fields are numbered with LeafId; names that stand for each other twice over reach this in 16 lines.
 constexpr std::size_t kMostLeaves = std::numeric_limits<LeafId>::max();
 
-constexpr std::string_view kKinds[] = {"half_space", "sphere",   "box",          "cylinder",
-                                       "ellipsoid",  "union",    "intersection", "difference",
-                                       "complement", "transform"};
+// Kinds that are made from other fields; the rest are shapeKinds().
+constexpr std::string_view kOperations[] = {
+    "union",        "intersection",        "difference",        "complement", "transform",
+    "smooth_union", "smooth_intersection", "smooth_difference", "scale",      "offset",
+    "shell"};
 // Kinds of palpate::vdb: a scene that asks for them is right, only this program cannot read it.
 constexpr std::string_view kKindsOfGrids[] = {"mesh", "grid"};
 
@@ -57,21 +61,16 @@ FieldSourcePtr deferred(std::vector<FieldSourcePtr> operands, SourcePlace place,
   return std::make_shared<FieldSource>(std::move(summary), std::move(maker));
 }
 
-double positiveLength(MapReader& reader, std::string_view key) {
-  const double length = reader.requireLength(key);
-  if (!(length > 0.0)) {
-    throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be more than 0");
-  }
-  return length;
+std::vector<std::string_view> builtInKinds() {
+  const std::span<const std::string_view> shapes = shapeKinds();
+  std::vector<std::string_view> kinds(shapes.begin(), shapes.end());
+  kinds.insert(kinds.end(), std::begin(kOperations), std::end(kOperations));
+  return kinds;
 }
 
-Vec3 positiveLengths(MapReader& reader, std::string_view key) {
-  const Vec3 lengths = reader.requirePoint(key);
-  if (!(lengths.x > 0.0 && lengths.y > 0.0 && lengths.z > 0.0)) {
-    throw reader.errorAt(key, "scene.range",
-                         "each length of " + inQuotes(key) + " must be more than 0");
-  }
-  return lengths;
+template <typename Names>
+bool isOneOf(std::string_view name, const Names& names) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
 }  // namespace
@@ -118,6 +117,8 @@ const FieldReader::Built& FieldReader::buildNamed(const std::string& name, Mark 
                          suggestOrList(name, names(), "fields: "));
   }
   Named& named = found->second;
+  if (!path_.empty()) named_.find(path_.back())->second.uses.push_back(name);
+  if (blend_ != nullptr) hide(name, *blend_);
   if (named.built.source) return named.built;
   if (named.under_way) {
     std::string cycle;
@@ -136,6 +137,21 @@ const FieldReader::Built& FieldReader::buildNamed(const std::string& name, Mark 
   return named.built;
 }
 
+void FieldReader::hide(const std::string& name, const Node::Entry& blend) {
+  Named& named = named_.find(name)->second;
+  if (named.hidden_in != nullptr) return;
+  named.hidden_in = &blend;
+  for (const std::string& part : named.uses) hide(part, blend);
+}
+
+std::string FieldReader::hidingPlace(const std::string& name) const {
+  const auto found = named_.find(name);
+  if (found == named_.end() || found->second.hidden_in == nullptr) return {};
+  const Node::Entry& blend = *found->second.hidden_in;
+  return inQuotes(name) + " went into the " + blend.key + " in line " +
+         std::to_string(blend.key_mark.line) + ", whose faces are new ones; name that whole field";
+}
+
 FieldReader::Built FieldReader::build(const Node& node) {
   const Document& document = loader_.document();
   const auto too_deep = [&] {
@@ -149,7 +165,7 @@ FieldReader::Built FieldReader::build(const Node& node) {
   if (node.kind == Node::Kind::kMap) {
     if (node.entries.empty()) {
       throw document.error(node.mark, "scene.empty", "this field is empty",
-                           "write one kind: " + listed({std::begin(kKinds), std::end(kKinds)}));
+                           "write one kind: " + listed(builtInKinds()));
     }
     if (node.entries.size() > 1) {
       throw document.error(node.entries[1].key_mark, "scene.kind",
@@ -180,47 +196,102 @@ FieldReader::Built FieldReader::build(const Node& node) {
 }
 
 FieldReader::Built FieldReader::buildKind(const Node::Entry& kind) {
-  const Document& document = loader_.document();
-  const std::string what = inQuotes(kind.key);
-  const auto all_of = [&] {
-    std::vector<const Node*> operands;
-    for (const Node& item : readList(document, kind.value, what, 1, 0)) operands.push_back(&item);
-    return operands;
-  };
-  if (kind.key == "union") return combine(kind, all_of(), unite);
-  if (kind.key == "intersection") return combine(kind, all_of(), intersect);
-  if (kind.key == "difference") return combine(kind, all_of(), subtract);
-  if (kind.key == "complement") {
-    return combine(kind, {&kind.value},
-                   [](std::vector<FieldPtr> fields) { return complement(fields[0]); });
-  }
-  if (kind.key == "transform") return buildTransform(kind);
-  if (std::find(std::begin(kKinds), std::end(kKinds), kind.key) != std::end(kKinds)) {
-    return {buildPrimitive(kind)};
+  if (isOneOf(kind.key, kOperations)) return buildOperation(kind);
+  if (isOneOf(kind.key, shapeKinds())) {
+    MapReader reader(loader_, kind.value, inQuotes(kind.key));
+    const auto make = readShape(kind.key, reader);
+    return {std::make_shared<FieldSource>(madeAt(loader_.document().place(kind.key_mark), make))};
   }
   return buildRegistered(kind);
 }
 
-FieldReader::Built FieldReader::combine(const Node::Entry& kind,
-                                        const std::vector<const Node*>& operands,
+FieldReader::Built FieldReader::buildOperation(const Node::Entry& kind) {
+  if (kind.key == "union") return combine(kind, kind.value, unite);
+  if (kind.key == "intersection") return combine(kind, kind.value, intersect);
+  if (kind.key == "difference") return combine(kind, kind.value, subtract);
+  if (kind.key == "complement") {
+    return modify(kind, kind.value, [](FieldPtr field) { return complement(std::move(field)); });
+  }
+  if (kind.key == "transform") return buildTransform(kind);
+
+  MapReader reader(loader_, kind.value, inQuotes(kind.key));
+  if (kind.key == "shell") {
+    const Node& field = reader.require("field");
+    const double thickness = positiveLength(reader, "thickness");
+    reader.finish();
+    // Its outer faces are those of the field itself, so they keep their names.
+    Built built = modify(kind, field, [=](FieldPtr f) { return shell(std::move(f), thickness); });
+    built.leaves = std::min(2 * built.leaves, kMostLeaves + 1);
+    return built;
+  }
+  // What goes into the others cannot be named by a port any more.
+  const Node::Entry* const around = blend_;
+  if (blend_ == nullptr) blend_ = &kind;
+  Built built = buildBlend(kind, reader);
+  blend_ = around;
+  return built;
+}
+
+FieldReader::Built FieldReader::buildBlend(const Node::Entry& kind, MapReader& reader) {
+  if (kind.key == "scale") {
+    const Node& field = reader.require("field");
+    const double factor = reader.requireNumber("factor");
+    reader.finish();
+    if (!(factor > 0.0)) {
+      throw reader.errorAt("factor", "scene.range", "'factor' must be more than 0",
+                           "2 doubles the size; what mirrors is not a solid to feel");
+    }
+    return modify(kind, field, [=](FieldPtr f) { return scale(std::move(f), factor); });
+  }
+  if (kind.key == "offset") {
+    const Node& field = reader.require("field");
+    const double distance = reader.requireLength("distance");
+    reader.finish();
+    return modify(kind, field, [=](FieldPtr f) { return offset(std::move(f), distance); });
+  }
+  const Node& fields = reader.require("fields");
+  const double radius = positiveLength(reader, "radius");
+  reader.finish();
+  const auto blendBy = [&](FieldPtr (*blend)(std::vector<FieldPtr>, double)) {
+    return combine(kind, fields, [=](std::vector<FieldPtr> operands) {
+      return blend(std::move(operands), radius);
+    });
+  };
+  if (kind.key == "smooth_union") return blendBy(smoothUnite);
+  if (kind.key == "smooth_intersection") return blendBy(smoothIntersect);
+  return blendBy(smoothSubtract);
+}
+
+FieldReader::Built FieldReader::combine(const Node::Entry& kind, const Node& operands,
                                         Combine operation) {
   Built built{nullptr, 0, 0};
   std::vector<FieldSourcePtr> sources;
-  for (const Node* operand : operands) {
-    const Built part = build(*operand);
+  const std::string what = inQuotes(&operands == &kind.value ? kind.key : "fields");
+  for (const Node& operand : readList(loader_.document(), operands, what, 1, 0)) {
+    const Built part = build(operand);
     sources.push_back(part.source);
     built.leaves = std::min(built.leaves + part.leaves, kMostLeaves + 1);
     built.height = std::max(built.height, part.height);
   }
   ++built.height;
-  built.source = deferred(std::move(sources), loader_.document().place(kind.key_mark), operation);
+  built.source =
+      deferred(std::move(sources), loader_.document().place(kind.key_mark), std::move(operation));
+  return built;
+}
+
+FieldReader::Built FieldReader::modify(const Node::Entry& kind, const Node& operand,
+                                       const std::function<FieldPtr(FieldPtr)>& operation) {
+  Built built = build(operand);
+  ++built.height;
+  built.source =
+      deferred({built.source}, loader_.document().place(kind.key_mark),
+               [=](const std::vector<FieldPtr>& fields) { return operation(fields[0]); });
   return built;
 }
 
 FieldReader::Built FieldReader::buildTransform(const Node::Entry& kind) {
   MapReader reader(loader_, kind.value, "'transform'");
-  Built built = build(reader.require("field"));
-  ++built.height;
+  const Node& field = reader.require("field");
   Pose pose;
   const Node* rotate = reader.optional("rotate");
   if (rotate != nullptr) {
@@ -237,53 +308,19 @@ FieldReader::Built FieldReader::buildTransform(const Node::Entry& kind) {
     throw loader_.document().error(kind.key_mark, "scene.missing_key", "'transform' moves nothing",
                                    "add translate, rotate or both");
   }
-  built.source =
-      deferred({built.source}, loader_.document().place(kind.key_mark),
-               [pose](const std::vector<FieldPtr>& fields) { return place(fields[0], pose); });
-  return built;
-}
-
-FieldSourcePtr FieldReader::buildPrimitive(const Node::Entry& kind) {
-  MapReader reader(loader_, kind.value, inQuotes(kind.key));
-  const auto ready = [&](auto&& make) {
-    reader.finish();
-    return std::make_shared<FieldSource>(madeAt(loader_.document().place(kind.key_mark), make));
-  };
-  if (kind.key == "half_space") {
-    const Vec3 point = reader.requirePoint("point");
-    const Vec3 normal = reader.requireDirection("normal");
-    return ready([&] { return halfSpace(point, normal); });
-  }
-  const Vec3 center = reader.requirePoint("center");
-  if (kind.key == "sphere") {
-    const double radius = positiveLength(reader, "radius");
-    return ready([&] { return sphere(center, radius); });
-  }
-  if (kind.key == "box") {
-    const Vec3 size = positiveLengths(reader, "size");
-    return ready([&] { return box(center, size); });
-  }
-  if (kind.key == "ellipsoid") {
-    const Vec3 radii = positiveLengths(reader, "radii");
-    return ready([&] { return ellipsoid(center, radii); });
-  }
-  const Vec3 axis = reader.requireDirection("axis");
-  const double radius = positiveLength(reader, "radius");
-  const double height = positiveLength(reader, "height");
-  return ready([&] { return cylinder(center, axis, radius, height); });
+  return modify(kind, field, [=](FieldPtr f) { return place(std::move(f), pose); });
 }
 
 FieldReader::Built FieldReader::buildRegistered(const Node::Entry& kind) {
   const Document& document = loader_.document();
   const auto found = registry_.fields.find(kind.key);
   if (found == registry_.fields.end()) {
-    if (std::find(std::begin(kKindsOfGrids), std::end(kKindsOfGrids), kind.key) !=
-        std::end(kKindsOfGrids)) {
+    if (isOneOf(kind.key, kKindsOfGrids)) {
       throw document.error(kind.key_mark, "scene.no_reader",
                            "this program reads no " + inQuotes(kind.key) + " fields",
                            "palpate::vdb reads them, and is not part of this program");
     }
-    std::vector<std::string_view> kinds(std::begin(kKinds), std::end(kKinds));
+    std::vector<std::string_view> kinds = builtInKinds();
     for (const auto& [name, reader] : registry_.fields) kinds.push_back(name);
     throw document.error(kind.key_mark, "scene.unknown_kind",
                          "there is no kind of field " + inQuotes(kind.key),

@@ -1,6 +1,7 @@
 #pragma once
 /// The `fields` of a scene: named and inline, analytic, combined, and of the registry's kinds.
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -24,6 +25,10 @@ class FieldReader {
   /// A name only: for what must be the same object elsewhere.
   [[nodiscard]] FieldSourcePtr readName(const Node& node, const std::string& what);
 
+  /// Why the named field may be no face of what it went into, as a sentence for people; empty if
+  /// nothing is known of that.
+  [[nodiscard]] std::string hidingPlace(const std::string& name) const;
+
   /// All named fields, in the order of the file.
   [[nodiscard]] std::vector<NamedField> all() const;
 
@@ -37,17 +42,22 @@ class FieldReader {
     const Node::Entry* entry = nullptr;
     bool under_way = false;
     Built built = {};
+    std::vector<std::string> uses = {};      // names it is made from
+    const Node::Entry* hidden_in = nullptr;  // what made other faces of it
   };
-  using Combine = FieldPtr (*)(std::vector<FieldPtr>);
+  using Combine = std::function<FieldPtr(std::vector<FieldPtr>)>;
 
   [[nodiscard]] Built build(const Node& node);
   [[nodiscard]] const Built& buildNamed(const std::string& name, Mark mark);
   [[nodiscard]] Built buildKind(const Node::Entry& kind);
+  [[nodiscard]] Built buildOperation(const Node::Entry& kind);
+  [[nodiscard]] Built buildBlend(const Node::Entry& kind, MapReader& reader);
   [[nodiscard]] Built buildTransform(const Node::Entry& kind);
   [[nodiscard]] Built buildRegistered(const Node::Entry& kind);
-  [[nodiscard]] FieldSourcePtr buildPrimitive(const Node::Entry& kind);
-  [[nodiscard]] Built combine(const Node::Entry& kind, const std::vector<const Node*>& operands,
-                              Combine operation);
+  [[nodiscard]] Built combine(const Node::Entry& kind, const Node& operands, Combine operation);
+  [[nodiscard]] Built modify(const Node::Entry& kind, const Node& operand,
+                             const std::function<FieldPtr(FieldPtr)>& operation);
+  void hide(const std::string& name, const Node::Entry& blend);
   [[nodiscard]] std::vector<std::string_view> names() const;
 
   const SceneLoader& loader_;
@@ -55,6 +65,7 @@ class FieldReader {
   std::map<std::string, Named, std::less<>> named_ = {};
   std::vector<std::string> order_ = {};
   std::vector<std::string> path_ = {};  // names under way, to show a cycle
+  const Node::Entry* blend_ = nullptr;  // the outermost one that is being read
   int depth_ = 0;
 };
 

@@ -29,8 +29,6 @@ class FileLoader final : public SceneLoader {
  private:
   void readVersion(const Node& root) const;
   void readImages(const Node& images);
-  [[nodiscard]] std::vector<Material> readMaterials(const Node& materials) const;
-  [[nodiscard]] Friction readFriction(const Node& node) const;
 
   const Document& document_;
   const SceneRegistry& registry_;

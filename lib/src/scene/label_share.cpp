@@ -3,13 +3,93 @@
 #include <algorithm>
 #include <utility>
 
+#include "palpate/fields/csg.h"
+
 namespace palpate {
 namespace {
 
+/// Share of the feature size from which on two positive labels keep the wall between them away.
+constexpr double kApart = 0.25;
+
+/// The wall between two labels where both would be: (f_a - f_b) / 2, negative where `a` has the point. Only
+/// where both are negative does it mean anything. Elsewhere it is kept from being zero: far from
+/// both labels two grids may hold the same plateau, and a wall there would be met everywhere.
+class LabelWall final : public Field {
+ public:
+  LabelWall(FieldPtr a, FieldPtr b, const Box3& box)
+      : a_(std::move(a)),
+        b_(std::move(b)),
+        box_(box),
+        lipschitz_(std::max({1.0, 1.5 * a_->lipschitz() + 0.5 * b_->lipschitz(),
+                             0.5 * a_->lipschitz() + 1.5 * b_->lipschitz()})),
+        feature_(std::min(a_->featureSize(), b_->featureSize())),
+        margin_(kApart * feature_) {}
+
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    const FieldSample a = a_->sample(p);
+    const FieldSample b = b_->sample(p);
+    FieldSample out;
+    out.in_band = a.in_band && b.in_band;
+    out.value = 0.5 * (a.value - b.value);
+    out.gradient = 0.5 * (a.gradient - b.gradient);
+    const FieldSample& low = a.value <= b.value ? a : b;
+    if (low.value > margin_) {
+      out.value += low.value - margin_;
+      out.gradient += low.gradient;
+    }
+    const double away = box_.distanceTo(p);
+    if (away > 0.0 && away > out.value) {
+      const Vec3 nearest = glm::clamp(p, box_.lo, box_.hi);
+      return {away, unitOr(p - nearest, Vec3(0.0, 0.0, 1.0)), true};
+    }
+    if (!out.in_band) out.gradient = Vec3(0.0);
+    return out;
+  }
+
+  [[nodiscard]] double value(const Vec3& p) const noexcept override {
+    const double a = a_->value(p);
+    const double b = b_->value(p);
+    return std::max(0.5 * (a - b) + std::max(0.0, std::min(a, b) - margin_), awayAt(p));
+  }
+
+  [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
+    const FieldJet a = a_->jet(p);
+    const FieldJet b = b_->jet(p);
+    const double half = 0.5 * (a.value - b.value);
+    if (!a.in_band || !b.in_band || std::min(a.value, b.value) > margin_ || awayAt(p) > half) {
+      return Field::jet(p);
+    }
+    return {half, 0.5 * (a.gradient - b.gradient), 0.5 * (a.hessian - b.hessian), true};
+  }
+
+  [[nodiscard]] Box3 bounds() const noexcept override { return box_; }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kImplicit; }
+  [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
+  [[nodiscard]] Box3 lipschitzDomain() const noexcept override {
+    return a_->lipschitzDomain().intersectedWith(b_->lipschitzDomain());
+  }
+  [[nodiscard]] double featureSize() const noexcept override { return feature_; }
+
+ private:
+  /// Of the box, and nothing within it, so that it never lifts the wall itself.
+  [[nodiscard]] double awayAt(const Vec3& p) const noexcept {
+    const double away = box_.distanceTo(p);
+    return away > 0.0 ? away : -kInfinity;
+  }
+
+  FieldPtr a_;
+  FieldPtr b_;
+  Box3 box_;
+  double lipschitz_;
+  double feature_;
+  double margin_;
+};
+
 class LabelShare final : public Field {
  public:
-  LabelShare(FieldPtr own, std::vector<FieldPtr> others)
-      : own_(std::move(own)), others_(std::move(others)) {
+  /// `faces`: the own field, and for each other label where that one does not have the point.
+  LabelShare(FieldPtr own, std::vector<FieldPtr> others, std::vector<FieldPtr> faces)
+      : own_(std::move(own)), others_(std::move(others)), faces_(std::move(faces)) {
     lipschitz_ = own_->lipschitz();
     feature_ = own_->featureSize();
     domain_ = own_->lipschitzDomain();
@@ -49,10 +129,14 @@ class LabelShare final : public Field {
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
   [[nodiscard]] Box3 lipschitzDomain() const noexcept override { return domain_; }
   [[nodiscard]] double featureSize() const noexcept override { return feature_; }
+  [[nodiscard]] FieldStructure structure() const noexcept override {
+    return {FieldStructure::Kind::kFaces, faces_, {}};
+  }
 
  private:
   FieldPtr own_;
   std::vector<FieldPtr> others_;
+  std::vector<FieldPtr> faces_;
   double lipschitz_ = 1.0;
   double feature_ = 1.0;
   Box3 domain_;
@@ -62,22 +146,34 @@ class LabelShare final : public Field {
 
 std::vector<FieldPtr> shareLabels(const std::vector<FieldPtr>& fields) {
   if (fields.size() < 2) return fields;
-  std::vector<FieldPtr> out;
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    // Labels whose boxes stay apart cannot meet.
-    std::vector<FieldPtr> others;
-    for (std::size_t j = 0; j < fields.size(); ++j) {
+  const std::size_t count = fields.size();
+  std::vector<std::vector<FieldPtr>> others(count);
+  std::vector<std::vector<FieldPtr>> faces(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i + 1; j < count; ++j) {
+      // Labels whose boxes stay apart cannot meet.
       const double reach = fields[i]->featureSize() + fields[j]->featureSize();
-      if (j != i && !fields[i]
-                         ->bounds()
-                         .grownBy(reach)
-                         .intersectedWith(fields[j]->bounds().grownBy(reach))
-                         .isEmpty()) {
-        others.push_back(fields[j]);
-      }
+      const Box3 box =
+          fields[i]->bounds().grownBy(reach).intersectedWith(fields[j]->bounds().grownBy(reach));
+      if (box.isEmpty()) continue;
+      // One leaf for both: where both are negative its sign tells whose the point is. Elsewhere it says
+      // nothing, so that the skin of either is closed on both sides of where the two meet.
+      const auto wall = std::make_shared<LabelWall>(fields[i], fields[j], box);
+      others[i].push_back(fields[j]);
+      others[j].push_back(fields[i]);
+      faces[i].push_back(complement(intersect({fields[j], complement(wall)})));
+      faces[j].push_back(complement(intersect({fields[i], wall})));
     }
-    out.push_back(others.empty() ? fields[i]
-                                 : std::make_shared<LabelShare>(fields[i], std::move(others)));
+  }
+  std::vector<FieldPtr> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (others[i].empty()) {
+      out.push_back(fields[i]);
+      continue;
+    }
+    faces[i].insert(faces[i].begin(), fields[i]);
+    out.push_back(
+        std::make_shared<LabelShare>(fields[i], std::move(others[i]), std::move(faces[i])));
   }
   return out;
 }

@@ -9,7 +9,8 @@
 namespace palpate {
 
 /// For every field f_i of one image: max(f_i, max over j of (f_i - f_j) / 2). Negative where f_i is
-/// negative and smallest; two neighbours' results are exact negatives of each other at their wall.
+/// negative and smallest; two neighbours' results are exact negatives of each other at their wall. Its structure
+/// tells f_i and one smooth wall to each neighbor, which both share, so that contact holds their crease.
 [[nodiscard]] std::vector<FieldPtr> shareLabels(const std::vector<FieldPtr>& fields);
 
 }  // namespace palpate

@@ -22,7 +22,7 @@ std::string inQuotes(std::string_view text) {
 }
 
 std::string listed(const std::vector<std::string_view>& names) {
-  constexpr std::size_t kShown = 16;
+  constexpr std::size_t kShown = 32;
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
     text += (i == 0 ? "" : ", ") + std::string(names[i]);

@@ -10,7 +10,7 @@ namespace palpate {
 /// `text` in single quotes, on one line and not too long.
 [[nodiscard]] std::string inQuotes(std::string_view text);
 
-/// "a, b, c": for hints that list what there is; cut after 16.
+/// "a, b, c": for hints that list what there is; cut after 32.
 [[nodiscard]] std::string listed(const std::vector<std::string_view>& names);
 
 /// "did you mean 'x'?" if one of the names is close; else `lead` and the names; "" without names.

@@ -240,6 +240,7 @@ void RegionReader::readPorts(const Node& ports) {
     if (const Node* on = reader.optional("on")) {
       port.on = fields_.readName(*on, "'on'");
       port.on_name = on->text;
+      port.on_note = fields_.hidingPlace(on->text);
     }
     if (const Node* where = reader.optional("where")) port.where = loader_.field(*where);
     if (const Node* direction = reader.optional("direction")) {
@@ -276,6 +277,34 @@ void RegionReader::readAfter(const Node& after, PortDescription& port) const {
       throw document.error(item.mark, "scene.duplicate_name", inQuotes(name) + " is listed twice");
     }
     port.after.push_back(name);
+  }
+}
+
+void RegionReader::readSheets(const Node& sheets) {
+  const Document& document = loader_.document();
+  for (const Node& node : readList(document, sheets, "'sheets'", 1, 0)) {
+    MapReader reader(loader_, node, "a sheet");
+    SheetDescription sheet;
+    sheet.name = readName(reader, "sheet");
+    sheet.place = document.place(node.find("name")->mark);
+    for (const SheetDescription& other : scene_.sheets) {
+      if (other.name != sheet.name) continue;
+      throw errorAt(sheet.place, "scene.duplicate_name",
+                    "a second sheet is called " + inQuotes(sheet.name),
+                    "the first is in line " + std::to_string(other.place.line));
+    }
+    sheet.on = loader_.field(reader.require("on"));
+    if (const Node* where = reader.optional("where")) sheet.where = loader_.field(*where);
+    if (const Node* wall = reader.optional("wall")) {
+      const WallDescription made_of = readWall(*wall);
+      if (made_of.absent) {
+        throw document.error(wall->mark, "scene.kind", "a sheet that is absent is no sheet",
+                             "name a material, or leave the sheet out");
+      }
+      sheet.material = made_of.material;
+    }
+    reader.finish();
+    scene_.sheets.push_back(std::move(sheet));
   }
 }
 

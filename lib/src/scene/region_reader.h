@@ -1,5 +1,5 @@
 #pragma once
-/// Layers, walls, ports and start of a scene: all that names regions and materials.
+/// Layers, walls, ports, sheets and start of a scene: all that names regions and materials.
 
 #include "palpate/scene/scene_file.h"
 #include "scene/field_reader.h"
@@ -17,6 +17,7 @@ class RegionReader {
   void readLayers(const Node& layers);
   void readWalls(const Node& walls);
   void readPorts(const Node& ports);
+  void readSheets(const Node& sheets);
   void readStart(const Node& start);
 
  private:

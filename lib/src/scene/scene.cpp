@@ -22,7 +22,7 @@ RegionId Scene::regionNamed(const std::string& name) const {
 }
 
 Box3 Scene::bounds() const {
-  Box3 all;
+  Box3 all = sheet_bounds_;
   for (const Region& region : regions_) {
     if (region.field && region.field->bounds().isBounded()) {
       all = all.unitedWith(region.field->bounds());

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "scene/file_loader.h"
+#include "scene/material_reader.h"
 #include "scene/messages.h"
 #include "scene/region_reader.h"
 #include "scene/unit_table.h"
@@ -13,15 +14,9 @@ namespace palpate {
 namespace {
 
 // Every key of a scene's top level. The keys of what lies below are where they are read.
-constexpr std::string_view kSections[] = {"palpate", "length", "renderer",  "description",
-                                          "fields",  "images", "materials", "layers",
-                                          "walls",   "ports",  "start",     "memory"};
-
-double notNegative(MapReader& reader, std::string_view key, Dimension dimension) {
-  const double value = reader.quantityOr(key, dimension, 0.0);
-  if (value < 0.0) throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be 0 or more");
-  return value;
-}
+constexpr std::string_view kSections[] = {
+    "palpate", "length", "renderer", "description", "fields", "images", "materials",
+    "layers",  "walls",  "ports",    "sheets",      "start",  "memory"};
 
 }  // namespace
 
@@ -84,56 +79,6 @@ void FileLoader::readImages(const Node& images) {
   }
 }
 
-Friction FileLoader::readFriction(const Node& node) const {
-  MapReader reader(*this, node, "'friction'");
-  Friction friction;
-  friction.static_ratio = reader.requireNumber("static");
-  friction.kinetic_ratio = reader.numberOr("kinetic", friction.static_ratio);
-  reader.finish();
-  if (friction.static_ratio < 0.0) {
-    throw reader.errorAt("static", "scene.range", "'static' must be 0 or more");
-  }
-  if (friction.kinetic_ratio < 0.0) {
-    throw reader.errorAt("kinetic", "scene.range", "'kinetic' must be 0 or more");
-  }
-  if (friction.kinetic_ratio > friction.static_ratio) {
-    throw reader.errorAt("kinetic", "scene.range", "'kinetic' must not be more than 'static'",
-                         "what slides is held less than what sticks");
-  }
-  return friction;
-}
-
-std::vector<Material> FileLoader::readMaterials(const Node& materials) const {
-  requireMap(document_, materials, "'materials'");
-  std::vector<Material> all;
-  for (const Node::Entry& entry : materials.entries) {
-    refuseEmpty(document_, entry);
-    if (entry.key == "absent") {
-      throw document_.error(entry.key_mark, "scene.name", "a material cannot be called 'absent'",
-                            "wall: absent means no wall");
-    }
-    MapReader reader(*this, entry.value, "the material " + inQuotes(entry.key));
-    Material material;
-    material.name = entry.key;
-    material.stiffness = notNegative(reader, "stiffness", Dimension::kStiffness);
-    material.damping = notNegative(reader, "damping", Dimension::kDamping);
-    if (const Node* friction = reader.optional("friction")) {
-      material.friction = readFriction(*friction);
-    }
-    material.viscosity = notNegative(reader, "viscosity", Dimension::kDamping);
-    if (const Node* flow = reader.optional("flow")) {
-      const auto& items = readList(document_, *flow, "'flow'", 3, 3);
-      for (int i = 0; i < 3; ++i) {
-        material.flow[i] = readQuantity(document_, items[static_cast<std::size_t>(i)],
-                                        Dimension::kVelocity, "a component of 'flow'");
-      }
-    }
-    reader.finish();
-    all.push_back(std::move(material));
-  }
-  return all;
-}
-
 SceneDescription FileLoader::read() {
   readVersion(document_.root);
   SceneDescription scene;
@@ -161,7 +106,7 @@ SceneDescription FileLoader::read() {
   }
   if (const Node* images = top.optional("images")) readImages(*images);
   if (const Node* materials = top.optional("materials"))
-    scene.materials = readMaterials(*materials);
+    scene.materials = readMaterials(*this, *materials);
   if (const Node* fields = top.optional("fields")) fields_.define(*fields);
   scene.fields = fields_.all();
 
@@ -169,6 +114,7 @@ SceneDescription FileLoader::read() {
   if (const Node* layers = top.optional("layers")) regions.readLayers(*layers);
   if (const Node* walls = top.optional("walls")) regions.readWalls(*walls);
   if (const Node* ports = top.optional("ports")) regions.readPorts(*ports);
+  if (const Node* sheets = top.optional("sheets")) regions.readSheets(*sheets);
   if (const Node* start = top.optional("start")) regions.readStart(*start);
   return scene;
 }

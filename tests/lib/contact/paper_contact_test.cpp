@@ -19,41 +19,43 @@ struct Text {
   int reacquired_on_pi = 0;
   int reacquired_on_p = 0;
 
-  [[nodiscard]] double S(const Vec3& p) const {
+  [[nodiscard]] double value(const Vec3& p) const {
     return surface.side * surface.field->sample(p).value;
   }
-  [[nodiscard]] Vec3 N(const Vec3& p) const {
+  [[nodiscard]] Vec3 gradient(const Vec3& p) const {
     return surface.side * surface.field->sample(p).gradient;
   }
   [[nodiscard]] Vec3 alphaTerm(const Vec3& p) const {
-    const double form = surface.newton_form ? glm::dot(N(p), N(p)) : glm::length(N(p));
-    return surface.alpha * S(p) * N(p) / form;
+    const double form =
+        surface.newton_form ? glm::dot(gradient(p), gradient(p)) : glm::length(gradient(p));
+    return surface.alpha * value(p) * gradient(p) / form;
   }
   [[nodiscard]] Vec3 onNormalLine(const Vec3& po, const Vec3& probe) const {
-    return po + N(po) * (glm::dot(N(po), probe - po) / glm::dot(N(po), N(po)));
+    return po + gradient(po) *
+                    (glm::dot(gradient(po), probe - po) / glm::dot(gradient(po), gradient(po)));
   }
 
   [[nodiscard]] PaperContact algorithm1(Vec3 out, Vec3 in, const Vec3& probe) const {
     Vec3 po = (out + in) / 2.0;
-    for (int n = 0; n < 48 && !(std::fabs(S(po)) < surface.epsilon); ++n) {
-      if (S(po) > 0.0) out = po;
-      if (S(po) <= 0.0) in = po;
+    for (int n = 0; n < 48 && !(std::fabs(value(po)) < surface.epsilon); ++n) {
+      if (value(po) > 0.0) out = po;
+      if (value(po) <= 0.0) in = po;
       po = (out + in) / 2.0;
     }
     PaperContact c{po, onNormalLine(po, probe)};
-    if (S(po) < 0.0) c.surface_point = po - alphaTerm(po);
+    if (value(po) < 0.0) c.surface_point = po - alphaTerm(po);
     return c;
   }
 
   [[nodiscard]] PaperContact algorithm2(const PaperContact& last, const Vec3& last_probe,
                                         const Vec3& probe) {
     const Vec3 po0 = last.surface_point;
-    const Vec3 n = N(po0);
+    const Vec3 n = gradient(po0);
     const Vec3 v = probe - last_probe;
     const Vec3 po = po0 + v - n * (glm::dot(n, v) / glm::dot(n, n)) - alphaTerm(po0);
     const PaperContact c{po, onNormalLine(po, probe)};
-    if (S(po) <= surface.epsilon) return c;
-    const bool bracket = !(S(c.interaction_point) > 0.0);
+    if (value(po) <= surface.epsilon) return c;
+    const bool bracket = !(value(c.interaction_point) > 0.0);
     ++(bracket ? reacquired_on_pi : reacquired_on_p);
     return algorithm1(po, bracket ? c.interaction_point : probe, probe);
   }
@@ -111,16 +113,16 @@ TEST(PaperContact, IsTheTextStepByStep) {
             Vec3 probe = last + 4e-4 * drift;
             probe -= s.gradient * (0.05 * (s.value - depth * glm::length(s.gradient)) /
                                    glm::dot(s.gradient, s.gradient));
-            const bool in = text.S(probe) <= 0.0;
+            const bool in = text.value(probe) <= 0.0;
             if (in && touching) {
               mine = trackContact(surface, mine, last, probe);
               theirs = text.algorithm2(theirs, last, probe);
-            } else if (in && text.S(last) > 0.0) {
+            } else if (in && text.value(last) > 0.0) {
               mine = firstContact(surface, last, probe);
               theirs = text.algorithm1(last, probe, probe);
               ++first;
             }
-            touching = in && (touching || text.S(last) > 0.0);
+            touching = in && (touching || text.value(last) > 0.0);
             if (touching) {
               expectSame(mine, theirs, std::to_string(tick));
               ASSERT_FALSE(HasFailure()) << "side " << side << " newton " << newton;

@@ -126,7 +126,7 @@ TEST(PullBack, LandsOnOneTwoAndThreeWalls) {
     const Vec3 crease(0.015, std::sqrt(kR * kR - 0.015 * 0.015),
                       0.0);  // of both balls, on the floor
     const Vec3 from = crease + random.in({Vec3(-0.005), Vec3(0.005)});
-    for (const std::size_t count : {1, 2, 3}) {
+    for (const std::size_t count : {1U, 2U, 3U}) {
       std::vector<HeldWall> walls{heldAt(ball, 1.0, crease), heldAt(second, 1.0, crease),
                                   heldAt(floor, 1.0, crease)};
       walls.resize(count);

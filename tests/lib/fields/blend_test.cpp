@@ -4,7 +4,9 @@
 
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
+#include "palpate/fields/modify.h"
 #include "palpate/fields/primitives.h"
+#include "palpate/fields/transform.h"
 #include "support/field_contract.h"
 
 namespace palpate::test {
@@ -117,6 +119,56 @@ TEST(Blend, ChecksItsParameters) {
   EXPECT_THROW(static_cast<void>(smoothIntersect({left(), right()}, -1.0)), Error);
   const FieldPtr only = left();
   EXPECT_EQ(smoothUnite({only}, kBlend), only);
+}
+
+// A chain of blends would be as deep as it is long.
+TEST(SmoothUnion, TakesTensOfThousandsOfOperands) {
+  std::vector<FieldPtr> balls;
+  for (int i = 0; i < 30000; ++i) balls.push_back(sphere(Vec3(0.01 * i, 0, 0), 0.004));
+  const FieldPtr chain = smoothUnite(std::move(balls), 0.002);
+  EXPECT_NEAR(chain->value(Vec3(150.0, 0.01, 0.0)), 0.006, 1e-15);
+  EXPECT_GT(chain->jet(Vec3(150.0, 0.01, 0.0)).hessian[0][0], 0.0);
+}
+
+// A ball that knows distances up to `band` only, as a grid does.
+class BandedBall final : public Field {
+ public:
+  explicit BandedBall(double band) : band_(band) {}
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    const FieldSample s = whole_->sample(p);
+    if (std::fabs(s.value) <= band_) return s;
+    return {std::copysign(band_, s.value), Vec3(0.0), false};
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return whole_->bounds(); }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kBound; }
+  [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
+  [[nodiscard]] double featureSize() const noexcept override { return whole_->featureSize(); }
+
+ private:
+  FieldPtr whole_ = left();
+  double band_;
+};
+
+// Out of band a value is no distance: a blend or offset of it would put surfaces where none are.
+TEST(Bands, MustReachAsFarAsWhatIsMadeOfThem) {
+  const FieldPtr grid = place(std::make_shared<BandedBall>(0.004), {Mat3(1.0), Vec3(0.1, 0, 0)});
+  EXPECT_NO_THROW((void)smoothUnite({grid, body()}, 0.003));
+  EXPECT_NO_THROW((void)offset(complement(grid), 0.003));
+  EXPECT_NO_THROW((void)shell(grid, 0.003));
+  EXPECT_NO_THROW((void)scale(grid, 3.0));
+  const auto code = [](auto&& make) {
+    try {
+      (void)make();
+    } catch (const Error& error) {
+      return error.problem().code;
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(code([&] { return smoothUnite({body(), grid}, 0.005); }), "field.band_too_narrow");
+  EXPECT_EQ(code([&] { return offset(grid, 0.005); }), "field.band_too_narrow");
+  EXPECT_EQ(code([&] { return offset(complement(grid), -0.005); }), "field.band_too_narrow");
+  EXPECT_EQ(code([&] { return shell(unite({body(), grid}), 0.005); }), "field.band_too_narrow");
+  EXPECT_EQ(code([&] { return offset(scale(grid, 2.0), 0.009); }), "field.band_too_narrow");
 }
 
 }  // namespace

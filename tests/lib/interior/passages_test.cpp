@@ -235,12 +235,12 @@ TEST_F(Facets, SeveralPortsOnOneFacet) {
 }
 
 TEST_F(Facets, AGlobThatNamesBothSidesStillKnowsWhichWayIsBack) {
-  Port port_ = port({0, 1, 2}, {1});  // between: ["*", shell]
-  port_.opens_at = 3.0;
-  port_.back = 1.0;
-  EXPECT_EQ(look(outside_, {0}, {port_}).opens_at, 3.0);
-  EXPECT_EQ(look(shell_, {0}, {port_}).opens_at, 1.0) << "out of the region it leads into";
-  EXPECT_EQ(look(core_, {1}, {port_}).opens_at, 3.0);
+  Port door = port({0, 1, 2}, {1});  // between: ["*", shell]
+  door.opens_at = 3.0;
+  door.back = 1.0;
+  EXPECT_EQ(look(outside_, {0}, {door}).opens_at, 3.0);
+  EXPECT_EQ(look(shell_, {0}, {door}).opens_at, 1.0) << "out of the region it leads into";
+  EXPECT_EQ(look(core_, {1}, {door}).opens_at, 3.0);
 }
 
 TEST_F(Facets, OnlyThePortsOfTheRegionAreListed) {

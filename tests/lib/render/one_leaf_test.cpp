@@ -3,38 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "lib/render/drive.h"
+#include "lib/render/opaque.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 
 namespace palpate::test {
 namespace {
-
-/// A field whose structure is not told.
-class Opaque final : public Field {
- public:
-  Opaque(FieldPtr field, double feature) : field_(std::move(field)), feature_(feature) {}
-  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
-    return field_->sample(p);
-  }
-  [[nodiscard]] Box3 bounds() const noexcept override { return field_->bounds(); }
-  [[nodiscard]] Metric metric() const noexcept override { return field_->metric(); }
-  [[nodiscard]] double lipschitz() const noexcept override { return field_->lipschitz(); }
-  [[nodiscard]] double featureSize() const noexcept override { return feature_; }
-
- private:
-  FieldPtr field_;
-  double feature_;
-};
-
-ScenePtr sceneOfLeaf(FieldPtr field, double feature) {
-  SceneDescription description;
-  LayerDescription layer;
-  layer.name = "solid";
-  layer.inside = std::make_shared<FieldSource>(std::make_shared<Opaque>(std::move(field), feature));
-  description.layers.push_back(layer);
-  return compile(description);
-}
 
 TEST(OneLeaf, SlidingOnAFloorDoesNotPassTheThinWallThatStandsOnIt) {
   // A floor 100 mm wide and a wall of 1 mm across it, 60 mm high.

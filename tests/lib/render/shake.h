@@ -59,7 +59,6 @@ inline bool isAt(const Scene& scene, RegionId region, const Vec3& p, double reac
 
 /// Whether the events explain the way from one region to the other where no wall is absent.
 inline bool isExplained(const Scene& scene, RegionId from, const TickResult& out) {
-  if (out.event_count == TickResult::kMaxEvents) return true;  // more may have happened than fits
   std::vector<RegionId> now{from};
   for (int i = 0; i < out.event_count; ++i) {
     const Port& port = scene.ports()[out.events[static_cast<std::size_t>(i)]];

@@ -59,6 +59,26 @@ struct Refused {
   const char* told;  ///< part of the message or hint
 };
 
+// A scene file refuses these where they stand; a description from code has no place.
+TEST(Compile, RefusesTexturesThatAreTooSteep) {
+  const auto code = [](const Texture& texture) {
+    SceneDescription description = onion();
+    description.materials[0].texture = texture;
+    try {
+      (void)compile(description);
+    } catch (const Error& error) {
+      return error.problem().code;
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(code({.amplitude = 0.0009, .wavelength = 0.006}), "accepted");
+  EXPECT_EQ(code({.amplitude = 0.0, .wavelength = 0.0}), "accepted");
+  EXPECT_EQ(code({.amplitude = 0.001, .wavelength = 0.006}), "scene.texture");
+  EXPECT_EQ(code({.amplitude = 0.001}), "scene.texture");
+  EXPECT_EQ(code({.amplitude = -0.001, .wavelength = 1.0}), "scene.texture");
+  EXPECT_EQ(code({.amplitude = 0.001, .wavelength = NAN}), "scene.texture");
+}
+
 TEST(Compile, RefusesWithCodePlaceAndRemedy) {
   const std::vector<Refused> all{
       {"no field", [](auto& s) { s.layers[1].inside = nullptr; }, "scene.layer_without_field",
@@ -82,6 +102,17 @@ TEST(Compile, RefusesWithCodePlaceAndRemedy) {
        "'core' and 'far'"},
       {"not neighbours", [](auto& s) { s.ports = {port("p", "outside", "core")}; },
        "scene.regions_do_not_touch", "outside"},
+      {"sheet on nothing",
+       [](auto& s) { s.sheets = {{.name = "foil", .on = nullptr, .place = s.layers[0].place}}; },
+       "scene.sheet_without_field", "foil"},
+      {"sheet of nothing",
+       [](auto& s) {
+         s.sheets = {{.name = "foil",
+                      .on = source(ball(0, 1)),
+                      .material = "bon",
+                      .place = s.layers[0].place}};
+       },
+       "scene.unknown_material", "did you mean 'bone'"},
       {"after nothing",
        [](auto& s) {
          s.ports = {port("door", "shell", "core")};

@@ -91,7 +91,7 @@ TEST(Document, LongLinesAreNotShownWhole) {
 }
 
 TEST(Document, NestingOf64IsReadAnd65IsNot) {
-  const auto nested = [](int n) { return std::string(n, '[') + "1" + std::string(n, ']'); };
+  const auto nested = [](std::size_t n) { return std::string(n, '[') + "1" + std::string(n, ']'); };
   EXPECT_NO_THROW((void)parseDocument(nested(64), "test.yaml"));
   const Problem problem = problemOf([&] { (void)parseDocument(nested(65), "test.yaml"); });
   EXPECT_EQ(problem.code, "document.depth");

@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(
                "scene.range", "'height'", ""),
         marked("KindSlip", field("{@shpere: {center: [0, 0, 0], radius: 1}}"), "scene.unknown_kind",
                "'shpere'", "'sphere'"),
-        marked("UnknownKind", field("{@torus: {}}"), "scene.unknown_kind", "'torus'",
+        marked("UnknownKind", field("{@pyramid: {}}"), "scene.unknown_kind", "'pyramid'",
                "half_space, sphere, box"),
         marked("RegisteredKindSlip", field("{@mehs: {}}"), "scene.unknown_kind", "'mehs'",
                "'mesh'"),

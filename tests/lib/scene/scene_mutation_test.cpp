@@ -31,9 +31,22 @@ fields:
           translate: [1, 2, 3]
           rotate: {axis: [0, 1, 0], degrees: -30}
   bone: {union: [{mesh: {file: bone.stl, units: mm, voxel: 0.5}}, {grid: {file: 'it''s.vdb', name: a}}]}
+  knob:
+    smooth_union:
+      radius: 2
+      fields:
+        - {smooth_difference: {fields: [{cone: {base: [0, 0, 0], axis: [0, 0, 1], radius: 2, height: 3}}], radius: 1}}
+        - {scale: {field: {offset: {field: {shell: {field: ball, thickness: 1}}, distance: -1}}, factor: 2}}
+        - {rounded_box: {center: [0, 0, 0], size: [9, 9, 9], rounding: 1}}
+        - {torus: {center: [0, 0, 0], axis: [0, 0, 1], radius: 9, tube: 2}}
+        - {capsule: {from: [0, 0, 0], to: [0, 0, 9], radius: 1}}
+        - {heart: {center: [0, 0, 0], width: 9}}
+        - {quadric: {center: [0, 0, 0], xx: 1, z: 2, constant: -9, reach: 9 mm}}
+        - {gyroid: {center: [0, 0, 0], period: 9, thickness: 1}}
+        - {metaballs: {fall_off: gaussian, iso: 0.5, balls: [{center: [0, 0, 0], radius: 9, strength: 1}]}}
 images: {scan: {file: "a\u00e9.nii.gz", names: names.txt}}
 materials:
-  glass: {stiffness: 1500 N/m, damping: 1 N.s/m, friction: {static: 0.2, kinetic: 0.15}}
+  glass: {stiffness: 1500 N/m, damping: 1 N.s/m, friction: {static: 0.2, kinetic: 0.15}, texture: {amplitude: 0.1, wavelength: 2}, shading: 1 mm}
   syrup: {viscosity: 4 N.s/m, flow: [1 mm/s, 0 m/s, 0 m/s]}
 layers:
   - {name: liquid, inside: {intersection: [ball, brim]}, content: syrup, wall: glass}
@@ -44,6 +57,8 @@ walls:
 ports:
   - {name: mouth, between: [outside, liquid], on: brim, direction: in, opens_at: 2.8 N, back: 1 N}
   - {name: deep, between: [liquid, grain], where: part, after: [mouth]}
+sheets:
+  - {name: foil, on: brim, where: ball, wall: glass}
 start: {region: outside}
 )";
 

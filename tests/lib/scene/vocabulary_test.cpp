@@ -28,12 +28,31 @@ const std::vector<Probe>& probes() {
   const auto field = [](const std::string& value) { return "fields: {f: " + value + "}\n"; };
   const std::string ball = "{sphere: {center: [0, 0, 0], radius: 1}}";
   const std::string layers = "layers:\n  - {name: a, inside: " + ball + "}\n";
-  static const std::vector<Probe> kProbes = {
+  static const std::vector<Probe> probes = {
       {"", "@\n"},
       {"field_kind", field("{@}")},
       {"half_space", field("{half_space: {point: [0, 0, 0], normal: [0, 0, 1], @}}")},
       {"sphere", field("{sphere: {center: [0, 0, 0], radius: 1, @}}")},
       {"box", field("{box: {center: [0, 0, 0], size: [1, 1, 1], @}}")},
+      {"rounded_box", field("{rounded_box: {center: [0, 0, 0], size: [3, 3, 3], rounding: 1, @}}")},
+      {"cone", field("{cone: {base: [0, 0, 0], axis: [0, 0, 1], radius: 1, height: 1, @}}")},
+      {"torus", field("{torus: {center: [0, 0, 0], axis: [0, 0, 1], radius: 2, tube: 1, @}}")},
+      {"capsule", field("{capsule: {from: [0, 0, 0], to: [0, 0, 1], radius: 1, @}}")},
+      {"heart", field("{heart: {center: [0, 0, 0], width: 1, @}}")},
+      {"quadric", field("{quadric: {center: [0, 0, 0], xx: 1, @}}")},
+      {"gyroid", field("{gyroid: {center: [0, 0, 0], period: 1, @}}")},
+      {"metaballs",
+       field("{metaballs: {fall_off: wyvill, iso: 0.5, balls: [{center: [0, 0, 0], radius: 1}], "
+             "@}}")},
+      {"metaball",
+       field("{metaballs: {fall_off: wyvill, iso: 0.5, balls: [{center: [0, 0, 0], radius: 1, "
+             "@}]}}")},
+      {"smooth", field("{smooth_union: {fields: [" + ball + "], radius: 1, @}}")},
+      {"smooth", field("{smooth_intersection: {fields: [" + ball + "], radius: 1, @}}")},
+      {"smooth", field("{smooth_difference: {fields: [" + ball + "], radius: 1, @}}")},
+      {"scale", field("{scale: {field: " + ball + ", factor: 2, @}}")},
+      {"offset", field("{offset: {field: " + ball + ", distance: 2, @}}")},
+      {"shell", field("{shell: {field: " + ball + ", thickness: 1, @}}")},
       {"cylinder",
        field("{cylinder: {center: [0, 0, 0], axis: [0, 0, 1], radius: 1, height: 1, @}}")},
       {"ellipsoid", field("{ellipsoid: {center: [0, 0, 0], radii: [1, 1, 1], @}}")},
@@ -44,6 +63,7 @@ const std::vector<Probe>& probes() {
       {"grid", field("{grid: {file: a.vdb, @}}")},
       {"material", "materials: {m: {@}}\n"},
       {"friction", "materials: {m: {friction: {static: 1, @}}}\n"},
+      {"texture", "materials: {m: {texture: {amplitude: 1, wavelength: 9, @}}}\n"},
       {"image", "images: {i: {file: a.nii, @}}\n"},
       {"labels",
        "images: {i: {file: a.nii}}\nlayers: [{name: a, labels: {image: i, match: [x], @}}]\n"},
@@ -51,9 +71,10 @@ const std::vector<Probe>& probes() {
        "images: {i: {file: a.nii}}\nlayers: [{name: a, threshold: {image: i, above: 1, @}}]\n"},
       {"layer", "layers:\n  - {name: a, inside: " + ball + ", @}\n"},
       {"wall", layers + "walls:\n  - {between: [a, outside], wall: absent, @}\n"},
+      {"sheet", "sheets:\n  - {name: s, on: " + ball + ", @}\n"},
       {"port", layers + "ports:\n  - {name: p, between: [a, outside], @}\n"},
   };
-  return kProbes;
+  return probes;
 }
 
 std::string withUnknownKey(const Probe& probe) {

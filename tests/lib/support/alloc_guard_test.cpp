@@ -67,7 +67,7 @@ TEST(AllocGuard, NoticesTheMallocFamily) {
 TEST(AllocGuard, NoticesWhatTheLibraryAllocatesInside) {
   const std::string text(100, 'x');
   const AllocGuard guard;
-  const std::string copy = text;
+  const std::string copy = text;  // NOLINT(performance-unnecessary-copy-initialization): the point
   use(copy.data());
   EXPECT_EQ(guard.counts().allocations, 1);
 }

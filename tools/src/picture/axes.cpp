@@ -32,10 +32,11 @@ void ticks(const Sheet& s, const Vec3& direction, int axis, double low, int pixe
   const double a = (origin + sign * low) / s.unit.metres;
   const double b = (origin + sign * (low + pixels * s.view.step)) / s.unit.metres;
   const double every = niceBelow(std::abs(b - a) / 5.0);
-  for (double value = std::ceil(std::min(a, b) / every) * every; value <= std::max(a, b);
-       value += every) {
-    const double clean = std::abs(value) < 1e-9 * every ? 0.0 : value;
-    mark((value - a) / (b - a) * pixels, formatNumber(clean));
+  const auto first = static_cast<long>(std::ceil(std::min(a, b) / every));
+  const auto last = static_cast<long>(std::floor(std::max(a, b) / every));
+  for (long k = first; k <= last; ++k) {
+    const double value = static_cast<double>(k) * every;
+    mark((value - a) / (b - a) * pixels, formatNumber(value));
   }
 }
 
@@ -54,7 +55,8 @@ void drawScaleBar(Sheet& s) {
                 {kInk, s.px(2.2)});
   s.canvas.text({x, y - s.px(11)}, text, style);
   const double top = y - s.px(30) - s.top;
-  for (double row = top; row < top + s.px(42); row += 4.0) {
+  for (int i = 0; 4.0 * i < s.px(42); ++i) {
+    const double row = top + 4.0 * i;
     s.busy.push_back(
         {s.onSheet({x - s.px(10) - s.left, row}), s.onSheet({x - s.px(10) + box - s.left, row})});
   }

@@ -61,10 +61,10 @@ Spread spreadOf(const Track& track) {
         const double angle = 0.5 * std::atan2(2.0 * a[p][q], a[p][p] - a[q][q]);
         const double c = std::cos(angle);
         const double n = std::sin(angle);
-        for (int k = 0; k < 3; ++k) {
-          const double x = a[k][p], y = a[k][q];
-          a[k][p] = c * x + n * y;
-          a[k][q] = -n * x + c * y;
+        for (auto& row : a) {
+          const double x = row[p], y = row[q];
+          row[p] = c * x + n * y;
+          row[q] = -n * x + c * y;
         }
         for (int k = 0; k < 3; ++k) {
           const double x = a[p][k], y = a[q][k];

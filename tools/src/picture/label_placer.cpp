@@ -85,9 +85,8 @@ void LabelPlacer::take(int x, int y, int w, int h) {
 
 template <class Counts>
 std::vector<int> LabelPlacer::sums(Counts counts) const {
-  std::vector<int> table(
-      static_cast<std::size_t>(columns_ + 1) * static_cast<std::size_t>(rows_ + 1), 0);
-  const auto stride = static_cast<std::size_t>(columns_ + 1);
+  const std::size_t stride = static_cast<std::size_t>(columns_) + 1;
+  std::vector<int> table(stride * (static_cast<std::size_t>(rows_) + 1), 0);
   for (int y = 0; y < rows_; ++y) {
     int row = 0;
     for (int x = 0; x < columns_; ++x) {

@@ -51,8 +51,8 @@ void drawLegend(Sheet& s, double y) {
     });
   }
   y += s.px(8);
-  const auto stroke = [&](const Stroke& pen) {
-    return [&, pen](double at) { s.canvas.line({{x, at}, {x + s.px(34), at}}, pen); };
+  const auto stroke = [&](const Stroke& style) {
+    return [&, style](double at) { s.canvas.line({{x, at}, {x + s.px(34), at}}, style); };
   };
   bool wall = false, absent = false, port = false, pressed = false;
   for (const Boundary& line : s.section.boundaries) {

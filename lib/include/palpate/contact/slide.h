@@ -16,6 +16,10 @@ struct HeldWall {
   FieldJet jet{};           ///< at the proxy
   Vec3 normal{0.0};         ///< [-] side * gradient / |gradient|
   double multiplier = 0.0;  ///< [m] of PlaneSolution
+  Vec3 probe{0.0, 0.0,
+             0.0};  ///< [-] unit: this is the wall met that way from a crease of the field; zero:
+                    ///< the field is smooth here
+  double reach = 0.0;  ///< [m] how far along `probe` it is asked for
 };
 
 struct SlideStep {

@@ -5,7 +5,8 @@
 /// fields are bounds. A blend is one leaf: no port can name its operands.
 ///
 /// With more than two operands the order matters slightly: they are combined from the first on.
-/// @throws Error (kInput) if there is no operand, one is null, or `radius` is no length; all three.
+/// @throws Error (kInput) if there is no operand, one is null or a grid whose band ends nearer than
+/// `radius` to its surface, or `radius` is no length; all three.
 
 #include <vector>
 

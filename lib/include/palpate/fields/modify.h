@@ -1,7 +1,8 @@
 #pragma once
 /// Fields made from another field. All work through the CSG structure of the operand down to its
 /// leaves, so that contact still sees those; the parts become fields of their own, which a port can
-/// name only by the whole. @throws Error (kInput) if `field` is null or a number is out of range.
+/// name only by the whole. @throws Error (kInput) if `field` is null, a number is out of range, or
+/// `field` is a grid whose band ends nearer to its surface than an offset or shell reaches.
 
 #include "palpate/fields/field.h"
 

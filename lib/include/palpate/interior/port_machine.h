@@ -41,7 +41,8 @@ class PassedPorts {
   /// passage left takes that passage off again; reaching outside clears all; with `keep`
   /// neither happens, and a port once passed stays passed. When full, the oldest is forgotten.
   void pass(PortId port, RegionId from, RegionId to, bool keep) noexcept;
-  /// Records that `to` was reached without a port (an absent wall).
+  /// Records that `to` was reached without a port (an absent wall). Back in a region that a passage left, that
+  /// passage and all after it are taken off; reaching outside clears all; with `keep` neither happens.
   void arrive(RegionId to, bool keep) noexcept;
   void clear() noexcept { size_ = 0; }
 

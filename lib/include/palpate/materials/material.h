@@ -1,6 +1,7 @@
 #pragma once
 /// How walls push back and how contents feel. SI throughout.
 
+#include <numbers>
 #include <string>
 
 #include "palpate/core/math.h"
@@ -17,8 +18,15 @@ struct Friction {
 /// k = 2 pi / wavelength, at the proxy. Never more than half of the depth pressed, so that a light touch
 /// never loses contact, and the force it adds never exceeds stiffness * amplitude.
 struct Texture {
-  double amplitude = 0.0;   ///< [m] 0: smooth
+  double amplitude = 0.0;   ///< [m] 0: smooth; at most highestAmplitude(wavelength)
   double wavelength = 0.0;  ///< [m] positive if there is an amplitude
+
+  /// [m] wavelength / 2 pi. Higher bumps would change the force along the wall, by at most
+  /// stiffness * amplitude * k per metre, faster than pressing changes it: the wall would be stiffer
+  /// sideways than a hand that is stable on the wall itself can hold.
+  [[nodiscard]] static constexpr double highestAmplitude(double wavelength) noexcept {
+    return wavelength / (2.0 * std::numbers::pi);
+  }
 };
 
 /// One named material of a scene. A wall uses stiffness, damping, friction, texture and shading; a

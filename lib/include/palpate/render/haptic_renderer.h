@@ -21,7 +21,8 @@ struct HipState {
 
 /// What one tick came to.
 struct TickResult {
-  static constexpr std::size_t kMaxEvents = 8;
+  /// Crossings that one tick can make: what would cross more often goes on in the next tick.
+  static constexpr std::size_t kMaxEvents = 32;
 
   Vec3 force{0.0, 0.0, 0.0};  ///< [N, world] on the hand; always finite
   Vec3 proxy{0.0, 0.0, 0.0};  ///< [m, world] the tip held in its region

@@ -49,7 +49,7 @@ class Scene {
   [[nodiscard]] RegionId regionAt(const Vec3& p) const;
   /// Region by name; throws Error (kInput) with a suggestion if there is none.
   [[nodiscard]] RegionId regionNamed(const std::string& name) const;
-  /// Box around all bounded layers [m]; empty if there is none.
+  /// Box around all bounded layers and sheets [m]; empty if there is none.
   [[nodiscard]] Box3 bounds() const;
 
  private:
@@ -60,6 +60,7 @@ class Scene {
   std::vector<Region> regions_;
   std::vector<Material> materials_;
   Passages passages_;
+  Box3 sheet_bounds_;        ///< [m]
   std::vector<bool> touch_;  ///< [a * regions + b], symmetric
   std::vector<NamedField> fields_;
   RegionId start_ = kOutside;

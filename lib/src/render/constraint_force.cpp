@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <cmath>
+
+#include "constraint_renderer.h"
+#include "palpate/contact/surface_effects.h"
+
+// What the hand feels: walls and content.
+
+namespace palpate {
+namespace {
+
+/// Content is felt in full this far behind the facet it was entered through [m], so that hovering in a
+/// mouth does not chatter.
+constexpr double kFadeLength = 0.25e-3;
+
+}  // namespace
+
+double ConstraintRenderer::contentShare() const noexcept {
+  if (walker_.mouth() < 0) return 1.0;
+  const FieldSample s =
+      walker_.leaf(static_cast<LeafId>(walker_.mouth())).field->sample(walker_.position());
+  const double slope = s.in_band ? glm::length(s.gradient) : 1.0;
+  const double behind = slope > 0.0 ? std::fabs(s.value) / slope : kFadeLength;
+  return std::min(1.0, behind / kFadeLength);
+}
+
+Vec3 ConstraintRenderer::force(const HipState& hip) const noexcept {
+  const Contact& c = contact_;
+  Vec3 force(0.0);
+  if (c.count > 0) {
+    double total = 0.0;
+    double stiffness = 0.0;
+    double damping = 0.0;
+    Vec3 outward(0.0);
+    for (std::size_t i = 0; i < c.count; ++i) {
+      const Material& wall = wallMaterial(c.facet[c.index[i]]);
+      const HeldWall& held = c.held[i];
+      const double multiplier = held.multiplier;
+      const Vec3& x = walker_.position();
+      const Vec3 n = wall.shading > 0.0
+                         ? shadedNormal(*held.field, held.side, x, held.normal, wall.shading)
+                         : held.normal;
+      force += wall.stiffness * (multiplier + textureHeight(wall.texture, x, multiplier)) * n;
+      outward += multiplier * held.normal;
+      total += multiplier;
+      stiffness += wall.stiffness * multiplier;
+      damping += wall.damping * multiplier;
+    }
+    stiffness /= total;
+    damping /= total;
+    force -= stiffness * c.lag + damping * hip.velocity;
+    // A wall never pulls the hand towards itself.
+    const Vec3 n = unitOr(outward, Vec3(0.0));
+    const double along = glm::dot(force, n);
+    if (along < 0.0) force -= along * n;
+  }
+  const int content = scene_->regions()[walker_.region()].content;
+  if (content >= 0) {
+    const Material& medium = scene_->materials()[static_cast<std::size_t>(content)];
+    if (medium.viscosity > 0.0) {
+      force -= contentShare() * medium.viscosity * (hip.velocity - medium.flow);
+    }
+  }
+  return force;
+}
+
+}  // namespace palpate
