@@ -39,6 +39,8 @@ CellWalker::CellWalker(const Scene& scene)
       beyond_(leaves_.size()),
       due_(leaves_.size()),
       hot_(leaves_.size()),
+      measured_(leaves_.size()),
+      jets_(leaves_.size()),
       known_(leaves_.size()) {
   for (std::size_t i = 0; i < leaves_.size(); ++i) {
     tolerance_[i] = kOnSurface * leaves_[i].feature * leaves_[i].lipschitz;
@@ -50,6 +52,7 @@ CellWalker::CellWalker(const Scene& scene)
 
 void CellWalker::place(const Vec3& p) noexcept {
   x_ = p;
+  ++stay_;
   travel_ = 0.0;
   cold_due_ = 0.0;
   hot_count_ = 0;
@@ -76,7 +79,7 @@ void CellWalker::beginTick() noexcept {
 }
 
 double CellWalker::measure(LeafId leaf) noexcept {
-  const double value = leaves_[leaf].field->value(x_);
+  const double value = valueHere(leaf);
   due_[leaf] = travel_ + std::fabs(value) / leaves_[leaf].lipschitz;
   return value;
 }
@@ -96,6 +99,7 @@ void CellWalker::refresh(double length) noexcept {
 void CellWalker::jump(const Vec3& x) noexcept {
   travel_ += glm::length(x - x_);
   x_ = x;
+  ++stay_;
 }
 
 CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sliding,
@@ -168,14 +172,15 @@ SweepSurface CellWalker::surfaceOf(LeafId leaf) const noexcept {
   return surface;
 }
 
-double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) const noexcept {
+double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) noexcept {
   const Leaf& own = leaves_[leaf];
   if (glm::length(b - a) <= kGraze * own.feature) return 1.0;  // as short as what a sweep lets go
   SweepSurface surface = surfaceOf(leaf);
   // No sheet of the leaf is thinner than its feature size, so none fits between two steps.
   surface.graze = kSlideStride * own.feature;
   surface.allowance = kSlideDip * own.feature * own.lipschitz;
-  const double start = surface.side * own.field->value(a) + surface.allowance;
+  const double value = a == x_ ? valueHere(leaf) : own.field->value(a);
+  const double start = surface.side * value + surface.allowance;
   const SweepResult result = sweep(surface, a, b, start, kEvaluationsPerSlide);
   return result.kind == SweepResult::Kind::kFree ? 1.0 : result.at;
 }

@@ -42,12 +42,19 @@ class CellWalker {
   [[nodiscard]] const Leaf& leaf(LeafId id) const noexcept { return leaves_[id]; }
   [[nodiscard]] double tolerance(LeafId leaf) const noexcept { return tolerance_[leaf]; }
 
+  /// The leaf's field at the point; computed once as long as the point stays there.
+  [[nodiscard]] const FieldJet& jetHere(LeafId leaf) noexcept {
+    Jet& known = jets_[leaf];
+    if (known.stay != stay_) known = {leaves_[leaf].field->jet(x_), stay_};
+    return known.jet;
+  }
+
   /// Straight to `target` [m], through what is open. Facets of the leaves in `sliding` are not looked at:
   /// they hold the point already.
   Stop move(const Vec3& target, std::span<const LeafId> sliding, bool stop_at_crossing) noexcept;
   /// How much of the straight way from `a` to `b` [m] is on the near side of `leaf`, 0 to 1. A leaf may have
   /// several sheets: the one that holds a sliding point is not the one that stands in its way.
-  [[nodiscard]] double freeShare(LeafId leaf, const Vec3& a, const Vec3& b) const noexcept;
+  [[nodiscard]] double freeShare(LeafId leaf, const Vec3& a, const Vec3& b) noexcept;
   [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }
 
   /// Calls f(leaf, value, facet) for each leaf within `reach` tolerances of the point, or beyond it.
@@ -86,6 +93,12 @@ class CellWalker {
   void flip(LeafId leaf, Signs& signs) const noexcept;
   /// S of the leaf at the point, and until where that keeps it out of reach.
   double measure(LeafId leaf) noexcept;
+  /// S of the leaf at the point, asked for once as long as the point stays there.
+  double valueHere(LeafId leaf) noexcept {
+    Measured& known = measured_[leaf];
+    if (known.stay != stay_) known = {leaves_[leaf].field->value(x_), stay_};
+    return known.value;
+  }
   /// Sees to it that every leaf that a motion of `length` could reach is in the hot list.
   void refresh(double length) noexcept;
   /// The region that the cell beyond_ lies in; only layers that use a crossed leaf are looked at again.
@@ -121,6 +134,18 @@ class CellWalker {
   std::size_t hot_count_ = 0;
   double cold_due_ = 0.0;
   double smallest_horizon_ = kInfinity;  ///< [m]
+
+  struct Measured {
+    double value = 0.0;
+    std::uint64_t stay = 0;
+  };
+  struct Jet {
+    FieldJet jet;
+    std::uint64_t stay = 0;
+  };
+  std::vector<Measured> measured_;  ///< by leaf
+  std::vector<Jet> jets_;           ///< by leaf
+  std::uint64_t stay_ = 1;          ///< counts the places where the point was
 
   /// A facet looked up in the present state, valid while nothing was crossed.
   struct Known {
