@@ -19,10 +19,12 @@ Vec3 shadedNormal(const Field& field, double side, const Vec3& p, const Vec3& no
   const Vec3 other = std::fabs(normal.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
   const Vec3 t1 = glm::normalize(glm::cross(normal, other));
   const Vec3 t2 = glm::cross(normal, t1);
-  Vec3 sum = normal;
-  for (const Vec3& offset : {t1, -t1, t2, -t2}) {
-    const FieldSample s = field.sample(p + radius * offset);
-    if (s.in_band) sum += side * unitOr(s.gradient, Vec3(0.0));
+  Vec3 sum(0.0);
+  for (const Vec3& axis : {normal, t1, t2}) {
+    const FieldSample ahead = field.sample(p + radius * axis);
+    const FieldSample behind = field.sample(p - radius * axis);
+    if (!ahead.in_band || !behind.in_band) return normal;
+    sum += side * (ahead.value - behind.value) * axis;
   }
   return unitOr(sum, normal);
 }

@@ -76,11 +76,16 @@ void CellWalker::beginTick() noexcept {
     travel_ = 0.0;
     cold_due_ = 0.0;
   }
+  // One leaf a tick is looked at whether it can have been met or not: a field whose bound is false may
+  // have let the point through, and a hand at rest would leave it there.
+  if (hot_count_ > 0) (void)measure(hot_[audited_++ % hot_count_]);
 }
 
 double CellWalker::measure(LeafId leaf) noexcept {
   const double value = valueHere(leaf);
-  due_[leaf] = travel_ + std::fabs(value) / leaves_[leaf].lipschitz;
+  // Beyond a surface that was never crossed (a field that lies about its bound) nothing is out of reach:
+  // the point is to be brought back.
+  due_[leaf] = travel_ + std::max(0.0, side(leaf) * value) / leaves_[leaf].lipschitz;
   return value;
 }
 

@@ -30,6 +30,7 @@ class CellWalker {
   /// Forgets ports passed.
   void forget() noexcept {
     passed_.clear();
+    audited_ = 0;
     ++state_;
   }
   /// A new tick: no events yet, fresh budgets.
@@ -132,6 +133,7 @@ class CellWalker {
   std::vector<double> due_;
   std::vector<LeafId> hot_;
   std::size_t hot_count_ = 0;
+  std::size_t audited_ = 0;  ///< leaves of the hot list looked at out of turn, one a tick
   double cold_due_ = 0.0;
   double smallest_horizon_ = kInfinity;  ///< [m]
 

@@ -14,6 +14,8 @@ constexpr double kNear = 100.0;
 /// The proxy has arrived when what is left to slide is this share of the depth: 6e-8 degree of the
 /// force's direction.
 constexpr double kSettled = 1e-9;
+/// A slope below this share of the Lipschitz bound is not made up for in tolerances.
+constexpr double kFlattest = 1e-3;
 /// A slide ends within this share of where the kinetic cone holds it.
 constexpr double kSticksWithin = 1e-6;
 /// Share of the feature size that a crease's walls are asked for beside it: several times what fields take
@@ -64,7 +66,9 @@ void ConstraintRenderer::findContact(const Vec3& hip) noexcept {
     HeldWall& wall = c.held[c.count];
     wall.field = walker_.leaf(c.leaf[k]).field.get();
     wall.side = walker_.side(c.leaf[k]);
-    wall.tolerance = walker_.tolerance(c.leaf[k]);
+    // As a distance, where the field rises less than its bound; but never down to rounding.
+    const double share = glm::length(c.jet[k].gradient) / walker_.leaf(c.leaf[k]).lipschitz;
+    wall.tolerance = walker_.tolerance(c.leaf[k]) * std::clamp(share, kFlattest, 1.0);
     wall.jet = c.jet[k];
     wall.normal = c.plane[k].normal;
     wall.multiplier = multiplier;
@@ -183,6 +187,19 @@ bool ConstraintRenderer::puncture() noexcept {
     }
   }
   return false;
+}
+
+/// The slide went over a rim: where a held wall is no wall any more, the pull that pressed the proxy against
+/// it takes it through, here and now. Left to the next straight move, the facet just crossed could be
+/// crossed back first, and the proxy would hang on the rim.
+void ConstraintRenderer::letGoAtRim() noexcept {
+  for (std::size_t i = 0; i < contact_.count; ++i) {
+    const LeafId leaf = contact_.leaf[contact_.index[i]];
+    const double value = walker_.leaf(leaf).field->value(walker_.position());
+    if (std::fabs(value) > kNear * walker_.tolerance(leaf)) continue;
+    const Facet facet = walker_.facetAt(leaf);
+    if (!facet.isClosed()) walker_.cross(leaf, facet);
+  }
 }
 
 bool ConstraintRenderer::isSettled(const Vec3& hip) const noexcept {

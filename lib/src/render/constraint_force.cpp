@@ -24,6 +24,20 @@ double ConstraintRenderer::contentShare() const noexcept {
   return std::min(1.0, behind / kFadeLength);
 }
 
+/// The wall's normal smoothed, over the whole solid that the wall bounds: its facets may be leaves.
+Vec3 ConstraintRenderer::shaded(const HeldWall& held, const Facet& facet,
+                                double radius) const noexcept {
+  const RegionId here = walker_.region();
+  const Field* solid = held.field;
+  double side = held.side;
+  if (here != facet.beyond) {
+    const RegionId inner = std::max(here, facet.beyond);
+    solid = scene_->regions()[inner].field.get();
+    side = here == inner ? -1.0 : 1.0;
+  }
+  return shadedNormal(*solid, side, walker_.position(), held.normal, radius);
+}
+
 Vec3 ConstraintRenderer::force(const HipState& hip) const noexcept {
   const Contact& c = contact_;
   Vec3 force(0.0);
@@ -37,9 +51,8 @@ Vec3 ConstraintRenderer::force(const HipState& hip) const noexcept {
       const HeldWall& held = c.held[i];
       const double multiplier = held.multiplier;
       const Vec3& x = walker_.position();
-      const Vec3 n = wall.shading > 0.0
-                         ? shadedNormal(*held.field, held.side, x, held.normal, wall.shading)
-                         : held.normal;
+      const Vec3 n =
+          wall.shading > 0.0 ? shaded(held, c.facet[c.index[i]], wall.shading) : held.normal;
       force += wall.stiffness * (multiplier + textureHeight(wall.texture, x, multiplier)) * n;
       outward += multiplier * held.normal;
       total += multiplier;

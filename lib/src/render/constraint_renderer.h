@@ -69,8 +69,10 @@ class ConstraintRenderer final : public HapticRenderer {
   [[nodiscard]] bool unfoldLeaf(const Vec3& hip, LeafId leaf, const Vec3& toward) noexcept;
   [[nodiscard]] bool unfoldAround(const Vec3& hip) noexcept;
   [[nodiscard]] bool hasTurned(bool impatient) const noexcept;
+  void letGoAtRim() noexcept;
   [[nodiscard]] bool isSettled(const Vec3& hip) const noexcept;
   [[nodiscard]] bool isOnWalls() const noexcept;
+  [[nodiscard]] Vec3 shaded(const HeldWall& held, const Facet& facet, double radius) const noexcept;
   [[nodiscard]] Vec3 force(const HipState& hip) const noexcept;
   [[nodiscard]] double contentShare() const noexcept;
   [[nodiscard]] const Material& wallMaterial(const Facet& facet) const noexcept {

@@ -82,6 +82,7 @@ bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_impr
     double share = 1.0;
     for (const LeafId leaf : sliding) share = std::min(share, walker_.freeShare(leaf, from, to));
     const CellWalker::Stop stop = walker_.move(from + share * (to - from), sliding, true);
+    if (stop == CellWalker::Stop::kCrossed) letGoAtRim();
     is_clipped = share < 1.0 && stop == CellWalker::Stop::kArrived;
     return stop == CellWalker::Stop::kArrived && !is_clipped;
   };

@@ -1,0 +1,127 @@
+#pragma once
+// What the hard cases share: scenes of one solid, and a judge that compares a drive with the oracle.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <numbers>
+
+#include "lib/render/drive.h"
+#include "support/oracle/oracle.h"
+
+namespace palpate::test {
+
+constexpr double kDegree = std::numbers::pi / 180.0;  // [rad]
+constexpr double kDefaultK = 1000.0;                  // [N/m] of a wall whose layer names none
+
+/// One layer, `solid`, made of `field`, with the default wall; the hand is held outside or within it.
+inline ScenePtr sceneOfSolid(FieldPtr field, bool from_within = false, Material wall = {}) {
+  SceneDescription description;
+  LayerDescription layer;
+  layer.name = "solid";
+  layer.inside = std::make_shared<FieldSource>(std::move(field));
+  if (wall.stiffness > 0.0) {
+    wall.name = "wall";
+    layer.wall.material = wall.name;
+    description.materials.push_back(wall);
+  }
+  description.layers.push_back(layer);
+  if (from_within) description.start_region = "solid";
+  return compile(description);
+}
+
+inline testing::FeasibleSet heldBy(const FieldPtr& field, bool from_within) {
+  return from_within ? testing::FeasibleSet::inside(field) : testing::FeasibleSet::outside(field);
+}
+
+/// Drives a renderer and runs the oracle beside it, from the renderer's own proxy of the tick before.
+class Judge {
+ public:
+  Judge(ScenePtr scene, testing::FeasibleSet set, double stiffness = kDefaultK)
+      : drive_(std::move(scene)),
+        set_(std::move(set)),
+        stiffness_(stiffness),
+        wall_slack_(4e-9 * set_.feature()) {}  // of the smallest feature; a leaf's may be larger
+  Judge(const FieldPtr& field, bool from_within)
+      : Judge(sceneOfSolid(field, from_within), heldBy(field, from_within)) {}
+
+  /// The oracle's step h [m]; near an edge h and h / 10 must be shorter than the way to it.
+  void stepOracleBy(double step) { oracle_.step = step; }
+
+  /// Only there is the proxy compared with the oracle's: near a medial axis, beyond 0.9 of the reach, the
+  /// minimum is too flat for 1e-6. Finite and allowed it must be everywhere.
+  void onlyWhere(std::function<bool(const Vec3&)> judged) { judged_ = std::move(judged); }
+  /// Grants `times` as much distance to the walls: in a sharp groove a corner is that much further off.
+  void grant(double times) { wall_slack_ *= times; }
+
+  /// To where the hand begins; not judged.
+  void begin(const Vec3& hip) {
+    (void)drive_.to(hip);
+    (void)drive_.to(hip);
+  }
+
+  /// One tick, judged: |F / K - (z - P)| and |x - z| at most `tolerance` of |z - P|, and x allowed. Being on
+  /// a surface means within a billionth of the feature size of its leaf, so that much is granted to x.
+  void to(const Vec3& hip, double tolerance) {
+    const Vec3 previous = drive_.last().proxy;
+    testing::OracleResult oracle = testing::solveOracle(set_, previous, hip, oracle_);
+    const TickResult& out = drive_.to(hip);
+    if (oracle.converged && !oracle.ambiguous && oracle.errorOf(out.proxy, hip, 1e-5) > tolerance) {
+      // Nearer to an edge than its steps, the oracle leaps over it. Shorter ones decide.
+      testing::OracleSettings finer = oracle_;
+      finer.step = (oracle_.step > 0.0 ? oracle_.step : 0.02 * set_.feature()) / 100.0;
+      oracle = testing::solveOracle(set_, previous, hip, finer);
+    }
+    ++ticks_;
+    if (out.contact) ++contacts_;
+    const double on_wall = wall_slack_;
+    SCOPED_TRACE(::testing::Message()
+                 << "tick " << ticks_ << ": hip " << text(hip) << ", proxy " << text(out.proxy)
+                 << ", oracle " << text(oracle.proxy) << ", before " << text(previous) << ", depth "
+                 << glm::length(oracle.proxy - hip) << ", force " << text(out.force));
+    ASSERT_TRUE(isFinite(out.force) && isFinite(out.proxy));
+    ASSERT_GE(set_.value(out.proxy), -2.0 * on_wall);
+    if (judged_ && !judged_(hip)) return;
+    ASSERT_TRUE(isNear(out.force / stiffness_, out.proxy - hip,
+                       1e-6 * glm::length(out.proxy - hip) + on_wall));
+    if (oracle.ambiguous) {
+      ++ambiguous_;
+      return;
+    }
+    ASSERT_TRUE(oracle.converged) << "the oracle is at fault";
+    const double depth = glm::length(oracle.proxy - hip);
+    const double off = glm::length(out.proxy - oracle.proxy);
+    ASSERT_LE(off, tolerance * depth + on_wall);
+    // What is felt, where the depth is above the oracle's own rounding.
+    const double felt = glm::length(out.force / stiffness_ - (oracle.proxy - hip));
+    ASSERT_LE(felt, tolerance * depth + 1e-5 * on_wall + 1e-12);
+    if (depth > 1e-5) worst_ = std::max(worst_, felt / depth);
+  }
+
+  [[nodiscard]] Drive& drive() { return drive_; }
+  [[nodiscard]] int ticks() const { return ticks_; }
+  [[nodiscard]] int contacts() const { return contacts_; }
+  [[nodiscard]] int ambiguous() const { return ambiguous_; }
+  [[nodiscard]] double worst() const { return worst_; }
+
+  static std::string text(const Vec3& p) {
+    char buffer[96];
+    (void)std::snprintf(buffer, sizeof buffer, "(%.9g, %.9g, %.9g)", p.x, p.y, p.z);
+    return buffer;
+  }
+
+ private:
+  Drive drive_;
+  testing::FeasibleSet set_;
+  double stiffness_;
+  double wall_slack_;  ///< [m]
+  testing::OracleSettings oracle_;
+  std::function<bool(const Vec3&)> judged_;
+  int ticks_ = 0;
+  int contacts_ = 0;
+  int ambiguous_ = 0;
+  double worst_ = 0.0;
+};
+
+}  // namespace palpate::test

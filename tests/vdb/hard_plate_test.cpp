@@ -1,0 +1,75 @@
+// Thin plates as grids: what a grid holds is never passed through, at any speed.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "palpate/fields/primitives.h"
+#include "palpate/fields/transform.h"
+#include "palpate/render/haptic_renderer.h"
+#include "palpate/vdb/bake.h"
+#include "vdb/shapes.h"
+
+namespace palpate::vdb {
+namespace {
+
+using namespace palpate::vdb::test;  // NOLINT(google-build-using-namespace)
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kVoxel = 0.25e-3;
+
+ScenePtr sceneOf(FieldPtr field) {
+  SceneDescription description;
+  LayerDescription layer;
+  layer.name = "plate";
+  layer.inside = std::make_shared<FieldSource>(std::move(field));
+  description.layers.push_back(layer);
+  return compile(description);
+}
+
+const Pose kTurned{rotationAbout(Vec3(1, 2, 3), 0.8), Vec3(1e-3, -2e-3, 0.5e-3)};
+
+FieldPtr plate(double thickness, double width, const Pose& pose) {
+  return place(box(Vec3(0.0), Vec3(width, width, thickness)), pose);
+}
+
+TEST(HardPlate, OfFourVoxelsIsNeverTunnelled) {
+  const double half = 0.5e-3;
+  for (const Pose& pose : {Pose{}, kTurned}) {
+    const ScenePtr scene =
+        sceneOf(gridField(bake(*plate(2.0 * half, 0.05, pose), voxels(kVoxel, 4.0))));
+    for (const double speed : {1.0, 5.0, 20.0}) {
+      for (const double slant : {0.0, 30.0, 50.0}) {
+        int tunnelled = 0;
+        const double step = speed * 1e-3;
+        const Vec3 way =
+            glm::normalize(Vec3(std::sin(slant * kDegree), 0.3 * std::sin(slant * kDegree),
+                                -std::cos(slant * kDegree)));
+        for (int phase = 0; phase < 200; ++phase) {
+          const auto renderer = makeRenderer(scene);
+          const double ahead = 0.02 + step * phase / 200.0;
+          bool through = false;
+          Vec3 hip(0.0);
+          TickResult out;
+          for (double s = -ahead; s < 8e-3; s += step) {
+            hip = s * way;
+            out = renderer->update({pose.apply(hip)});
+            through = through || pose.applyInverse(out.proxy).z < 0.0;
+          }
+          for (int i = 0; i < 3; ++i) out = renderer->update({pose.apply(hip)});
+          const Vec3 proxy = pose.applyInverse(out.proxy);
+          if (hip.z < half - kVoxel) {
+            // Held on the near face, to a tenth of a voxel, and pushed back out.
+            through = through || !out.contact || std::fabs(proxy.z - half) > 0.1 * kVoxel;
+          }
+          tunnelled += through ? 1 : 0;
+        }
+        EXPECT_EQ(tunnelled, 0) << speed << " m/s, " << slant << " degrees";
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate::vdb
