@@ -33,6 +33,12 @@ class CellWalker {
     audited_ = 0;
     ++state_;
   }
+  /// While sealed, whatever leads out of the region is a wall.
+  void seal(bool is_sealed) noexcept {
+    is_sealed_ = is_sealed;
+    ++state_;
+  }
+  [[nodiscard]] bool isSealed() const noexcept { return is_sealed_; }
   /// A new tick: no events yet, fresh budgets.
   void beginTick() noexcept;
 
@@ -109,15 +115,28 @@ class CellWalker {
   void gather(LeafId leaf) noexcept;
   void jump(const Vec3& x) noexcept;
   [[nodiscard]] SweepSurface surfaceOf(LeafId leaf) const noexcept;
+  /// [m] the surface of `leaf`, to whose free side the point lies by `value` >= 0, is at least that far away.
+  [[nodiscard]] double reachOf(LeafId leaf, double value) const noexcept;
+  /// sweep(), with regard to where the Lipschitz bound of the leaf holds.
+  [[nodiscard]] SweepResult sweepLeaf(LeafId leaf, SweepSurface surface, const Vec3& a,
+                                      const Vec3& b, double start, int budget) const noexcept;
 
   const Scene& scene_;
   std::span<const Leaf> leaves_;
+  /// Where a leaf's Lipschitz bound holds, if not everywhere.
+  struct Domain {
+    Box3 box;
+    bool is_everywhere = true;
+    bool holds_surface = true;  ///< then there is nothing to meet beyond it
+  };
+  std::vector<Domain> domain_;
   std::vector<double> tolerance_;  ///< of |S| by leaf: 1e-9 of the feature size, in units of S
   Vec3 x_{0.0, 0.0, 0.0};
   Signs signs_;
   Signs beyond_;                   ///< scratch of facetAt()
   std::vector<RegionId> holding_;  ///< layers that hold the cell, innermost (last) first
   RegionId region_ = kOutside;
+  bool is_sealed_ = false;
   PassedPorts passed_;
   int mouth_ = -1;
   LeafId blocked_by_ = 0;

@@ -162,7 +162,7 @@ void ConstraintRenderer::holdByFriction() noexcept {
     friction.static_ratio = std::max(friction.static_ratio, own.static_ratio);
     friction.kinetic_ratio = std::max(friction.kinetic_ratio, own.kinetic_ratio);
   }
-  if (friction.static_ratio <= 0.0) return;
+  if (friction.static_ratio <= 0.0 || walker_.isSealed()) return;
   const double pull = glm::length(c.pull);
   const double load = c.load();
   const double kinetic = friction.kinetic_ratio * load;
