@@ -5,7 +5,6 @@
 #   dev       assertions on, warnings are errors, every public header compiles alone
 #   release   what users get: optimised code, installed and used by an outside project
 #   asan      memory errors and undefined behaviour; lib and devices, and with --all everything
-# With --all or --lane only, since they have not passed whole on every module yet:
 #   tsan      data races (without vdb: TBB is not instrumented)
 #   tidy      names and bug patterns, by clang-tidy, in the sources that changed
 # Options:
@@ -13,7 +12,7 @@
 #   --lane NAME     only this lane; may be given several times
 #   --all           every lane; tidy and asan on everything, and the slow sweeps (PALPATE_SLOW_TESTS=1)
 #   --changed REF   what counts as changed for tidy: since REF. Default: since the branch left origin/main,
-#                   or on main itself, in the day up to its newest commit
+#                   or on main itself, with its newest commit
 # The last line says 'N passed, N failed' over all lanes; the exit status is 0 if none failed.
 set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -38,8 +37,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 if [ ${#lanes[@]} = 0 ]; then
-  lanes=(format arrows dev release asan)
-  [ $tidy_all = 0 ] || lanes=("${all_lanes[@]}")
+  lanes=("${all_lanes[@]}")
 fi
 asan_options=(-DPALPATE_VDB=OFF)
 [ $tidy_all = 0 ] || asan_options=(-DPALPATE_VDB=ON)
@@ -96,7 +94,7 @@ tidy_sources() {
   if [ -z "$base" ]; then
     base=$(git merge-base HEAD origin/main 2> /dev/null) || base=
     if [ -z "$base" ] || [ "$base" = "$(git rev-parse HEAD 2> /dev/null)" ]; then
-      base=$(git rev-list -1 --before="$(git show -s --format=%ct HEAD) - 1 day" HEAD 2> /dev/null) || base=
+      base=$(git rev-parse --verify --quiet HEAD^) || base=
     fi
   fi
   if [ $tidy_all = 1 ] || [ -z "$base" ] || git diff --name-only "$base" | grep --quiet '^\.clang-tidy$'; then

@@ -186,6 +186,20 @@ void defineRender(CLI::App& app, Invocation& invocation) {
       "that has no names)");
 }
 
+void defineBench(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<BenchOptions>(invocation);
+  app.add_option("what", o.what);
+  const char* g = "What to run";
+  addList(app, g, "--scene", "NAME", o.scenes, "only this scene, may be repeated (default: all)");
+  add(app, g, "--renderer", "NAME", o.renderer, "only constraint or only paper (default: both)")
+      ->check(CLI::IsMember({"constraint", "paper"}));
+  add(app, g, "--repeat", "N", o.repeats, "runs, of which the shortest time counts (default 10)")
+      ->check(CLI::Range(1, 100000));
+  g = "Output files";
+  add(app, g, "--csv", "FILE.csv", o.csv, "the table, one row for each scene and renderer");
+  add(app, g, "--svg", "FILE.svg", o.svg, "a plot of error against time");
+}
+
 void defineHelp(CLI::App& app, Invocation& invocation) {
   auto& o = choose<HelpOptions>(invocation);
   app.add_option("verb", o.verb);
@@ -277,6 +291,24 @@ const std::vector<Verb>& verbs() {
            throw usageError("--plane and --cut exclude one another", "");
          }
        }},
+      {"bench",
+       "Measure contact: how long a tick takes, and how far off its force is",
+       "palpate bench contact --scene sphere --scene torus --svg contact.svg",
+       "palpate bench contact [OPTIONS]",
+       "Runs both renderers along the same paths on scenes of known truth and compares the forces "
+       "with\n"
+       "closed forms, or with a slow oracle where there is none. `missed` counts ticks where one "
+       "has a\n"
+       "force and the other none; `step` and `turn` are the largest from tick to tick, with the "
+       "true ones\n"
+       "beside them. Scenes: sphere, sphere-baked, sphere-deep, sphere-small, sphere-hollow, "
+       "ellipsoid,\n"
+       "quadric, torus, box-edge, box-room, crease, groove, saddle, container, balls-1, "
+       "balls-1000,\n"
+       "balls-10000.",
+       {},
+       defineBench,
+       [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact"); }},
       {"help",
        "Print help, also as the reference manual",
        "palpate help touch",
@@ -307,7 +339,7 @@ std::unique_ptr<CLI::App> makeApp(const Verb& verb, Invocation& invocation) {
     addFlag(*app, g, "--quiet", invocation.general.quiet, "no notes and no progress on stderr");
     const auto& o = invocation.options;
     if (std::holds_alternative<TouchOptions>(o) || std::holds_alternative<BakeOptions>(o) ||
-        std::holds_alternative<RenderOptions>(o)) {
+        std::holds_alternative<RenderOptions>(o) || std::holds_alternative<BenchOptions>(o)) {
       addFlag(*app, g, "--force", invocation.general.force, "replace existing output files");
     }
   }

@@ -85,6 +85,15 @@ struct RenderOptions {
   std::string image;
 };
 
+struct BenchOptions {
+  std::string what;  ///< "contact"
+  std::vector<std::string> scenes;
+  std::string renderer;  ///< empty: both
+  int repeats = 10;
+  std::string csv;
+  std::string svg;
+};
+
 /// `palpate help`: everything, or one verb.
 struct HelpOptions {
   std::string verb;
@@ -92,6 +101,6 @@ struct HelpOptions {
 };
 
 using VerbOptions = std::variant<HelpOptions, TouchOptions, BakeOptions, InfoOptions, QueryOptions,
-                                 ExplainOptions, RenderOptions>;
+                                 ExplainOptions, RenderOptions, BenchOptions>;
 
 }  // namespace palpate::tools

@@ -19,5 +19,7 @@ namespace palpate::tools {
                          Console& console);
 [[nodiscard]] Report run(const RenderOptions& options, const GeneralOptions& general,
                          Console& console);
+[[nodiscard]] Report run(const BenchOptions& options, const GeneralOptions& general,
+                         Console& console);
 
 }  // namespace palpate::tools

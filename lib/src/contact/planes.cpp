@@ -103,9 +103,18 @@ class SetSearch {
   double least_beyond_ = kInfinity;
 };
 
+/// One plane, as most often: the same as the search below, without its bookkeeping.
+PlaneSolution closestStepBy(const Vec3& wish, const Plane& plane) noexcept {
+  const double push = -plane.gap - glm::dot(plane.normal, wish);
+  const double size = std::max(glm::dot(wish, wish), plane.gap * plane.gap);
+  if (push <= 0.0 || push * push <= 1e-24 * size) return {wish};
+  return {wish + push * plane.normal, 1, {0}, {push}};
+}
+
 }  // namespace
 
 PlaneSolution closestStep(const Vec3& wish, std::span<const Plane> planes) noexcept {
+  if (planes.size() == 1) return closestStepBy(wish, planes[0]);
   SetSearch search(wish, planes);
   if (search.attempt({}, 0)) return search.solution();
   const int n = search.size();

@@ -8,25 +8,29 @@ namespace {
 
 constexpr double kSmallestEigenvalue = 0.02;
 constexpr double kLargestTurn = 0.5;  // [rad]
+constexpr int kPullBackSteps = 8;
 
 /// sum of multiplier * side * Hessian / |gradient| over the walls.
 Mat3 bending(std::span<const HeldWall> walls) noexcept {
   Mat3 sum(0.0);
   for (const HeldWall& wall : walls) {
-    const double slope = glm::length(wall.jet.gradient);
-    if (slope > 0.0) sum += (wall.multiplier * wall.side / slope) * wall.jet.hessian;
+    const double square = glm::dot(wall.jet.gradient, wall.jet.gradient);
+    if (square > 0.0) sum += (wall.multiplier * wall.side / std::sqrt(square)) * wall.jet.hessian;
   }
   return sum;
 }
 
 /// Shortens the step so that no wall's normal turns by more than kLargestTurn over it.
 Vec3 limited(const Vec3& step, std::span<const HeldWall> walls) noexcept {
-  double turn = 0.0;
+  double share = 1.0;
   for (const HeldWall& wall : walls) {
-    const double slope = glm::length(wall.jet.gradient);
-    if (slope > 0.0) turn = std::max(turn, glm::length(wall.jet.hessian * step) / slope);
+    const Vec3 turn = wall.jet.hessian * step;
+    const double most =
+        kLargestTurn * kLargestTurn * glm::dot(wall.jet.gradient, wall.jet.gradient);
+    const double square = glm::dot(turn, turn);
+    if (square > most && most > 0.0) share = std::min(share, std::sqrt(most / square));
   }
-  return turn > kLargestTurn ? step * (kLargestTurn / turn) : step;
+  return share < 1.0 ? step * share : step;
 }
 
 double bounded(double eigenvalue) noexcept {
@@ -34,11 +38,13 @@ double bounded(double eigenvalue) noexcept {
 }
 
 SlideStep onSurface(const Vec3& pull, const HeldWall& wall, const Mat3& bend) noexcept {
-  // Any orthonormal pair across the normal.
+  // An orthonormal pair across the normal (T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
   const Vec3 n = wall.normal;
-  const Vec3 other = std::fabs(n.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
-  const Vec3 t1 = glm::normalize(glm::cross(n, other));
-  const Vec3 t2 = glm::cross(n, t1);
+  const double sign = std::copysign(1.0, n.z);
+  const double share = -1.0 / (sign + n.z);
+  const double mixed = n.x * n.y * share;
+  const Vec3 t1(1.0 + sign * n.x * n.x * share, sign * mixed, -sign * n.x);
+  const Vec3 t2(mixed, sign + n.y * n.y * share, -n.y);
   const Vec3 b1 = bend * t1;
   const double a = 1.0 - glm::dot(t1, b1);
   const double b = -glm::dot(t2, b1);
@@ -92,6 +98,12 @@ Vec3 tangentialPart(const Vec3& v, std::span<const HeldWall> walls) noexcept {
 }
 
 bool mayBeSaddle(std::span<const HeldWall> walls) noexcept {
+  if (walls.size() == 1) {
+    const Mat3& h = walls[0].jet.hessian;
+    const double square = glm::dot(h[0], h[0]) + glm::dot(h[1], h[1]) + glm::dot(h[2], h[2]);
+    return walls[0].multiplier * walls[0].multiplier * square >=
+           glm::dot(walls[0].jet.gradient, walls[0].jet.gradient);
+  }
   double norm = 0.0;
   for (const HeldWall& wall : walls) {
     const Mat3& h = wall.jet.hessian;
@@ -118,39 +130,56 @@ SlideStep slideStep(const Vec3& pull, std::span<const HeldWall> walls) noexcept 
   return out;
 }
 
+namespace {
+
+/// |S| / |gradient| that counts as on the wall: a field that rises slowly must be nearer to zero.
+bool isOn(const HeldWall& wall, const FieldSample& s) noexcept {
+  const double slack = wall.tolerance / wall.field->lipschitz();
+  return s.value * s.value <= slack * slack * glm::dot(s.gradient, s.gradient);
+}
+
+bool pullBackOne(Vec3& x, const HeldWall& wall, bool& began_free) noexcept {
+  for (int iteration = 0; iteration < kPullBackSteps; ++iteration) {
+    const FieldSample s = wall.field->sample(x);
+    if (!s.in_band) return false;
+    if (iteration == 0) began_free = wall.side * s.value >= -wall.tolerance;
+    if (isOn(wall, s)) return true;
+    const double square = glm::dot(s.gradient, s.gradient);
+    if (!(square > 0.0)) return false;
+    x -= (s.value / square) * s.gradient;
+    if (!isFinite(x)) return false;
+  }
+  return false;
+}
+
+}  // namespace
+
 bool pullBack(Vec3& x, std::span<const HeldWall> walls, bool& began_free) noexcept {
   const std::size_t count = std::min<std::size_t>(walls.size(), 3);
   began_free = true;
-  for (int iteration = 0; iteration < 8; ++iteration) {
+  if (count == 1) return pullBackOne(x, walls[0], began_free);
+  for (int iteration = 0; iteration < kPullBackSteps; ++iteration) {
     std::array<FieldSample, 3> s{};
     bool on_all = true;
     for (std::size_t i = 0; i < count; ++i) {
       s[i] = walls[i].field->sample(x);
       if (!s[i].in_band) return false;
-      on_all = on_all && std::fabs(s[i].value) <= walls[i].tolerance;
+      on_all = on_all && isOn(walls[i], s[i]);
       if (iteration == 0 && walls[i].side * s[i].value < -walls[i].tolerance) began_free = false;
     }
     if (on_all) return true;
     // Smallest correction that puts the linearised values to zero: x -= J^T (J J^T)^-1 s.
-    std::array<double, 3> m{};
-    if (count == 1) {
-      const double square = glm::dot(s[0].gradient, s[0].gradient);
-      if (!(square > 0.0)) return false;
-      m[0] = s[0].value / square;
-    } else {
-      Mat3 gram(1.0);
-      Vec3 values(0.0);
-      for (std::size_t i = 0; i < count; ++i) {
-        values[static_cast<int>(i)] = s[i].value;
-        for (std::size_t j = 0; j < count; ++j) {
-          gram[static_cast<int>(i)][static_cast<int>(j)] = glm::dot(s[i].gradient, s[j].gradient);
-        }
+    Mat3 gram(1.0);
+    Vec3 values(0.0);
+    for (std::size_t i = 0; i < count; ++i) {
+      values[static_cast<int>(i)] = s[i].value;
+      for (std::size_t j = 0; j < count; ++j) {
+        gram[static_cast<int>(i)][static_cast<int>(j)] = glm::dot(s[i].gradient, s[j].gradient);
       }
-      if (!(std::fabs(glm::determinant(gram)) > 1e-30)) return false;
-      const Vec3 solved = glm::inverse(gram) * values;
-      m = {solved.x, solved.y, solved.z};
     }
-    for (std::size_t i = 0; i < count; ++i) x -= m[i] * s[i].gradient;
+    if (!(std::fabs(glm::determinant(gram)) > 1e-30)) return false;
+    const Vec3 solved = glm::inverse(gram) * values;
+    for (std::size_t i = 0; i < count; ++i) x -= solved[static_cast<int>(i)] * s[i].gradient;
     if (!isFinite(x)) return false;
   }
   return false;

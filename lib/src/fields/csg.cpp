@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fields/checks.h"
+#include "fields/operand_tree.h"
 
 namespace palpate {
 namespace {
@@ -69,9 +70,11 @@ class Extremum final : public Field {
   explicit Extremum(std::vector<FieldPtr> operands)
       : operands_(std::move(operands)),
         shared_(sharedBy(operands_)),
-        bounds_(boundsOf(operands_)) {}
+        bounds_(boundsOf(operands_)),
+        tree_(operands_, kKind == Kind::kUnion) {}
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    if (isSearched(p)) return operands_[tree_.find(operands_, p).index]->sample(p);
     FieldSample best = operands_.front()->sample(p);
     for (std::size_t i = 1; i < operands_.size(); ++i) {
       const FieldSample next = operands_[i]->sample(p);
@@ -81,24 +84,11 @@ class Extremum final : public Field {
   }
 
   [[nodiscard]] double value(const Vec3& p) const noexcept override {
-    double best = operands_.front()->value(p);
-    for (std::size_t i = 1; i < operands_.size(); ++i) {
-      const double next = operands_[i]->value(p);
-      if (wins(next, best)) best = next;
-    }
-    return best;
+    return isSearched(p) ? tree_.find(operands_, p).value : askAll(p).value;
   }
 
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
-    std::size_t active = 0;
-    double best = operands_.front()->value(p);
-    for (std::size_t i = 1; i < operands_.size(); ++i) {
-      const double next = operands_[i]->value(p);
-      if (!wins(next, best)) continue;
-      best = next;
-      active = i;
-    }
-    return operands_[active]->jet(p);
+    return operands_[(isSearched(p) ? tree_.find(operands_, p) : askAll(p)).index]->jet(p);
   }
 
   [[nodiscard]] Box3 bounds() const noexcept override { return bounds_; }
@@ -111,6 +101,20 @@ class Extremum final : public Field {
   }
 
  private:
+  /// Boxes tell nothing of points so far away that squares of their distances overflow.
+  [[nodiscard]] bool isSearched(const Vec3& p) const noexcept {
+    constexpr double kFarthest = 1e100;
+    return tree_.isUseful() && std::fabs(p.x) < kFarthest && std::fabs(p.y) < kFarthest &&
+           std::fabs(p.z) < kFarthest;
+  }
+  [[nodiscard]] fields::OperandTree::Found askAll(const Vec3& p) const noexcept {
+    fields::OperandTree::Found best{operands_.front()->value(p), 0};
+    for (std::size_t i = 1; i < operands_.size(); ++i) {
+      const double next = operands_[i]->value(p);
+      if (wins(next, best.value)) best = {next, i};
+    }
+    return best;
+  }
   static bool wins(double next, double best) noexcept {
     return kKind == Kind::kUnion ? next < best : next > best;
   }
@@ -126,6 +130,7 @@ class Extremum final : public Field {
   std::vector<FieldPtr> operands_;
   Shared shared_;
   Box3 bounds_;
+  fields::OperandTree tree_;
 };
 
 class Complement final : public Field {

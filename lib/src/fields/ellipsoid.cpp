@@ -4,6 +4,7 @@
 
 #include "fields/checks.h"
 #include "fields/vector.h"
+#include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 
 namespace palpate {
@@ -155,12 +156,57 @@ class Ellipsoid final : public Field {
   Vec3 inverse_ratio_{0.0};            ///< 1 / r [-], as given
 };
 
+/// least (|p / radii| - 1), least the smallest semi-axis: the surface of the ellipsoid as a field that costs
+/// a tenth of the distance and is smooth but for the center. Its slope is at most 1 everywhere.
+class EllipsoidFace final : public Field {
+ public:
+  EllipsoidFace(const Vec3& center, const Vec3& radii, double feature)
+      : center_(center),
+        radii_(radii),
+        inverse_(1.0 / radii),
+        least_(std::min({radii.x, radii.y, radii.z})),
+        slope_(least_ * inverse_),
+        feature_(feature) {}
+
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    const fields::Polar q = fields::polar((p - center_) * inverse_, Vec3(1.0, 0.0, 0.0));
+    return {least_ * (q.length - 1.0), slope_ * q.direction};
+  }
+  [[nodiscard]] double value(const Vec3& p) const noexcept override {
+    return least_ * (fields::length((p - center_) * inverse_) - 1.0);
+  }
+  [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
+    const fields::Polar q = fields::polar((p - center_) * inverse_, Vec3(1.0, 0.0, 0.0));
+    FieldJet out{least_ * (q.length - 1.0), slope_ * q.direction, Mat3(0.0)};
+    const Mat3 bend = fields::radialHessian(q.direction, q.length);
+    for (int i = 0; i < 3; ++i) out.hessian[i] = slope_ * bend[i] * inverse_[i];
+    return out;
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override {
+    return {center_ - radii_, center_ + radii_};
+  }
+  /// A bound on the distance, but its slope is not 1.
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kImplicit; }
+  [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
+  [[nodiscard]] double featureSize() const noexcept override { return feature_; }
+
+ private:
+  Vec3 center_;
+  Vec3 radii_;
+  Vec3 inverse_;  ///< [1/m]
+  double least_;  ///< [m]
+  Vec3 slope_;    ///< least / radii [-]
+  double feature_;
+};
+
 }  // namespace
 
 FieldPtr ellipsoid(const Vec3& center, const Vec3& radii) {
   fields::checkPoint("ellipsoid", "center", center);
   fields::checkLengths("ellipsoid", "radii", radii);
-  return std::make_shared<Ellipsoid>(center, radii);
+  FieldPtr whole = std::make_shared<Ellipsoid>(center, radii);
+  FieldPtr face = std::make_shared<EllipsoidFace>(center, radii, whole->featureSize());
+  return withFaces(std::move(whole), {std::move(face)});
 }
 
 }  // namespace palpate

@@ -103,7 +103,8 @@ class Rebuild {
     std::function<FieldPtr(const FieldPtr&)> leaf;
     std::function<FieldPtr(const FieldPtr&)> complemented;  ///< of what stands below a complement
     double translation_factor = 1.0;
-    bool opens_faces = true;  ///< a solid with faces may be rebuilt by its faces
+    bool opens_faces = true;    ///< a solid with faces may be rebuilt by its faces
+    bool keeps_levels = false;  ///< ... but only where their values are distances
   };
 
   static FieldPtr of(const FieldPtr& field, const Change& change) {
@@ -141,12 +142,17 @@ class Rebuild {
             visit(structure.operands.front()),
             {structure.pose.rotation, structure.pose.translation * change_.translation_factor});
       case Kind::kFaces:
-        if (!change_.opens_faces) break;
+        if (!change_.opens_faces || (change_.keeps_levels && !areExact(structure.operands))) break;
         return withFaces(change_.leaf(field), visit_all());
       case Kind::kLeaf:
         break;
     }
     return change_.leaf(field);
+  }
+
+  static bool areExact(std::span<const FieldPtr> faces) {
+    return std::all_of(faces.begin(), faces.end(),
+                       [](const FieldPtr& face) { return face->metric() == Metric::kExact; });
   }
 
   const Change& change_;
@@ -175,7 +181,8 @@ FieldPtr offset(FieldPtr field, double distance) {
   return Rebuild::of(
       operand, {.leaf = [=](const FieldPtr& f) { return std::make_shared<Offset>(f, distance); },
                 .complemented = [=](const FieldPtr& f) { return offset(f, -distance); },
-                .opens_faces = distance < 0.0});
+                .opens_faces = distance < 0.0,
+                .keeps_levels = true});
 }
 
 FieldPtr shell(FieldPtr field, double thickness) {

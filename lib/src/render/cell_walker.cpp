@@ -34,14 +34,21 @@ constexpr double kHorizonShare = 0.1;
 CellWalker::CellWalker(const Scene& scene)
     : scene_(scene),
       leaves_(scene.partition().leaves()),
+      domain_(leaves_.size()),
       tolerance_(leaves_.size()),
       signs_(leaves_.size()),
       beyond_(leaves_.size()),
       due_(leaves_.size()),
       hot_(leaves_.size()),
+      measured_(leaves_.size()),
+      jets_(leaves_.size()),
       known_(leaves_.size()) {
   for (std::size_t i = 0; i < leaves_.size(); ++i) {
     tolerance_[i] = kOnSurface * leaves_[i].feature * leaves_[i].lipschitz;
+    const Box3 box = leaves_[i].field->lipschitzDomain();
+    const Box3 bounds = leaves_[i].field->bounds();
+    domain_[i] = {box, box.lo == Vec3(-kInfinity) && box.hi == Vec3(kInfinity),
+                  bounds.isEmpty() || (box.contains(bounds.lo) && box.contains(bounds.hi))};
     smallest_horizon_ = std::min(smallest_horizon_, kHorizonShare * leaves_[i].feature);
   }
   holding_.reserve(scene.regions().size());
@@ -50,6 +57,7 @@ CellWalker::CellWalker(const Scene& scene)
 
 void CellWalker::place(const Vec3& p) noexcept {
   x_ = p;
+  ++stay_;
   travel_ = 0.0;
   cold_due_ = 0.0;
   hot_count_ = 0;
@@ -79,10 +87,10 @@ void CellWalker::beginTick() noexcept {
 }
 
 double CellWalker::measure(LeafId leaf) noexcept {
-  const double value = leaves_[leaf].field->value(x_);
+  const double value = valueHere(leaf);
   // Beyond a surface that was never crossed (a field that lies about its bound) nothing is out of reach:
   // the point is to be brought back.
-  due_[leaf] = travel_ + std::max(0.0, side(leaf) * value) / leaves_[leaf].lipschitz;
+  due_[leaf] = travel_ + reachOf(leaf, std::max(0.0, side(leaf) * value));
   return value;
 }
 
@@ -101,6 +109,7 @@ void CellWalker::refresh(double length) noexcept {
 void CellWalker::jump(const Vec3& x) noexcept {
   travel_ += glm::length(x - x_);
   x_ = x;
+  ++stay_;
 }
 
 CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sliding,
@@ -134,7 +143,7 @@ CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sl
         const double start = side(leaf) * measure(leaf);
         const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
         if (budget <= 8) return Stop::kSpent;
-        const SweepResult result = sweep(surfaceOf(leaf), x_, end, start, budget);
+        const SweepResult result = sweepLeaf(leaf, surfaceOf(leaf), x_, end, start, budget);
         if (result.kind == SweepResult::Kind::kFree) continue;
         evaluations_left_ -= 8;
         nearest *= result.at;
@@ -163,6 +172,55 @@ CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sl
   }
 }
 
+double CellWalker::reachOf(LeafId leaf, double value) const noexcept {
+  const double bound = value / leaves_[leaf].lipschitz;
+  const Domain& domain = domain_[leaf];
+  if (domain.is_everywhere) return bound;
+  if (domain.box.contains(x_)) {
+    if (domain.holds_surface) return bound;
+    const Vec3 room = glm::min(x_ - domain.box.lo, domain.box.hi - x_);
+    return std::min(bound, std::min({room.x, room.y, room.z}));
+  }
+  return domain.holds_surface ? leaves_[leaf].field->bounds().distanceTo(x_) : 0.0;
+}
+
+SweepResult CellWalker::sweepLeaf(LeafId leaf, SweepSurface surface, const Vec3& a, const Vec3& b,
+                                  double start, int budget) const noexcept {
+  const Domain& domain = domain_[leaf];
+  if (domain.is_everywhere || (domain.box.contains(a) && domain.box.contains(b))) {
+    return sweep(surface, a, b, start, budget);
+  }
+  if (!domain.holds_surface) {
+    // Nothing is promised out there; the slopes at both ends tell how steep it may be between them.
+    for (const Vec3& end : {a, b}) {
+      const double slope = glm::length(surface.field->sample(end).gradient);
+      surface.lipschitz = std::max(surface.lipschitz, 2.0 * slope);
+    }
+    return sweep(surface, a, b, start, budget);
+  }
+  // Only the part within the box can meet the surface.
+  double enter = 0.0;
+  double leave = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double by = b[axis] - a[axis];
+    const double lo = domain.box.lo[axis] - a[axis];
+    const double hi = domain.box.hi[axis] - a[axis];
+    if (by == 0.0) {
+      if (lo > 0.0 || hi < 0.0) return {};
+      continue;
+    }
+    enter = std::max(enter, std::min(lo / by, hi / by));
+    leave = std::min(leave, std::max(lo / by, hi / by));
+  }
+  if (!(enter < leave)) return {};
+  const Vec3 from = a + enter * (b - a);
+  const Vec3 to = a + leave * (b - a);
+  if (enter > 0.0) start = surface.side * surface.field->value(from) + surface.allowance;
+  SweepResult out = sweep(surface, from, to, start, budget);
+  out.at = out.kind == SweepResult::Kind::kFree ? 1.0 : enter + out.at * (leave - enter);
+  return out;
+}
+
 SweepSurface CellWalker::surfaceOf(LeafId leaf) const noexcept {
   SweepSurface surface;
   surface.field = leaves_[leaf].field.get();
@@ -173,15 +231,16 @@ SweepSurface CellWalker::surfaceOf(LeafId leaf) const noexcept {
   return surface;
 }
 
-double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) const noexcept {
+double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) noexcept {
   const Leaf& own = leaves_[leaf];
   if (glm::length(b - a) <= kGraze * own.feature) return 1.0;  // as short as what a sweep lets go
   SweepSurface surface = surfaceOf(leaf);
   // No sheet of the leaf is thinner than its feature size, so none fits between two steps.
   surface.graze = kSlideStride * own.feature;
   surface.allowance = kSlideDip * own.feature * own.lipschitz;
-  const double start = surface.side * own.field->value(a) + surface.allowance;
-  const SweepResult result = sweep(surface, a, b, start, kEvaluationsPerSlide);
+  const double value = a == x_ ? valueHere(leaf) : own.field->value(a);
+  const double start = surface.side * value + surface.allowance;
+  const SweepResult result = sweepLeaf(leaf, surface, a, b, start, kEvaluationsPerSlide);
   return result.kind == SweepResult::Kind::kFree ? 1.0 : result.at;
 }
 
@@ -223,9 +282,14 @@ Facet CellWalker::facetAt(LeafId leaf) noexcept {
   if (crossing_count_ == 1 && known.state == state_) return known.facet;
   beyond_ = signs_;  // same size: copies words, allocates nothing
   for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], beyond_);
-  const Facet facet =
+  Facet facet =
       scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_, beyond_,
                               std::span(crossing_.data(), crossing_count_), passed_);
+  if (is_sealed_ && facet.beyond != region_) {
+    facet.kind = Facet::Kind::kClosed;
+    facet.material = std::max(facet.material, 0);
+    facet.opens_at = 0.0;
+  }
   if (crossing_count_ == 1) known = {facet, state_};
   return facet;
 }

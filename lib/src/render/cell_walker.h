@@ -33,6 +33,12 @@ class CellWalker {
     audited_ = 0;
     ++state_;
   }
+  /// While sealed, whatever leads out of the region is a wall.
+  void seal(bool is_sealed) noexcept {
+    is_sealed_ = is_sealed;
+    ++state_;
+  }
+  [[nodiscard]] bool isSealed() const noexcept { return is_sealed_; }
   /// A new tick: no events yet, fresh budgets.
   void beginTick() noexcept;
 
@@ -43,12 +49,19 @@ class CellWalker {
   [[nodiscard]] const Leaf& leaf(LeafId id) const noexcept { return leaves_[id]; }
   [[nodiscard]] double tolerance(LeafId leaf) const noexcept { return tolerance_[leaf]; }
 
+  /// The leaf's field at the point; computed once as long as the point stays there.
+  [[nodiscard]] const FieldJet& jetHere(LeafId leaf) noexcept {
+    Jet& known = jets_[leaf];
+    if (known.stay != stay_) known = {leaves_[leaf].field->jet(x_), stay_};
+    return known.jet;
+  }
+
   /// Straight to `target` [m], through what is open. Facets of the leaves in `sliding` are not looked at:
   /// they hold the point already.
   Stop move(const Vec3& target, std::span<const LeafId> sliding, bool stop_at_crossing) noexcept;
   /// How much of the straight way from `a` to `b` [m] is on the near side of `leaf`, 0 to 1. A leaf may have
   /// several sheets: the one that holds a sliding point is not the one that stands in its way.
-  [[nodiscard]] double freeShare(LeafId leaf, const Vec3& a, const Vec3& b) const noexcept;
+  [[nodiscard]] double freeShare(LeafId leaf, const Vec3& a, const Vec3& b) noexcept;
   [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }
 
   /// Calls f(leaf, value, facet) for each leaf within `reach` tolerances of the point, or beyond it.
@@ -87,6 +100,12 @@ class CellWalker {
   void flip(LeafId leaf, Signs& signs) const noexcept;
   /// S of the leaf at the point, and until where that keeps it out of reach.
   double measure(LeafId leaf) noexcept;
+  /// S of the leaf at the point, asked for once as long as the point stays there.
+  double valueHere(LeafId leaf) noexcept {
+    Measured& known = measured_[leaf];
+    if (known.stay != stay_) known = {leaves_[leaf].field->value(x_), stay_};
+    return known.value;
+  }
   /// Sees to it that every leaf that a motion of `length` could reach is in the hot list.
   void refresh(double length) noexcept;
   /// The region that the cell beyond_ lies in; only layers that use a crossed leaf are looked at again.
@@ -96,15 +115,28 @@ class CellWalker {
   void gather(LeafId leaf) noexcept;
   void jump(const Vec3& x) noexcept;
   [[nodiscard]] SweepSurface surfaceOf(LeafId leaf) const noexcept;
+  /// [m] the surface of `leaf`, to whose free side the point lies by `value` >= 0, is at least that far away.
+  [[nodiscard]] double reachOf(LeafId leaf, double value) const noexcept;
+  /// sweep(), with regard to where the Lipschitz bound of the leaf holds.
+  [[nodiscard]] SweepResult sweepLeaf(LeafId leaf, SweepSurface surface, const Vec3& a,
+                                      const Vec3& b, double start, int budget) const noexcept;
 
   const Scene& scene_;
   std::span<const Leaf> leaves_;
+  /// Where a leaf's Lipschitz bound holds, if not everywhere.
+  struct Domain {
+    Box3 box;
+    bool is_everywhere = true;
+    bool holds_surface = true;  ///< then there is nothing to meet beyond it
+  };
+  std::vector<Domain> domain_;
   std::vector<double> tolerance_;  ///< of |S| by leaf: 1e-9 of the feature size, in units of S
   Vec3 x_{0.0, 0.0, 0.0};
   Signs signs_;
   Signs beyond_;                   ///< scratch of facetAt()
   std::vector<RegionId> holding_;  ///< layers that hold the cell, innermost (last) first
   RegionId region_ = kOutside;
+  bool is_sealed_ = false;
   PassedPorts passed_;
   int mouth_ = -1;
   LeafId blocked_by_ = 0;
@@ -123,6 +155,18 @@ class CellWalker {
   std::size_t audited_ = 0;  ///< leaves of the hot list looked at out of turn, one a tick
   double cold_due_ = 0.0;
   double smallest_horizon_ = kInfinity;  ///< [m]
+
+  struct Measured {
+    double value = 0.0;
+    std::uint64_t stay = 0;
+  };
+  struct Jet {
+    FieldJet jet;
+    std::uint64_t stay = 0;
+  };
+  std::vector<Measured> measured_;  ///< by leaf
+  std::vector<Jet> jets_;           ///< by leaf
+  std::uint64_t stay_ = 1;          ///< counts the places where the point was
 
   /// A facet looked up in the present state, valid while nothing was crossed.
   struct Known {

@@ -41,11 +41,10 @@ void ConstraintRenderer::findContact(const Vec3& hip) noexcept {
   c.planes = 0;
   c.count = 0;
   c.sliding_count = 0;
-  const Vec3& x = walker_.position();
   walker_.forNear(kNear, [&](LeafId leaf, double value, const Facet& facet) {
     if (!facet.isClosed() || c.planes == kMaxPlanes) return;
     if (piece_count_ > 0 && feelPieces(leaf, facet)) return;
-    const FieldJet jet = walker_.leaf(leaf).field->jet(x);
+    const FieldJet& jet = walker_.jetHere(leaf);
     const double slope = glm::length(jet.gradient);
     if (!(slope > 0.0)) return;
     if (is_pressed_ && value > 0.0 && value <= walker_.tolerance(leaf)) value = 0.0;
@@ -57,7 +56,7 @@ void ConstraintRenderer::findContact(const Vec3& hip) noexcept {
     ++c.planes;
   });
   if (piece_count_ > 0) forgetPieces();
-  const Vec3 wish = hip - x;
+  const Vec3 wish = hip - walker_.position();
   const PlaneSolution solution = closestStep(wish, std::span(c.plane.data(), c.planes));
   c.step = solution.step;
   for (int i = 0; i < solution.count; ++i) {
@@ -163,7 +162,7 @@ void ConstraintRenderer::holdByFriction() noexcept {
     friction.static_ratio = std::max(friction.static_ratio, own.static_ratio);
     friction.kinetic_ratio = std::max(friction.kinetic_ratio, own.kinetic_ratio);
   }
-  if (friction.static_ratio <= 0.0) return;
+  if (friction.static_ratio <= 0.0 || walker_.isSealed()) return;
   const double pull = glm::length(c.pull);
   const double load = c.load();
   const double kinetic = friction.kinetic_ratio * load;

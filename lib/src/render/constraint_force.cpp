@@ -15,13 +15,33 @@ constexpr double kFadeLength = 0.25e-3;
 
 }  // namespace
 
-double ConstraintRenderer::contentShare() const noexcept {
+double ConstraintRenderer::contentShare() noexcept {
   if (walker_.mouth() < 0) return 1.0;
-  const FieldSample s =
-      walker_.leaf(static_cast<LeafId>(walker_.mouth())).field->sample(walker_.position());
+  const auto mouth = static_cast<LeafId>(walker_.mouth());
+  const FieldSample s = walker_.leaf(mouth).field->sample(walker_.position());
   const double slope = s.in_band ? glm::length(s.gradient) : 1.0;
   const double behind = slope > 0.0 ? std::fabs(s.value) / slope : kFadeLength;
-  return std::min(1.0, behind / kFadeLength);
+  if (behind >= kFadeLength) return 1.0;
+  // Only an opening is hovered in: behind a valve that has shut, and along the wall beside the mouth, the
+  // content is there in full.
+  const Facet::Kind kind = walker_.facetAt(mouth).kind;
+  const bool is_open = kind == Facet::Kind::kOpen || kind == Facet::Kind::kAbsent;
+  return is_open ? behind / kFadeLength : 1.0;
+}
+
+/// The share of the content that is felt changes no faster than the hand moves, wherever an opening ends.
+void ConstraintRenderer::fadeContent(const Vec3& hip) noexcept {
+  const double share = contentShare();
+  if (is_first_) {
+    content_share_ = share;
+  } else {
+    const double most = glm::length(hip - last_hip_) / kFadeLength;
+    if (walker_.region() != felt_region_) content_share_ = 0.0;
+    content_share_ = std::clamp(share, content_share_ - most, content_share_ + most);
+  }
+  felt_region_ = walker_.region();
+  last_hip_ = hip;
+  is_first_ = false;
 }
 
 /// The wall's normal smoothed, over the whole solid that the wall bounds: its facets may be leaves.
@@ -71,7 +91,7 @@ Vec3 ConstraintRenderer::force(const HipState& hip) const noexcept {
   if (content >= 0) {
     const Material& medium = scene_->materials()[static_cast<std::size_t>(content)];
     if (medium.viscosity > 0.0) {
-      force -= contentShare() * medium.viscosity * (hip.velocity - medium.flow);
+      force -= content_share_ * medium.viscosity * (hip.velocity - medium.flow);
     }
   }
   return force;

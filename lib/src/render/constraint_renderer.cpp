@@ -23,6 +23,7 @@ ConstraintRenderer::ConstraintRenderer(ScenePtr scene, const RendererSettings& s
 
 void ConstraintRenderer::forget() noexcept {
   started_ = false;
+  is_first_ = true;
   sticking_ = false;
   walker_.forget();
   contact_ = {};
@@ -34,6 +35,7 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   if (!started_) start(hip.position);
   walker_.beginTick();
   track(hip.position);
+  fadeContent(hip.position);
 
   out.proxy = walker_.position();
   out.region = walker_.region();
@@ -47,6 +49,13 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
 void ConstraintRenderer::start(const Vec3& hip) noexcept {
   walker_.place(startPoint(*scene_, walker_, hip));
   started_ = true;
+  if (walker_.position() == hip) return;
+  // From there the nearest point is found as any other: with all that leads out of the region shut.
+  walker_.seal(true);
+  walker_.beginTick();
+  track(hip);
+  walker_.seal(false);
+  sticking_ = false;
 }
 
 /// Brings the proxy to where |x - P| is smallest in its region, as far as one tick's budget goes.

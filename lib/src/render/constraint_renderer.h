@@ -74,7 +74,8 @@ class ConstraintRenderer final : public HapticRenderer {
   [[nodiscard]] bool isOnWalls() const noexcept;
   [[nodiscard]] Vec3 shaded(const HeldWall& held, const Facet& facet, double radius) const noexcept;
   [[nodiscard]] Vec3 force(const HipState& hip) const noexcept;
-  [[nodiscard]] double contentShare() const noexcept;
+  [[nodiscard]] double contentShare() noexcept;
+  void fadeContent(const Vec3& hip) noexcept;
   [[nodiscard]] const Material& wallMaterial(const Facet& facet) const noexcept {
     return scene_->materials()[static_cast<std::size_t>(facet.material)];
   }
@@ -91,6 +92,10 @@ class ConstraintRenderer final : public HapticRenderer {
     LeafId leaf = 0;
   } before_;  ///< the slide before: where it began, on what
   bool started_ = false;
+  bool is_first_ = true;  ///< no tick yet
+  Vec3 last_hip_{0.0, 0.0, 0.0};
+  RegionId felt_region_ = kOutside;
+  double content_share_ = 1.0;
   bool sticking_ = false;
   bool tick_begins_ = false;
   bool is_pressed_ = false;  ///< walls within the tolerance count as reached

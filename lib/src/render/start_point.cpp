@@ -6,9 +6,13 @@
 namespace palpate {
 namespace {
 
-constexpr int kDirections = 200;
-constexpr int kSteps = 96;
-constexpr int kHalvings = 48;
+// Together they bound the work: at most about 1500 looks at a point.
+constexpr std::size_t kMostLeaves = 64;
+constexpr int kFootSteps = 12;
+constexpr int kDirections = 48;
+constexpr int kSteps = 20;
+/// How far within the region a foot point is taken, as a share of the feature size.
+constexpr double kWithin = 1e-6;
 
 /// Evenly spread over the sphere (Fibonacci lattice).
 Vec3 direction(int i) noexcept {
@@ -16,6 +20,20 @@ Vec3 direction(int i) noexcept {
   const double z = 1.0 - (2.0 * i + 1.0) / kDirections;
   const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
   return {r * std::cos(golden * i), r * std::sin(golden * i), z};
+}
+
+/// Down (or up) the field from `p` to its surface; false if it does not get there.
+bool toSurface(const Leaf& leaf, Vec3& p, Vec3& normal) noexcept {
+  for (int i = 0; i < kFootSteps; ++i) {
+    const FieldSample s = leaf.field->sample(p);
+    const double square = glm::dot(s.gradient, s.gradient);
+    if (!s.in_band || !(square > 0.0)) return false;
+    normal = s.gradient / std::sqrt(square);
+    if (std::fabs(s.value) <= 1e-3 * kWithin * leaf.feature * leaf.lipschitz) return true;
+    p -= (s.value / square) * s.gradient;
+    if (!isFinite(p)) return false;
+  }
+  return false;
 }
 
 }  // namespace
@@ -28,37 +46,43 @@ Vec3 startPoint(const Scene& scene, CellWalker& probe, const Vec3& hip) noexcept
   };
   if (lies_there(hip)) return hip;
 
+  double best = kInfinity;
+  Vec3 found = hip;
+  const auto consider = [&](const Vec3& p) {
+    const double distance = glm::length(p - hip);
+    if (distance < best && lies_there(p)) {
+      best = distance;
+      found = p;
+    }
+  };
+  // The nearest point of a simple region is the foot on one of its faces.
+  const std::span<const Leaf> leaves = scene.partition().leaves();
+  for (std::size_t i = 0; i < std::min(leaves.size(), kMostLeaves); ++i) {
+    Vec3 foot = hip;
+    Vec3 normal(0.0);
+    if (!toSurface(leaves[i], foot, normal)) continue;
+    const double within = kWithin * leaves[i].feature;
+    consider(foot + within * normal);
+    consider(foot - within * normal);
+  }
+  if (best < kInfinity) return found;
+
+  // Edges, corners, grids far out of their band: along lines, in steps that grow.
   const Box3 box = scene.bounds();
   const double reach =
       box.isBounded() ? glm::length(box.size()) + box.distanceTo(hip) : 1.0;  // [m]
-  // Along each line: how far to the region, in steps that grow so that near walls are found finely.
-  double best = kInfinity;
-  Vec3 found = hip;
   for (int i = 0; i < kDirections; ++i) {
     const Vec3 u = direction(i);
-    double last = 0.0;
     for (int k = 1; k <= kSteps; ++k) {
       const double share = static_cast<double>(k) / kSteps;
       const double t = reach * share * share * share;
       if (t >= best) break;
-      if (!lies_there(hip + t * u)) {
-        last = t;
-        continue;
-      }
-      double outside = last;
-      double inside = t;
-      for (int h = 0; h < kHalvings; ++h) {
-        const double middle = 0.5 * (outside + inside);
-        (lies_there(hip + middle * u) ? inside : outside) = middle;
-      }
-      best = inside;
-      found = hip + inside * u;
-      break;
+      consider(hip + t * u);
     }
   }
-  if (best < kInfinity) return found;
   const Region& region = scene.regions()[wanted];
-  return region.has_seed ? region.seed : hip;
+  if (region.has_seed) consider(region.seed);
+  return found;
 }
 
 }  // namespace palpate

@@ -35,6 +35,11 @@ std::vector<FieldCase> ellipsoidCases() {
          .awkward = {c, c + Vec3(e.x, 0, 0), c - Vec3(0, e.y, 0), c + Vec3(0, 0, 0.5 * e.z),
                      c + Vec3(0.3 * e.x, 0.2 * e.y, 0), c + Vec3(0, 0.9 * e.y, -0.1 * e.z)},
          .sign_margin = 1e-11});
+    // What contact holds: the same surface as a cheaper field.
+    FieldCase face = cases.back();
+    face.name += "_face";
+    face.make = [=] { return ellipsoid(c, e)->structure().operands.front(); };
+    cases.push_back(std::move(face));
   }
   return cases;
 }

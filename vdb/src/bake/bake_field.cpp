@@ -169,13 +169,14 @@ class FieldBaker {
   /// Blocks of 8^3 voxels that the band can touch. Blocks inside are noted on the way.
   std::vector<Coord> findLeaves() {
     const CoordBBox range = voxelRange(domain_, plan_, options_.name);
-    auto [blocks, size] = topBlocks(range);
+    auto top = topBlocks(range);
+    std::vector<Coord> blocks = std::move(top.first);
+    int size = top.second;
     std::vector<Verdict> verdicts;
     for (;; size /= 2) {
       verdicts.assign(blocks.size(), Verdict::kKeep);
-      parallelWithProgress(
-          blocks.size(), progress_, "bake: finding the surface", 0.0, 0.0,
-          [&, size_now = size](std::size_t i) { verdicts[i] = judge(blocks[i], size_now); });
+      parallelWithProgress(blocks.size(), progress_, "bake: finding the surface", 0.0, 0.0,
+                           [&](std::size_t i) { verdicts[i] = judge(blocks[i], size); });
       std::vector<Coord> kept;
       for (std::size_t i = 0; i < blocks.size(); ++i) {
         if (verdicts[i] == Verdict::kKeep) kept.push_back(blocks[i]);

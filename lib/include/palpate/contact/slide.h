@@ -12,7 +12,7 @@ namespace palpate {
 struct HeldWall {
   const Field* field = nullptr;
   double side = 1.0;        ///< +1: the proxy is where S > 0
-  double tolerance = 0.0;   ///< |S| that counts as on the wall
+  double tolerance = 0.0;   ///< [m] times the field's Lipschitz bound: how near is on the wall
   FieldJet jet{};           ///< at the proxy
   Vec3 normal{0.0};         ///< [-] side * gradient / |gradient|
   double multiplier = 0.0;  ///< [m] of PlaneSolution

@@ -3,13 +3,14 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "palpate/core/math.h"
 
 namespace palpate {
 
-/// Immutable after construction; visit() is real-time safe (its stack is fixed, the tree's depth is
+/// Immutable after construction; visits are real-time safe (their stack is fixed, the tree's depth is
 /// bounded by halving). Items are numbered as in the constructor's list; empty boxes are never met,
 /// infinite ones always.
 class BoundsTree {
@@ -40,6 +41,40 @@ class BoundsTree {
     }
   }
 
+  /// Calls f(item), about the nearest boxes first, for the items whose boxes come within a radius of `p` that
+  /// narrows down as the visit goes on: `radius` [m] at first, then what f returned last. A negative
+  /// radius meets the boxes that hold `p`.
+  template <typename F>
+  void visitNearest(const Vec3& p, double radius, F&& f) const noexcept {
+    if (nodes_.empty()) return;
+    struct Entry {
+      std::uint32_t node;
+      double square;  ///< [m^2] of the distance of its box
+    };
+    Entry stack[kMaxDepth];
+    int depth = 0;
+    stack[depth++] = {0, squareTo(nodes_[0].box, p)};
+    double limit = radius > 0.0 ? radius * radius : 0.0;
+    while (depth > 0) {
+      const Entry entry = stack[--depth];
+      if (!(entry.square <= limit)) continue;
+      const Node& node = nodes_[entry.node];
+      if (node.count > 0) {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+          if (!(squareTo(boxes_[i], p) <= limit)) continue;
+          const double narrowed = f(items_[i]);
+          limit = narrowed > 0.0 ? narrowed * narrowed : 0.0;
+        }
+        continue;
+      }
+      Entry near{node.first, squareTo(nodes_[node.first].box, p)};
+      Entry far{node.first + 1, squareTo(nodes_[node.first + 1].box, p)};
+      if (far.square < near.square) std::swap(near, far);
+      stack[depth++] = far;
+      stack[depth++] = near;
+    }
+  }
+
  private:
   static constexpr int kMaxDepth = 96;  // two a level; 2^32 items need 32 levels
   struct Node {
@@ -49,8 +84,11 @@ class BoundsTree {
   };
 
   static bool isNear(const Box3& box, const Vec3& p, double radius) noexcept {
+    return squareTo(box, p) <= radius * radius;
+  }
+  static double squareTo(const Box3& box, const Vec3& p) noexcept {
     const Vec3 apart = glm::max(glm::max(box.lo - p, p - box.hi), Vec3(0.0));
-    return glm::dot(apart, apart) <= radius * radius;
+    return glm::dot(apart, apart);
   }
   void split(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
 

@@ -1,7 +1,8 @@
 #pragma once
 /// Boolean combinations. Values are min / max / negation of the operands' values: exact sign
 /// everywhere, a bound on the distance if the operands are exact or bounds (DESIGN.md section 2).
-/// The operands stay visible through Field::structure(), so contact can hold each smooth leaf.
+/// The operands stay visible through Field::structure(), so contact can hold each smooth leaf. Of many
+/// exact operands only those near the point are asked, with the same result.
 
 #include <vector>
 
@@ -22,7 +23,8 @@ namespace palpate {
 [[nodiscard]] FieldPtr complement(FieldPtr operand);
 
 /// `whole`, an intersection of smooth solids with a value of its own, that shows `faces` as its
-/// structure (kFaces): contact then holds each face, and edges and corners between them, exactly.
+/// structure (kFaces): contact then holds each face, and edges and corners between them, exactly. One
+/// face is a cheaper field of the same surface.
 /// @throws Error (kInput) if there are no faces, or something is null.
 [[nodiscard]] FieldPtr withFaces(FieldPtr whole, std::vector<FieldPtr> faces);
 

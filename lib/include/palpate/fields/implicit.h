@@ -55,7 +55,8 @@ struct Metaball {
 
 /// The points where the sum of strength * fall-off is above `iso` (0 < iso). Out of bounds() the
 /// distance to that box is added to the field, so that it has a gradient everywhere. The Lipschitz
-/// bound holds everywhere. Throws if the balls cannot reach `iso`.
+/// bound holds everywhere. Of many balls only those that reach the point are asked; a Gaussian ends
+/// where all of them together are below rounding. Throws if the balls cannot reach `iso`.
 [[nodiscard]] FieldPtr metaballs(std::vector<Metaball> balls, FallOff fall_off, double iso);
 
 /// A function of one's own; its gradient and Hessian are taken numerically.

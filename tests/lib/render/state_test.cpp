@@ -1,0 +1,131 @@
+// What the state remembers and what content does at its openings: passages taken off by absent walls, drag
+// behind a shut valve, more crossings in a tick than a hand makes, and where a scene starts.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lib/render/drive.h"
+#include "palpate/fields/implicit.h"
+#include "support/field_contract.h"
+
+namespace palpate::test {
+namespace {
+
+TEST(Content, IsFullBehindAValveThatHasShut) {
+  std::string text = containerText();
+  text.replace(text.find("on: brim"), 8, "on: brim, direction: in");
+  Drive drive(sceneOf(text));
+  (void)drive.walk(mm(0, 0, 30));
+  (void)drive.walk(mm(0, 0, 5));
+  ASSERT_EQ(drive.region(), "liquid");
+  (void)drive.walk(mm(0, 0, 16), 0.1e-3);  // against the shut valve, 1 mm deep
+  ASSERT_EQ(drive.region(), "liquid");
+  const TickResult& out = drive.to(mm(0.1, 0, 16));  // 0.1 m/s along it
+  EXPECT_NEAR(out.force.x, -4.0 * 0.1, 1e-9);
+  EXPECT_NEAR(out.force.z, -1500.0 * 1e-3, 1e-6);
+}
+
+TEST(Content, DoesNotJumpFromTheMouthToTheWallBesideIt) {
+  Drive drive(sceneOf(R"(
+palpate: 1
+length: mm
+fields: {gate: {sphere: {center: [0, 0, 40], radius: 10}}}
+materials: {glass: {stiffness: 1500 N/m}, syrup: {viscosity: 4 N.s/m}}
+layers: [{name: liquid, inside: {sphere: {center: [0, 0, 0], radius: 40}}, content: syrup, wall: glass}]
+ports: [{name: mouth, between: [outside, liquid], where: gate}]
+)"));
+  (void)drive.walk(mm(0, 0, 60));
+  (void)drive.walk(mm(0, 0, 39.95));
+  ASSERT_EQ(drive.region(), "liquid");
+  double last = 0.0;
+  double largest = 0.0;
+  for (int i = 0; i <= 400; ++i) {
+    const double angle = 0.4 * i / 400;
+    const TickResult& out = drive.to(0.03995 * Vec3(std::sin(angle), 0, std::cos(angle)));
+    const double drag = glm::length(out.force) / (4.0 * 0.03995 * 0.4 / 400 / 1e-3);
+    if (i > 1) EXPECT_LE(std::fabs(drag - last), 0.04e-3 / 0.25e-3 + 1e-3) << i;
+    last = drag;
+    largest = std::max(largest, drag);
+  }
+  EXPECT_NEAR(largest, 1.0, 1e-3) << "beside the mouth the drag is there in full";
+}
+
+TEST(Memory, AnAbsentWallBackTakesThePassageOff) {
+  // a and b touch by a door in one half and by an absent wall in the other; after it c opens from a.
+  PassedPorts passed;
+  passed.pass(1, kOutside, 1, false);
+  passed.pass(2, 1, 2, false);
+  passed.pass(3, 2, 3, false);
+  passed.arrive(1, false);
+  EXPECT_TRUE(passed.contains(1));
+  EXPECT_FALSE(passed.contains(2));
+  EXPECT_FALSE(passed.contains(3));
+}
+
+TEST(Events, NoneOfManyCrossingsIsLost) {
+  // Forty slices in a row, a port between each two: the proxy waits where the list is full.
+  std::string text = "palpate: 1\nlength: mm\nlayers:\n";
+  for (int i = 0; i < 40; ++i) {
+    text += "  - {name: s" + std::to_string(i) + ", inside: {box: {center: [" + std::to_string(i) +
+            ".5, 0, 0], size: [1, 50, 50]}}}\n";
+  }
+  text += "ports: [{name: in, between: [outside, s0]}";
+  for (int i = 1; i < 40; ++i) {
+    text += ", {name: p" + std::to_string(i) + ", between: [s" + std::to_string(i - 1) + ", s" +
+            std::to_string(i) + "]}";
+  }
+  Drive drive(sceneOf(text + "]\n"));
+  (void)drive.to(mm(-5, 0.3, 0.2));
+  int events = drive.to(mm(39.5, 0.3, 0.2)).event_count;
+  EXPECT_EQ(events, 32);
+  events += drive.to(mm(39.5, 0.3, 0.2)).event_count;
+  EXPECT_EQ(events, 40);
+  EXPECT_EQ(drive.region(), "s39");
+}
+
+TEST(Start, TheNearestPointOfSimpleRegions) {
+  Random random(5);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 p = random.in({Vec3(-0.1), Vec3(0.1)});
+    const Vec3 half(0.03, 0.02, 0.01);
+    Drive in_box(
+        sceneOf("palpate: 1\nlength: mm\nlayers: [{name: room, inside: {box: {center: [0, 0, 0], "
+                "size: [60, "
+                "40, 20]}}}]\nstart: {region: room}\n"));
+    EXPECT_TRUE(isNear(in_box.to(p).proxy, glm::clamp(p, -half, half), 1e-8)) << i;
+    EXPECT_EQ(in_box.region(), "room");
+    Drive around(
+        sceneOf("palpate: 1\nlength: mm\nlayers: [{name: ball, inside: {sphere: {center: [0, 0, "
+                "0], radius: "
+                "80}}}]\n"));
+    const double r = std::max(glm::length(p), 0.08);
+    EXPECT_TRUE(isNear(around.to(p).proxy, r * glm::normalize(p), 1e-8)) << i;
+    EXPECT_EQ(around.region(), "outside");
+  }
+}
+
+TEST(LipschitzDomain, OutsideOfItTheBoundIsNotTrusted) {
+  // A ball whose value grows like the square: the bound of 1 holds within 20 mm only.
+  UserFunction function;
+  function.value = [](const Vec3& p) { return (glm::dot(p, p) - 1e-4) / 0.04; };
+  function.bounds = {Vec3(-0.01), Vec3(0.01)};
+  function.lipschitz = 1.0;
+  function.lipschitz_domain = {Vec3(-0.01), Vec3(0.01)};
+  function.feature_size = 0.01;
+  SceneDescription description;
+  LayerDescription layer;
+  layer.name = "ball";
+  layer.inside = std::make_shared<FieldSource>(userField(function));
+  description.layers.push_back(layer);
+  for (const double from : {0.03, 0.1, 0.5, 3.0}) {
+    Drive drive(compile(description));
+    (void)drive.to(Vec3(-from, 0.001, 0.0));
+    const TickResult& out = drive.to(Vec3(from, 0.001, 0.0));
+    EXPECT_LT(out.proxy.x, 0.0) << from << ": not through the ball";
+    EXPECT_NEAR(glm::length(out.proxy), 0.01, 1e-6) << from;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
