@@ -44,7 +44,9 @@ ports: [{name: mouth, between: [outside, liquid], where: gate}]
     const double angle = 0.4 * i / 400;
     const TickResult& out = drive.to(0.03995 * Vec3(std::sin(angle), 0, std::cos(angle)));
     const double drag = glm::length(out.force) / (4.0 * 0.03995 * 0.4 / 400 / 1e-3);
-    if (i > 1) EXPECT_LE(std::fabs(drag - last), 0.04e-3 / 0.25e-3 + 1e-3) << i;
+    if (i > 1) {
+      EXPECT_LE(std::fabs(drag - last), 0.04e-3 / 0.25e-3 + 1e-3) << i;
+    }
     last = drag;
     largest = std::max(largest, drag);
   }
