@@ -58,7 +58,7 @@ std::vector<Golden> goldens() {
       {"ball", sceneOfSolid(sphere(Vec3(0.0), 0.03), false, rough)},
       {"room", sceneOfSolid(box(Vec3(0.0), mm(60, 40, 20)), true, rough)},
       {"torus", sceneOfSolid(torus(Vec3(0.0), Vec3(0, 0, 1), 0.03, 0.01))},
-      // In a hollow apex there is no normal: within 2 um of it the proxy is up to 0.3 um beyond.
+      // A hollow apex has no normal: within 0.1 mm of it the proxy may be 0.3 um beyond.
       {"cone", sceneOfSolid(cone(mm(0, 0, -20), Vec3(0, 0, 1), 0.02, 0.04), true), 1e-6},
       {"heart", sceneOfSolid(heart(Vec3(0.0), 0.06))},
       {"metaballs", sceneOfSolid(saddle, false, rough)},
