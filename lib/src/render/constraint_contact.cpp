@@ -196,7 +196,7 @@ void ConstraintRenderer::letGoAtRim() noexcept {
   for (std::size_t i = 0; i < contact_.count; ++i) {
     const LeafId leaf = contact_.leaf[contact_.index[i]];
     const double value = walker_.leaf(leaf).field->value(walker_.position());
-    if (std::fabs(value) > kNear * walker_.tolerance(leaf)) continue;
+    if (std::fabs(value) > 2.0 * walker_.tolerance(leaf)) continue;  // in the air above it
     const Facet facet = walker_.facetAt(leaf);
     if (!facet.isClosed()) walker_.cross(leaf, facet);
   }
