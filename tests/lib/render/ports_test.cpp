@@ -27,7 +27,9 @@ TEST(ValveTube, LetsThroughOneWayAndRefusesTheOther) {
   EXPECT_EQ(drive.region(), "downstream");
   (void)drive.walk(mm(-5, 0, 0));
   EXPECT_EQ(drive.region(), "downstream") << "the valve refuses the way back";
-  EXPECT_NEAR(drive.last().force.x, 800.0 * 5e-3, 1e-6);
+  EXPECT_EQ(drive.events(), "");
+  (void)drive.to(mm(-5, 0, 0));  // at rest: behind a shut valve the drag is there in full
+  EXPECT_NEAR(drive.last().force.x, 800.0 * 5e-3 + 1.0 * 20e-3, 1e-6) << "wall and current";
   EXPECT_EQ(drive.events(), "");
   (void)drive.walk(mm(60, 0, 0));
   EXPECT_EQ(drive.events(), "outlet");
