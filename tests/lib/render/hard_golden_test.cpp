@@ -53,22 +53,21 @@ std::vector<Golden> goldens() {
     balls.push_back(sphere(random.in({Vec3(-0.04), Vec3(0.04)}), 0.006));
   const FieldPtr saddle =
       metaballs({{mm(-15, 0, 0), 0.04, 1.0}, {mm(15, 0, 0), 0.04, 1.0}}, FallOff::kWyvill, 0.6);
-  return {
-      {"container", sceneNamed("container")},
-      {"ball", sceneOfSolid(sphere(Vec3(0.0), 0.03), false, rough)},
-      {"room", sceneOfSolid(box(Vec3(0.0), mm(60, 40, 20)), true, rough)},
-      {"torus", sceneOfSolid(torus(Vec3(0.0), Vec3(0, 0, 1), 0.03, 0.01))},
-      // A hollow apex has no normal: within 0.1 mm of it the proxy may be 0.3 um beyond.
-      {"cone", sceneOfSolid(cone(mm(0, 0, -20), Vec3(0, 0, 1), 0.02, 0.04), true), 1e-6},
-      {"heart", sceneOfSolid(heart(Vec3(0.0), 0.06))},
-      {"metaballs", sceneOfSolid(saddle, false, rough)},
-      {"waist", sceneOfSolid(quadric(Vec3(0.0), waist, 0.2))},
-      {"gyroid",
-       sceneOfSolid(intersect({gyroidWall(Vec3(0.0), 0.04, 0.004), sphere(Vec3(0.0), 0.03)}))},
-      {"blend", sceneOfSolid(smoothUnite(
-                    {box(Vec3(0.0), mm(40, 40, 10)), sphere(mm(0, 0, 10), 0.012)}, 0.005))},
-      {"hundred balls", sceneOfSolid(unite(balls))},
-      {"sheet and plate", sheetAndPlate()}};
+  return {{"container", sceneNamed("container")},
+          {"ball", sceneOfSolid(sphere(Vec3(0.0), 0.03), false, rough)},
+          {"room", sceneOfSolid(box(Vec3(0.0), mm(60, 40, 20)), true, rough)},
+          {"torus", sceneOfSolid(torus(Vec3(0.0), Vec3(0, 0, 1), 0.03, 0.01))},
+          // A hollow apex has no normal: within 0.1 mm of it the proxy may be 0.3 um beyond.
+          {"cone", sceneOfSolid(cone(mm(0, 0, -20), Vec3(0, 0, 1), 0.02, 0.04), true), 1e-6},
+          {"heart", sceneOfSolid(heart(Vec3(0.0), 0.06))},
+          {"metaballs", sceneOfSolid(saddle, false, rough)},
+          {"waist", sceneOfSolid(quadric(Vec3(0.0), waist, 0.2))},
+          {"gyroid",
+           sceneOfSolid(intersect({gyroidWall(Vec3(0.0), 0.04, 0.004), sphere(Vec3(0.0), 0.03)}))},
+          {"blend", sceneOfSolid(smoothUnite(
+                        {box(Vec3(0.0), mm(40, 40, 10)), sphere(mm(0, 0, 10), 0.012)}, 0.005))},
+          {"hundred balls", sceneOfSolid(unite(balls))},
+          {"sheet and plate", sheetAndPlate()}};
 }
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

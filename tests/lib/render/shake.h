@@ -111,7 +111,7 @@ inline void shake(const Bag& bag) {
     if (glm::length(out.force - spring) > 1e-6 * glm::length(spring) + 1e-6) ++unsettled;
   }
   EXPECT_GT(events, bag.ticks / 500) << bag.name;
-  EXPECT_GT(contacts, bag.ticks / 10) << bag.name;
+  EXPECT_GT(contacts, bag.ticks / 20) << bag.name;  // enough to mean something; skins give way
   EXPECT_LE(unsettled, bag.rare) << bag.name;
 }
 
