@@ -72,7 +72,7 @@ double optionalVoxel(MapReader& reader) {
 
 /// Path of the file at `key`, which must be there; nothing of it is read.
 std::string existingFile(MapReader& reader, std::string_view key) {
-  const std::string path = reader.loader().resolvePath(reader.requireText(key));
+  std::string path = reader.loader().resolvePath(reader.requireText(key));
   std::error_code failure;
   if (!std::filesystem::exists(path, failure)) {
     throw reader.errorAt(key, "scene.no_file", "there is no file " + path,

@@ -239,7 +239,7 @@ void requireFiniteVoxels(const openvdb::FloatGrid& grid, const std::string& path
 
 std::string unitOf(const openvdb::GridBase& grid, const std::string& unit_if_missing,
                    const std::string& path) {
-  const std::string unit = textOf(grid, "length_unit");
+  std::string unit = textOf(grid, "length_unit");
   if (!unit.empty()) return unit;
   if (!unit_if_missing.empty()) return unit_if_missing;
   throw inputError("vdb.no_unit",

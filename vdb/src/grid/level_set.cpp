@@ -108,12 +108,13 @@ LevelSet makeLevelSet(openvdb::FloatGrid::Ptr grid, const std::string& length_un
 
 const LevelSetInfo& LevelSet::info() const { return impl_->info; }
 
-LevelSet LevelSet::named(std::string name, std::map<std::string, std::string> more_metadata) const {
+LevelSet LevelSet::named(std::string name,
+                         const std::map<std::string, std::string>& more_metadata) const {
   openvdb::MetaMap all(*impl_->grid);
   auto copy = std::make_shared<Impl>(*impl_);
-  for (auto& [key, value] : more_metadata) {
+  for (const auto& [key, value] : more_metadata) {
     all.insertMeta(key, openvdb::StringMetadata(value));
-    copy->info.metadata[key] = std::move(value);
+    copy->info.metadata[key] = value;
   }
   all.insertMeta(openvdb::GridBase::META_GRID_NAME, openvdb::StringMetadata(name));
   copy->info.name = std::move(name);

@@ -56,7 +56,7 @@ void VdbArchive::open(std::istream& stream) {
   }
 }
 
-openvdb::GridBase::Ptr VdbArchive::readGridOf(std::istream& stream, Entry entry) const {
+openvdb::GridBase::Ptr VdbArchive::readGridOf(std::istream& stream, const Entry& entry) const {
   if (!entry.has_tree) {
     entry.descriptor.seekToGrid(stream);
     readGrid(entry.grid, entry.descriptor, stream);
@@ -71,7 +71,7 @@ openvdb::GridBase::Ptr VdbArchive::readGridOf(std::istream& stream, Entry entry)
   throw std::runtime_error("the grid whose voxels '" + entry.name() + "' shares is not there");
 }
 
-openvdb::GridBase::Ptr VdbArchive::readTopologyOf(std::istream& stream, Entry entry) {
+openvdb::GridBase::Ptr VdbArchive::readTopologyOf(std::istream& stream, const Entry& entry) {
   if (entry.has_tree || entry.descriptor.isInstance()) return entry.grid;
   entry.descriptor.seekToGrid(stream);
   readGridCompression(stream);

@@ -31,10 +31,10 @@ class VdbArchive : public openvdb::io::Archive {
   [[nodiscard]] const std::vector<Entry>& entries() const noexcept { return entries_; }
 
   /// Reads the whole tree of an entry, also if that is another entry's.
-  openvdb::GridBase::Ptr readGridOf(std::istream& stream, Entry entry) const;
+  openvdb::GridBase::Ptr readGridOf(std::istream& stream, const Entry& entry) const;
 
   /// Reads an entry's tree without the values of its leaves.
-  static openvdb::GridBase::Ptr readTopologyOf(std::istream& stream, Entry entry);
+  static openvdb::GridBase::Ptr readTopologyOf(std::istream& stream, const Entry& entry);
 
  private:
   std::vector<Entry> entries_;

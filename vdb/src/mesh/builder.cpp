@@ -67,8 +67,7 @@ void MeshBuilder::addPolygon(std::span<const std::uint32_t> corners) {
   for (std::size_t i = 1; rest.size() > 3 && i + 1 < rest.size(); ++i) {
     normal += glm::cross(at(i) - at(0), at(i + 1) - at(0));
   }
-  while (rest.size() > 3) {
-    const std::size_t n = rest.size();
+  for (std::size_t n = rest.size(); n > 3; n = rest.size()) {
     std::size_t ear = n;
     for (std::size_t i = 0; i < n && ear == n; ++i) {
       const std::size_t before = i + n - 1;

@@ -170,7 +170,8 @@ class Ply {
       const double count = readScalar(*property.count);
       if (!(count >= 0.0)) refuse("a list of negative length");
       const bool wanted = property.name == "vertex_indices" || property.name == "vertex_index";
-      for (double n = 0.0; n < count; ++n) {
+      const auto items = static_cast<std::uint64_t>(std::min(count, 1e15));  // the file ends first
+      for (std::uint64_t n = 0; n < items; ++n) {
         const double value = readScalar(property.type);
         if (wanted) indices_.push_back(value);
       }

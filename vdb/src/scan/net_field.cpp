@@ -294,7 +294,7 @@ FieldSample NetField::sample(const Vec3& p) const noexcept {
     const Node& node =
         nodes_[cell[0] + (corner & 1U) +
                nx * (cell[1] + (corner >> 1U & 1U) + ny * (cell[2] + (corner >> 2U)))];
-    const auto end = starts.begin() + static_cast<std::ptrdiff_t>(count);
+    auto* const end = starts.begin() + static_cast<std::ptrdiff_t>(count);
     if (node.triangle == kNone || std::find(starts.begin(), end, node.triangle) != end) continue;
     starts[count++] = node.triangle;
     lookAt(node.triangle, p, best);

@@ -30,7 +30,7 @@ constexpr int edgeBetween(int a, int b) {
 /// How the crossed edges of one cell fall into sheets.
 struct CellCase {
   std::uint8_t sheets = 0;
-  std::array<std::int8_t, 12> sheet_of_edge{};  ///< -1: not crossed
+  std::array<std::int16_t, 12> sheet_of_edge{};  ///< -1: not crossed
 };
 
 CellCase makeCase(unsigned inside) {
@@ -76,7 +76,7 @@ CellCase makeCase(unsigned inside) {
     if (group[e] < 0) continue;
     int& sheet = number[static_cast<std::size_t>(group[e])];
     if (sheet < 0) sheet = result.sheets++;
-    result.sheet_of_edge[e] = static_cast<std::int8_t>(sheet);
+    result.sheet_of_edge[e] = static_cast<std::int16_t>(sheet);
   }
   return result;
 }

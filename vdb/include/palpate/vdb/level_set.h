@@ -39,7 +39,7 @@ class LevelSet {
 
   /// The same grid under another name and with more metadata.
   [[nodiscard]] LevelSet named(std::string name,
-                               std::map<std::string, std::string> more_metadata) const;
+                               const std::map<std::string, std::string>& more_metadata) const;
 
  private:
   std::shared_ptr<const Impl> impl_;
