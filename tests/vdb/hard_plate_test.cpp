@@ -5,10 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/fields/transform.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/vdb/bake.h"
+#include "support/error_of.h"
+#include "support/field_contract.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {
@@ -69,6 +72,55 @@ TEST(HardPlate, OfFourVoxelsIsNeverTunnelled) {
       }
     }
   }
+}
+
+TEST(HardPlate, WhatAGridCannotHoldIsRefusedOrWhole) {
+  // Whatever its thickness and pose: either the bake is refused, or no straight way leads through the plate.
+  palpate::test::Random random(3);
+  int refused = 0;
+  int whole = 0;
+  for (const double thickness : {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 2.0}) {
+    for (int trial = 0; trial < 4; ++trial) {
+      const Pose pose{
+          rotationAbout(random.direction(), random.uniform(0.0, trial == 0 ? 0.0 : 3.0)),
+          kVoxel * random.in({Vec3(-1.0), Vec3(1.0)})};
+      FieldPtr grid;
+      try {
+        grid = gridField(bake(*plate(thickness * kVoxel, 0.01, pose), voxels(kVoxel, 4.0)));
+      } catch (const Error&) {
+        ++refused;
+        continue;
+      }
+      int holes = 0;
+      for (int ray = 0; ray < 400; ++ray) {
+        const Vec3 foot = random.in({Vec3(-0.004, -0.004, 0.0), Vec3(0.004, 0.004, 0.0)});
+        double lowest = kInfinity;
+        for (double z = -2.0; z <= 2.0; z += 0.02) {
+          lowest = std::min(lowest, grid->value(pose.apply(foot + Vec3(0, 0, z * kVoxel))));
+        }
+        holes += lowest >= 0.0 ? 1 : 0;
+      }
+      EXPECT_EQ(holes, 0) << thickness << " voxels thick, trial " << trial;
+      whole += holes == 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_GT(whole, 0);
+}
+
+TEST(HardPlate, SharpEdgesAndTipsAreNoPlates) {
+  // They end in less than a voxel, and a grid rounds them off; nothing opens.
+  const FieldPtr spike = cone(Vec3(0.0), Vec3(0, 0, 1), 3e-3, 10e-3);
+  EXPECT_NO_THROW((void)bake(*spike, voxels(kVoxel, 4.0)));
+  const FieldPtr wedge = intersect({box(Vec3(0.0), Vec3(0.01)), halfSpace(Vec3(0.0), Vec3(1, 0, 2)),
+                                    halfSpace(Vec3(0.0), Vec3(1, 0, -2))});
+  EXPECT_NO_THROW((void)bake(*place(wedge, kTurned), voxels(kVoxel, 4.0)));
+  // The wall of a hollow ball, half a voxel thick, is a plate.
+  const FieldPtr ball = subtract({sphere(Vec3(0.0), 5e-3), sphere(Vec3(0.0), 5e-3 - 0.5 * kVoxel)});
+  const Error error = errorOf([&] { (void)bake(*ball, voxels(kVoxel, 4.0)); });
+  EXPECT_EQ(error.problem().code, "bake.too_thin");
+  EXPECT_NE(error.problem().message.find("0.12"), std::string::npos)
+      << error.problem().message;
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ bool isGlob(std::string_view text) { return text.find_first_of("*?") != std::str
 
 // Names go into traces, grid names and globs, so they must not hold what separates there.
 std::string RegionReader::readName(MapReader& reader, std::string_view what) const {
-  const std::string name = reader.requireText("name");
+  std::string name = reader.requireText("name");
   const auto bad = std::find_if(name.begin(), name.end(), [](char c) {
     return std::string_view("*?;,/\"\\").find(c) != std::string_view::npos ||
            static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
@@ -178,8 +178,8 @@ RegionReader::Between RegionReader::readBetween(MapReader& reader) const {
   const Document& document = loader_.document();
   const Node& node = reader.require("between");
   const auto& items = readList(document, node, "'between'", 2, 2);
-  const Between between{readText(document, items[0], "a region"),
-                        readText(document, items[1], "a region")};
+  Between between{readText(document, items[0], "a region"),
+                  readText(document, items[1], "a region")};
   requireRegion(items[0], true);
   requireRegion(items[1], true);
   if (between.a == between.b && !isGlob(between.a)) {

@@ -26,7 +26,7 @@ class RegionReader {
     std::string b;
   };
 
-  [[nodiscard]] std::string readName(MapReader& layer, std::string_view what) const;
+  [[nodiscard]] std::string readName(MapReader& reader, std::string_view what) const;
   void readSurface(MapReader& reader, LayerDescription& layer) const;
   [[nodiscard]] const Material& material(const Node& node, const std::string& what) const;
   [[nodiscard]] WallDescription readWall(const Node& node) const;

@@ -168,12 +168,12 @@ Quantity parseQuantity(std::string_view text, Dimension dimension) noexcept {
 }
 
 std::string_view unitHelp(Dimension dimension) noexcept {
-  static const std::array kHelp = [] {
+  static const std::array help = [] {
     std::array<std::string, static_cast<std::size_t>(Dimension::kDamping2) + 1> help;
     for (std::size_t i = 0; i < help.size(); ++i) help[i] = helpFor(static_cast<Dimension>(i));
     return help;
   }();
-  return kHelp[static_cast<std::size_t>(dimension)];
+  return help[static_cast<std::size_t>(dimension)];
 }
 
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bake/bake_plan.h"
+#include "bake/lost_plates.h"
 #include "palpate/vdb/bake.h"
 
 namespace palpate::vdb {
@@ -99,7 +100,8 @@ class Source {
 class FieldBaker {
  public:
   FieldBaker(const Field& field, const BakeOptions& options, const Progress& progress)
-      : options_(options),
+      : field_(field),
+        options_(options),
         progress_(progress),
         plan_(checkOptions(options)),
         domain_(bakeDomain(field, options)),
@@ -111,7 +113,9 @@ class FieldBaker {
     for (const auto& [origin, size] : inside_) fillInside(origin, size);
     fillLeaves(origins);
     report(progress_, "bake", 1.0);
-    return finishGrid(grid_, plan_, options_);
+    LevelSet grid = finishGrid(grid_, plan_, options_);
+    refuseLostPlates(field_, grid, plan_, options_);
+    return grid;
   }
 
  private:
@@ -275,6 +279,7 @@ class FieldBaker {
     return any_inside ? Verdict::kInside : Verdict::kOutside;
   }
 
+  const Field& field_;
   const BakeOptions& options_;
   const Progress& progress_;
   BakePlan plan_;

@@ -1,0 +1,143 @@
+#include "bake/lost_plates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "palpate/vdb/openvdb_access.h"
+
+namespace palpate::vdb {
+namespace {
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+/// [voxels] No point of the surface is further than that from the centre of some voxel.
+constexpr double kBySurface = 0.9;
+/// [voxels] Plates from here on are held wherever they pass between voxels: a cell's half diagonal
+/// and its mirror image, 1.73, are the longest way that can be free of centres; trilinear values close it at less.
+constexpr double kHeld = 1.75;
+constexpr int kDepths = 4;
+/// [voxels] How far the shape must go on to all sides.
+constexpr double kGoesOn = 2.0;
+
+struct Lost {
+  std::size_t places = 0;
+  Vec3 where{0.0};        ///< [m] the first
+  double thinnest = 0.0;  ///< [m]
+};
+
+/// Whether a shape may have parts thinner than `length`: what solids of such a feature size are united from has none.
+bool mayBeThin(const Field& field, double length) {
+  const FieldStructure structure = field.structure();
+  switch (structure.kind) {
+    case FieldStructure::Kind::kLeaf:
+    case FieldStructure::Kind::kFaces:
+      return field.featureSize() < length;
+    case FieldStructure::Kind::kUnion:
+    case FieldStructure::Kind::kTransform:
+      return std::any_of(structure.operands.begin(), structure.operands.end(),
+                         [&](const FieldPtr& f) { return mayBeThin(*f, length); });
+    case FieldStructure::Kind::kIntersection:
+    case FieldStructure::Kind::kComplement:
+      break;
+  }
+  return true;
+}
+
+class Search {
+ public:
+  Search(const Field& field, const LevelSet& grid, const BakePlan& plan,
+         const std::optional<Box3>& box)
+      : field_(field), grid_(gridField(grid)), plan_(plan), box_(box) {}
+
+  [[nodiscard]] Lost in(const Leaf& leaf) const noexcept {
+    Lost lost;
+    const auto near = static_cast<float>(kBySurface * plan_.voxel / plan_.metres_per_unit);
+    for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
+      if (std::fabs(*voxel) >= near) continue;
+      const openvdb::Coord at = voxel.getCoord();
+      look(Vec3(at.x(), at.y(), at.z()) * plan_.voxel, lost);
+    }
+    return lost;
+  }
+
+ private:
+  /// From a point by the surface: down to it, and on through the shape.
+  void look(const Vec3& p, Lost& lost) const noexcept {
+    const FieldSample here = field_.sample(p);
+    const double slope = glm::length(here.gradient);
+    if (!here.in_band || !(slope > 0.0)) return;
+    const Vec3 in = -here.gradient / slope;
+    const Vec3 foot = p + here.value / slope * in;
+    double inside = 0.0;
+    double outside = 0.0;
+    for (int i = 1; i <= kDepths && outside == 0.0; ++i) {
+      const double depth = kHeld * i / kDepths * plan_.voxel;
+      (field_.value(foot + depth * in) < 0.0 ? inside : outside) = depth;
+    }
+    if (outside == 0.0) return;  // thick
+    for (int i = 0; i < 12; ++i) {
+      const double middle = 0.5 * (inside + outside);
+      (field_.value(foot + middle * in) < 0.0 ? inside : outside) = middle;
+    }
+    const Vec3 middle = foot + 0.5 * inside * in;
+    if (!(inside > 0.0) || grid_->value(middle) < 0.0 || !goesOn(middle, in)) return;
+    if (box_ && !box_->contains(middle)) return;
+    if (lost.places++ == 0) {
+      lost.where = middle;
+      lost.thinnest = inside;
+    }
+    lost.thinnest = std::min(lost.thinnest, inside);
+  }
+
+  [[nodiscard]] bool goesOn(const Vec3& middle, const Vec3& normal) const noexcept {
+    const Vec3 across = std::fabs(normal.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+    const Vec3 u = glm::normalize(glm::cross(normal, across));
+    const Vec3 v = glm::cross(normal, u);
+    const double far = kGoesOn * plan_.voxel;
+    return field_.value(middle + far * u) < 0.0 && field_.value(middle - far * u) < 0.0 &&
+           field_.value(middle + far * v) < 0.0 && field_.value(middle - far * v) < 0.0;
+  }
+
+  const Field& field_;
+  FieldPtr grid_;
+  const BakePlan& plan_;
+  const std::optional<Box3>& box_;
+};
+
+std::string placeText(const Vec3& p) {
+  return "(" + inMillimetres(p.x) + ", " + inMillimetres(p.y) + ", " + inMillimetres(p.z) + ")";
+}
+
+}  // namespace
+
+void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& plan,
+                      const BakeOptions& options) {
+  if (!mayBeThin(field, kHeld * plan.voxel)) return;
+  std::vector<const Leaf*> leaves;
+  grid.impl().grid->tree().getNodes(leaves);
+  std::vector<Lost> found(leaves.size());
+  const Search search(field, grid, plan, options.box);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                        found[i] = search.in(*leaves[i]);
+                      }
+                    });
+  Lost all;
+  for (const Lost& lost : found) {
+    if (lost.places == 0) continue;
+    if (all.places == 0) all = {0, lost.where, lost.thinnest};
+    all.places += lost.places;
+    all.thinnest = std::min(all.thinnest, lost.thinnest);
+  }
+  if (all.places == 0) return;
+  throw inputError("bake.too_thin",
+                   "'" + options.name + "' is " + inMillimetres(all.thinnest) + " thin near " +
+                       placeText(all.where) + " and would have holes in a grid of " +
+                       inMillimetres(plan.voxel) + " voxels",
+                   "a voxel of " + inMillimetres(all.thinnest / kHeld) +
+                       " holds it; or keep this part analytic, or make it a sheet");
+}
+
+}  // namespace palpate::vdb
