@@ -31,7 +31,7 @@ struct Measurement {
 };
 
 /// Runs the whole path `repeats` times. Nothing if the renderer cannot do the case, and then `why`.
-[[nodiscard]] std::optional<Measurement> measure(const ContactCase& what, RendererKind renderer,
+[[nodiscard]] std::optional<Measurement> measure(const ContactCase& what, RendererKind kind,
                                                  int repeats, const Progress& progress,
                                                  std::string& why);
 

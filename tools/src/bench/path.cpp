@@ -9,9 +9,11 @@ namespace palpate::tools {
 
 void PathMaker::go(const Vec3& target, double speed) {
   const Vec3 from = at();
-  const double ticks = std::ceil(glm::length(target - from) / (speed * kTickSeconds));
-  for (double i = 1.0; i <= ticks; i += 1.0)
-    points_.push_back(from + (i / ticks) * (target - from));
+  const auto ticks =
+      static_cast<int>(std::ceil(glm::length(target - from) / (speed * kTickSeconds)));
+  for (int i = 1; i <= ticks; ++i) {
+    points_.push_back(from + (static_cast<double>(i) / ticks) * (target - from));
+  }
 }
 
 void PathMaker::follow(const Curve& curve, double from, double to, double speed) {
@@ -32,8 +34,8 @@ void PathMaker::follow(const Curve& curve, double from, double to, double speed)
 }
 
 void PathMaker::play(const Curve& curve, double from, double to, double stride) {
-  const double ticks = std::floor((to - from) / stride);
-  for (double i = 0.0; i <= ticks; i += 1.0) points_.push_back(curve(from + i * stride));
+  const auto ticks = static_cast<int>(std::floor((to - from) / stride));
+  for (int i = 0; i <= ticks; ++i) points_.push_back(curve(from + i * stride));
 }
 
 Vec3 windingDirection(double s) noexcept {

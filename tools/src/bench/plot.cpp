@@ -45,13 +45,13 @@ std::string escaped(const std::string& text) {
 }
 
 std::string words(double x, double y, const char* attributes, const std::string& text) {
-  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" " + attributes + ">" +
-         escaped(text) + "</text>\n";
+  return "<text x='" + number(x) + "' y='" + number(y) + "' " + attributes + ">" + escaped(text) +
+         "</text>\n";
 }
 
 std::string line(double x1, double y1, double x2, double y2, const char* stroke) {
-  return "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) +
-         "\" y2=\"" + number(y2) + "\" stroke=\"" + stroke + "\"/>\n";
+  return "<line x1='" + number(x1) + "' y1='" + number(y1) + "' x2='" + number(x2) + "' y2='" +
+         number(y2) + "' stroke='" + stroke + "'/>\n";
 }
 
 /// Whole decades around the values, on a stretch of the page.
@@ -74,7 +74,7 @@ Axis axisFor(double least, double most, double from, double to) {
 }
 
 std::string decade(int exponent) {
-  return "10<tspan dy=\"-6\" font-size=\"10\">" + std::to_string(exponent) + "</tspan>";
+  return "10<tspan dy='-6' font-size='10'>" + std::to_string(exponent) + "</tspan>";
 }
 
 std::string axes(const Plot& plot, const Axis& x, const Axis& y) {
@@ -82,8 +82,8 @@ std::string axes(const Plot& plot, const Axis& x, const Axis& y) {
   for (int e = x.first; e <= x.last; ++e) {
     const double at = x.at(std::pow(10.0, e));
     out += line(at, kTop, at, kBottom, "#bbb");
-    out += "<text x=\"" + number(at) + "\" y=\"" + number(kBottom + 22.0) +
-           "\" text-anchor=\"middle\">" + decade(e) + "</text>\n";
+    out += "<text x='" + number(at) + "' y='" + number(kBottom + 22.0) + "' text-anchor='middle'>" +
+           decade(e) + "</text>\n";
     for (int k = 2; k < 10 && e < x.last; ++k) {
       const double between = x.at(k * std::pow(10.0, e));
       out += line(between, kTop, between, kBottom, "#eee");
@@ -94,13 +94,13 @@ std::string axes(const Plot& plot, const Axis& x, const Axis& y) {
     const double at = y.at(std::pow(10.0, e));
     out += line(kLeft, at, kRight, at, "#ddd");
     if ((e - y.first) % stride == 0) {
-      out += "<text x=\"" + number(kLeft - 8.0) + "\" y=\"" + number(at + 5.0) +
-             "\" text-anchor=\"end\">" + decade(e) + "</text>\n";
+      out += "<text x='" + number(kLeft - 8.0) + "' y='" + number(at + 5.0) +
+             "' text-anchor='end'>" + decade(e) + "</text>\n";
     }
   }
-  out += words(0.5 * (kLeft + kRight), kBottom + 52.0, "text-anchor=\"middle\"", plot.x_label);
+  out += words(0.5 * (kLeft + kRight), kBottom + 52.0, "text-anchor='middle'", plot.x_label);
   const std::string turned =
-      "text-anchor=\"middle\" transform=\"rotate(-90 28 " + number(0.5 * (kTop + kBottom)) + ")\"";
+      "text-anchor='middle' transform='rotate(-90 28 " + number(0.5 * (kTop + kBottom)) + ")'";
   return out + words(28.0, 0.5 * (kTop + kBottom), turned.c_str(), plot.y_label);
 }
 
@@ -132,15 +132,14 @@ std::string mark(const Spot& spot, std::size_t series, const std::string& label)
   const char* color = kColors[series % kColors.size()];
   std::string shape;
   if (series % kColors.size() == 0) {
-    shape = "<circle cx=\"" + number(spot.x) + "\" cy=\"" + number(spot.y) + "\" r=\"" +
-            number(kMark) + "\"";
+    shape =
+        "<circle cx='" + number(spot.x) + "' cy='" + number(spot.y) + "' r='" + number(kMark) + "'";
   } else {
-    shape = "<rect x=\"" + number(spot.x - kMark) + "\" y=\"" + number(spot.y - kMark) +
-            "\" width=\"" + number(2.0 * kMark) + "\" height=\"" + number(2.0 * kMark) + "\"";
+    shape = "<rect x='" + number(spot.x - kMark) + "' y='" + number(spot.y - kMark) + "' width='" +
+            number(2.0 * kMark) + "' height='" + number(2.0 * kMark) + "'";
   }
-  return shape + " fill=\"" + color + "\"/>\n" +
-         words(spot.x, spot.y + 4.0, "text-anchor=\"middle\" font-size=\"11\" fill=\"#fff\"",
-               label);
+  return shape + " fill='" + color + "'/>\n" +
+         words(spot.x, spot.y + 4.0, "text-anchor='middle' font-size='11' fill='#fff'", label);
 }
 
 }  // namespace
@@ -158,13 +157,13 @@ std::string plotSvg(const Plot& plot) {
   const Axis x = axisFor(least_x, most_x, kLeft, kRight);
   const Axis y = axisFor(plot.least_y, most_y, kBottom, kTop);
 
-  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + number(kWidth) +
-                    "\" height=\"" + number(kHeight) + "\" viewBox=\"0 0 " + number(kWidth) + " " +
+  std::string out = "<svg xmlns='http://www.w3.org/2000/svg' width='" + number(kWidth) +
+                    "' height='" + number(kHeight) + "' viewBox='0 0 " + number(kWidth) + " " +
                     number(kHeight) +
-                    "\" font-family=\"sans-serif\" font-size=\"14\">\n"
-                    "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
-  out += words(kLeft, 34.0, "font-size=\"20\"", plot.title);
-  out += words(kLeft, 58.0, "font-size=\"12\" fill=\"#555\"", plot.subtitle);
+                    "' font-family='sans-serif' font-size='14'>\n"
+                    "<rect width='100%' height='100%' fill='#fff'/>\n";
+  out += words(kLeft, 34.0, "font-size='20'", plot.title);
+  out += words(kLeft, 58.0, "font-size='12' fill='#555'", plot.subtitle);
   out += axes(plot, x, y);
 
   std::vector<Spot> taken;
@@ -185,7 +184,7 @@ std::string plotSvg(const Plot& plot) {
   }
   at += 14.0;
   for (std::size_t i = 0; i < plot.key.size(); ++i, at += 22.0) {
-    out += words(kRight + 48.0, at, "text-anchor=\"end\" fill=\"#555\"", std::to_string(i + 1));
+    out += words(kRight + 48.0, at, "text-anchor='end' fill='#555'", std::to_string(i + 1));
     out += words(kRight + 60.0, at, "", plot.key[i]);
   }
   return out + "</svg>\n";
