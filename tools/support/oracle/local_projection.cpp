@@ -74,7 +74,7 @@ std::optional<LocalPoint> inBranch(const FeasibleSet& set, const FeasibleSet::Br
     if (value <= 0.0 || value <= 2.5 * radius * glm::length(side.gradient(q))) near.push_back(i);
   }
   std::optional<LocalPoint> best;
-  const auto attempt = [&](std::vector<std::size_t> subset) {
+  const auto attempt = [&](const std::vector<std::size_t>& subset) {
     std::optional<LocalPoint> found = onSurfaces(set, subset, q, radius);
     if (!found || glm::length(found->point - q) > radius * (1.0 + 1e-9)) return;
     double largest = 0.0;
@@ -87,7 +87,7 @@ std::optional<LocalPoint> inBranch(const FeasibleSet& set, const FeasibleSet::Br
       best = std::move(found);
     }
   };
-  for (std::size_t i = 0; i < near.size(); ++i) attempt({near[i]});
+  for (const std::size_t i : near) attempt({i});
   if (best) return best;  // nearest on one side and kept by all: no corner can be nearer
   for (std::size_t i = 0; i < near.size(); ++i) {
     for (std::size_t j = i + 1; j < near.size(); ++j) attempt({near[i], near[j]});
