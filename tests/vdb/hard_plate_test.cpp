@@ -119,8 +119,7 @@ TEST(HardPlate, SharpEdgesAndTipsAreNoPlates) {
   const FieldPtr ball = subtract({sphere(Vec3(0.0), 5e-3), sphere(Vec3(0.0), 5e-3 - 0.5 * kVoxel)});
   const Error error = errorOf([&] { (void)bake(*ball, voxels(kVoxel, 4.0)); });
   EXPECT_EQ(error.problem().code, "bake.too_thin");
-  EXPECT_NE(error.problem().message.find("0.12"), std::string::npos)
-      << error.problem().message;
+  EXPECT_NE(error.problem().message.find("0.12"), std::string::npos) << error.problem().message;
 }
 
 }  // namespace

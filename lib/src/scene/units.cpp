@@ -168,12 +168,12 @@ Quantity parseQuantity(std::string_view text, Dimension dimension) noexcept {
 }
 
 std::string_view unitHelp(Dimension dimension) noexcept {
-  static const std::array help = [] {
-    std::array<std::string, static_cast<std::size_t>(Dimension::kDamping2) + 1> help;
-    for (std::size_t i = 0; i < help.size(); ++i) help[i] = helpFor(static_cast<Dimension>(i));
-    return help;
+  static const std::array texts = [] {
+    std::array<std::string, static_cast<std::size_t>(Dimension::kDamping2) + 1> all;
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = helpFor(static_cast<Dimension>(i));
+    return all;
   }();
-  return help[static_cast<std::size_t>(dimension)];
+  return texts[static_cast<std::size_t>(dimension)];
 }
 
 }  // namespace palpate

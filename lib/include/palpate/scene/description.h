@@ -84,10 +84,10 @@ struct WallOverride {
 
 struct PortDescription {
   std::string name;
-  std::string from;           ///< region name or glob
-  std::string to;             ///< region name or glob
-  FieldSourcePtr on = {};     ///< null: any facet
-  std::string on_name = {};   ///< how the author called it
+  std::string from;          ///< region name or glob
+  std::string to;            ///< region name or glob
+  FieldSourcePtr on = {};    ///< null: any facet
+  std::string on_name = {};  ///< how the author called it
   /// Why `on` may be no face though the scene uses it (it went into a blend), for compile() to say
   /// if so; empty: no reason is known.
   std::string on_note = {};
