@@ -131,8 +131,9 @@ TEST_P(BigTrees, EqualOperandsAreDecidedByTheFirst) {
   // Unit balls on a lattice: between two of them both values are the same.
   std::vector<FieldPtr> operands;
   for (std::size_t i = 0; i < GetParam(); ++i) {
+    const std::size_t layer = i / 400;
     operands.push_back(sphere(Vec3(static_cast<double>(i % 20), static_cast<double>(i / 20 % 20),
-                                   static_cast<double>(i / 400)),
+                                   static_cast<double>(layer)),
                               0.25));
   }
   const FieldPtr field = unite(operands);

@@ -36,17 +36,17 @@ void wander(const Curved& c, int seed) {
   judge.begin(c.free);
   Random random(static_cast<std::uint64_t>(seed));
   Vec3 p = c.free;
-  const auto onTheBox = [&] {
+  const auto on_the_box = [&] {
     Vec3 q = random.in({c.lo, c.hi});
     const auto axis = static_cast<int>(random.uniform(0.0, 3.0));
     q[axis] = random.uniform(0.0, 1.0) < 0.5 ? c.lo[axis] : c.hi[axis];
     return q;
   };
-  Vec3 goal = onTheBox();
+  Vec3 goal = on_the_box();
   Vec3 velocity(0.0);
   const double step = c.speed * Drive::kTick;
   for (int i = 0; i < strokeTicks() / c.share; ++i) {
-    if (glm::length(goal - p) < 10.0 * step) goal = onTheBox();
+    if (glm::length(goal - p) < 10.0 * step) goal = on_the_box();
     velocity = 0.9 * velocity + 0.1 * step * glm::normalize(goal - p);
     p += velocity;
     judge.to(p, 1e-6);

@@ -14,8 +14,6 @@
 namespace palpate::test {
 namespace {
 
-using testing::Held;
-
 int walkTicks() { return std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 20'000 : 800; }
 
 struct Walk {

@@ -15,8 +15,6 @@
 namespace palpate::test {
 namespace {
 
-using testing::Held;
-
 struct Solid {
   const char* name;
   FieldPtr field;

@@ -14,7 +14,9 @@ namespace {
 std::vector<FieldPtr> balls(int count) {
   std::vector<FieldPtr> out{sphere(Vec3(0.0), 0.008)};
   for (int i = 0; static_cast<int>(out.size()) < count; ++i) {
-    const Vec3 center = mm(30.0 * (i % 10 - 5), 30.0 * (i / 10 % 10 - 5), 30.0 * (i / 100 - 5));
+    const int row = i / 10;
+    const int layer = i / 100;
+    const Vec3 center = mm(30.0 * (i % 10 - 5), 30.0 * (row % 10 - 5), 30.0 * (layer - 5));
     if (center != Vec3(0.0)) out.push_back(sphere(center, 0.008));
   }
   return out;
