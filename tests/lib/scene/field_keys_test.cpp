@@ -36,7 +36,7 @@ const std::string kBall = "{sphere: {center: [1, 2, 3], radius: 20}}";
 const std::string kBlock = "{box: {center: [10, 0, 0], size: [30, 20, 25]}}";
 
 const std::vector<KindCase>& kindCases() {
-  static const std::vector<KindCase> kCases = {
+  static const std::vector<KindCase> cases = {
       {"half_space", "{half_space: {point: [1, 2, 3], normal: [0, 3, 4]}}",
        [](double u) { return halfSpace(in(u, 1, 2, 3), Vec3(0, 3, 4)); }},
       {"sphere", kBall, ball},
@@ -123,7 +123,7 @@ const std::vector<KindCase>& kindCases() {
       {"shell", "{shell: {field: " + kBlock + ", thickness: 3}}",
        [](double u) { return shell(block(u), in(u, 3)); }},
   };
-  return kCases;
+  return cases;
 }
 
 FieldPtr fieldIn(const std::string& unit, const std::string& text) {
