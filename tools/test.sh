@@ -5,7 +5,7 @@
 #   dev       assertions on, warnings are errors, every public header compiles alone
 #   release   what users get: optimised code, installed and used by an outside project
 #   asan      memory errors and undefined behaviour; lib and devices, and with --all everything
-#   tsan      data races (without vdb: TBB is not instrumented)
+#   tsan      data races (without vdb: TBB is not instrumented; and without the longest tests of one thread)
 #   tidy      names and bug patterns, by clang-tidy, in the sources that changed
 # Options:
 #   --quick         format, arrows and dev only
