@@ -11,8 +11,8 @@
 #   --quick         format, arrows and dev only
 #   --lane NAME     only this lane; may be given several times
 #   --all           every lane; tidy and asan on everything, and the slow sweeps (PALPATE_SLOW_TESTS=1)
-#   --changed REF   what counts as changed for tidy: since REF. Default: since the branch left origin/main,
-#                   or on main itself, with its newest commit
+#   --changed REF   what counts as changed for tidy: since REF, origin/main for one. Default: by the newest
+#                   commit and since
 # The last line says 'N passed, N failed' over all lanes; the exit status is 0 if none failed.
 set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -92,12 +92,9 @@ lane_tsan() { build_and_test tsan; }
 tidy_sources() {
   local base=$changed_since file
   if [ -z "$base" ]; then
-    base=$(git merge-base HEAD origin/main 2> /dev/null) || base=
-    if [ -z "$base" ] || [ "$base" = "$(git rev-parse HEAD 2> /dev/null)" ]; then
-      base=$(git rev-parse --verify --quiet HEAD^) || base=
-    fi
+    base=$(git rev-parse --verify --quiet HEAD^) || base=HEAD  # a shallow clone knows no more
   fi
-  if [ $tidy_all = 1 ] || [ -z "$base" ] || git diff --name-only "$base" | grep --quiet '^\.clang-tidy$'; then
+  if [ $tidy_all = 1 ] || git diff --name-only "$base" | grep --quiet '^\.clang-tidy$'; then
     sources | grep '\.cpp$'
     return
   fi
