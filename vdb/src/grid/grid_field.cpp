@@ -145,6 +145,8 @@ class GridField final : public Field {
 
 }  // namespace
 
-FieldPtr gridField(const LevelSet& grid) { return std::make_shared<GridField>(grid); }
+FieldPtr gridField(const LevelSet& grid, Sampler /*sampler*/) {
+  return std::make_shared<GridField>(grid);
+}
 
 }  // namespace palpate::vdb
