@@ -65,23 +65,6 @@ double angleBetween(const Vec3& a, const Vec3& b) {
   return kDegrees * std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-class SpreadMeter {
- public:
-  void add(double value) noexcept {
-    squares_ += value * value;
-    most_ = std::max(most_, std::fabs(value));
-    count_ += 1.0;
-  }
-  [[nodiscard]] Spread spread() const noexcept {
-    return {count_ > 0.0 ? std::sqrt(squares_ / count_) : 0.0, most_};
-  }
-
- private:
-  double squares_ = 0.0;
-  double most_ = 0.0;
-  double count_ = 0.0;
-};
-
 void compare(const ContactCase& what, const Run& run, const Truth& truth, Measurement& out) {
   SpreadMeter direction;
   SpreadMeter magnitude;

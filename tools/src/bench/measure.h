@@ -5,14 +5,9 @@
 #include <string>
 
 #include "bench/contact_case.h"
+#include "bench/spread.h"
 
 namespace palpate::tools {
-
-/// Root of the mean square, and the largest, over the judged ticks.
-struct Spread {
-  double rms = 0.0;
-  double most = 0.0;
-};
 
 struct Measurement {
   std::size_t ticks = 0;   ///< timed

@@ -1,0 +1,26 @@
+#pragma once
+/// The nearest point of a field's surface, for fields whose value is no distance.
+
+#include <optional>
+
+#include "palpate/fields/field.h"
+
+namespace palpate::tools {
+
+struct FootPoint {
+  Vec3 point{0.0, 0.0, 0.0};   ///< [m] on the surface
+  Vec3 normal{0.0, 0.0, 0.0};  ///< [-] unit, outward, there
+  double distance = 0.0;       ///< [m] of the point that was asked, negative inside
+  /// [1/m] sum and product of the surface's principal curvatures there; positive where convex.
+  double curvature_sum = 0.0;
+  double curvature_product = 0.0;
+};
+
+/// Newton's method on the conditions of the nearest point: x - p + lambda grad S(x) = 0 and S(x) = 0.
+/// Nothing if it does not converge to rounding, if the foot is no nearest point (p lies beyond the
+/// centre of curvature), or if another part of the surface is nearer: the field is asked on the
+/// sphere around p that reaches almost to the foot, and has to have the sign of p there.
+/// The field must be twice differentiable between p and its foot.
+[[nodiscard]] std::optional<FootPoint> footPoint(const Field& field, const Vec3& p) noexcept;
+
+}  // namespace palpate::tools

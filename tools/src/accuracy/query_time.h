@@ -1,0 +1,34 @@
+#pragma once
+/// How long a query for value and gradient takes.
+
+#include <span>
+#include <vector>
+
+#include "palpate/fields/field.h"
+
+namespace palpate::tools {
+
+struct QueryTimes {
+  double independent = 0.0;  ///< [ns] one after another along a path
+  double dependent = 0.0;    ///< [ns] each position waits for the last result, as in a servo loop
+  double cold = 0.0;         ///< [ns] alone, after other data went through the caches; median
+};
+
+/// A buffer larger than the caches, to push everything else out of them.
+class CacheFlood {
+ public:
+  CacheFlood();
+  void run() noexcept;
+  [[nodiscard]] std::size_t bytes() const noexcept { return buffer_.size(); }
+
+ private:
+  std::vector<unsigned char> buffer_;
+};
+
+/// Along `path` [m], the shortest of `repeats` runs; cold at `cold_queries` places spread over
+/// `scattered`. `clock_ns` is taken off each cold query.
+[[nodiscard]] QueryTimes timeQueries(const Field& field, std::span<const Vec3> path,
+                                     std::span<const Vec3> scattered, int repeats,
+                                     std::size_t cold_queries, double clock_ns, CacheFlood& flood);
+
+}  // namespace palpate::tools

@@ -1,0 +1,47 @@
+#pragma once
+/// What a grid of a field should say: distance, normal and curvature near the surface.
+
+#include <optional>
+
+#include "palpate/fields/field.h"
+
+namespace palpate::tools {
+
+struct TruePoint {
+  double value = 0.0;          ///< [m] distance, negative inside
+  Vec3 normal{0.0, 0.0, 0.0};  ///< [-] unit
+  /// [1/m] mean of the principal curvatures of the surface that is parallel through the point;
+  /// positive where convex.
+  double curvature = 0.0;
+};
+
+/// Of a field with a distance (exact, or a bound of one) the field's own value, gradient and Hessian;
+/// of an implicit field the exact distance, by projection onto its zero set. Keeps the field alive.
+class Truth {
+ public:
+  explicit Truth(FieldPtr field)
+      : field_(std::move(field)), projects_(field_->metric() == Metric::kImplicit) {}
+
+  [[nodiscard]] const Field& field() const noexcept { return *field_; }
+  [[nodiscard]] bool projects() const noexcept { return projects_; }
+
+  /// Nothing where it is not known: at a kink of an implicit field, or too far from its surface.
+  [[nodiscard]] std::optional<TruePoint> at(const Vec3& p) const noexcept;
+
+  /// The surface's point near `p`, within rounding; nothing if it is not found.
+  [[nodiscard]] std::optional<Vec3> onSurface(const Vec3& p) const noexcept;
+
+ private:
+  FieldPtr field_;
+  bool projects_;
+};
+
+/// [1/m] of the surface of equal values through the point.
+[[nodiscard]] double meanCurvature(const FieldJet& jet) noexcept;
+
+/// False if the field's gradient jumps (an edge, a medial axis) on the way from `p` to any of the 26
+/// corners, edge middles and face middles of a cube that reaches `reach` [m] to each side: turns by
+/// more than a degree over a 4096th of the way.
+[[nodiscard]] bool isSmoothAround(const Field& field, const Vec3& p, double reach) noexcept;
+
+}  // namespace palpate::tools

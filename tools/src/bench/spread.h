@@ -1,0 +1,33 @@
+#pragma once
+/// Errors, summed up.
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::tools {
+
+/// Root of the mean square, and the largest magnitude.
+struct Spread {
+  double rms = 0.0;
+  double most = 0.0;
+};
+
+class SpreadMeter {
+ public:
+  void add(double value) noexcept {
+    squares_ += value * value;
+    most_ = std::max(most_, std::fabs(value));
+    count_ += 1.0;
+  }
+  /// Zero if nothing was added.
+  [[nodiscard]] Spread spread() const noexcept {
+    return {count_ > 0.0 ? std::sqrt(squares_ / count_) : 0.0, most_};
+  }
+
+ private:
+  double squares_ = 0.0;
+  double most_ = 0.0;
+  double count_ = 0.0;
+};
+
+}  // namespace palpate::tools
