@@ -94,6 +94,19 @@ struct BenchOptions {
   std::string svg;
 };
 
+struct AccuracyOptions {
+  std::string scene;
+  std::vector<std::string> fields;    ///< empty: every layer
+  std::vector<std::string> voxels;    ///< lengths
+  std::string ladder;                 ///< "A,B,C": the same, after one another
+  std::vector<std::string> samplers;  ///< empty: all
+  int points = 100000;
+  double band = 1.0;  ///< [voxels]
+  int repeats = 10;
+  std::string csv;
+  std::string svg;
+};
+
 /// `palpate help`: everything, or one verb.
 struct HelpOptions {
   std::string verb;
@@ -101,6 +114,6 @@ struct HelpOptions {
 };
 
 using VerbOptions = std::variant<HelpOptions, TouchOptions, BakeOptions, InfoOptions, QueryOptions,
-                                 ExplainOptions, RenderOptions, BenchOptions>;
+                                 ExplainOptions, RenderOptions, BenchOptions, AccuracyOptions>;
 
 }  // namespace palpate::tools

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "bench/contact_case.h"
-#include "bench/machine.h"
+#include "bench/machine_json.h"
 #include "bench/measure.h"
 #include "bench/plot.h"
 #include "input_kind.h"
@@ -100,18 +100,6 @@ Json rowJson(const Row& row) {
   json["largest_turn_degrees"] = m.turn;
   json["true_largest_turn_degrees"] = m.true_turn ? Json(*m.true_turn) : Json();
   return json;
-}
-
-Json machineJson(const Machine& machine) {
-  return {{"cpu", machine.cpu},           {"threads", machine.threads},
-          {"system", machine.system},     {"compiler", machine.compiler},
-          {"build", machine.build_type},  {"optimised", machine.optimised},
-          {"clock_ns", machine.clock_ns}, {"palpate", PALPATE_VERSION}};
-}
-
-std::string machineText(const Machine& machine) {
-  return machine.cpu + " (" + std::to_string(machine.threads) + " threads), " + machine.system +
-         ", " + machine.compiler + ", " + machine.build_type + " build";
 }
 
 /// Round numbers that read well beside one another, and read back within their digits.

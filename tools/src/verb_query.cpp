@@ -1,6 +1,7 @@
 #include <cmath>
 #include <optional>
 
+#include "asked_fields.h"
 #include "input_kind.h"
 #include "json_parts.h"
 #include "loaded_scene.h"
@@ -52,58 +53,12 @@ Report queryImage(const QueryOptions& options, Console& console) {
   return report;
 }
 
-/// A field that can be asked by name.
-struct Asked {
-  std::string name;
-  const Field* field;
-  bool layer;
-};
-
-std::vector<Asked> askable(const Scene& scene) {
-  std::vector<Asked> all;
-  for (const Region& region : scene.regions()) {
-    if (region.field) all.push_back({region.name, region.field.get(), true});
-  }
-  for (const NamedField& named : scene.fields()) {
-    all.push_back({named.name, named.source->get().get(), false});
-  }
-  return all;
-}
-
-std::vector<Asked> chooseFields(const Scene& scene, const std::string& name) {
-  std::vector<Asked> all = askable(scene);
-  if (name.empty()) {
-    std::erase_if(all, [](const Asked& a) { return !a.layer; });
-    return all;
-  }
-  std::vector<std::string_view> names;
-  for (const Asked& a : all) {
-    if (a.name == name) return {a};
-    names.push_back(a.name);
-  }
-  const std::string close = suggest(name, names);
-  throw inputError("query.unknown_field", "there is no field or layer '" + name + "'",
-                   close.empty() ? "palpate info names them" : "did you mean '" + close + "'?");
-}
-
-const char* metricName(Metric metric) {
-  switch (metric) {
-    case Metric::kExact:
-      return "exact";
-    case Metric::kBound:
-      return "bound";
-    case Metric::kImplicit:
-      return "implicit";
-  }
-  return "";
-}
-
 Json contentJson(const Scene& scene, const Region& region) {
   if (region.content < 0) return {};
   return materialJson(scene.materials()[static_cast<std::size_t>(region.content)]);
 }
 
-Json sampleJson(const Asked& asked, const FieldSample& s, double unit) {
+Json sampleJson(const AskedField& asked, const FieldSample& s, double unit) {
   Json json = {{"name", asked.name},
                {"value", s.value / unit},
                {"gradient", vectorJson(s.gradient)},
@@ -117,7 +72,7 @@ Report queryScene(const QueryOptions& options, Console& console) {
   const LengthUnit unit = loaded.unit();
   const std::vector<Vec3> points = queryPoints(options, unit);
   const ScenePtr scene = loaded.compile();
-  const std::vector<Asked> fields = chooseFields(*scene, options.field);
+  const std::vector<AskedField> fields = chooseFields(*scene, options.field, "query.unknown_field");
 
   Report report;
   report.json = {{"schema", "palpate.query/1"},
@@ -145,7 +100,7 @@ Report queryScene(const QueryOptions& options, Console& console) {
     }
     report.text += "\n";
     Table table({"field", "value [" + unit.name + "]", "gradient", "value is"});
-    for (const Asked& asked : fields) {
+    for (const AskedField& asked : fields) {
       const FieldSample s = asked.field->sample(p);
       json["fields"].push_back(sampleJson(asked, s, unit.metres));
       table.add({asked.name,

@@ -21,5 +21,7 @@ namespace palpate::tools {
                          Console& console);
 [[nodiscard]] Report run(const BenchOptions& options, const GeneralOptions& general,
                          Console& console);
+[[nodiscard]] Report run(const AccuracyOptions& options, const GeneralOptions& general,
+                         Console& console);
 
 }  // namespace palpate::tools

@@ -14,7 +14,8 @@ double degreesBetween(const Vec3& a, const Vec3& b) noexcept {
 
 }  // namespace
 
-Errors errorsAt(const Field& field, std::span<const JudgedPoint> points, bool smooth) {
+Errors errorsAt(const Field& field, std::span<const JudgedPoint> points, bool smooth,
+                ValueIs value_is) {
   Errors out;
   SpreadMeter value;
   SpreadMeter normal;
@@ -27,7 +28,8 @@ Errors errorsAt(const Field& field, std::span<const JudgedPoint> points, bool sm
       continue;
     }
     ++out.points;
-    value.add(jet.value - point.truth.value);
+    const double slope = value_is == ValueIs::kOverSlope ? glm::length(jet.gradient) : 1.0;
+    value.add(jet.value / slope - point.truth.value);
     normal.add(degreesBetween(jet.gradient, point.truth.normal));
     curvature.add(meanCurvature(jet) - point.truth.curvature);
   }

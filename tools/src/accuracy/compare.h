@@ -18,8 +18,15 @@ struct Errors {
   Spread curvature;             ///< [1/m] of the mean curvature, from the Hessian
 };
 
+/// What of a field is taken for the distance.
+enum class ValueIs {
+  kDistance,   ///< the value
+  kOverSlope,  ///< value / |gradient|
+};
+
 /// Compares those of `points` whose `smooth` is as asked.
-[[nodiscard]] Errors errorsAt(const Field& field, std::span<const JudgedPoint> points, bool smooth);
+[[nodiscard]] Errors errorsAt(const Field& field, std::span<const JudgedPoint> points, bool smooth,
+                              ValueIs value_is = ValueIs::kDistance);
 
 /// |n[i+1] - 2 n[i] + n[i-1]| of unit normals along strokes: the jump of the force's change from tick
 /// to tick, in N for each N of contact force.

@@ -53,8 +53,8 @@ Cells cellsNear(const Field& field, double band, const Progress& progress) {
       for (int n = 0; n < 8; ++n) {
         const Vec3 lower = corner + cells.side * Vec3(n >> 2, (n >> 1) & 1, n & 1);
         const Vec3 center = lower + Vec3(0.5 * cells.side);
-        const bool known = domain.contains(center - Vec3(reach)) &&
-                           domain.contains(center + Vec3(reach));
+        const bool known =
+            domain.contains(center - Vec3(reach)) && domain.contains(center + Vec3(reach));
         // |S| <= L times the distance to the surface.
         if (!known || std::fabs(field.value(center)) <= field.lipschitz() * reach) {
           kept.push_back(lower);

@@ -11,7 +11,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kLine = 64;             ///< [bytes] of a cache
+constexpr std::size_t kLine = 64;              ///< [bytes] of a cache
 constexpr std::size_t kLeastFlood = 24 << 20;  ///< [bytes]
 
 double nanoseconds(Clock::duration time) {

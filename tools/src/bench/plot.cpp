@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+
+#include "bench/svg.h"
 
 namespace palpate::tools {
 namespace {
@@ -17,92 +18,6 @@ constexpr double kTop = 80.0;
 constexpr double kBottom = 730.0;
 constexpr double kMark = 9.0;  ///< radius of a mark
 constexpr std::array<const char*, 2> kColors = {"#1f5fa8", "#c4571b"};
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
-  return text.data();
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
-std::string words(double x, double y, const char* attributes, const std::string& text) {
-  return "<text x='" + number(x) + "' y='" + number(y) + "' " + attributes + ">" + escaped(text) +
-         "</text>\n";
-}
-
-std::string line(double x1, double y1, double x2, double y2, const char* stroke) {
-  return "<line x1='" + number(x1) + "' y1='" + number(y1) + "' x2='" + number(x2) + "' y2='" +
-         number(y2) + "' stroke='" + stroke + "'/>\n";
-}
-
-/// Whole decades around the values, on a stretch of the page.
-struct Axis {
-  int first = 0;
-  int last = 1;
-  double from = 0.0;
-  double to = 1.0;
-
-  [[nodiscard]] double at(double value) const noexcept {
-    return from + (to - from) * (std::log10(value) - first) / (last - first);
-  }
-};
-
-Axis axisFor(double least, double most, double from, double to) {
-  Axis axis{static_cast<int>(std::floor(std::log10(least))),
-            static_cast<int>(std::ceil(std::log10(most))), from, to};
-  axis.last = std::max(axis.last, axis.first + 1);
-  return axis;
-}
-
-std::string decade(int exponent) {
-  return "10<tspan dy='-6' font-size='10'>" + std::to_string(exponent) + "</tspan>";
-}
-
-std::string axes(const Plot& plot, const Axis& x, const Axis& y) {
-  std::string out;
-  for (int e = x.first; e <= x.last; ++e) {
-    const double at = x.at(std::pow(10.0, e));
-    out += line(at, kTop, at, kBottom, "#bbb");
-    out += "<text x='" + number(at) + "' y='" + number(kBottom + 22.0) + "' text-anchor='middle'>" +
-           decade(e) + "</text>\n";
-    for (int k = 2; k < 10 && e < x.last; ++k) {
-      const double between = x.at(k * std::pow(10.0, e));
-      out += line(between, kTop, between, kBottom, "#eee");
-    }
-  }
-  const int stride = y.last - y.first > 10 ? 2 : 1;
-  for (int e = y.first; e <= y.last; ++e) {
-    const double at = y.at(std::pow(10.0, e));
-    out += line(kLeft, at, kRight, at, "#ddd");
-    if ((e - y.first) % stride == 0) {
-      out += "<text x='" + number(kLeft - 8.0) + "' y='" + number(at + 5.0) +
-             "' text-anchor='end'>" + decade(e) + "</text>\n";
-    }
-  }
-  out += words(0.5 * (kLeft + kRight), kBottom + 52.0, "text-anchor='middle'", plot.x_label);
-  const std::string turned =
-      "text-anchor='middle' transform='rotate(-90 28 " + number(0.5 * (kTop + kBottom)) + ")'";
-  return out + words(28.0, 0.5 * (kTop + kBottom), turned.c_str(), plot.y_label);
-}
 
 struct Spot {
   double x = 0.0;
@@ -132,14 +47,14 @@ std::string mark(const Spot& spot, std::size_t series, const std::string& label)
   const char* color = kColors[series % kColors.size()];
   std::string shape;
   if (series % kColors.size() == 0) {
-    shape =
-        "<circle cx='" + number(spot.x) + "' cy='" + number(spot.y) + "' r='" + number(kMark) + "'";
+    shape = "<circle cx='" + svgNumber(spot.x) + "' cy='" + svgNumber(spot.y) + "' r='" +
+            svgNumber(kMark) + "'";
   } else {
-    shape = "<rect x='" + number(spot.x - kMark) + "' y='" + number(spot.y - kMark) + "' width='" +
-            number(2.0 * kMark) + "' height='" + number(2.0 * kMark) + "'";
+    shape = "<rect x='" + svgNumber(spot.x - kMark) + "' y='" + svgNumber(spot.y - kMark) +
+            "' width='" + svgNumber(2.0 * kMark) + "' height='" + svgNumber(2.0 * kMark) + "'";
   }
   return shape + " fill='" + color + "'/>\n" +
-         words(spot.x, spot.y + 4.0, "text-anchor='middle' font-size='11' fill='#fff'", label);
+         svgText(spot.x, spot.y + 4.0, "text-anchor='middle' font-size='11' fill='#fff'", label);
 }
 
 }  // namespace
@@ -157,14 +72,10 @@ std::string plotSvg(const Plot& plot) {
   const Axis x = axisFor(least_x, most_x, kLeft, kRight);
   const Axis y = axisFor(plot.least_y, most_y, kBottom, kTop);
 
-  std::string out = "<svg xmlns='http://www.w3.org/2000/svg' width='" + number(kWidth) +
-                    "' height='" + number(kHeight) + "' viewBox='0 0 " + number(kWidth) + " " +
-                    number(kHeight) +
-                    "' font-family='sans-serif' font-size='14'>\n"
-                    "<rect width='100%' height='100%' fill='#fff'/>\n";
-  out += words(kLeft, 34.0, "font-size='20'", plot.title);
-  out += words(kLeft, 58.0, "font-size='12' fill='#555'", plot.subtitle);
-  out += axes(plot, x, y);
+  std::string out = svgPage(kWidth, kHeight);
+  out += svgText(kLeft, 34.0, "font-size='20'", plot.title);
+  out += svgText(kLeft, 58.0, "font-size='12' fill='#555'", plot.subtitle);
+  out += svgAxes({kLeft, kRight, kTop, kBottom}, x, y, plot.x_label, plot.y_label);
 
   std::vector<Spot> taken;
   std::string marks;
@@ -172,7 +83,7 @@ std::string plotSvg(const Plot& plot) {
     const Spot wanted{x.at(point.x), y.at(std::max(point.y, plot.least_y))};
     const Spot spot = freeSpot(wanted, taken);
     taken.push_back(spot);
-    out += line(wanted.x, wanted.y, spot.x, spot.y, "#555");
+    out += svgLine(wanted.x, wanted.y, spot.x, spot.y, "#555");
     marks += mark(spot, point.series, std::to_string(point.number));
   }
   out += marks;
@@ -180,12 +91,12 @@ std::string plotSvg(const Plot& plot) {
   double at = kTop + 10.0;
   for (std::size_t i = 0; i < plot.series.size(); ++i, at += 26.0) {
     out += mark({kRight + 40.0, at}, i, "");
-    out += words(kRight + 60.0, at + 5.0, "", plot.series[i]);
+    out += svgText(kRight + 60.0, at + 5.0, "", plot.series[i]);
   }
   at += 14.0;
   for (std::size_t i = 0; i < plot.key.size(); ++i, at += 22.0) {
-    out += words(kRight + 48.0, at, "text-anchor='end' fill='#555'", std::to_string(i + 1));
-    out += words(kRight + 60.0, at, "", plot.key[i]);
+    out += svgText(kRight + 48.0, at, "text-anchor='end' fill='#555'", std::to_string(i + 1));
+    out += svgText(kRight + 60.0, at, "", plot.key[i]);
   }
   return out + "</svg>\n";
 }

@@ -42,7 +42,8 @@ std::unique_ptr<CLI::App> makeApp(const Verb& verb, Invocation& invocation) {
     addFlag(*app, g, "--quiet", invocation.general.quiet, "no notes and no progress on stderr");
     const auto& o = invocation.options;
     if (std::holds_alternative<TouchOptions>(o) || std::holds_alternative<BakeOptions>(o) ||
-        std::holds_alternative<RenderOptions>(o) || std::holds_alternative<BenchOptions>(o)) {
+        std::holds_alternative<RenderOptions>(o) || std::holds_alternative<BenchOptions>(o) ||
+        std::holds_alternative<AccuracyOptions>(o)) {
       addFlag(*app, g, "--force", invocation.general.force, "replace existing output files");
     }
   }

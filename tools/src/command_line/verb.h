@@ -44,6 +44,9 @@ struct Verb {
 [[nodiscard]] Verb benchVerb();
 [[nodiscard]] Verb helpVerb();
 
+// accuracy_verb.cpp
+[[nodiscard]] Verb accuracyVerb();
+
 // help.cpp
 [[nodiscard]] std::string verbHelp(const Verb& verb);
 [[nodiscard]] std::string overview();

@@ -1,0 +1,23 @@
+#pragma once
+/// What `palpate accuracy` found, as text, JSON, CSV and plots.
+
+#include <string>
+#include <vector>
+
+#include "accuracy/ladder.h"
+#include "bench/machine.h"
+#include "report.h"
+#include "text.h"
+
+namespace palpate::tools {
+
+[[nodiscard]] Json accuracyJson(const FieldResult& result);
+/// Lengths in `unit`.
+[[nodiscard]] std::string accuracyText(const FieldResult& result, const LengthUnit& unit);
+/// With a heading; SI units.
+[[nodiscard]] std::string accuracyCsv(const std::vector<FieldResult>& results);
+/// Normal and value error against time and against memory; a line for each field and sampler.
+[[nodiscard]] std::string accuracySvg(const std::vector<FieldResult>& results,
+                                      const LengthUnit& unit, const Machine& machine);
+
+}  // namespace palpate::tools

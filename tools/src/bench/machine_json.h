@@ -1,0 +1,21 @@
+#pragma once
+/// The machine as reports name it.
+
+#include "bench/machine.h"
+#include "report.h"
+
+namespace palpate::tools {
+
+[[nodiscard]] inline Json machineJson(const Machine& machine) {
+  return {{"cpu", machine.cpu},           {"threads", machine.threads},
+          {"system", machine.system},     {"compiler", machine.compiler},
+          {"build", machine.build_type},  {"optimised", machine.optimised},
+          {"clock_ns", machine.clock_ns}, {"palpate", PALPATE_VERSION}};
+}
+
+[[nodiscard]] inline std::string machineText(const Machine& machine) {
+  return machine.cpu + " (" + std::to_string(machine.threads) + " threads), " + machine.system +
+         ", " + machine.compiler + ", " + machine.build_type + " build";
+}
+
+}  // namespace palpate::tools
