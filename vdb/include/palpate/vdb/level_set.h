@@ -47,7 +47,7 @@ class LevelSet {
 
 /// How a field reads its grid.
 enum class Sampler {
-  kCubic,      ///< haptic bricks: C2 tri-cubic B-spline with its own gradient and Hessian; the default
+  kCubic,  ///< haptic bricks: C2 tri-cubic B-spline with its own gradient and Hessian; the default
   kTrilinear,  ///< trilinear out of the same bricks: the gradient jumps from voxel to voxel
   kAccessor,   ///< trilinear by a plain OpenVDB accessor on the grid itself: no memory of its own
 };
