@@ -73,24 +73,6 @@ TEST(Bench, EveryCheapSceneAgreesWithItsTruth) {
   }
 }
 
-/// Tags of an XML text closed in the order in which they were opened; false if not.
-bool isWellFormed(const std::string& xml) {
-  std::vector<std::string> open;
-  for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {
-    const std::size_t end = xml.find('>', at);
-    if (end == std::string::npos) return false;
-    const std::string tag = xml.substr(at + 1, end - at - 1);
-    const std::string name = tag.substr(0, tag.find_first_of(" \n"));
-    if (tag.starts_with('/')) {
-      if (open.empty() || "/" + open.back() != tag) return false;
-      open.pop_back();
-    } else if (!tag.ends_with('/')) {
-      open.push_back(name);
-    }
-  }
-  return open.empty();
-}
-
 TEST(Bench, WritesATableAndAPlot) {
   const TempFolder folder;
   const std::vector<std::string> arguments = {"bench", "contact", "--scene", "groove", "--repeat",

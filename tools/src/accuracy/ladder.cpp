@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kStrokes = 20;
 constexpr std::size_t kStrokeLength = 1000;  ///< points
-constexpr std::size_t kColdPerRepeat = 10;
+constexpr std::size_t kColdPerRepeat = 3;
 
 using Clock = std::chrono::steady_clock;
 
@@ -43,12 +43,11 @@ Places choosePlaces(const Truth& truth, double voxel, const LadderSettings& sett
                     const Progress& progress) {
   Places places;
   const double band = settings.band * voxel;
-  const double reach = kStencilReach * voxel;
-  places.near = pointsNear(truth, band, settings.points, reach, progress);
+  places.near = pointsNear(truth, band, settings.points, voxel, progress);
   // Fewer points ask for less work.
   const std::size_t strokes = std::clamp<std::size_t>(settings.points / 1000, 2, kStrokes);
   places.strokes =
-      strokesAlong(truth, places.near, strokes, kStrokeLength, kStrokeStep, reach, progress);
+      strokesAlong(truth, places.near, strokes, kStrokeLength, kStrokeStep, voxel, progress);
   places.path = timedPath(places.strokes, band);
   for (const JudgedPoint& point : places.near.points) places.scattered.push_back(point.at);
   return places;
@@ -68,7 +67,7 @@ SamplerResult measureSampler(const vdb::LevelSet& grid, vdb::Sampler sampler, co
   const auto start = Clock::now();
   const FieldPtr field = vdb::gridField(grid, sampler);
   out.make_seconds = secondsSince(start);
-  out.memory = grid.info().memory;
+  out.memory = vdb::memoryOf(*field);
   out.smooth = errorsAt(*field, places.near.points, true);
   out.near_edges = errorsAt(*field, places.near.points, false);
   out.jitter = jitterOf(*field, places.strokes);

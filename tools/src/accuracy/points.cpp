@@ -80,7 +80,7 @@ Vec3 tangentAt(const Vec3& normal, double angle) {
 
 }  // namespace
 
-PointSet pointsNear(const Truth& truth, double band, std::size_t count, double reach,
+PointSet pointsNear(const Truth& truth, double band, std::size_t count, double voxel,
                     const Progress& progress) {
   const Field& field = truth.field();
   const Cells cells = cellsNear(field, band, progress);
@@ -104,14 +104,14 @@ PointSet pointsNear(const Truth& truth, double band, std::size_t count, double r
       continue;
     }
     if (std::fabs(found->value) > band) continue;
-    out.points.push_back({p, *found, isSmoothAround(field, p, reach)});
+    out.points.push_back({p, *found, isSmoothAround(field, p, voxel)});
   }
   if (out.points.empty()) throw noSurface();
   return out;
 }
 
 std::vector<Stroke> strokesAlong(const Truth& truth, const PointSet& from, std::size_t strokes,
-                                 std::size_t length, double step, double reach,
+                                 std::size_t length, double step, double voxel,
                                  const Progress& progress) {
   const Field& field = truth.field();
   Random random(kSeed + 1);
@@ -124,7 +124,7 @@ std::vector<Stroke> strokesAlong(const Truth& truth, const PointSet& from, std::
     while (at && stroke.points.size() < length) {
       const auto found = truth.at(*at);
       if (!found) break;
-      stroke.points.push_back({*at, *found, isSmoothAround(field, *at, reach)});
+      stroke.points.push_back({*at, *found, isSmoothAround(field, *at, voxel)});
       const Vec3 normal = found->normal;
       if (stroke.points.size() == 1) {
         heading = tangentAt(normal, 2.0 * 3.14159265358979324 * random.unit());

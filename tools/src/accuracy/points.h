@@ -12,7 +12,7 @@ namespace palpate::tools {
 struct JudgedPoint {
   Vec3 at{0.0, 0.0, 0.0};  ///< [m]
   TruePoint truth;
-  bool smooth = true;  ///< no edge or medial axis within reach of a sampler's stencil
+  bool smooth = true;  ///< by isSmoothAround()
 };
 
 struct PointSet {
@@ -20,15 +20,11 @@ struct PointSet {
   std::size_t without_truth = 0;  ///< were near enough, but have no known truth; not among `points`
 };
 
-/// [voxels] how far a sampler's stencil, with what its coefficients were made from, reaches along an
-/// axis.
-inline constexpr double kStencilReach = 4.0;
-
 /// `count` points, evenly distributed over the space whose true distance to the surface is at most
-/// `band` [m]; the same for the same arguments, on every machine with the same rounding. `reach` [m]
+/// `band` [m]; the same for the same arguments, on every machine with the same rounding. `voxel` [m]
 /// is for JudgedPoint::smooth. The field must be bounded.
 /// @throws Error: kInput if it has no surface, kCancelled.
-[[nodiscard]] PointSet pointsNear(const Truth& truth, double band, std::size_t count, double reach,
+[[nodiscard]] PointSet pointsNear(const Truth& truth, double band, std::size_t count, double voxel,
                                   const Progress& progress = {});
 
 /// Points on the surface, `step` [m] apart along a line as straight as the surface lets it be.
@@ -40,6 +36,6 @@ struct Stroke {
 /// stroke ends early where the surface cannot be followed.
 [[nodiscard]] std::vector<Stroke> strokesAlong(const Truth& truth, const PointSet& from,
                                                std::size_t strokes, std::size_t length, double step,
-                                               double reach, const Progress& progress = {});
+                                               double voxel, const Progress& progress = {});
 
 }  // namespace palpate::tools

@@ -7,33 +7,36 @@
 namespace palpate::tools {
 namespace {
 
-constexpr double kCosineOfOneDegree = 0.99984769515639127;
+constexpr double kOneDegree = 0.017453292519943295;
 constexpr int kHalvings = 12;
 
-bool turns(const Vec3& a, const Vec3& b) noexcept {
-  return glm::dot(a, b) < kCosineOfOneDegree * glm::length(a) * glm::length(b);
-}
-
-double cosine(const Vec3& a, const Vec3& b) noexcept {
-  return glm::dot(a, b) / (glm::length(a) * glm::length(b));
+double angleBetween(const Vec3& a, const Vec3& b) noexcept {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
 /// Halves the way, always keeping the half that turns more.
-bool jumpsBetween(const Field& field, Vec3 a, Vec3 at_a, Vec3 b) noexcept {
+bool bendsBetween(const Field& field, Vec3 a, Vec3 at_a, Vec3 b, double voxel) noexcept {
   Vec3 at_b = field.sample(b).gradient;
+  double turn = angleBetween(at_a, at_b);
+  double length = glm::length(b - a);
   for (int i = 0; i < kHalvings; ++i) {
-    if (!turns(at_a, at_b)) return false;
+    if (turn < kOneDegree) return false;
+    if (length <= 0.5 * voxel && turn > length / (kTightestBend * voxel)) return true;
     const Vec3 middle = 0.5 * (a + b);
     const Vec3 at_middle = field.sample(middle).gradient;
-    if (cosine(at_a, at_middle) < cosine(at_middle, at_b)) {
+    const double first = angleBetween(at_a, at_middle);
+    const double second = angleBetween(at_middle, at_b);
+    if (first > second) {
       b = middle;
       at_b = at_middle;
     } else {
       a = middle;
       at_a = at_middle;
     }
+    turn = std::fmax(first, second);
+    length *= 0.5;
   }
-  return turns(at_a, at_b);
+  return turn > kOneDegree;
 }
 
 }  // namespace
@@ -76,13 +79,14 @@ std::optional<Vec3> Truth::onSurface(const Vec3& p) const noexcept {
   return std::nullopt;
 }
 
-bool isSmoothAround(const Field& field, const Vec3& p, double reach) noexcept {
+bool isSmoothAround(const Field& field, const Vec3& p, double voxel) noexcept {
   const Vec3 here = field.sample(p).gradient;
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
         if (x == 0 && y == 0 && z == 0) continue;
-        if (jumpsBetween(field, p, here, p + reach * Vec3(x, y, z))) return false;
+        const Vec3 end = p + kStencilReach * voxel * Vec3(x, y, z);
+        if (bendsBetween(field, p, here, end, voxel)) return false;
       }
     }
   }

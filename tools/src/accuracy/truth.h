@@ -39,9 +39,16 @@ class Truth {
 /// [1/m] of the surface of equal values through the point.
 [[nodiscard]] double meanCurvature(const FieldJet& jet) noexcept;
 
-/// False if the field's gradient jumps (an edge, a medial axis) on the way from `p` to any of the 26
-/// corners, edge middles and face middles of a cube that reaches `reach` [m] to each side: turns by
-/// more than a degree over a 4096th of the way.
-[[nodiscard]] bool isSmoothAround(const Field& field, const Vec3& p, double reach) noexcept;
+/// [voxels] how far a sampler's stencil, with what its coefficients were made from, reaches along an
+/// axis.
+inline constexpr double kStencilReach = 4.0;
+/// [voxels] Bends tighter than this are as good as edges: no grid of that voxel size can hold them.
+inline constexpr double kTightestBend = 1.5;
+
+/// False if the field has an edge, a medial axis or a tight bend in reach of the stencil: if its gradient
+/// turns by more than a degree, and by more than it would on a bend of kTightestBend, over a part of
+/// at most half a voxel of the ways from `p` to the 26 corners, edge middles and face middles of a cube
+/// that reaches kStencilReach voxels of size `voxel` [m] to each side.
+[[nodiscard]] bool isSmoothAround(const Field& field, const Vec3& p, double voxel) noexcept;
 
 }  // namespace palpate::tools

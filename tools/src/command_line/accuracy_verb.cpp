@@ -26,7 +26,7 @@ void define(CLI::App& app, Invocation& invocation) {
       "how far from the surface they are, at most (default 1 voxel)")
       ->check(CLI::Range(0.01, 16.0));
   add(app, g, "--repeat", "N", o.repeats,
-      "timed runs, of which the shortest counts; ten cold queries for each (default 10)")
+      "timed runs, of which the shortest counts; three cold queries for each (default 10)")
       ->check(CLI::Range(1, 100000));
   g = "Output files";
   add(app, g, "--csv", "FILE.csv", o.csv,

@@ -89,6 +89,8 @@ class AccessorField final : public Field {
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
   [[nodiscard]] double featureSize() const noexcept override { return voxel_; }
 
+  [[nodiscard]] const LevelSet& grid() const noexcept { return grid_; }
+
  private:
   /// [units] What an inactive voxel counts. Its distance is at least half_width voxels, but between
   /// eight such voxels the surface can be nearer than interpolation says: the distance to one point
@@ -149,6 +151,14 @@ class AccessorField final : public Field {
 FieldPtr gridField(const LevelSet& grid, Sampler sampler) {
   if (sampler == Sampler::kAccessor) return std::make_shared<AccessorField>(grid);
   return std::make_shared<BrickField>(grid, sampler);
+}
+
+std::uint64_t memoryOf(const Field& grid_field) noexcept {
+  if (const auto* bricks = dynamic_cast<const BrickField*>(&grid_field)) {
+    return bricks->bricks().memory();
+  }
+  const auto* accessor = dynamic_cast<const AccessorField*>(&grid_field);
+  return accessor != nullptr ? accessor->grid().info().memory : 0;
 }
 
 }  // namespace palpate::vdb

@@ -72,6 +72,10 @@ inline constexpr double kCubicHalfWidth = 6.0;
 /// rim too.
 [[nodiscard]] FieldPtr gridField(const LevelSet& grid, Sampler sampler = Sampler::kCubic);
 
+/// [bytes] What the samples of a field by gridField() are read from: its bricks with their tables, or
+/// the grid for kAccessor. 0 for any other field.
+[[nodiscard]] std::uint64_t memoryOf(const Field& grid_field) noexcept;
+
 /// The same grid with a band of `half_width` [voxels]; `grid` itself if it is as wide already. The
 /// voxels of the old band keep their values. A new voxel holds the distance to the closest point of
 /// the surface that the old band tells, found by Newton steps on a C2 spline through it.
