@@ -77,9 +77,6 @@ TEST(AccuracyMeasure, ABentSurfaceShowsItsCurvature) {
 }
 
 TEST(AccuracyMeasure, ImplicitValuesAreDividedByTheirSlopeIfAsked) {
-  QuadricCoefficients c;
-  c.x = 1.0;  // the plane x = 0, in any scale
-  const FieldPtr plane = quadric(Vec3(0.0), c);
   const FieldPtr ball = implicitEllipsoid(Vec3(10e-3));
   const PointSet set = pointsNear(Truth(ball), 0.1e-3, 500, 0.1e-3);
   // To second order S / |grad S| of (r / R)^2 - 1 is off by d^2 / (2 R).
@@ -160,7 +157,9 @@ TEST(AccuracyTruth, WhereTheNearestPointIsNotTheFootThereIsNone) {
       const Vec3 p = kCenter + Vec3(x, 0.1e-3, z);
       const auto foot = footPoint(*ball, p);
       foot ? ++known : ++unknown;
-      if (foot) EXPECT_NEAR(foot->distance, exact->value(p), 1e-12);
+      if (foot) {
+        EXPECT_NEAR(foot->distance, exact->value(p), 1e-12);
+      }
     }
   }
   // Deep inside, between the two flat sides, Newton's method may find either side or none.

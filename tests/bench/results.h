@@ -1,0 +1,44 @@
+#pragma once
+/// Shortest times over all repetitions, as a table and as JSON under the machine's name.
+
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/machine.h"
+
+namespace palpate::bench {
+
+/// One sampler on one shape. [ns] of a query.
+struct Times {
+  double independent = 0.0;
+  double dependent = 0.0;
+};
+
+/// Names of benchmarks are "shape|sampler|independent" and "...|dependent".
+class Results final : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context&) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override;
+
+  [[nodiscard]] std::string table() const;
+  [[nodiscard]] nlohmann::ordered_json json(const tools::Machine& machine) const;
+
+ private:
+  struct Shape {
+    std::string name;
+    std::vector<std::pair<std::string, Times>> samplers;
+  };
+  [[nodiscard]] Times& at(const std::string& shape, const std::string& sampler);
+  [[nodiscard]] static Times yardstickOf(const Shape& shape);
+
+  std::vector<Shape> shapes_;  ///< in the order in which they were registered
+};
+
+/// "amd-epyc-7763" for "AMD EPYC 7763": lower case, what is neither letter nor digit a dash.
+[[nodiscard]] std::string fileNameOf(const std::string& cpu);
+
+}  // namespace palpate::bench

@@ -1,0 +1,127 @@
+// Value and gradient out of a grid, along a path: ours beside OpenVDB's and NanoVDB's samplers, in one run.
+// See README.md.
+
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "brick/brick_field.h"
+#include "results.h"
+#include "rivals.h"
+#include "shapes.h"
+
+namespace palpate::bench {
+namespace {
+
+std::vector<Run> ourRuns(const vdb::LevelSet& grid) {
+  std::vector<Run> runs;
+  const auto bricks = std::make_shared<const vdb::BrickField>(grid);
+  runs.push_back(makeRun("bricks, cubic", [bricks](const Vec3& p) { return bricks->sample(p); }));
+  for (const auto& [name, sampler] :
+       {std::pair{"bricks, cubic, as Field", vdb::Sampler::kCubic},
+        std::pair{"bricks, trilinear, as Field", vdb::Sampler::kTrilinear},
+        std::pair{"accessor, trilinear, as Field", vdb::Sampler::kAccessor}}) {
+    runs.push_back(makeRun(
+        name, [field = vdb::gridField(grid, sampler)](const Vec3& p) { return field->sample(p); }));
+  }
+  return runs;
+}
+
+/// One iteration is the whole path, so that repetitions are short and the shortest is undisturbed.
+void registerRun(const std::shared_ptr<const Shape>& shape, const Run& run, const char* kind,
+                 const std::function<double(std::span<const Vec3>)>& walk) {
+  benchmark::RegisterBenchmark((shape->name + "|" + run.sampler + "|" + kind).c_str(),
+                               [shape, walk](benchmark::State& state) {
+                                 for (auto _ : state) benchmark::DoNotOptimize(walk(shape->path));
+                                 state.counters["queries"] =
+                                     static_cast<double>(shape->path.size());
+                               })
+      ->Iterations(1)
+      ->Repetitions(60)
+      ->Unit(benchmark::kNanosecond);
+}
+
+void registerShape(Shape made) {
+  const auto shape = std::make_shared<const Shape>(std::move(made));
+  for (const auto& runs :
+       {ourRuns(shape->grid), openvdbRuns(shape->grid), nanovdbRuns(shape->grid)}) {
+    for (const Run& run : runs) {
+      registerRun(shape, run, "independent", run.independent);
+      registerRun(shape, run, "dependent", run.dependent);
+    }
+  }
+}
+
+struct Options {
+  std::string mesh;    ///< a third shape; empty: none
+  std::string folder;  ///< where the JSON goes; empty: nowhere
+};
+
+/// Takes `--mesh=FILE` and `--write=FOLDER` out of the arguments; the others are Google Benchmark's.
+Options takeOptions(int& count, char** arguments) {
+  Options options;
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    const std::string argument = arguments[i];
+    if (argument.starts_with("--mesh=")) {
+      options.mesh = argument.substr(7);
+    } else if (argument.starts_with("--write=")) {
+      options.folder = argument.substr(8);
+    } else {
+      arguments[kept++] = arguments[i];
+    }
+  }
+  count = kept;
+  return options;
+}
+
+void write(const Results& results, const tools::Machine& machine, const std::string& folder) {
+  const std::filesystem::path path =
+      std::filesystem::path(folder) / (fileNameOf(machine.cpu) + ".json");
+  std::filesystem::path beside = path;
+  beside += ".tmp";
+  std::ofstream out(beside);
+  out << results.json(machine).dump(2) << "\n";
+  out.close();
+  if (!out) {
+    throw Error(ErrorKind::kOperation, {"bench.write", "cannot write", {}, beside.string()});
+  }
+  std::filesystem::rename(beside, path);
+  std::printf("\nWritten  %s\n", path.string().c_str());
+}
+
+int run(int count, char** arguments) {
+  const Options options = takeOptions(count, arguments);
+  benchmark::Initialize(&count, arguments);
+  if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 2;
+  const tools::Machine machine = tools::thisMachine();
+  if (!machine.optimised) std::fputs("warning: not optimised: times say nothing\n", stderr);
+  registerShape(torusShape());
+  registerShape(ballShape());
+  if (options.mesh.empty()) {
+    std::fputs("no mesh was given (--mesh=FILE): skipped\n", stderr);
+  } else {
+    registerShape(meshShape(options.mesh));
+  }
+  Results results;
+  benchmark::RunSpecifiedBenchmarks(&results);
+  std::printf("%s, %s, %s build\n\n%s", machine.cpu.c_str(), machine.compiler.c_str(),
+              machine.build_type.c_str(), results.table().c_str());
+  if (!options.folder.empty()) write(results, machine, options.folder);
+  return 0;
+}
+
+}  // namespace
+}  // namespace palpate::bench
+
+int main(int argc, char** argv) {
+  try {
+    return palpate::bench::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
