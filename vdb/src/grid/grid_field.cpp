@@ -150,7 +150,10 @@ class AccessorField final : public Field {
 
 FieldPtr gridField(const LevelSet& grid, Sampler sampler) {
   if (sampler == Sampler::kAccessor) return std::make_shared<AccessorField>(grid);
-  return std::make_shared<BrickField>(grid, sampler);
+  if (sampler == Sampler::kTrilinear) return std::make_shared<BrickField>(grid, sampler);
+  // A float of the background may be a little below the width that was asked for.
+  const bool wide_enough = grid.info().half_width > kCubicHalfWidth - 1e-3;
+  return std::make_shared<BrickField>(wide_enough ? grid : widened(grid, kCubicHalfWidth), sampler);
 }
 
 std::uint64_t memoryOf(const Field& grid_field) noexcept {

@@ -1,0 +1,272 @@
+// A wider band for a grid whose own is too narrow to be sampled by the cubic spline.
+//
+// First layer by layer: each new voxel takes the nearest of the surface points that its neighbors
+// know, as in the vector distance transform; the old voxels know theirs by their value and its
+// gradient. Then in rounds: a spline through the band so far, and for each new voxel the closest point
+// on its zero set by Newton's method. Near the surface the spline depends little on new voxels, so
+// that a round leaves a few hundredths of the error before it.
+
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Morphology.h>
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tree/LeafManager.h>
+#include <openvdb/tree/ValueAccessor.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "brick/brick_field.h"
+#include "palpate/vdb/openvdb_access.h"
+
+namespace palpate::vdb {
+namespace {
+
+using openvdb::Coord;
+using Tree = openvdb::FloatTree;
+using Leaf = Tree::LeafNodeType;
+using Offsets = openvdb::Vec3STree;
+using Mask = openvdb::MaskTree;
+using Values = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
+using OffsetsOf = openvdb::tree::ValueAccessor<const Offsets, /*IsSafe=*/false>;
+using Known = openvdb::tree::ValueAccessor<const Mask, /*IsSafe=*/false>;
+
+/// The spline at the surface depends on voxels up to 4.9 off; more are of no use to it.
+constexpr double kLeastWorkWidth = 5.5;
+constexpr double kFar = 1e6;  ///< no surface point is known
+constexpr int kRounds = 3;
+constexpr int kNewtonSteps = 8;
+
+Vec3 vec(const Coord& at) { return {at.x(), at.y(), at.z()}; }
+
+/// All lengths in voxels, positions as voxel coordinates.
+class Widening {
+ public:
+  Widening(const LevelSet& grid, double half_width, const Progress& progress)
+      : source_(grid),
+        half_width_(half_width),
+        work_width_(std::max(half_width, kLeastWorkWidth)),
+        progress_(progress),
+        units_per_voxel_(grid.info().voxel_size / grid.info().metres_per_unit),
+        grid_(grid.impl().grid->deepCopy()),
+        tree_(grid_->tree()),
+        old_(tree_, false, true, openvdb::TopologyCopy()),
+        offsets_(tree_, openvdb::Vec3f(0.0F), openvdb::TopologyCopy()) {
+    if (tree_.hasActiveTiles()) {
+      tree_.voxelizeActiveTiles();
+      old_ = Mask(tree_, false, true, openvdb::TopologyCopy());
+      offsets_ = Offsets(tree_, openvdb::Vec3f(0.0F), openvdb::TopologyCopy());
+    }
+  }
+
+  LevelSet run() {
+    findFeetOfOld();
+    const int layers = static_cast<int>(std::ceil(work_width_ - source_.info().half_width)) + 1;
+    for (int layer = 0; layer < layers; ++layer) {
+      report(progress_, "widen the band", 0.3 * layer / layers);
+      if (!grow()) break;
+    }
+    for (int round = 0; round < kRounds; ++round) {
+      report(progress_, "widen the band", 0.3 + 0.7 * round / kRounds);
+      refine();
+    }
+    report(progress_, "widen the band", 1.0);
+    return finish();
+  }
+
+ private:
+  /// Runs body(leaf of the values, leaf of the offsets) in parallel.
+  template <typename Body>
+  void forLeaves(const Body& body) {
+    openvdb::tree::LeafManager<Tree> leaves(tree_);
+    leaves.foreach ([&](Leaf& leaf, std::size_t) {
+      Offsets::LeafNodeType* const offsets = offsets_.probeLeaf(leaf.origin());
+      if (offsets != nullptr) body(leaf, *offsets);
+    });
+  }
+
+  [[nodiscard]] static openvdb::Vec3f toVdb(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+  }
+
+  /// The surface point of an old voxel: against the gradient, by its value.
+  void findFeetOfOld() {
+    const float scale = static_cast<float>(1.0 / units_per_voxel_);
+    forLeaves([&](const Leaf& leaf, Offsets::LeafNodeType& offsets) {
+      const Values values(tree_);
+      for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
+        const Coord at = voxel.getCoord();
+        Vec3 gradient(0.0);
+        for (int axis = 0; axis < 3; ++axis) gradient[axis] = slope(values, at, axis, *voxel);
+        const double length = glm::length(gradient);
+        const Vec3 foot = length > 0.0 ? -gradient * (*voxel * scale / length) : Vec3(kFar);
+        offsets.setValueOnly(voxel.pos(), toVdb(foot));
+      }
+    });
+  }
+
+  /// Of second order, also where one side is out of the band.
+  static double slope(const Values& values, const Coord& at, int axis, float here) {
+    const auto next = [&](int steps, float& value) {
+      Coord to = at;
+      to[axis] += steps;
+      return values.probeValue(to, value);
+    };
+    float ahead = 0.0F, behind = 0.0F, second = 0.0F;
+    const bool has_ahead = next(1, ahead);
+    const bool has_behind = next(-1, behind);
+    if (has_ahead && has_behind) return 0.5 * (static_cast<double>(ahead) - behind);
+    if (!has_ahead && !has_behind) return 0.0;
+    const int side = has_ahead ? 1 : -1;
+    const double first = has_ahead ? ahead : behind;
+    if (!next(2 * side, second)) return side * (first - here);
+    return side * (2.0 * first - 1.5 * here - 0.5 * second);
+  }
+
+  /// One layer more. False if there is nothing to add.
+  bool grow() {
+    const Mask known(tree_, false, true, openvdb::TopologyCopy());
+    openvdb::tools::dilateActiveValues(tree_, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                       openvdb::tools::IGNORE_TILES);
+    offsets_.topologyUnion(tree_);
+    tbb::enumerable_thread_specific<bool> grew(false);
+    forLeaves([&](Leaf& leaf, Offsets::LeafNodeType& offsets) {
+      const Known is_known(known);
+      const OffsetsOf feet(offsets_);
+      for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+        const Coord at = voxel.getCoord();
+        if (is_known.isValueOn(at)) continue;
+        const Vec3 offset = nearestOfNeighbors(is_known, feet, at);
+        const double distance = glm::length(offset);
+        offsets.setValueOnly(voxel.pos(), toVdb(offset));
+        leaf.setValueOnly(voxel.pos(), std::copysign(toUnits(distance), *voxel));
+        if (distance > work_width_ + 1.0) {
+          leaf.setValueOff(voxel.pos());
+        } else {
+          grew.local() = true;
+        }
+      }
+    });
+    return grew.combine([](bool a, bool b) { return a || b; });
+  }
+
+  static Vec3 nearestOfNeighbors(const Known& is_known, const OffsetsOf& feet, const Coord& at) {
+    Vec3 nearest(kFar);
+    for (int n = 0; n < 27; ++n) {
+      const Coord step(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+      if (!is_known.isValueOn(at + step)) continue;
+      const openvdb::Vec3f& foot = feet.getValue(at + step);
+      const Vec3 offset = vec(step) + Vec3(foot.x(), foot.y(), foot.z());
+      if (glm::dot(offset, offset) < glm::dot(nearest, nearest)) nearest = offset;
+    }
+    return nearest;
+  }
+
+  [[nodiscard]] float toUnits(double voxels) const {
+    return static_cast<float>(voxels * units_per_voxel_);
+  }
+
+  /// Every new voxel anew, from the spline through what there is.
+  void refine() {
+    auto band = openvdb::FloatGrid::create(tree_.background());
+    band->setTransform(grid_->transformPtr());
+    band->setTree(grid_->treePtr());
+    const BrickField spline(makeLevelSet(band, source_.info().length_unit), Sampler::kCubic);
+    const Vec3 origin = source_.impl().origin;
+    const double voxel_size = source_.info().voxel_size;
+    forLeaves([&](Leaf& leaf, Offsets::LeafNodeType& offsets) {
+      const Known is_old(old_);
+      for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+        const Coord at = voxel.getCoord();
+        if (is_old.isValueOn(at)) continue;
+        const openvdb::Vec3f& first = offsets.getValue(voxel.pos());
+        const Vec3 x = origin + voxel_size * vec(at);
+        const Vec3 start(first.x(), first.y(), first.z());
+        const Vec3 offset = closestPoint(spline, x, x + voxel_size * start) / voxel_size;
+        const double distance = glm::length(offset);
+        // A step to another part of the surface, or none that converges, says nothing new.
+        if (!(std::abs(distance - glm::length(start)) < 0.25)) continue;
+        offsets.setValueOnly(voxel.pos(), toVdb(offset));
+        leaf.setValueOnly(voxel.pos(), std::copysign(toUnits(distance), *voxel));
+      }
+    });
+  }
+
+  /// From x to the point q of the spline's zero set that is the closest around `start` [m]; NaN if
+  /// there is none. Newton's method for q + m grad S(q) = x and S(q) = 0.
+  static Vec3 closestPoint(const BrickField& spline, const Vec3& x, const Vec3& start) {
+    Vec3 q = start;
+    const double enough = 1e-9 * spline.featureSize();
+    for (int step = 0; step < kNewtonSteps; ++step) {
+      const FieldJet jet = spline.jet(q);
+      const double square = glm::dot(jet.gradient, jet.gradient);
+      if (!jet.in_band || !(square > 0.01)) break;
+      const double m = glm::dot(x - q, jet.gradient) / square;
+      const Mat3 bent = Mat3(1.0) + m * jet.hessian;
+      if (!(std::abs(glm::determinant(bent)) > 1e-3)) break;
+      const Mat3 inverse = glm::inverse(bent);
+      const Vec3 rest = inverse * (x - q - m * jet.gradient);
+      const Vec3 along = inverse * jet.gradient;
+      const double slope = glm::dot(jet.gradient, along);
+      if (!(std::abs(slope) > 1e-3)) break;
+      const Vec3 move = rest - along * ((jet.value + glm::dot(jet.gradient, rest)) / slope);
+      if (!(glm::length(move) < spline.featureSize())) break;
+      q += move;
+      if (glm::length(move) < enough) return q - x;
+    }
+    return Vec3(std::nan(""));
+  }
+
+  LevelSet finish() {
+    const float background = toUnits(half_width_);
+    forLeaves([&](Leaf& leaf, Offsets::LeafNodeType&) {
+      const Known is_old(old_);
+      for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+        if (std::fabs(*voxel) >= background && !is_old.isValueOn(voxel.getCoord())) {
+          leaf.setValueOff(voxel.pos());
+        }
+      }
+    });
+    openvdb::tools::changeLevelSetBackground(tree_, background);
+    openvdb::tools::pruneLevelSet(tree_);
+    grid_->insertMeta("palpate:widened", openvdb::StringMetadata("from " + oldWidth()));
+    return makeLevelSet(grid_, source_.info().length_unit);
+  }
+
+  [[nodiscard]] std::string oldWidth() const {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.6g voxels", source_.info().half_width);
+    return text;
+  }
+
+  const LevelSet& source_;
+  double half_width_;
+  double work_width_;
+  const Progress& progress_;
+  double units_per_voxel_;
+  openvdb::FloatGrid::Ptr grid_;
+  Tree& tree_;
+  Mask old_;         ///< voxels of the old band, which keep their values
+  Offsets offsets_;  ///< [voxels] from each active voxel to its closest point of the surface
+};
+
+}  // namespace
+
+LevelSet widened(const LevelSet& grid, double half_width, const Progress& progress) {
+  const LevelSetInfo& info = grid.info();
+  if (!(half_width <= 1000.0)) {
+    throw inputError("bake.half_width", "a band of " + std::to_string(half_width) +
+                                            " voxels is asked for; it may have up to 1000");
+  }
+  if (!(info.half_width < half_width)) return grid;
+  if (info.half_width < 2.0) {
+    throw inputError("vdb.narrow", "the band of grid '" + info.name + "' is " +
+                                       std::to_string(info.half_width) +
+                                       " voxels wide on each side; at least 2 are needed");
+  }
+  return Widening(grid, half_width, progress).run();
+}
+
+}  // namespace palpate::vdb
