@@ -21,6 +21,9 @@ struct Times {
 /// Names of benchmarks are "shape|sampler|independent" and "...|dependent".
 class Results final : public benchmark::BenchmarkReporter {
  public:
+  /// A row of the table, in its order; benchmarks may run in any other.
+  void expect(const std::string& shape, const std::string& sampler) { (void)at(shape, sampler); }
+
   bool ReportContext(const Context&) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override;
 
@@ -35,7 +38,7 @@ class Results final : public benchmark::BenchmarkReporter {
   [[nodiscard]] Times& at(const std::string& shape, const std::string& sampler);
   [[nodiscard]] static Times yardstickOf(const Shape& shape);
 
-  std::vector<Shape> shapes_;  ///< in the order in which they were registered
+  std::vector<Shape> shapes_;
 };
 
 /// "amd-epyc-7763" for "AMD EPYC 7763": lower case, what is neither letter nor digit a dash.

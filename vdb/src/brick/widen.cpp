@@ -50,16 +50,10 @@ class Widening {
         work_width_(std::max(half_width, kLeastWorkWidth)),
         progress_(progress),
         units_per_voxel_(grid.info().voxel_size / grid.info().metres_per_unit),
-        grid_(grid.impl().grid->deepCopy()),
+        grid_(copyOf(*grid.impl().grid)),
         tree_(grid_->tree()),
         old_(tree_, false, true, openvdb::TopologyCopy()),
-        offsets_(tree_, openvdb::Vec3f(0.0F), openvdb::TopologyCopy()) {
-    if (tree_.hasActiveTiles()) {
-      tree_.voxelizeActiveTiles();
-      old_ = Mask(tree_, false, true, openvdb::TopologyCopy());
-      offsets_ = Offsets(tree_, openvdb::Vec3f(0.0F), openvdb::TopologyCopy());
-    }
-  }
+        offsets_(tree_, openvdb::Vec3f(0.0F), openvdb::TopologyCopy()) {}
 
   LevelSet run() {
     findFeetOfOld();
@@ -77,6 +71,12 @@ class Widening {
   }
 
  private:
+  static openvdb::FloatGrid::Ptr copyOf(const openvdb::FloatGrid& grid) {
+    openvdb::FloatGrid::Ptr copy = grid.deepCopy();
+    copy->tree().voxelizeActiveTiles();
+    return copy;
+  }
+
   /// Runs body(leaf of the values, leaf of the offsets) in parallel.
   template <typename Body>
   void forLeaves(const Body& body) {

@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Makes anew what the documents say of grids, on this machine:
+#   README.md (its table of accuracy) and tools/docs/accuracy.svg, by `palpate accuracy`
+#   data/bench/CPU.json, named after the processor: sampling beside OpenVDB's and NanoVDB's samplers, in one run
+# A quiet machine is best; the shortest times count.
+#   tools/bench.sh [MESH]   MESH: a closed mesh in mm (.stl .obj .ply) to sample as a third shape, a bone for one
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+mesh=()
+case ${1:-} in
+  -h | --help) sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" && exit 0 ;;
+  -*) echo "error: unknown option $1; --help says what there is" >&2 && exit 2 ;;
+  ?*) mesh=("--mesh=$(realpath "$1")") ;;
+esac
+[ $# -le 1 ] || { echo "error: one mesh at most" >&2; exit 2; }
+
+cd "$root"
+source tools/setup.sh
+install_packages "${build_packages[@]}" "${test_packages[@]}"
+use_ccache
+[ -f build/release/build.ninja ] || configure release -DPALPATE_TESTS=OFF
+cmake --build build/release --target palpate_command palpate_sampler_bench
+
+# The table between the two comments in README.md: a row for each voxel size and sampler.
+write_table() { # CSV
+  local table
+  table=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+    $at["near_edges"] == 1 { next }
+    { printf "| %g | %s | %.2g | %.2g | %.2g | %.2g | %.3f | %.0f | %.0f | %.1f | %.1f |\n", 1e3 * $at["voxel_m"],
+      $at["sampler"], 1e3 * $at["value_rms_m"], 1e3 * $at["value_max_m"], $at["normal_rms_degrees"],
+      $at["normal_max_degrees"], $at["jitter_max"] / $at["true_jitter_max"], $at["independent_ns"],
+      $at["dependent_ns"], $at["cold_ns"] / 1e3, $at["memory_bytes"] / 1e6 }' "$1")
+  awk -v table="$table" '/<!-- accuracy: end -->/ { skip = 0 } !skip { print }
+    /<!-- accuracy: begin/ { skip = 1
+      print "| voxel mm | sampler | distance mm, RMS | max | normal degree, RMS | max | jitter / true | ns | ns, dependent | us, cold | MB |"
+      print "|---|---|---|---|---|---|---|---|---|---|---|"
+      print table }' README.md > README.md.tmp
+  mv README.md.tmp README.md
+}
+
+csv=$(mktemp --suffix=.csv)
+trap 'rm -f "$csv"' EXIT
+build/release/bin/palpate accuracy data/scenes/reference.yaml --field torus --ladder 2,1,0.5,0.25 \
+  --repeat 30 --svg tools/docs/accuracy.svg --csv "$csv" --force
+write_table "$csv"
+
+mkdir -p data/bench
+build/release/bin/palpate_sampler_bench --benchmark_enable_random_interleaving=true \
+  --write=data/bench "${mesh[@]}"
