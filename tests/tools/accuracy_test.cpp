@@ -19,13 +19,13 @@ Words quick(const std::string& scene, const Words& more) {
   return words;
 }
 
-/// A ball of 10 mm, a brick that reaches to infinity, and what cannot be baked with coarse voxels.
+/// A ball of 10 mm, what reaches to infinity, and a plate that lies between voxels of 5 mm.
 constexpr const char* kScene = R"(palpate: 1
 length: mm
 fields:
   ball: {sphere: {center: [0.1, 0.2, 0.3], radius: 10}}
   ground: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}
-  plate: {box: {center: [0, 0, 0], size: [20, 20, 1]}}
+  plate: {box: {center: [0, 0, 2.5], size: [20, 20, 1]}}
 layers:
   - {name: solid, inside: ball}
 )";
