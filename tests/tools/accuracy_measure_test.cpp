@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "accuracy/compare.h"
-#include "accuracy/foot_point.h"
 #include "accuracy/points.h"
 #include "accuracy/truth.h"
 #include "palpate/fields/csg.h"
+#include "palpate/fields/foot_point.h"
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 

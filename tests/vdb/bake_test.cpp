@@ -69,9 +69,8 @@ std::vector<BakeCase> cases() {
       {"implicit", implicitBall(8e-3), 0.4e-3,
        [](const Vec3& p) {
          const double r = glm::length(p);
-         const double ratio = r == 0.0 ? -kInfinity : (r * r / 8e-3 - 8e-3) * 8e-3 / (2.0 * r);
          const Vec3 out = glm::max(glm::abs(p) - Vec3(8e-3), Vec3(0.0));
-         return std::max(ratio, out == Vec3(0.0) ? -kInfinity : glm::length(out));
+         return std::max(r - 8e-3, out == Vec3(0.0) ? -kInfinity : glm::length(out));
        }},
       {"cut_by_a_box", ball, 0.5e-3,
        [=](const Vec3& p) {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "accuracy/foot_point.h"
+#include "palpate/fields/foot_point.h"
 
 namespace palpate::tools {
 namespace {

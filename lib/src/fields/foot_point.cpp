@@ -1,27 +1,32 @@
-#include "accuracy/foot_point.h"
+#include "palpate/fields/foot_point.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
 
-namespace palpate::tools {
+namespace palpate {
 namespace {
 
-constexpr int kMostSteps = 30;
+constexpr int kMostSteps = 20;
+constexpr int kFreeSteps = 4;  ///< after these each step must be less than half of the one before
 
 /// Whether another part of the surface is nearer to `p` than `distance` [m].
 bool isNearerElsewhere(const Field& field, const Vec3& p, double distance) noexcept {
   // Nothing fits between the surface and a point on it, but rounding would see something there.
   if (std::fabs(distance) < 1e-9 * field.featureSize()) return false;
-  const double radius = 0.99 * std::fabs(distance);
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int z = -1; z <= 1; ++z) {
-        if (x == 0 && y == 0 && z == 0) continue;
-        const Vec3 at = p + radius * glm::normalize(Vec3(x, y, z));
-        if (field.value(at) * distance < 0.0) return true;
-      }
-    }
+  const auto is_beyond = [&](const Vec3& direction) {
+    return field.value(p + 0.99 * std::fabs(distance) * direction) * distance < 0.0;
+  };
+  constexpr double kDiagonal = 0.57735026918962576;
+  for (int n = 0; n < 8; ++n) {
+    const Vec3 corner((n & 4) != 0 ? 1.0 : -1.0, (n & 2) != 0 ? 1.0 : -1.0,
+                      (n & 1) != 0 ? 1.0 : -1.0);
+    if (is_beyond(kDiagonal * corner)) return true;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 along(0.0);
+    along[axis] = 1.0;
+    if (is_beyond(along) || is_beyond(-along)) return true;
   }
   return false;
 }
@@ -64,6 +69,7 @@ std::optional<FootPoint> footPoint(const Field& field, const Vec3& p) noexcept {
   // The step after one this short is rounding only: convergence is quadratic.
   const double enough =
       1e-13 * std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), field.featureSize()});
+  double last_length = kInfinity;
   for (int i = 0; i < kMostSteps; ++i) {
     const FieldJet jet = field.jet(x);
     if (!jet.in_band) return std::nullopt;
@@ -78,6 +84,8 @@ std::optional<FootPoint> footPoint(const Field& field, const Vec3& p) noexcept {
     Vec3 step = -(inverse * (rest + change * jet.gradient));
     const double length = glm::length(step);
     if (!std::isfinite(length)) return std::nullopt;
+    if (i >= kFreeSteps && length > enough && length > 0.5 * last_length) return std::nullopt;
+    last_length = length;
     const double share = length > leash && length > 0.0 ? leash / length : 1.0;
     x += share * step;
     lambda += share * change;
@@ -89,4 +97,4 @@ std::optional<FootPoint> footPoint(const Field& field, const Vec3& p) noexcept {
   return std::nullopt;
 }
 
-}  // namespace palpate::tools
+}  // namespace palpate
