@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <utility>
 
@@ -17,6 +18,16 @@ namespace {
 
 using GridMaker = std::function<LevelSet(const Progress&)>;
 
+/// `sampler` of a field or layer.
+Sampler readSampler(MapReader& reader) {
+  const std::string name = reader.textOr("sampler", "cubic");
+  if (name == "cubic") return Sampler::kCubic;
+  if (name == "trilinear") return Sampler::kTrilinear;
+  if (name == "accessor") return Sampler::kAccessor;
+  throw reader.errorAt("sampler", "scene.kind", "'sampler' is `" + name + "`",
+                       "write sampler: cubic, sampler: trilinear or sampler: accessor");
+}
+
 /// What the makers need after the scene file is read and its readers are gone.
 struct Common {
   RegisterOptions options;
@@ -29,11 +40,21 @@ std::string fileName(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
+std::string widenedNote(double half_width) {
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "a band of %.3g voxels is too narrow for cubic sampling; it was widened to %g, with "
+      "distances to the closest points of the surface",
+      half_width, kCubicHalfWidth);
+  return text;
+}
+
 /// The field of a grid that is made when it is first asked for. What the maker finds wrong is told
 /// at `place` of the scene; `what` names the grid in progress and records.
 FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string summary,
-                         SourcePlace place, GridMaker make) {
-  auto maker = [common, what = std::move(what), summary, place = std::move(place),
+                         SourcePlace place, Sampler sampler, GridMaker make) {
+  auto maker = [common, what = std::move(what), summary, place = std::move(place), sampler,
                 make = std::move(make)](const Progress& progress) {
     Progress named;
     if (progress) {
@@ -43,8 +64,14 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     }
     const auto start = std::chrono::steady_clock::now();
     LevelSet grid;
+    LevelSetInfo made;
     try {
       grid = make(named);
+      made = grid.info();
+      if (sampler == Sampler::kCubic && isTooNarrow(made)) {
+        grid = widened(grid, kCubicHalfWidth, named);
+        common->notes->add(what, {widenedNote(made.half_width)});
+      }
     } catch (const Error& error) {
       const Problem& problem = error.problem();
       if (error.kind() != ErrorKind::kInput || problem.file == place.file) throw;
@@ -54,9 +81,9 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     if (common->options.on_grid) {
-      common->options.on_grid({what + ": " + summary, grid.info(), took.count()});
+      common->options.on_grid({what + ": " + summary, made, took.count()});
     }
-    return gridField(grid);
+    return gridField(grid, sampler);
   };
   return std::make_shared<FieldSource>(std::move(summary), std::move(maker));
 }
@@ -105,8 +132,9 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
     throw reader.errorAt("half_width", "scene.range", "'half_width' must be 2 voxels or more");
   }
   bake.metadata["source"] = path;
+  const Sampler sampler = readSampler(reader);
   return lazyField(common, fileName(path), "mesh " + fileName(path),
-                   reader.loader().document().place(reader.node().mark),
+                   reader.loader().document().place(reader.node().mark), sampler,
                    [path, metres, bake](const Progress& progress) {
                      report(progress, "read", 0.0);
                      const Mesh mesh = readMesh(path, metres);
@@ -123,8 +151,9 @@ FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
   const std::string path = existingFile(reader, "file");
   const std::string name = reader.textOr("name", "");
   const std::string unit = lengthUnitOr(reader, "");
+  const Sampler sampler = readSampler(reader);
   return lazyField(common, fileName(path), "grid " + fileName(path),
-                   reader.loader().document().place(reader.node().mark),
+                   reader.loader().document().place(reader.node().mark), sampler,
                    [path, name, unit](const Progress& progress) {
                      report(progress, "read", 0.0);
                      return readVdb(path, name, unit);
@@ -137,12 +166,14 @@ struct LayerImage {
   std::shared_ptr<SceneImage> image;
   BakeOptions bake;
   SourcePlace place;
+  Sampler sampler;
 
   LayerImage(MapReader& reader, const std::string& layer)
       : name(reader.requireText("image")),
         image(std::static_pointer_cast<SceneImage>(
             reader.loader().image(name, reader.require("image").mark))),
-        place(reader.loader().document().place(reader.node().mark)) {
+        place(reader.loader().document().place(reader.node().mark)),
+        sampler(readSampler(reader)) {
     bake.name = layer + "/surface";
     bake.length_unit = reader.loader().lengthUnit();
     bake.metadata["layer"] = layer;
@@ -185,7 +216,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
   std::string summary = labels.values.size() == 1 ? "label" : "labels";
   for (const int value : labels.values) summary += " " + std::to_string(value);
   summary += " of " + fileName(from.image->file->path());
-  return {lazyField(common, layer, std::move(summary), from.place,
+  return {lazyField(common, layer, std::move(summary), from.place, from.sampler,
                     [file = from.image->file, labels, bake = from.bake](const Progress& progress) {
                       return surfaceFromLabels(file->image(), labels, bake, progress);
                     }),
@@ -208,7 +239,7 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
   threshold.voxel_size = optionalVoxel(reader);
   std::string summary = fileName(from.image->file->path()) + " above " + above.text;
   return {
-      lazyField(common, layer, std::move(summary), from.place,
+      lazyField(common, layer, std::move(summary), from.place, from.sampler,
                 [file = from.image->file, threshold, bake = from.bake](const Progress& progress) {
                   return surfaceFromThreshold(file->image(), threshold, bake, progress);
                 }),

@@ -37,7 +37,9 @@ using Known = openvdb::tree::ValueAccessor<const Mask, /*IsSafe=*/false>;
 constexpr double kLeastWorkWidth = 5.5;
 constexpr double kFar = 1e6;  ///< no surface point is known
 constexpr int kRounds = 3;
-constexpr int kNewtonSteps = 8;
+constexpr double kSamePlace = 0.75;  ///< [voxels] a correction by more leads to another place
+constexpr int kNewtonSteps = 12;
+constexpr double kSmooth = 0.3;  ///< [voxels] more is an edge: a smooth surface bends by less
 
 Vec3 vec(const Coord& at) { return {at.x(), at.y(), at.z()}; }
 
@@ -57,7 +59,7 @@ class Widening {
 
   LevelSet run() {
     findFeetOfOld();
-    const int layers = static_cast<int>(std::ceil(work_width_ - source_.info().half_width)) + 1;
+    const int layers = static_cast<int>(std::ceil(work_width_ - source_.info().half_width)) + 3;
     for (int layer = 0; layer < layers; ++layer) {
       report(progress_, "widen the band", 0.3 * layer / layers);
       if (!grow()) break;
@@ -91,56 +93,65 @@ class Widening {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
   }
 
-  /// The surface point of an old voxel: against the gradient, by its value.
+  /// The surface point of an old voxel: against the gradient, by its value. Voxels at the rim wait for
+  /// their neighbors: a one-sided gradient is off by a degree, and min picks the worst of such.
   void findFeetOfOld() {
-    const float scale = static_cast<float>(1.0 / units_per_voxel_);
+    const double scale = 1.0 / units_per_voxel_;
     forLeaves([&](const Leaf& leaf, Offsets::LeafNodeType& offsets) {
       const Values values(tree_);
       for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
         const Coord at = voxel.getCoord();
         Vec3 gradient(0.0);
-        for (int axis = 0; axis < 3; ++axis) gradient[axis] = slope(values, at, axis, *voxel);
+        bool inner = true;
+        for (int axis = 0; axis < 3; ++axis) {
+          Coord ahead = at, behind = at;
+          ++ahead[axis];
+          --behind[axis];
+          float after = 0.0F, before = 0.0F;
+          inner &= values.probeValue(ahead, after) && values.probeValue(behind, before);
+          gradient[axis] = static_cast<double>(after) - before;
+        }
         const double length = glm::length(gradient);
-        const Vec3 foot = length > 0.0 ? -gradient * (*voxel * scale / length) : Vec3(kFar);
+        const Vec3 foot =
+            inner && length > 0.0 ? -gradient * (*voxel * scale / length) : Vec3(kFar);
         offsets.setValueOnly(voxel.pos(), toVdb(foot));
       }
     });
   }
 
-  /// Of second order, also where one side is out of the band.
-  static double slope(const Values& values, const Coord& at, int axis, float here) {
-    const auto next = [&](int steps, float& value) {
-      Coord to = at;
-      to[axis] += steps;
-      return values.probeValue(to, value);
-    };
-    float ahead = 0.0F, behind = 0.0F, second = 0.0F;
-    const bool has_ahead = next(1, ahead);
-    const bool has_behind = next(-1, behind);
-    if (has_ahead && has_behind) return 0.5 * (static_cast<double>(ahead) - behind);
-    if (!has_ahead && !has_behind) return 0.0;
-    const int side = has_ahead ? 1 : -1;
-    const double first = has_ahead ? ahead : behind;
-    if (!next(2 * side, second)) return side * (first - here);
-    return side * (2.0 * first - 1.5 * here - 0.5 * second);
+  /// The voxels whose surface point is known.
+  [[nodiscard]] Mask knownVoxels() const {
+    Mask known(tree_, false, true, openvdb::TopologyCopy());
+    openvdb::tree::LeafManager<Mask> leaves(known);
+    leaves.foreach ([&](Mask::LeafNodeType& leaf, std::size_t) {
+      const Offsets::LeafNodeType* const offsets = offsets_.probeConstLeaf(leaf.origin());
+      for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+        if (offsets->getValue(voxel.pos()).x() >= kFar) leaf.setValueOff(voxel.pos());
+      }
+    });
+    return known;
   }
 
   /// One layer more. False if there is nothing to add.
   bool grow() {
-    const Mask known(tree_, false, true, openvdb::TopologyCopy());
+    const Mask known = knownVoxels();
     openvdb::tools::dilateActiveValues(tree_, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
                                        openvdb::tools::IGNORE_TILES);
     offsets_.topologyUnion(tree_);
     tbb::enumerable_thread_specific<bool> grew(false);
     forLeaves([&](Leaf& leaf, Offsets::LeafNodeType& offsets) {
-      const Known is_known(known);
+      const Known is_known(known), is_old(old_);
       const OffsetsOf feet(offsets_);
       for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
         const Coord at = voxel.getCoord();
         if (is_known.isValueOn(at)) continue;
-        const Vec3 offset = nearestOfNeighbors(is_known, feet, at);
+        const Vec3 offset = firstGuess(is_known, feet, at);
         const double distance = glm::length(offset);
         offsets.setValueOnly(voxel.pos(), toVdb(offset));
+        if (is_old.isValueOn(at)) {
+          grew.local() |= distance < kFar;
+          continue;
+        }
         leaf.setValueOnly(voxel.pos(), std::copysign(toUnits(distance), *voxel));
         if (distance > work_width_ + 1.0) {
           leaf.setValueOff(voxel.pos());
@@ -152,16 +163,27 @@ class Widening {
     return grew.combine([](bool a, bool b) { return a || b; });
   }
 
-  static Vec3 nearestOfNeighbors(const Known& is_known, const OffsetsOf& feet, const Coord& at) {
+  /// From a voxel to the surface, as the neighbor tells whose surface point is the nearest: to its
+  /// tangent plane there, straight. Taking the point itself would drag it along, layer after layer.
+  static Vec3 firstGuess(const Known& is_known, const OffsetsOf& feet, const Coord& at) {
     Vec3 nearest(kFar);
+    Vec3 normal(0.0);
     for (int n = 0; n < 27; ++n) {
       const Coord step(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
       if (!is_known.isValueOn(at + step)) continue;
-      const openvdb::Vec3f& foot = feet.getValue(at + step);
-      const Vec3 offset = vec(step) + Vec3(foot.x(), foot.y(), foot.z());
-      if (glm::dot(offset, offset) < glm::dot(nearest, nearest)) nearest = offset;
+      const openvdb::Vec3f& stored = feet.getValue(at + step);
+      const Vec3 foot(stored.x(), stored.y(), stored.z());
+      const Vec3 offset = vec(step) + foot;
+      if (glm::dot(offset, offset) < glm::dot(nearest, nearest)) {
+        nearest = offset;
+        normal = foot;
+      }
     }
-    return nearest;
+    const double square = glm::dot(normal, normal);
+    if (!(square > 0.01)) return nearest;
+    const Vec3 straight = normal * (glm::dot(normal, nearest) / square);
+    // Much nearer than the point: the surface ends there in an edge, and the point stays the nearest.
+    return glm::length(nearest) - glm::length(straight) < kSmooth ? straight : nearest;
   }
 
   [[nodiscard]] float toUnits(double voxels) const {
@@ -181,13 +203,13 @@ class Widening {
       for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
         const Coord at = voxel.getCoord();
         if (is_old.isValueOn(at)) continue;
-        const openvdb::Vec3f& first = offsets.getValue(voxel.pos());
+        const openvdb::Vec3f& stored = offsets.getValue(voxel.pos());
+        const Vec3 guess(stored.x(), stored.y(), stored.z());
         const Vec3 x = origin + voxel_size * vec(at);
-        const Vec3 start(first.x(), first.y(), first.z());
-        const Vec3 offset = closestPoint(spline, x, x + voxel_size * start) / voxel_size;
+        const Vec3 offset = closestPoint(spline, x, x + voxel_size * guess) / voxel_size;
         const double distance = glm::length(offset);
-        // A step to another part of the surface, or none that converges, says nothing new.
-        if (!(std::abs(distance - glm::length(start)) < 0.25)) continue;
+        // No step that converges, or one to another part of the surface, says nothing new.
+        if (!(std::abs(distance - glm::length(guess)) < kSamePlace)) continue;
         offsets.setValueOnly(voxel.pos(), toVdb(offset));
         leaf.setValueOnly(voxel.pos(), std::copysign(toUnits(distance), *voxel));
       }
@@ -199,6 +221,7 @@ class Widening {
   static Vec3 closestPoint(const BrickField& spline, const Vec3& x, const Vec3& start) {
     Vec3 q = start;
     const double enough = 1e-9 * spline.featureSize();
+    const double longest = 0.5 * spline.featureSize();
     for (int step = 0; step < kNewtonSteps; ++step) {
       const FieldJet jet = spline.jet(q);
       const double square = glm::dot(jet.gradient, jet.gradient);
@@ -212,9 +235,10 @@ class Widening {
       const double slope = glm::dot(jet.gradient, along);
       if (!(std::abs(slope) > 1e-3)) break;
       const Vec3 move = rest - along * ((jet.value + glm::dot(jet.gradient, rest)) / slope);
-      if (!(glm::length(move) < spline.featureSize())) break;
-      q += move;
-      if (glm::length(move) < enough) return q - x;
+      const double length = glm::length(move);
+      if (!std::isfinite(length)) break;
+      q += move * std::min(1.0, longest / length);
+      if (length < enough) return q - x;
     }
     return Vec3(std::nan(""));
   }

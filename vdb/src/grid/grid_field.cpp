@@ -151,9 +151,8 @@ class AccessorField final : public Field {
 FieldPtr gridField(const LevelSet& grid, Sampler sampler) {
   if (sampler == Sampler::kAccessor) return std::make_shared<AccessorField>(grid);
   if (sampler == Sampler::kTrilinear) return std::make_shared<BrickField>(grid, sampler);
-  // A float of the background may be a little below the width that was asked for.
-  const bool wide_enough = grid.info().half_width > kCubicHalfWidth - 1e-3;
-  return std::make_shared<BrickField>(wide_enough ? grid : widened(grid, kCubicHalfWidth), sampler);
+  return std::make_shared<BrickField>(
+      isTooNarrow(grid.info()) ? widened(grid, kCubicHalfWidth) : grid, sampler);
 }
 
 std::uint64_t memoryOf(const Field& grid_field) noexcept {
