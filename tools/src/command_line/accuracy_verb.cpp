@@ -63,7 +63,8 @@ Verb accuracyVerb() {
         if (!o.ladder.empty() && !o.voxels.empty()) {
           throw usageError("--ladder and --voxel exclude one another", "");
         }
-      }};
+      },
+      true};
 }
 
 }  // namespace palpate::tools
