@@ -9,7 +9,6 @@
 #include "accuracy/points.h"
 #include "accuracy/truth.h"
 #include "palpate/fields/csg.h"
-#include "palpate/fields/foot_point.h"
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 
@@ -146,24 +145,6 @@ TEST(AccuracyTruth, TheFootOfAnImplicitFieldIsItsNearestPoint) {
     // The exact field's Hessian is by differences here: a millionth of it.
     ASSERT_NEAR(found->curvature, point.truth.curvature, 1e-4 * point.truth.curvature);
   }
-}
-
-TEST(AccuracyTruth, WhereTheNearestPointIsNotTheFootThereIsNone) {
-  const FieldPtr ball = implicitEllipsoid(Vec3(10e-3, 10e-3, 4e-3));
-  const FieldPtr exact = ellipsoid(kCenter, Vec3(10e-3, 10e-3, 4e-3));
-  int known = 0, unknown = 0;
-  for (double x = -12e-3; x < 12e-3; x += 0.7e-3) {
-    for (double z = -6e-3; z < 6e-3; z += 0.7e-3) {
-      const Vec3 p = kCenter + Vec3(x, 0.1e-3, z);
-      const auto foot = footPoint(*ball, p);
-      foot ? ++known : ++unknown;
-      if (foot) {
-        EXPECT_NEAR(foot->distance, exact->value(p), 1e-12);
-      }
-    }
-  }
-  // Deep inside, between the two flat sides, Newton's method may find either side or none.
-  EXPECT_GT(known, 2 * unknown);
 }
 
 TEST(AccuracyTruth, EdgesAndTightBendsAreToldFromSmoothParts) {

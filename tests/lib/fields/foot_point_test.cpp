@@ -1,0 +1,116 @@
+// The nearest point of an implicit field's surface, against shapes whose distance is known.
+
+#include "palpate/fields/foot_point.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "palpate/fields/csg.h"
+#include "palpate/fields/implicit.h"
+#include "palpate/fields/primitives.h"
+#include "support/field_contract.h"
+
+namespace palpate::test {
+namespace {
+
+const Vec3 kCenter(0.3e-3, -0.2e-3, 0.1e-3);
+
+/// An ellipsoid as a polynomial: its value is no distance, and its exact distance is ellipsoid()'s.
+FieldPtr implicitEllipsoid(const Vec3& radii) {
+  QuadricCoefficients c;
+  c.xx = 1.0 / (radii.x * radii.x);
+  c.yy = 1.0 / (radii.y * radii.y);
+  c.zz = 1.0 / (radii.z * radii.z);
+  c.constant = -1.0;
+  return quadric(kCenter, c);
+}
+
+TEST(FootPoint, OfAnEllipsoidIsItsNearestPoint) {
+  const Vec3 radii(9e-3, 6e-3, 7e-3);
+  const FieldPtr exact = ellipsoid(kCenter, radii);
+  const FieldPtr implicit = implicitEllipsoid(radii);
+  Random random(11);
+  int near = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3 p = random.in(exact->bounds().grownBy(4e-3));
+    const double distance = exact->value(p);
+    if (distance < -2e-3) continue;  // no centre of curvature is nearer than 6^2 / 9 = 4 mm
+    ++near;
+    const auto foot = footPoint(*implicit, p);
+    ASSERT_TRUE(foot);
+    ASSERT_NEAR(foot->distance, distance, 1e-15);
+    ASSERT_LT(std::fabs(exact->value(foot->point)), 1e-15);
+    ASSERT_LT(glm::length(foot->normal - exact->sample(p).gradient), 1e-10);
+    ASSERT_LT(glm::length(p - foot->distance * foot->normal - foot->point), 1e-15);
+  }
+  EXPECT_GT(near, 1000);
+}
+
+TEST(FootPoint, HasTheSurfacesCurvatures) {
+  // At the end of a semi-axis a the curvatures are a / b^2 and a / c^2.
+  const Vec3 radii(9e-3, 6e-3, 7e-3);
+  const FieldPtr field = implicitEllipsoid(radii);
+  const auto foot = footPoint(*field, kCenter + Vec3(radii.x + 1e-3, 0.0, 0.0));
+  ASSERT_TRUE(foot);
+  const double first = radii.x / (radii.y * radii.y);
+  const double second = radii.x / (radii.z * radii.z);
+  EXPECT_NEAR(foot->curvature_sum, first + second, 1e-9 * (first + second));
+  EXPECT_NEAR(foot->curvature_product, first * second, 1e-9 * first * second);
+  EXPECT_NEAR(foot->distance, 1e-3, 1e-15);
+}
+
+TEST(FootPoint, OnAGyroidNoPointOfTheSurfaceIsNearer) {
+  const FieldPtr field = gyroid(Vec3(0.0), 0.04);
+  Random random(3);
+  int found = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p = random.in({Vec3(-0.02), Vec3(0.02)});
+    const auto foot = footPoint(*field, p);
+    if (!foot) continue;
+    ++found;
+    EXPECT_EQ(foot->distance < 0.0, field->value(p) < 0.0);
+    EXPECT_LT(std::fabs(field->value(foot->point)), 1e-14);
+    // The sphere that reaches almost to the foot lies on the side of p.
+    for (int k = 0; k < 100; ++k) {
+      const Vec3 at = p + 0.98 * foot->distance * random.direction();
+      EXPECT_EQ(field->value(at) < 0.0, field->value(p) < 0.0);
+    }
+  }
+  EXPECT_GT(found, 150);
+}
+
+TEST(FootPoint, WhereTheNearestPointIsNotFoundThereIsNone) {
+  const Vec3 radii(10e-3, 10e-3, 4e-3);
+  const FieldPtr flat = implicitEllipsoid(radii);
+  const FieldPtr exact = ellipsoid(kCenter, radii);
+  int known = 0, unknown = 0;
+  for (double x = -12e-3; x < 12e-3; x += 0.7e-3) {
+    for (double z = -6e-3; z < 6e-3; z += 0.7e-3) {
+      const Vec3 p = kCenter + Vec3(x, 0.1e-3, z);
+      const auto foot = footPoint(*flat, p);
+      foot ? ++known : ++unknown;
+      if (foot) {
+        EXPECT_NEAR(foot->distance, exact->value(p), 1e-12);
+      }
+    }
+  }
+  // Deep inside, between the two flat sides, Newton's method may find either side or none.
+  EXPECT_GT(known, 2 * unknown);
+  // The middle, where the gradient vanishes, and no numbers at all.
+  EXPECT_FALSE(footPoint(*flat, kCenter));
+  EXPECT_FALSE(footPoint(*flat, Vec3(std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST(FootPoint, OfAPointOnTheSurfaceIsThatPoint) {
+  const FieldPtr field = implicitEllipsoid(Vec3(9e-3, 6e-3, 7e-3));
+  const Vec3 p = kCenter + Vec3(0.0, 6e-3, 0.0);
+  const auto foot = footPoint(*field, p);
+  ASSERT_TRUE(foot);
+  EXPECT_LT(std::fabs(foot->distance), 1e-17);
+  EXPECT_LT(glm::length(foot->normal - Vec3(0.0, 1.0, 0.0)), 1e-12);
+}
+
+}  // namespace
+}  // namespace palpate::test
