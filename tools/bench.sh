@@ -27,7 +27,7 @@ write_table() { # CSV
   local table
   table=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
     $at["near_edges"] == 1 { next }
-    { printf "| %g | %s | %.2g | %.2g | %.2g | %.2g | %.3f | %.0f | %.0f | %.1f | %.1f |\n", 1e3 * $at["voxel_m"],
+    { printf "| %g | %s | %.2g | %.2g | %.2g | %.2g | %.3g | %.0f | %.0f | %.1f | %.1f |\n", 1e3 * $at["voxel_m"],
       $at["sampler"], 1e3 * $at["value_rms_m"], 1e3 * $at["value_max_m"], $at["normal_rms_degrees"],
       $at["normal_max_degrees"], $at["jitter_max"] / $at["true_jitter_max"], $at["independent_ns"],
       $at["dependent_ns"], $at["cold_ns"] / 1e3, $at["memory_bytes"] / 1e6 }' "$1")
