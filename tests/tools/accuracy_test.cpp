@@ -1,6 +1,7 @@
 // `palpate accuracy`: the errors and orders that its samplers have, the form of what it prints, and its
 // manners. Times are figures to print, never to assert.
 
+#include <algorithm>
 #include <csignal>
 #include <map>
 #include <set>
@@ -102,6 +103,23 @@ TEST(Accuracy, TheTorusHasTheErrorsAndOrdersOfItsSamplers) {
       EXPECT_NEAR(number(orders["normal"]), 1.0, 0.1);
     }
   }
+
+  // The README's table (tools/bench.sh makes it, with more points) says the same: to its two digits, and
+  // to what an RMS over 1500 points strays.
+  int rows = 0;
+  for (std::string line : linesOf(textOf(PALPATE_SOURCE_DIR "/README.md"))) {
+    std::replace(line.begin(), line.end(), '|', ',');
+    const auto cells =
+        cellsOf(line);  // "", voxel, sampler, distance RMS and max, normal RMS and max, ...
+    if (cells.size() != 13 || cells[1] != " 1 ") continue;
+    ++rows;
+    const Json& sampler = samplerOf(fine, cells[2].substr(1, cells[2].size() - 2));
+    const double value = 1e3 * number(sampler["smooth"]["value_error_m"]["rms"]);
+    const double normal = number(sampler["smooth"]["normal_error_degrees"]["rms"]);
+    EXPECT_NEAR(std::stod(cells[3]), value, 0.15 * value) << line;
+    EXPECT_NEAR(std::stod(cells[5]), normal, 0.15 * normal) << line;
+  }
+  EXPECT_EQ(rows, 3);
 }
 
 TEST(Accuracy, EdgesAreToldApart) {
