@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "palpate/fields/implicit.h"
