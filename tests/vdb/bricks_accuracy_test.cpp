@@ -134,7 +134,7 @@ FieldPtr distanceTo(const FieldPtr& function, const Box3& bounds) {
   const auto sample = [=](const Vec3& x) {
     Vec3 q = x;
     Vec3 normal(0.0);
-    for (int step = 0; step < 30; ++step) {
+    for (int step = 0; step < 200; ++step) {
       const FieldSample s = function->sample(q);
       const double length = glm::length(s.gradient);
       normal = s.gradient / length;
@@ -147,7 +147,9 @@ FieldPtr distanceTo(const FieldPtr& function, const Box3& bounds) {
     const double distance = glm::dot(x - q, normal);
     return FieldSample{distance, normal, true};
   };
-  return std::make_shared<FunctionField>(sample, FunctionField::Claims{bounds});
+  FunctionField::Claims claims{bounds};
+  claims.lipschitz = 4.0;  // where it finds another point than the closest, it is too large
+  return std::make_shared<FunctionField>(sample, claims);
 }
 
 TEST(BricksAccuracy, ConvergesOnAGyroid) {
