@@ -236,7 +236,9 @@ TEST(Bricks, AreKnownWhereAllVoxelsAre) {
     ASSERT_EQ(sample.in_band, known(q, 2, 3));
     ASSERT_EQ(linear.sample(kVoxel * q).in_band, known(q, 0, 1));
     ++(sample.in_band ? in : out);
-    if (!sample.in_band) ASSERT_EQ(sample.gradient, Vec3(0.0));
+    if (!sample.in_band) {
+      ASSERT_EQ(sample.gradient, Vec3(0.0));
+    }
   }
   EXPECT_GT(in, 1000);
   EXPECT_GT(out, 1000);

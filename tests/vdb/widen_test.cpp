@@ -39,7 +39,9 @@ TEST(Widen, ABandOfThreeVoxelsBecomesTheOneOfSix) {
       ++missing;  // at the very rim a rounding decides
       continue;
     }
-    if (old_voxels.isValueOn(at)) ASSERT_EQ(value, old_voxels.getValue(at));
+    if (old_voxels.isValueOn(at)) {
+      ASSERT_EQ(value, old_voxels.getValue(at));
+    }
     square += std::pow((value - *voxel) / (kVoxel * 1e3), 2.0);
     ++count;
   }
