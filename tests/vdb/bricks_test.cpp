@@ -244,6 +244,44 @@ TEST(Bricks, AreKnownWhereAllVoxelsAre) {
   EXPECT_GT(out, 1000);
 }
 
+/// |value| and its sign against the true distance, at the rim of the band, beyond it and deep inside.
+TEST(Bricks, OutOfTheBandTheyBoundTheDistance) {
+  const std::vector<FieldPtr> shapes{sphere(Vec3(0.0), 12e-3), torus(10e-3, 4.5e-3),
+                                     box(Vec3(0.0), Vec3(20e-3, 13e-3, 14e-3))};
+  for (const FieldPtr& exact : shapes) {
+    const FieldPtr grid = gridField(bake(*exact, voxels(kVoxel, 6.0)));
+    // The spline without a prefilter, where the band ends, is off by voxel^2 / 6 of the second
+    // derivatives, 2 / distance in all, and reaches 3.5 voxels.
+    const double slack = kVoxel / 3.0 / 2.5;
+    Random random(9);
+    int in = 0, out = 0, deep = 0;
+    for (int i = 0; i < 60000; ++i) {
+      const Vec3 p = random.in(exact->bounds().grownBy((i % 10 + 1) * 1e-3));
+      const double distance = exact->value(p);
+      const FieldSample sample = grid->sample(p);
+      if (std::abs(distance) > 0.3 * kVoxel) {
+        ASSERT_EQ(std::signbit(sample.value), std::signbit(distance)) << distance;
+      }
+      // The farthest voxel that a sample needs is (3, 2, 2) off: 4.12.
+      if (std::abs(distance) < 1.87 * kVoxel) {
+        ASSERT_TRUE(sample.in_band) << distance;
+      }
+      if (std::abs(distance) > 6.0 * kVoxel) {
+        ASSERT_FALSE(sample.in_band) << distance;
+      }
+      ++(sample.in_band ? in : out);
+      if (sample.in_band) continue;
+      ASSERT_EQ(sample.gradient, Vec3(0.0));
+      ASSERT_LE(std::abs(sample.value), std::abs(distance) + slack);
+      ASSERT_GE(std::abs(sample.value), 1.5 * kVoxel);
+      deep += distance < -6.0 * kVoxel ? 1 : 0;
+    }
+    EXPECT_GT(in, 1000);
+    EXPECT_GT(out, 1000);
+    EXPECT_GT(deep, 100);
+  }
+}
+
 TEST(Bricks, AllInstructionSetsAgree) {
   const LevelSet grid = noiseGrid({Coord(0)}, 14);
   for (const Sampler sampler : {Sampler::kCubic, Sampler::kTrilinear}) {
