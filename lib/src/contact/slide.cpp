@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kSmallestEigenvalue = 0.02;
+constexpr double kSmallestEigenvalue = 1e-3;
 constexpr double kLargestTurn = 0.5;  // [rad]
 constexpr int kPullBackSteps = 8;
 
