@@ -39,12 +39,13 @@ Image cubeImage(int n, const std::function<double(const Vec3&)>& value) {
   return imageOf({n, n, n}, Mat3(kMm), Vec3(0.0), value);
 }
 
+// Trilinear: a flat wall is exact to rounding, however near the next bend is.
 FieldPtr thresholdField(const Image& image, ThresholdOptions options) {
-  return gridField(surfaceFromThreshold(image, options, {}));
+  return gridField(surfaceFromThreshold(image, options, {}), Sampler::kAccessor);
 }
 
 FieldPtr labelField(const Image& image, std::vector<int> values) {
-  return gridField(surfaceFromLabels(image, {.values = std::move(values)}, {}));
+  return gridField(surfaceFromLabels(image, {.values = std::move(values)}, {}), Sampler::kAccessor);
 }
 
 /// Enclosed volume [m^3]: a Heaviside as wide as a sample step, over the field's box. Where the surface

@@ -119,7 +119,7 @@ TEST_F(SceneKinds, LayersOfAnImageAreMadeWhenAskedForAndShareTheirGroup) {
 TEST_F(SceneKinds, OffsetsShellsAndBlendsStayInTheBandOfAMesh) {
   const SceneDescription scene = read(
       "fields:\n"
-      "  jewel: {mesh: {file: octahedron.obj, voxel: 0.5, half_width: 6}}\n"
+      "  jewel: {mesh: {file: octahedron.obj, voxel: 0.5, half_width: 8}}\n"
       "  near: {offset: {field: jewel, distance: 1}}\n"
       "  peel: {shell: {field: jewel, thickness: 2}}\n"
       "  far: {offset: {field: jewel, distance: 5}}\n"

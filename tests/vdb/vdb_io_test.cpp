@@ -390,7 +390,7 @@ TEST(VdbIo, SampleOfOpenVdbReads) {
   EXPECT_NEAR(set.info().half_width, 3.0, 0.01);
   // 125 voxels across with the band.
   EXPECT_NEAR(set.info().bounds.size().x, 124 * 0.05e-3, 1e-9);
-  const FieldPtr field = gridField(set);
+  const FieldPtr field = gridField(set, Sampler::kAccessor);
   const double radius = 0.5 * set.info().bounds.size().x - 3.0 * 0.05e-3;
   const Vec3 center = set.info().bounds.center();
   for (const Vec3& u : {Vec3(1, 0, 0), Vec3(0, -0.6, 0.8), Vec3(0.48, 0.6, 0.64)}) {
