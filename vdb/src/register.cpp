@@ -10,6 +10,7 @@
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
+#include "scene_baked.h"
 #include "scene_image.h"
 
 namespace palpate::vdb {
@@ -224,6 +225,9 @@ void registerKinds(SceneRegistry& registry, RegisterOptions options) {
   registry.image = [common](MapReader& reader) { return common->images.read(reader); };
   registry.fields["mesh"] = [common](MapReader& reader) { return meshField(common, reader); };
   registry.fields["grid"] = [common](MapReader& reader) { return gridFileField(common, reader); };
+  registry.fields["baked"] = [common](MapReader& reader) {
+    return readBaked(reader, common->options);
+  };
   registry.layers["labels"] = [common](MapReader& reader, const std::string& layer) {
     return labelsLayer(common, reader, layer);
   };
