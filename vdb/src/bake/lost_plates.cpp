@@ -48,7 +48,7 @@ class Search {
  public:
   Search(const Field& field, const LevelSet& grid, const BakePlan& plan,
          const std::optional<Box3>& box)
-      : field_(field), grid_(gridField(grid)), plan_(plan), box_(box) {}
+      : field_(field), grid_(gridField(grid, Sampler::kAccessor)), plan_(plan), box_(box) {}
 
   [[nodiscard]] Lost in(const Leaf& leaf) const noexcept {
     Lost lost;

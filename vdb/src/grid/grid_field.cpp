@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "brick/brick_field.h"
 #include "grid/survey.h"
 #include "palpate/vdb/level_set.h"
 #include "palpate/vdb/openvdb_access.h"
@@ -51,9 +52,9 @@ Cell readCell(const Accessor& accessor, const Coord& base) noexcept {
 
 /// Trilinear interpolation of the voxels: one continuous function everywhere. Out of the band the
 /// voxels stand at a plateau, and outside of all voxels it rises with the distance to them.
-class GridField final : public Field {
+class AccessorField final : public Field {
  public:
-  explicit GridField(LevelSet grid)
+  explicit AccessorField(LevelSet grid)
       : grid_(std::move(grid)),
         tree_(grid_.impl().grid->tree()),
         origin_(grid_.impl().origin),
@@ -145,6 +146,9 @@ class GridField final : public Field {
 
 }  // namespace
 
-FieldPtr gridField(const LevelSet& grid) { return std::make_shared<GridField>(grid); }
+FieldPtr gridField(const LevelSet& grid, Sampler sampler) {
+  if (sampler == Sampler::kAccessor) return std::make_shared<AccessorField>(grid);
+  return std::make_shared<BrickField>(grid, sampler);
+}
 
 }  // namespace palpate::vdb

@@ -10,8 +10,8 @@
 namespace palpate::vdb {
 
 struct BakeOptions {
-  double voxel_size = 0.0;  ///< [m] must be positive
-  double half_width = 4.0;  ///< [voxels] at least 2
+  double voxel_size = 0.0;              ///< [m] must be positive
+  double half_width = kCubicHalfWidth;  ///< [voxels] at least 2
   /// [m] where to bake; needed for unbounded fields. What reaches out of it is cut off by its faces,
   /// so that the result is closed.
   std::optional<Box3> box = {};

@@ -1,0 +1,38 @@
+#pragma once
+/// The field out of bricks. Includable without OpenVDB, for benchmarks.
+
+#include "brick/bricks.h"
+#include "brick/instruction_set.h"
+
+namespace palpate::vdb {
+
+/// Final, and its members inline: a caller that knows the type pays one call through a pointer, to the
+/// kernel of the instruction set.
+class BrickField final : public Field {
+ public:
+  /// `sampler` is kCubic or kTrilinear. The grid is taken as it is, not widened.
+  explicit BrickField(const LevelSet& grid, Sampler sampler = Sampler::kCubic,
+                      InstructionSet set = chosenInstructionSet());
+
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    return sample_(view_, p);
+  }
+  /// Trilinear: the Hessian is that of the cell, which has no diagonal; by differences across cells.
+  [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
+    return jet_ != nullptr ? jet_(view_, p) : Field::jet(p);
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return bricks_.bounds(); }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kImplicit; }
+  [[nodiscard]] double lipschitz() const noexcept override { return bricks_.lipschitz(); }
+  [[nodiscard]] double featureSize() const noexcept override { return view_.voxel; }
+
+  [[nodiscard]] const Bricks& bricks() const noexcept { return bricks_; }
+
+ private:
+  Bricks bricks_;
+  BrickView view_;  ///< beside the pointers, so that a look finds them in one place
+  BrickKernels::Sample sample_;
+  BrickKernels::Jet jet_;
+};
+
+}  // namespace palpate::vdb

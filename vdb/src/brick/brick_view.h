@@ -1,0 +1,64 @@
+#pragma once
+/// Haptic bricks as the kernels see them: a level set copied so that one point needs one lookup and one
+/// piece of memory.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "palpate/fields/field.h"
+
+namespace palpate::vdb {
+
+/// The stencil of every cell in a block of 8^3 voxels: one voxel before the block and two behind it.
+struct alignas(64) Brick {
+  static constexpr int kSide = 8;   ///< cells along an axis
+  static constexpr int kRows = 11;  ///< voxels along an axis, from -1 to 9
+  static constexpr int kRow = 12;   ///< floats from one row along z to the next: 48 bytes
+  static constexpr int kSlab = kRows * kRow;
+
+  float values[kRows *
+               kSlab];     ///< [voxels] spline coefficients, or the grid's values; z runs fastest
+  std::uint8_t known[64];  ///< a bit for each cell, z in the byte x * 8 + y: all it needs is known
+
+  [[nodiscard]] static constexpr std::size_t at(int x, int y, int z) noexcept {
+    return static_cast<std::size_t>((x + 1) * kSlab + (y + 1) * kRow + z + 1);
+  }
+};
+static_assert(sizeof(Brick) == 92 * 64);
+
+/// All that a sample reads. Plain data; whoever made it owns the memory.
+struct BrickView {
+  /// Entries of the tables: a brick's place in units of 64 bytes, or one of these.
+  static constexpr std::uint32_t kOutside = 0xFFFFFFFF;  ///< no brick, outside the surface
+  static constexpr std::uint32_t kInside = 0xFFFFFFFE;   ///< no brick, inside
+  static constexpr std::uint32_t kUnit = 64;             ///< [bytes]
+
+  const std::byte* bricks = nullptr;
+  /// Of all blocks in the box, z fastest; or in groups of 8^3 blocks that `coarse` finds.
+  const std::uint32_t* blocks = nullptr;
+  const std::uint32_t* coarse = nullptr;  ///< null if there is only one level
+  std::uint32_t stride_x = 0;             ///< of the upper table
+  std::uint32_t stride_y = 0;
+
+  Vec3 origin{0.0};        ///< [m] centre of the box's first voxel
+  double per_voxel = 0.0;  ///< [1/m]
+  double voxel = 0.0;      ///< [m]
+  Vec3 extent{0.0};        ///< [voxels] of the box, whole blocks
+  double plateau = 0.0;    ///< [m] value out of the band, and least value beyond the box
+};
+
+/// One look into bricks.
+struct BrickKernels {
+  using Sample = FieldSample (*)(const BrickView&, const Vec3&) noexcept;
+  using Jet = FieldJet (*)(const BrickView&, const Vec3&) noexcept;
+  Sample cubic = nullptr;
+  Jet cubic_jet = nullptr;
+  Sample linear = nullptr;
+};
+
+/// Where no brick is: `entry` is kOutside or kInside.
+[[nodiscard]] FieldSample sampleWithoutBrick(const BrickView& view, std::uint32_t entry) noexcept;
+/// Beyond the box of the table; also where p is not a number.
+[[nodiscard]] FieldSample sampleBeyond(const BrickView& view, const Vec3& p) noexcept;
+
+}  // namespace palpate::vdb

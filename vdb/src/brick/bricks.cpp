@@ -1,0 +1,186 @@
+#include "brick/bricks.h"
+
+#include <openvdb/tree/ValueAccessor.h>
+#include <sys/mman.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <utility>
+
+#include "brick/block_map.h"
+#include "brick/prefilter.h"
+#include "brick/slopes.h"
+#include "palpate/vdb/openvdb_access.h"
+
+namespace palpate::vdb {
+namespace {
+
+using openvdb::Coord;
+using openvdb::CoordBBox;
+using Tree = openvdb::FloatTree;
+using Leaf = Tree::LeafNodeType;
+using Accessor = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
+
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
+/// [bytes] From this size on, memory is asked for in huge pages: a cold look at a brick then costs
+/// no walk through page tables on top.
+constexpr std::size_t kWorthHugePages = 2 * kHugePage;
+
+/// [units] What a voxel out of the band counts: its distance is at least the half width, but between
+/// such voxels the surface can be nearer than the mean of them says. A distance to something rho away
+/// bends by at most 1 / rho along two axes; trilinear means are off by voxel^2 / 8 of that (three
+/// axes, to be safe, and no cell is further from its voxels than 0.87), those of the cubic spline by
+/// voxel^2 / 6, from voxels up to 3.5 off.
+float plateauOf(const LevelSetInfo& info, Sampler sampler) {
+  const double slack = sampler == Sampler::kCubic
+                           ? 2.0 / 6.0 / std::max(info.half_width - 2.0 * std::sqrt(3.0), 1.0)
+                           : 3.0 / 8.0 / (info.half_width - 0.5 * std::sqrt(3.0));
+  return static_cast<float>((info.half_width - slack) * info.voxel_size / info.metres_per_unit);
+}
+
+/// Values and topology around a block, from the leaves and tiles there.
+void gather(const Accessor& accessor, const Coord& block, Neighborhood& to) {
+  constexpr int kLast = Neighborhood::kFirst + Neighborhood::kSide - 1;
+  const Coord first = block << 3;
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      for (int k = -1; k <= 1; ++k) {
+        const Coord shift(8 * i, 8 * j, 8 * k);
+        const Coord lo = Coord::maxComponent(shift, Coord(Neighborhood::kFirst));
+        const Coord hi = Coord::minComponent(shift.offsetBy(7), Coord(kLast));
+        const auto count = static_cast<std::size_t>(hi.z() - lo.z() + 1);
+        const Leaf* const leaf = accessor.probeConstLeaf(first + shift);
+        const float tile = leaf == nullptr ? accessor.getValue(first + shift) : 0.0F;
+        for (int x = lo.x(); x <= hi.x(); ++x) {
+          for (int y = lo.y(); y <= hi.y(); ++y) {
+            const std::size_t at = Neighborhood::at(x, y, lo.z());
+            if (leaf == nullptr) {
+              std::fill_n(to.values.begin() + static_cast<std::ptrdiff_t>(at), count, tile);
+              std::fill_n(to.known.begin() + static_cast<std::ptrdiff_t>(at), count,
+                          std::uint8_t{0});
+              continue;
+            }
+            const openvdb::Index from = Leaf::coordToOffset(first + Coord(x, y, lo.z()));
+            for (openvdb::Index n = 0; n < count; ++n) {
+              to.values[at + n] = leaf->getValue(from + n);
+              to.known[at + n] = leaf->isValueOn(from + n) ? 1 : 0;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+/// What one thread learns while it makes bricks.
+struct Part {
+  Neighborhood neighborhood;
+  double steepest_square = 0.0;
+  CoordBBox negative;
+};
+
+void expandByNegative(const Brick& brick, const Coord& block, CoordBBox& negative) {
+  for (int x = 0; x < Brick::kSide; ++x) {
+    for (int y = 0; y < Brick::kSide; ++y) {
+      for (int z = 0; z < Brick::kSide; ++z) {
+        if (brick.values[Brick::at(x, y, z)] < 0.0F) {
+          negative.expand((block << 3).offsetBy(x, y, z));
+        }
+      }
+    }
+  }
+}
+
+std::byte* allocateBricks(std::size_t bytes) {
+  const bool huge = bytes >= kWorthHugePages;
+  const std::size_t alignment = huge ? kHugePage : alignof(Brick);
+  const std::size_t size =
+      (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
+  void* const memory = std::aligned_alloc(alignment, size);
+  if (memory == nullptr) throw std::bad_alloc();
+#if defined(MADV_HUGEPAGE)
+  // A wish: without huge pages all works, with slower cold looks.
+  if (huge) static_cast<void>(::madvise(memory, size, MADV_HUGEPAGE));
+#endif
+  return static_cast<std::byte*>(memory);
+}
+
+}  // namespace
+
+void Bricks::Release::operator()(std::byte* memory) const noexcept { std::free(memory); }
+
+std::uint64_t Bricks::memory() const noexcept {
+  return count_ * sizeof(Brick) + (blocks_.size() + coarse_.size()) * sizeof(std::uint32_t);
+}
+
+Bricks::Bricks(const LevelSet& grid, Sampler sampler) {
+  const LevelSetInfo& info = grid.info();
+  const bool cubic = sampler == Sampler::kCubic;
+  const float plateau = plateauOf(info, sampler);
+  const double units_per_voxel = info.voxel_size / info.metres_per_unit;
+  openvdb::FloatTree::ConstPtr tree = grid.impl().grid->constTreePtr();
+  if (tree->hasActiveTiles()) {
+    const openvdb::FloatTree::Ptr copy(new openvdb::FloatTree(*tree));
+    copy->voxelizeActiveTiles();
+    tree = copy;
+  }
+
+  const BlockMap map = mapBlocks(*tree);
+  BlockTable table = makeTable(*tree, map);
+  count_ = map.bricks.size();
+  bricks_.reset(allocateBricks(count_ * sizeof(Brick)));
+  tbb::enumerable_thread_specific<Part> parts;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count_), [&](const auto& range) {
+    Part& part = parts.local();
+    const Accessor accessor(*tree);
+    for (std::size_t n = range.begin(); n != range.end(); ++n) {
+      Brick& brick = *new (bricks_.get() + n * sizeof(Brick)) Brick;
+      gather(accessor, map.bricks[n], part.neighborhood);
+      (cubic ? fillCubic : fillLinear)(part.neighborhood, plateau, units_per_voxel, brick);
+      const double square = cubic ? steepestSquareCubic(brick) : steepestSquareLinear(brick);
+      part.steepest_square = std::max(part.steepest_square, square);
+      expandByNegative(brick, map.bricks[n], part.negative);
+    }
+  });
+
+  double steepest_square = 0.0;
+  CoordBBox negative = map.inside_tiles;
+  for (const Part& part : parts) {
+    steepest_square = std::max(steepest_square, part.steepest_square);
+    negative.expand(part.negative);
+  }
+  // The slope of a distance is 1, though a grid whose surface is flat may measure less. The margin is
+  // for sums of floats.
+  lipschitz_ = std::max(1.0, std::sqrt(steepest_square) * (1.0 + 1e-6));
+
+  const auto position = [&](const Coord& at) {
+    return grid.impl().origin + info.voxel_size * Vec3(at.x(), at.y(), at.z());
+  };
+  // A cell is negative somewhere only if one of its voxels is.
+  const int reach = cubic ? 2 : 1;
+  if (!negative.empty()) {
+    bounds_ = {position(negative.min().offsetBy(-reach)), position(negative.max().offsetBy(reach))};
+  }
+  blocks_ = std::move(table.blocks);
+  coarse_ = std::move(table.coarse);
+  view_.bricks = bricks_.get();
+  view_.blocks = blocks_.data();
+  view_.coarse = coarse_.empty() ? nullptr : coarse_.data();
+  view_.stride_x = table.stride_x;
+  view_.stride_y = table.stride_y;
+  view_.origin = position(table.box.min() << 3);
+  view_.per_voxel = 1.0 / info.voxel_size;
+  view_.voxel = info.voxel_size;
+  const Coord size = table.box.dim();
+  view_.extent = 8.0 * Vec3(size.x(), size.y(), size.z());
+  view_.plateau = plateau * info.metres_per_unit;
+}
+
+}  // namespace palpate::vdb

@@ -1,0 +1,43 @@
+#pragma once
+/// Bricks: a level set compiled for the loop. See README.md, "Samplers".
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "brick/brick_view.h"
+#include "palpate/vdb/level_set.h"
+
+namespace palpate::vdb {
+
+/// Owns the memory that a BrickView looks into. Moves, and never changes after it is made; any number
+/// of threads may read.
+class Bricks {
+ public:
+  /// Copies `grid`, in parallel. `sampler` is kCubic or kTrilinear. The band is taken as it is: too
+  /// narrow a one leaves no cell known.
+  Bricks(const LevelSet& grid, Sampler sampler);
+
+  [[nodiscard]] const BrickView& view() const noexcept { return view_; }
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] std::uint64_t memory() const noexcept;  ///< [bytes]
+  /// [-] Of the function that is sampled, everywhere: no slope is steeper.
+  [[nodiscard]] double lipschitz() const noexcept { return lipschitz_; }
+  /// [m] Holds every point with a negative value.
+  [[nodiscard]] const Box3& bounds() const noexcept { return bounds_; }
+
+ private:
+  struct Release {
+    void operator()(std::byte* memory) const noexcept;
+  };
+
+  std::unique_ptr<std::byte, Release> bricks_;
+  std::vector<std::uint32_t> blocks_;
+  std::vector<std::uint32_t> coarse_;
+  BrickView view_;
+  std::size_t count_ = 0;
+  double lipschitz_ = 1.0;
+  Box3 bounds_;
+};
+
+}  // namespace palpate::vdb

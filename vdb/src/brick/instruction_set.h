@@ -1,0 +1,29 @@
+#pragma once
+/// Which instructions the bricks are read with: the best that the processor has, chosen once, at
+/// set-up. Results of one set are the same everywhere; those of two differ by rounding.
+
+#include "brick/brick_view.h"
+
+namespace palpate::vdb {
+
+enum class InstructionSet {
+  kBase,  ///< what the compiler may use anyway: SSE2 on x86-64
+  kAvx2,  ///< AVX2 and FMA
+};
+
+/// The best of this processor, unless the environment variable PALPATE_INSTRUCTION_SET says `base` or
+/// `avx2`. @throws Error (kInput) for another word, or for a set that the processor lacks.
+[[nodiscard]] InstructionSet chosenInstructionSet();
+
+[[nodiscard]] bool isSupported(InstructionSet set) noexcept;
+
+/// `set` must be supported.
+[[nodiscard]] BrickKernels kernelsFor(InstructionSet set) noexcept;
+
+/// What kernelsFor() chooses from.
+[[nodiscard]] BrickKernels baseKernels() noexcept;
+#if defined(__x86_64__)
+[[nodiscard]] BrickKernels avx2Kernels() noexcept;
+#endif
+
+}  // namespace palpate::vdb

@@ -1,0 +1,20 @@
+// The kernels for every processor.
+
+#include "brick/instruction_set.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between inlined functions only
+
+namespace palpate::vdb {
+namespace {
+
+#define PALPATE_KERNEL [[gnu::always_inline]] inline
+#define PALPATE_ENTRY
+#include "brick/simd.h"
+// simd.h comes first
+#include "brick/kernels.h"
+
+}  // namespace
+
+BrickKernels baseKernels() noexcept { return {&sampleCubic, &jetCubic, &sampleLinear}; }
+
+}  // namespace palpate::vdb
