@@ -1,5 +1,6 @@
 #include "palpate/vdb/hybrid.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -23,10 +24,6 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 /// A grid must be that many times as fast as what it stands for: it costs memory and an error.
 constexpr double kWorthIt = 1.5;
 
-/// What a sampler should reach where the surface is smooth over four voxels; an edge is off by far more.
-constexpr double kUsualTolerance = 0.1;        // [voxels]
-constexpr double kUsualTurn = 10.0 * kDegree;  // [rad]
-
 std::string text(const char* format, double value) {
   std::array<char, 64> out{};
   std::snprintf(out.data(), out.size(), format, value);
@@ -34,6 +31,26 @@ std::string text(const char* format, double value) {
 }
 
 std::string millimetres(double metres) { return text("%.3g mm", metres * 1e3); }
+
+/// What a sampler reaches where the surface bends over some four voxels or more; an edge is off by far more.
+struct Usual {
+  double off;   // [voxels]
+  double turn;  // [rad]
+};
+constexpr Usual usual(Sampler sampler) {
+  return sampler == Sampler::kCubic ? Usual{0.02, 1.0 * kDegree} : Usual{0.1, 10.0 * kDegree};
+}
+
+HybridOptions checked(HybridOptions options) {
+  if (!(options.tolerance >= 0.0)) {
+    throw inputError("bake.tolerance", "the tolerance is " + millimetres(options.tolerance) +
+                                           "; it must be 0 or more");
+  }
+  if (options.sampler == Sampler::kCubic) {
+    options.bake.half_width = std::max(options.bake.half_width, kCubicHalfWidth);
+  }
+  return options;
+}
 
 std::string errorText(const GridError& error) {
   return millimetres(error.off) + " and " + text("%.2g degree", error.turn / kDegree);
@@ -59,10 +76,9 @@ bool hasBand(const Field& field) {
 class HybridBaker {
  public:
   HybridBaker(FieldPtr field, const HybridOptions& options, const Progress& progress)
-      : root_(cutOff(std::move(field), options.bake)), options_(options), progress_(progress) {
-    tolerance_ =
-        options.tolerance > 0.0 ? options.tolerance : kUsualTolerance * options.bake.voxel_size;
-  }
+      : root_(cutOff(std::move(field), options.bake)),
+        options_(checked(options)),
+        progress_(progress) {}
 
   Hybrid run() {
     collect(root_, root_->bounds(), "");
@@ -79,7 +95,7 @@ class HybridBaker {
   Hybrid runWhole() {
     const LevelSet grid = bake(*root_, options_.bake, progress_);
     Hybrid out;
-    out.field = gridField(grid);
+    out.field = gridField(grid, options_.sampler);
     const GridError error = gridError(*root_, grid, *out.field, root_->bounds());
     HybridPart part;
     part.grid = grid;
@@ -175,7 +191,7 @@ class HybridBaker {
       BakeOptions bake_options = options_.bake;
       bake_options.box.reset();
       const FieldPtr ball = sphere(Vec3(0.0), 12.0 * bake_options.voxel_size);
-      const FieldPtr made = gridField(bake(*ball, bake_options));
+      const FieldPtr made = gridField(bake(*ball, bake_options), options_.sampler);
       grid_ns_ = queryNanoseconds(*made, ball->bounds());
     }
     return grid_ns_;
@@ -201,12 +217,15 @@ class HybridBaker {
       out.reason = "stays analytic: " + error.problem().message;
       return;
     }
-    FieldPtr made = gridField(grid);
+    FieldPtr made = gridField(grid, options_.sampler);
     const GridError error =
         gridError(*part.field, grid, *made, part.needed.grownBy(bake_options.voxel_size));
     out.off = error.off;
     out.turn = error.turn / kDegree;
-    if (error.off > tolerance_ || error.turn > kUsualTurn) {
+    const Usual limit = usual(options_.sampler);
+    const double tolerance =
+        options_.tolerance > 0.0 ? options_.tolerance : limit.off * bake_options.voxel_size;
+    if (error.off > tolerance || error.turn > limit.turn) {
       out.reason = "stays analytic: a grid is off by up to " + errorText(error) + ", worst near " +
                    placeText(error.where);
       return;
@@ -263,10 +282,9 @@ class HybridBaker {
   }
 
   FieldPtr root_;
-  const HybridOptions& options_;
+  HybridOptions options_;
   const Progress& progress_;
-  double tolerance_ = 0.0;  // [m]
-  double grid_ns_ = 0.0;    // 0: not measured yet
+  double grid_ns_ = 0.0;  // 0: not measured yet
   std::vector<Part> parts_;
   std::unordered_map<const Field*, std::size_t> index_;  // into parts_
   std::unordered_map<const Field*, FieldPtr> made_;      // what each field of the tree came to be
@@ -276,10 +294,6 @@ class HybridBaker {
 
 Hybrid bakeHybrid(const FieldPtr& field, const HybridOptions& options, const Progress& progress) {
   if (!field) throw inputError("bake.null_field", "there is no field to bake");
-  if (!(options.tolerance >= 0.0)) {
-    throw inputError("bake.tolerance", "the tolerance is " + millimetres(options.tolerance) +
-                                           "; it must be 0 or more");
-  }
   HybridBaker baker(field, options, progress);
   return options.parts == Parts::kWhole ? baker.runWhole() : baker.run();
 }

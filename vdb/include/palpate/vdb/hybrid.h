@@ -18,10 +18,11 @@ enum class Parts {
 };
 
 struct HybridOptions {
-  /// For all grids alike. `name` is the name of a grid of the whole; that of part 2.1 is `name`/2.1. A
+  /// For all grids alike; the band is made as wide as the sampler needs. `name` is the name of a grid of the whole; that of part 2.1 is `name`/2.1. A
   /// `box` cuts off what reaches out of it, with exact faces.
   BakeOptions bake;
   Parts parts = Parts::kAuto;
+  Sampler sampler = Sampler::kCubic;
   /// [m] by how much a grid may be off its part's surface; 0: a fiftieth of a voxel for the cubic sampler, a
   /// tenth for the others. Independent of it, a normal that is off by more than 1 degree (others:
   /// 10) tells an edge. Not for kWhole.

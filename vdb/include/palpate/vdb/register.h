@@ -26,7 +26,7 @@ struct RegisterOptions {
 /// Adds to a scene's vocabulary (paths are relative to the scene file, lengths in its unit):
 ///   fields  mesh: {file, units, voxel, half_width}   units: the scene's; voxel: longest side / 128
 ///           grid: {file, name, units}                units: only if the file does not say
-///           baked: {field, voxel, half_width, parts, tolerance}   parts: auto | operands | whole; see hybrid.h
+///           baked: {field, voxel, half_width, sampler, parts, tolerance}   parts: auto | operands | whole; see hybrid.h
 ///   images  NAME: {file, names}
 ///   layers  labels: {image, match: [..], voxel}      its label group is the image's name
 ///           threshold: {image, above, keep: largest | all, fill, voxel}
