@@ -53,7 +53,7 @@ const std::string kWave = "  wave: {gyroid: {center: [0, 0, 0], period: 20}}\n";
 
 TEST_F(SceneBaked, PartsAreMadeWhenAskedForAndToldOf) {
   const SceneDescription scene = read(
-      "  foam: {baked: {field: cut, voxel: 0.5, sampler: trilinear, parts: operands}}\n"
+      "  foam: {baked: {field: cut, voxel: 0.5, parts: operands}}\n"
       "  cut: {intersection: [block, wave]}\n" +
       kBlock + kWave);
   const FieldSourcePtr foam = scene.fields[0].source;
@@ -86,9 +86,8 @@ TEST_F(SceneBaked, WithoutAVoxelSizeTheLongestSideHasAHundredAndTwentyEight) {
 
 TEST_F(SceneBaked, APortIsOnWhatStayedAnalyticOrOnTheWhole) {
   const std::string fields =
-      "  foam: {baked: {field: {intersection: [block, wave]}, voxel: 0.5, sampler: trilinear, "
-      "parts: "
-      "operands}}\n" +
+      "  foam: {baked: {field: {intersection: [block, wave]}, voxel: 0.5, "
+      "parts: operands}}\n" +
       kBlock + kWave + "layers: [{name: a, inside: foam}]\n";
   const auto port = [&](const std::string& on) {
     return fields + "ports: [{name: p, between: [outside, a], on: " + on + "}]\n";
