@@ -22,13 +22,15 @@ enum class Verdict : std::uint8_t { kOutside, kInside, kKeep };
 
 /// The distance that is baked: the field's value, made a distance where it is none. A field that is
 /// not exact can fall short of the distance to its own bounds, and would have a band without end
-/// there; and a box may cut it off.
+/// there: so that it ends, values rise with twice that distance to the band's width. Near the surface
+/// the field stays as smooth as it is, also where its bounds touch it. And a box may cut it off.
 class Source {
  public:
-  Source(const Field& field, const Box3& domain, bool is_cut)
+  Source(const Field& field, const Box3& domain, bool is_cut, double band)
       : field_(field),
         domain_(domain),
         is_cut_(is_cut),
+        band_(band),
         implicit_(field.metric() == Metric::kImplicit),
         exact_(field.metric() == Metric::kExact),
         lipschitz_(field.lipschitz()),
@@ -42,7 +44,8 @@ class Source {
   [[nodiscard]] Value at(const Vec3& p) const noexcept {
     Value result = fieldAt(p);
     if (is_cut_ || !exact_) {
-      const double wall = boxDistance(p);
+      double wall = boxDistance(p);
+      if (!is_cut_ && wall < band_) wall = 2.0 * wall - band_;
       if (wall > result.distance && (is_cut_ || wall > 0.0)) {
         // A known wall decides over a field that is inside, however deep; elsewhere it is a bound.
         result = {wall, result.known || (is_cut_ && result.distance < 0.0)};
@@ -91,6 +94,7 @@ class Source {
   const Field& field_;
   Box3 domain_;
   bool is_cut_;
+  double band_;  // [m]
   bool implicit_;
   bool exact_;
   double lipschitz_;
@@ -105,7 +109,7 @@ class FieldBaker {
         progress_(progress),
         plan_(checkOptions(options)),
         domain_(bakeDomain(field, options)),
-        source_(field, domain_, isCut(field, options)) {}
+        source_(field, domain_, isCut(field, options), plan_.band) {}
 
   LevelSet run() {
     const std::vector<Coord> origins = findLeaves();
