@@ -70,8 +70,10 @@ std::vector<BakeCase> cases() {
        [](const Vec3& p) {
          const double r = glm::length(p);
          const double ratio = r == 0.0 ? -kInfinity : (r * r / 8e-3 - 8e-3) * 8e-3 / (2.0 * r);
-         const Vec3 out = glm::max(glm::abs(p) - Vec3(8e-3), Vec3(0.0));
-         return std::max(ratio, out == Vec3(0.0) ? -kInfinity : glm::length(out));
+         // Out of the bounds values rise to the band's width, so that the band ends there.
+         const double out = glm::length(glm::max(glm::abs(p) - Vec3(8e-3), Vec3(0.0)));
+         const double band = BakeCase{}.half_width * 0.4e-3;
+         return std::max(ratio, out < band ? 2.0 * out - band : out);
        }},
       {"cut_by_a_box", ball, 0.5e-3,
        [=](const Vec3& p) {

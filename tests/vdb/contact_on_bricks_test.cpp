@@ -181,7 +181,7 @@ TEST(ContactOnBricks, JumpsAcrossTheObjectNeverEndInIt) {
   palpate::test::Random random(7);
   int touched = 0;
   for (int i = 0; i < 4000; ++i) {
-    const TickResult out = drive.to(random.in({Vec3(-80 * kMm), Vec3(80 * kMm)}));
+    const TickResult out = drive.to(random.in({Vec3(-35 * kMm), Vec3(35 * kMm)}));
     ASSERT_TRUE(isFinite(out.force));
     ASSERT_EQ(out.region, kOutside);
     ASSERT_GE(truth->value(out.proxy), -1e-3 * kMm) << i;

@@ -260,9 +260,7 @@ TEST(Hybrid, WhatIsSlowBecomesAGridAndWhatIsFastDoesNot) {
   EXPECT_GT(hybrid.parts[1].analytic_ns, 10.0 * hybrid.parts[1].grid_ns);
   EXPECT_GT(hybrid.parts[1].off, 0.0);
   // Asked for, it is a grid, and so is what is not exact, whatever it costs.
-  const Hybrid forced =
-      made(unite({fast, metaballs({{Vec3(0.0), 0.02, 1.0}}, FallOff::kWyvill, 0.5)}), 0.5 * kMm,
-           Parts::kOperands);
+  const Hybrid forced = made(unite({fast, test::implicitBall(0.01)}), 0.5 * kMm, Parts::kOperands);
   EXPECT_FALSE(forced.parts[0].grid);
   EXPECT_TRUE(forced.parts[1].grid);
   EXPECT_EQ(forced.parts[1].analytic_ns, 0.0);
@@ -296,7 +294,7 @@ TEST(Hybrid, APartIsBakedOnceInItsOwnFrameAndWhatDidNotChangeStaysTheSameObject)
 }
 
 TEST(Hybrid, WhatAGridCannotHoldStaysAnalyticAndSaysWhy) {
-  const FieldPtr drop = metaballs({{Vec3(0.0), 0.012, 1.0}}, FallOff::kWyvill, 0.4);
+  const FieldPtr drop = test::implicitBall(0.012);
   struct Case {
     FieldPtr field;
     std::string says;
@@ -329,8 +327,8 @@ TEST(Hybrid, WhatAGridCannotHoldStaysAnalyticAndSaysWhy) {
 
 TEST(Hybrid, OnlyWhatTheWholeNeedsIsBaked) {
   // A big blob of which a small ball shows a little.
-  const FieldPtr blob = metaballs({{Vec3(0.0), 0.1, 1.0}}, FallOff::kWyvill, 0.4);
-  const double radius = -0.5 * blob->bounds().lo.x * 2.0;
+  const double radius = 0.05;
+  const FieldPtr blob = test::implicitBall(radius);
   const FieldPtr window = sphere(Vec3(radius, 0.0, 0.0), 5 * kMm);
   const Hybrid whole = made(blob, 1 * kMm, Parts::kOperands);
   const FieldPtr tree = subtract({window, blob});

@@ -105,8 +105,8 @@ TEST_F(SceneBaked, ErrorsPointAtWhatIsWrong) {
   expectError(baked("voxel: -1"), "scene.range", 4, 36, "more than 0");
   expectError(baked("half_width: 1"), "scene.range", 4, 41, "2 voxels or more");
   expectError(baked("tolerance: 0"), "scene.range", 4, 40, "more than 0");
-  expectError(baked("parts: operand"), "scene.kind", 4, 36, "did you mean 'operands'?");
-  expectError(baked("parts: all"), "scene.kind", 4, 36, "auto, operands or whole");
+  expectError(baked("parts: operand"), "scene.kind", 4, 36, "parts: operands");
+  expectError(baked("parts: all"), "scene.kind", 4, 36, "parts: whole");
   expectError(baked("sampler: linear"), "scene.kind", 4, 38, "trilinear");
   expectError(baked("parts: whole, tolerance: 1"), "scene.range", 4, 54, "leave out tolerance");
   expectError(baked("voxels: 1"), "scene.unknown_key", 4, 29, "voxel");

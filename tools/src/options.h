@@ -56,7 +56,7 @@ struct BakeOptions {
   std::vector<std::string> labels;
   std::string names;
   std::string voxel;
-  double half_width = 4.0;  ///< [voxels]
+  double half_width = 6.0;  ///< [voxels]
 };
 
 struct InfoOptions {

@@ -92,7 +92,11 @@ FileReport gridInfo(const std::string& file) {
                 formatBytes(info.memory) + "\n    bounds " +
                 boxText(info.bounds, unit, unit_known ? info.length_unit : "units") + "\n";
     if (info.half_width > 0.0) {
-      out.text += "    band " + formatNumber(info.half_width) + " voxels on each side\n";
+      out.text += "    band " + formatNumber(info.half_width) + " voxels on each side";
+      if (grid.grid_class == "level set" && vdb::isTooNarrow(info)) {
+        out.text += "; cubic sampling widens it to " + formatNumber(vdb::kCubicHalfWidth);
+      }
+      out.text += "\n";
     }
     Json metadata = Json::object();
     for (const auto& [key, value] : info.metadata) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "palpate/vdb/scan_surface.h"
 #include "scene_baked.h"
 #include "scene_image.h"
+#include "scene_sampler.h"
 
 namespace palpate::vdb {
 namespace {
@@ -30,11 +32,21 @@ std::string fileName(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
+std::string widenedNote(double half_width) {
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "a band of %.3g voxels is too narrow for cubic sampling; it was widened to %g, with "
+      "distances to the closest points of the surface",
+      half_width, kCubicHalfWidth);
+  return text;
+}
+
 /// The field of a grid that is made when it is first asked for. What the maker finds wrong is told
 /// at `place` of the scene; `what` names the grid in progress and records.
 FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string summary,
-                         SourcePlace place, GridMaker make) {
-  auto maker = [common, what = std::move(what), summary, place = std::move(place),
+                         SourcePlace place, Sampler sampler, GridMaker make) {
+  auto maker = [common, what = std::move(what), summary, place = std::move(place), sampler,
                 make = std::move(make)](const Progress& progress) {
     Progress named;
     if (progress) {
@@ -44,8 +56,14 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     }
     const auto start = std::chrono::steady_clock::now();
     LevelSet grid;
+    LevelSetInfo made;
     try {
       grid = make(named);
+      made = grid.info();
+      if (sampler == Sampler::kCubic && isTooNarrow(made)) {
+        grid = widened(grid, kCubicHalfWidth, named);
+        common->notes->add(what, {widenedNote(made.half_width)});
+      }
     } catch (const Error& error) {
       const Problem& problem = error.problem();
       if (error.kind() != ErrorKind::kInput || problem.file == place.file) throw;
@@ -55,9 +73,9 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     if (common->options.on_grid) {
-      common->options.on_grid({what + ": " + summary, grid.info(), took.count()});
+      common->options.on_grid({what + ": " + summary, made, took.count()});
     }
-    return gridField(grid);
+    return gridField(grid, sampler);
   };
   return std::make_shared<FieldSource>(std::move(summary), std::move(maker));
 }
@@ -106,8 +124,9 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
     throw reader.errorAt("half_width", "scene.range", "'half_width' must be 2 voxels or more");
   }
   bake.metadata["source"] = path;
+  const Sampler sampler = readSampler(reader);
   return lazyField(common, fileName(path), "mesh " + fileName(path),
-                   reader.loader().document().place(reader.node().mark),
+                   reader.loader().document().place(reader.node().mark), sampler,
                    [path, metres, bake](const Progress& progress) {
                      report(progress, "read", 0.0);
                      const Mesh mesh = readMesh(path, metres);
@@ -124,8 +143,9 @@ FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
   const std::string path = existingFile(reader, "file");
   const std::string name = reader.textOr("name", "");
   const std::string unit = lengthUnitOr(reader, "");
+  const Sampler sampler = readSampler(reader);
   return lazyField(common, fileName(path), "grid " + fileName(path),
-                   reader.loader().document().place(reader.node().mark),
+                   reader.loader().document().place(reader.node().mark), sampler,
                    [path, name, unit](const Progress& progress) {
                      report(progress, "read", 0.0);
                      return readVdb(path, name, unit);
@@ -138,12 +158,14 @@ struct LayerImage {
   std::shared_ptr<SceneImage> image;
   BakeOptions bake;
   SourcePlace place;
+  Sampler sampler;
 
   LayerImage(MapReader& reader, const std::string& layer)
       : name(reader.requireText("image")),
         image(std::static_pointer_cast<SceneImage>(
             reader.loader().image(name, reader.require("image").mark))),
-        place(reader.loader().document().place(reader.node().mark)) {
+        place(reader.loader().document().place(reader.node().mark)),
+        sampler(readSampler(reader)) {
     bake.name = layer + "/surface";
     bake.length_unit = reader.loader().lengthUnit();
     bake.metadata["layer"] = layer;
@@ -186,7 +208,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
   std::string summary = labels.values.size() == 1 ? "label" : "labels";
   for (const int value : labels.values) summary += " " + std::to_string(value);
   summary += " of " + fileName(from.image->file->path());
-  return {lazyField(common, layer, std::move(summary), from.place,
+  return {lazyField(common, layer, std::move(summary), from.place, from.sampler,
                     [file = from.image->file, labels, bake = from.bake](const Progress& progress) {
                       return surfaceFromLabels(file->image(), labels, bake, progress);
                     }),
@@ -209,7 +231,7 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
   threshold.voxel_size = optionalVoxel(reader);
   std::string summary = fileName(from.image->file->path()) + " above " + above.text;
   return {
-      lazyField(common, layer, std::move(summary), from.place,
+      lazyField(common, layer, std::move(summary), from.place, from.sampler,
                 [file = from.image->file, threshold, bake = from.bake](const Progress& progress) {
                   return surfaceFromThreshold(file->image(), threshold, bake, progress);
                 }),

@@ -1,39 +1,25 @@
 #include "scene_baked.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <utility>
 
 #include "palpate/core/error.h"
 #include "palpate/vdb/hybrid.h"
+#include "scene_sampler.h"
 
 namespace palpate::vdb {
 namespace {
 
 constexpr double kVoxelsAlong = 128.0;
 
-/// Which of three words stands at `key`; the first if it is not there.
-std::size_t choiceOf(MapReader& reader, const std::string& key,
-                     const std::array<std::string_view, 3>& words) {
-  const std::string word = reader.textOr(key, std::string(words[0]));
-  const auto found = std::find(words.begin(), words.end(), word);
-  if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
-  const std::string meant = suggest(word, words);
-  throw reader.errorAt(key, "scene.kind", "'" + key + "' is `" + word + "`",
-                       meant.empty() ? "write " + std::string(words[0]) + ", " +
-                                           std::string(words[1]) + " or " + std::string(words[2])
-                                     : "did you mean '" + meant + "'?");
-}
-
 Parts readParts(MapReader& reader) {
-  constexpr std::array kParts{Parts::kAuto, Parts::kOperands, Parts::kWhole};
-  return kParts[choiceOf(reader, "parts", {"auto", "operands", "whole"})];
-}
-
-Sampler readSampler(MapReader& reader) {
-  constexpr std::array kSamplers{Sampler::kCubic, Sampler::kTrilinear, Sampler::kAccessor};
-  return kSamplers[choiceOf(reader, "sampler", {"cubic", "trilinear", "accessor"})];
+  const std::string parts = reader.textOr("parts", "auto");
+  if (parts == "auto") return Parts::kAuto;
+  if (parts == "operands") return Parts::kOperands;
+  if (parts == "whole") return Parts::kWhole;
+  throw reader.errorAt("parts", "scene.kind", "'parts' is `" + parts + "`",
+                       "write parts: auto, parts: operands or parts: whole");
 }
 
 /// A length of more than 0 if it is given; 0 if it is not.

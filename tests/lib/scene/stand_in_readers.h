@@ -19,13 +19,15 @@ inline SceneRegistry standInReaders() {
   registry.fields["mesh"] = [later](MapReader& reader) {
     const std::string file = reader.loader().resolvePath(reader.requireText("file"));
     (void)reader.textOr("units", "");
-    (void)reader.numberOr("half_width", 4.0);
+    (void)reader.numberOr("half_width", 6.0);
+    (void)reader.textOr("sampler", "");
     return later("mesh " + file, reader.lengthOr("voxel", 1.0));
   };
   registry.fields["grid"] = [later](MapReader& reader) {
     const std::string file = reader.loader().resolvePath(reader.requireText("file"));
     (void)reader.textOr("name", "");
     (void)reader.textOr("units", "");
+    (void)reader.textOr("sampler", "");
     return later("grid " + file, 1.0);
   };
   registry.image = [](MapReader& reader) -> std::shared_ptr<void> {

@@ -14,7 +14,7 @@ void defineBake(CLI::App& app, Invocation& invocation) {
       "voxel size, in the input's unit or with a unit: 0.5mm (default: that of an image or grid; "
       "else 1/128 of the longest side)");
   add(app, g, "--half-width", "VOXELS", o.half_width,
-      "width of the narrow band on each side of the surface (default 4)")
+      "width of the narrow band on each side of the surface (default 6)")
       ->check(CLI::Range(2.0, 64.0));
   addList(app, g, "--layer", "NAME", o.layers,
           "scene: only this layer, may be repeated; mesh, --above: what to call it");

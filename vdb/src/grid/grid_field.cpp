@@ -148,7 +148,9 @@ class AccessorField final : public Field {
 
 FieldPtr gridField(const LevelSet& grid, Sampler sampler) {
   if (sampler == Sampler::kAccessor) return std::make_shared<AccessorField>(grid);
-  return std::make_shared<BrickField>(grid, sampler);
+  if (sampler == Sampler::kTrilinear) return std::make_shared<BrickField>(grid, sampler);
+  return std::make_shared<BrickField>(
+      isTooNarrow(grid.info()) ? widened(grid, kCubicHalfWidth) : grid, sampler);
 }
 
 }  // namespace palpate::vdb

@@ -56,8 +56,15 @@ enum class Sampler {
 /// surface the spline and its prefilter reach voxels up to 4.9 further off.
 inline constexpr double kCubicHalfWidth = 6.0;
 
+/// Whether a grid must be widened() before kCubic can read it. gridField() does so itself; ask, to tell
+/// the user.
+[[nodiscard]] inline bool isTooNarrow(const LevelSetInfo& info) noexcept {
+  // The background is a float, and may be a little below the width that was asked for.
+  return info.half_width < kCubicHalfWidth - 1e-3;
+}
+
 /// The level set as a Field in [m]. The grid is copied into bricks (some 5.9 kB for 512 voxels; in
-/// parallel), and not needed afterwards, unless by kAccessor. A band narrower than kCubicHalfWidth is
+/// parallel), and not needed afterwards, unless by kAccessor. A band that isTooNarrow() is
 /// widened first for kCubic.
 ///
 /// A sample is in the band if all voxels it depends on are active. Out of the band it says so: the

@@ -12,8 +12,8 @@ namespace palpate::vdb {
 /// What a scene's heavy fields came to, for reports: one record for each grid that was made or
 /// read.
 struct GridRecord {
-  std::string what;  ///< layer or field, and its source
-  LevelSetInfo info;
+  std::string what;      ///< layer or field, and its source
+  LevelSetInfo info;     ///< as it was read or baked, before a band that is too narrow is widened
   double seconds = 0.0;  ///< [s] it took, reading its file included
 };
 
@@ -24,12 +24,14 @@ struct RegisterOptions {
 };
 
 /// Adds to a scene's vocabulary (paths are relative to the scene file, lengths in its unit):
-///   fields  mesh: {file, units, voxel, half_width}   units: the scene's; voxel: longest side / 128
-///           grid: {file, name, units}                units: only if the file does not say
-///           baked: {field, voxel, half_width, sampler, parts, tolerance}   parts: auto | operands | whole; see hybrid.h
+///   fields  mesh: {file, units, voxel, half_width, sampler}  units: the scene's; voxel: longest side / 128
+///           grid: {file, name, units, sampler}               units: only if the file does not say
+///           baked: {field, voxel, half_width, sampler, parts, tolerance}   parts: auto | operands | whole,
+///                  see hybrid.h
 ///   images  NAME: {file, names}
-///   layers  labels: {image, match: [..], voxel}      its label group is the image's name
-///           threshold: {image, above, keep: largest | all, fill, voxel}
+///   layers  labels: {image, match: [..], voxel, sampler}      its label group is the image's name
+///           threshold: {image, above, keep: largest | all, fill, voxel, sampler}
+///   sampler: cubic (the default) | trilinear | accessor. A note tells of a band too narrow for cubic.
 /// Reading a scene looks at files only as far as it is quick: that they are there, image headers,
 /// name tables. Grids are made when their field is first asked for; an image is then read once for
 /// all its layers. Errors of either point at the scene's file, line and column. The functions in

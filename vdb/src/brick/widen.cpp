@@ -1,0 +1,296 @@
+// A wider band for a grid whose own is too narrow to be sampled by the cubic spline.
+//
+// First layer by layer: each new voxel takes the nearest of the surface points that its neighbors
+// know, as in the vector distance transform; the old voxels know theirs by their value and its
+// gradient. Then in rounds: a spline through the band so far, and for each new voxel the closest point
+// on its zero set by Newton's method. Near the surface the spline depends little on new voxels, so
+// that a round leaves a few hundredths of the error before it.
+
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Morphology.h>
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tree/LeafManager.h>
+#include <openvdb/tree/ValueAccessor.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "brick/brick_field.h"
+#include "palpate/vdb/openvdb_access.h"
+
+namespace palpate::vdb {
+namespace {
+
+using openvdb::Coord;
+using Tree = openvdb::FloatTree;
+using Leaf = Tree::LeafNodeType;
+using Offsets = openvdb::Vec3STree;
+using Mask = openvdb::MaskTree;
+using Values = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
+using OffsetsOf = openvdb::tree::ValueAccessor<const Offsets, /*IsSafe=*/false>;
+using Known = openvdb::tree::ValueAccessor<const Mask, /*IsSafe=*/false>;
+
+/// The spline at the surface depends on voxels up to 4.9 off; more are of no use to it.
+constexpr double kLeastWorkWidth = 5.5;
+constexpr double kFar = 1e6;  ///< no surface point is known
+constexpr int kRounds = 3;
+constexpr double kSamePlace = 0.75;  ///< [voxels] a correction by more leads to another place
+constexpr int kNewtonSteps = 12;
+constexpr double kSmooth = 0.3;  ///< [voxels] more is an edge: a smooth surface bends by less
+
+Vec3 vec(const Coord& at) { return {at.x(), at.y(), at.z()}; }
+
+/// All lengths in voxels, positions as voxel coordinates.
+class Widening {
+ public:
+  Widening(const LevelSet& grid, double half_width, const Progress& progress)
+      : source_(grid),
+        half_width_(half_width),
+        work_width_(std::max(half_width, kLeastWorkWidth)),
+        progress_(progress),
+        units_per_voxel_(grid.info().voxel_size / grid.info().metres_per_unit),
+        grid_(copyOf(*grid.impl().grid)),
+        tree_(grid_->tree()),
+        old_(tree_, false, true, openvdb::TopologyCopy()),
+        offsets_(tree_, openvdb::Vec3f(0.0F), openvdb::TopologyCopy()) {}
+
+  LevelSet run() {
+    findFeetOfOld();
+    const int layers = static_cast<int>(std::ceil(work_width_ - source_.info().half_width)) + 3;
+    for (int layer = 0; layer < layers; ++layer) {
+      report(progress_, "widen the band", 0.3 * layer / layers);
+      if (!grow()) break;
+    }
+    for (int round = 0; round < kRounds; ++round) {
+      report(progress_, "widen the band", 0.3 + 0.7 * round / kRounds);
+      refine();
+    }
+    report(progress_, "widen the band", 1.0);
+    return finish();
+  }
+
+ private:
+  static openvdb::FloatGrid::Ptr copyOf(const openvdb::FloatGrid& grid) {
+    openvdb::FloatGrid::Ptr copy = grid.deepCopy();
+    copy->tree().voxelizeActiveTiles();
+    return copy;
+  }
+
+  /// Runs body(leaf of the values, leaf of the offsets) in parallel.
+  template <typename Body>
+  void forLeaves(const Body& body) {
+    openvdb::tree::LeafManager<Tree> leaves(tree_);
+    leaves.foreach ([&](Leaf& leaf, std::size_t) {
+      Offsets::LeafNodeType* const offsets = offsets_.probeLeaf(leaf.origin());
+      if (offsets != nullptr) body(leaf, *offsets);
+    });
+  }
+
+  [[nodiscard]] static openvdb::Vec3f toVdb(const Vec3& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+  }
+
+  /// The surface point of an old voxel: against the gradient, by its value. Voxels at the rim wait for
+  /// their neighbors: a one-sided gradient is off by a degree, and min picks the worst of such.
+  void findFeetOfOld() {
+    const double scale = 1.0 / units_per_voxel_;
+    forLeaves([&](const Leaf& leaf, Offsets::LeafNodeType& offsets) {
+      const Values values(tree_);
+      for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
+        const Coord at = voxel.getCoord();
+        Vec3 gradient(0.0);
+        bool inner = true;
+        for (int axis = 0; axis < 3; ++axis) {
+          Coord ahead = at, behind = at;
+          ++ahead[axis];
+          --behind[axis];
+          float after = 0.0F, before = 0.0F;
+          inner &= values.probeValue(ahead, after) && values.probeValue(behind, before);
+          gradient[axis] = static_cast<double>(after) - before;
+        }
+        const double length = glm::length(gradient);
+        const Vec3 foot =
+            inner && length > 0.0 ? -gradient * (*voxel * scale / length) : Vec3(kFar);
+        offsets.setValueOnly(voxel.pos(), toVdb(foot));
+      }
+    });
+  }
+
+  /// The voxels whose surface point is known.
+  [[nodiscard]] Mask knownVoxels() const {
+    Mask known(tree_, false, true, openvdb::TopologyCopy());
+    openvdb::tree::LeafManager<Mask> leaves(known);
+    leaves.foreach ([&](Mask::LeafNodeType& leaf, std::size_t) {
+      const Offsets::LeafNodeType* const offsets = offsets_.probeConstLeaf(leaf.origin());
+      for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+        if (offsets->getValue(voxel.pos()).x() >= kFar) leaf.setValueOff(voxel.pos());
+      }
+    });
+    return known;
+  }
+
+  /// One layer more. False if there is nothing to add.
+  bool grow() {
+    const Mask known = knownVoxels();
+    openvdb::tools::dilateActiveValues(tree_, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                       openvdb::tools::IGNORE_TILES);
+    offsets_.topologyUnion(tree_);
+    tbb::enumerable_thread_specific<bool> grew(false);
+    forLeaves([&](Leaf& leaf, Offsets::LeafNodeType& offsets) {
+      const Known is_known(known), is_old(old_);
+      const OffsetsOf feet(offsets_);
+      for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+        const Coord at = voxel.getCoord();
+        if (is_known.isValueOn(at)) continue;
+        const Vec3 offset = firstGuess(is_known, feet, at);
+        const double distance = glm::length(offset);
+        offsets.setValueOnly(voxel.pos(), toVdb(offset));
+        if (is_old.isValueOn(at)) {
+          grew.local() |= distance < kFar;
+          continue;
+        }
+        leaf.setValueOnly(voxel.pos(), std::copysign(toUnits(distance), *voxel));
+        if (distance > work_width_ + 1.0) {
+          leaf.setValueOff(voxel.pos());
+        } else {
+          grew.local() = true;
+        }
+      }
+    });
+    return grew.combine([](bool a, bool b) { return a || b; });
+  }
+
+  /// From a voxel to the surface, as the neighbor tells whose surface point is the nearest: to its
+  /// tangent plane there, straight. Taking the point itself would drag it along, layer after layer.
+  static Vec3 firstGuess(const Known& is_known, const OffsetsOf& feet, const Coord& at) {
+    Vec3 nearest(kFar);
+    Vec3 normal(0.0);
+    for (int n = 0; n < 27; ++n) {
+      const Coord step(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+      if (!is_known.isValueOn(at + step)) continue;
+      const openvdb::Vec3f& stored = feet.getValue(at + step);
+      const Vec3 foot(stored.x(), stored.y(), stored.z());
+      const Vec3 offset = vec(step) + foot;
+      if (glm::dot(offset, offset) < glm::dot(nearest, nearest)) {
+        nearest = offset;
+        normal = foot;
+      }
+    }
+    const double square = glm::dot(normal, normal);
+    if (!(square > 0.01)) return nearest;
+    const Vec3 straight = normal * (glm::dot(normal, nearest) / square);
+    // Much nearer than the point: the surface ends there in an edge, and the point stays the nearest.
+    return glm::length(nearest) - glm::length(straight) < kSmooth ? straight : nearest;
+  }
+
+  [[nodiscard]] float toUnits(double voxels) const {
+    return static_cast<float>(voxels * units_per_voxel_);
+  }
+
+  /// Every new voxel anew, from the spline through what there is.
+  void refine() {
+    auto band = openvdb::FloatGrid::create(tree_.background());
+    band->setTransform(grid_->transformPtr());
+    band->setTree(grid_->treePtr());
+    const BrickField spline(makeLevelSet(band, source_.info().length_unit), Sampler::kCubic);
+    const Vec3 origin = source_.impl().origin;
+    const double voxel_size = source_.info().voxel_size;
+    forLeaves([&](Leaf& leaf, Offsets::LeafNodeType& offsets) {
+      const Known is_old(old_);
+      for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+        const Coord at = voxel.getCoord();
+        if (is_old.isValueOn(at)) continue;
+        const openvdb::Vec3f& stored = offsets.getValue(voxel.pos());
+        const Vec3 guess(stored.x(), stored.y(), stored.z());
+        const Vec3 x = origin + voxel_size * vec(at);
+        const Vec3 offset = closestPoint(spline, x, x + voxel_size * guess) / voxel_size;
+        const double distance = glm::length(offset);
+        // No step that converges, or one to another part of the surface, says nothing new.
+        if (!(std::abs(distance - glm::length(guess)) < kSamePlace)) continue;
+        offsets.setValueOnly(voxel.pos(), toVdb(offset));
+        leaf.setValueOnly(voxel.pos(), std::copysign(toUnits(distance), *voxel));
+      }
+    });
+  }
+
+  /// From x to the point q of the spline's zero set that is the closest around `start` [m]; NaN if
+  /// there is none. Newton's method for q + m grad S(q) = x and S(q) = 0.
+  static Vec3 closestPoint(const BrickField& spline, const Vec3& x, const Vec3& start) {
+    Vec3 q = start;
+    const double enough = 1e-9 * spline.featureSize();
+    const double longest = 0.5 * spline.featureSize();
+    for (int step = 0; step < kNewtonSteps; ++step) {
+      const FieldJet jet = spline.jet(q);
+      const double square = glm::dot(jet.gradient, jet.gradient);
+      if (!jet.in_band || !(square > 0.01)) break;
+      const double m = glm::dot(x - q, jet.gradient) / square;
+      const Mat3 bent = Mat3(1.0) + m * jet.hessian;
+      if (!(std::abs(glm::determinant(bent)) > 1e-3)) break;
+      const Mat3 inverse = glm::inverse(bent);
+      const Vec3 rest = inverse * (x - q - m * jet.gradient);
+      const Vec3 along = inverse * jet.gradient;
+      const double slope = glm::dot(jet.gradient, along);
+      if (!(std::abs(slope) > 1e-3)) break;
+      const Vec3 move = rest - along * ((jet.value + glm::dot(jet.gradient, rest)) / slope);
+      const double length = glm::length(move);
+      if (!std::isfinite(length)) break;
+      q += move * std::min(1.0, longest / length);
+      if (length < enough) return q - x;
+    }
+    return Vec3(std::nan(""));
+  }
+
+  LevelSet finish() {
+    const float background = toUnits(half_width_);
+    forLeaves([&](Leaf& leaf, Offsets::LeafNodeType&) {
+      const Known is_old(old_);
+      for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+        if (std::fabs(*voxel) >= background && !is_old.isValueOn(voxel.getCoord())) {
+          leaf.setValueOff(voxel.pos());
+        }
+      }
+    });
+    openvdb::tools::changeLevelSetBackground(tree_, background);
+    openvdb::tools::pruneLevelSet(tree_);
+    grid_->insertMeta("palpate:widened", openvdb::StringMetadata("from " + oldWidth()));
+    return makeLevelSet(grid_, source_.info().length_unit);
+  }
+
+  [[nodiscard]] std::string oldWidth() const {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.6g voxels", source_.info().half_width);
+    return text;
+  }
+
+  const LevelSet& source_;
+  double half_width_;
+  double work_width_;
+  const Progress& progress_;
+  double units_per_voxel_;
+  openvdb::FloatGrid::Ptr grid_;
+  Tree& tree_;
+  Mask old_;         ///< voxels of the old band, which keep their values
+  Offsets offsets_;  ///< [voxels] from each active voxel to its closest point of the surface
+};
+
+}  // namespace
+
+LevelSet widened(const LevelSet& grid, double half_width, const Progress& progress) {
+  const LevelSetInfo& info = grid.info();
+  if (!(half_width <= 1000.0)) {
+    throw inputError("bake.half_width", "a band of " + std::to_string(half_width) +
+                                            " voxels is asked for; it may have up to 1000");
+  }
+  if (!(info.half_width < half_width)) return grid;
+  if (info.half_width < 2.0) {
+    throw inputError("vdb.narrow", "the band of grid '" + info.name + "' is " +
+                                       std::to_string(info.half_width) +
+                                       " voxels wide on each side; at least 2 are needed");
+  }
+  return Widening(grid, half_width, progress).run();
+}
+
+}  // namespace palpate::vdb
