@@ -118,6 +118,34 @@ bool wallBeside(const Field& field, double side, const Vec3& x, const Vec3& prob
   return true;
 }
 
+double misfit(const Field& field, double side, const Vec3& x, double lowest) noexcept {
+  return std::min(0.0, side * field.value(x) - lowest);
+}
+
+namespace {
+
+/// Lowers the values of walls that were asked for beside `x` to what their field says at `x` itself.
+void lowerToField(const Vec3& x, std::span<const HeldWall> walls,
+                  std::span<double> value) noexcept {
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    if (walls[i].probe == Vec3(0.0)) continue;
+    double lowest = kInfinity;
+    bool is_first = true;
+    for (std::size_t j = 0; j < walls.size(); ++j) {
+      if (walls[j].field != walls[i].field) continue;
+      is_first = is_first && j >= i;
+      lowest = std::min(lowest, walls[j].side * value[j]);
+    }
+    if (!is_first) continue;  // its crease is done
+    const double by = misfit(*walls[i].field, walls[i].side, x, lowest);
+    for (std::size_t j = i; j < walls.size(); ++j) {
+      if (walls[j].field == walls[i].field) value[j] += walls[j].side * by;
+    }
+  }
+}
+
+}  // namespace
+
 bool pullBackToCrease(Vec3& x, std::span<const HeldWall> walls, double length,
                       bool& began_free) noexcept {
   const std::size_t count = std::min<std::size_t>(walls.size(), 3);
@@ -133,8 +161,9 @@ bool pullBackToCrease(Vec3& x, std::span<const HeldWall> walls, double length,
   double reach = std::max(kLook * length, bend * length * length);
   for (int iteration = 0; iteration < 16; ++iteration) {
     std::array<Vec3, 3> normal{};
-    std::array<double, 3> gap{};
-    bool on_all = true;
+    std::array<double, 3> slopes{};
+    std::array<double, 3> value{};
+    bool is_near = true;
     for (std::size_t i = 0; i < count; ++i) {
       const bool is_beside = walls[i].probe != Vec3(0.0);
       const double away = is_beside ? std::max(reach, walls[i].reach) : 0.0;
@@ -143,19 +172,23 @@ bool pullBackToCrease(Vec3& x, std::span<const HeldWall> walls, double length,
       const double slope = glm::length(s.gradient);
       if (!s.in_band || !(slope > 0.0)) return false;
       const double curved = 0.5 * glm::dot(off, walls[i].jet.hessian * off);
-      const double value = s.value - glm::dot(s.gradient, off) + curved;
+      value[i] = s.value - glm::dot(s.gradient, off) + curved;
+      slopes[i] = slope;
       normal[i] = s.gradient / slope;
-      gap[i] = value / slope;
       // Another wall than the one that was meant.
       if (glm::dot(normal[i], walls[i].side * walls[i].normal) < 0.5) return false;
-      on_all = on_all && std::fabs(value) <= walls[i].tolerance &&
-               (!is_beside || away <= walls[i].reach);
+      is_near = is_near && (!is_beside || away <= walls[i].reach);
+    }
+    if (is_near) lowerToField(x, walls.first(count), std::span(value.data(), count));
+    bool on_all = is_near;
+    for (std::size_t i = 0; i < count; ++i) {
+      on_all = on_all && std::fabs(value[i]) <= walls[i].tolerance;
     }
     if (on_all) return true;
     Mat3 gram(1.0);
     Vec3 gaps(0.0);
     for (std::size_t i = 0; i < count; ++i) {
-      gaps[static_cast<int>(i)] = gap[i];
+      gaps[static_cast<int>(i)] = value[i] / slopes[i];
       for (std::size_t j = 0; j < count; ++j) {
         gram[static_cast<int>(i)][static_cast<int>(j)] = glm::dot(normal[i], normal[j]);
       }

@@ -116,7 +116,18 @@ bool ConstraintRenderer::feelPieces(LeafId leaf, const Facet& facet) noexcept {
     c.plane[c.planes] = {wall.normal, wall.side * wall.jet.value / glm::length(wall.jet.gradient)};
     piece.plane = c.planes++;
   }
-  if (c.planes - first >= 2) return true;
+  if (c.planes - first >= 2) {
+    double lowest = kInfinity;
+    for (std::size_t k = first; k < c.planes; ++k) {
+      lowest = std::min(lowest, c.plane[k].gap * glm::length(c.jet[k].gradient));
+    }
+    const double by =
+        misfit(*walker_.leaf(leaf).field, walker_.side(leaf), walker_.position(), lowest);
+    for (std::size_t k = first; k < c.planes; ++k) {
+      c.plane[k].gap += by / glm::length(c.jet[k].gradient);
+    }
+    return true;
+  }
   c.planes = first;
   for (std::size_t i = 0; i < piece_count_; ++i) {
     if (pieces_[i].leaf == leaf) pieces_[i].is_felt = false;

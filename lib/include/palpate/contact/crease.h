@@ -34,8 +34,13 @@ struct Fold {
 [[nodiscard]] bool wallBeside(const Field& field, double side, const Vec3& x, const Vec3& probe,
                               double reach, HeldWall& out) noexcept;
 
+/// By how much the field at `x` itself is further beyond its walls than `lowest`, the least side * value that
+/// wallBeside() carried back from its walls (<= 0). At a fold of smooth walls that is rounding; at the tip of a
+/// cone, whose walls bend without bound, it is what the walls are off by, and is added to all of them.
+[[nodiscard]] double misfit(const Field& field, double side, const Vec3& x, double lowest) noexcept;
+
 /// pullBack() for walls of which some have a `probe`: each is asked for beside the point, closer as the point
-/// comes near. `length` [m] is how far `x` was moved along the crease since the walls were felt. False if
+/// comes near, and the field at the point itself is never beyond its tolerance in the end. `length` [m] is how far `x` was moved along the crease since the walls were felt. False if
 /// it did not come within the tolerances.
 [[nodiscard]] bool pullBackToCrease(Vec3& x, std::span<const HeldWall> walls, double length,
                                     bool& began_free) noexcept;
