@@ -8,7 +8,6 @@
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/fields/transform.h"
-#include "support/field_contract.h"
 #include "support/oracle/closed_forms.h"
 
 namespace palpate::test {
@@ -36,24 +35,7 @@ void judgeWalk(const Walk& w, int seed) {
   judge.stepOracleBy(w.oracle_step);
   judge.onlyWhere(w.judged);
   judge.grant(w.grant);
-  judge.begin(w.free);
-  Random random(static_cast<std::uint64_t>(seed));
-  Vec3 p = w.free;
-  Vec3 velocity(0.0);
-  const double step = w.speed * Drive::kTick;
-  int leg = 0;
-  Vec3 goal = random.in({w.lo, w.hi});
-  for (int i = 0; i < walkTicks(); ++i) {
-    if (glm::length(goal - p) < 10.0 * step) {
-      goal = ++leg % 6 == 0 ? w.free : random.in({w.lo, w.hi});
-    }
-    velocity = 0.8 * velocity + 0.2 * step * glm::normalize(goal - p);
-    p += velocity;
-    judge.to(p, 1e-6);
-    if (::testing::Test::HasFatalFailure()) return;
-  }
-  EXPECT_GT(judge.contacts(), judge.ticks() / 10);
-  EXPECT_LT(judge.ambiguous(), judge.ticks() / 10);
+  judgeWalk(judge, w.free, {w.lo, w.hi}, w.speed, seed, walkTicks());
 }
 
 TEST(HardEdges, BoxFromBothSides) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "lib/render/drive.h"
+#include "support/field_contract.h"
 #include "support/oracle/oracle.h"
 
 namespace palpate::test {
@@ -123,5 +124,26 @@ class Judge {
   int ambiguous_ = 0;
   double worst_ = 0.0;
 };
+
+/// A smooth walk between random points of a box, every sixth of them the free point, each tick judged.
+inline void judgeWalk(Judge& judge, const Vec3& free, const Box3& box, double speed, int seed,
+                      int ticks) {
+  judge.begin(free);
+  Random random(static_cast<std::uint64_t>(seed));
+  Vec3 p = free;
+  Vec3 velocity(0.0);
+  const double step = speed * Drive::kTick;
+  int leg = 0;
+  Vec3 goal = random.in(box);
+  for (int i = 0; i < ticks; ++i) {
+    if (glm::length(goal - p) < 10.0 * step) goal = ++leg % 6 == 0 ? free : random.in(box);
+    velocity = 0.8 * velocity + 0.2 * step * glm::normalize(goal - p);
+    p += velocity;
+    judge.to(p, 1e-6);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_GT(judge.contacts(), judge.ticks() / 10);
+  EXPECT_LT(judge.ambiguous(), judge.ticks() / 10);
+}
 
 }  // namespace palpate::test

@@ -8,32 +8,11 @@
 #include "lib/render/hard_judge.h"
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
-#include "support/field_contract.h"
 
 namespace palpate::test {
 namespace {
 
 int walkTicks() { return std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 20'000 : 600; }
-
-/// A walk from one random point of a box to another, each tick judged.
-void judgeWalk(Judge& judge, const Vec3& free, const Box3& box, double speed, int seed, int ticks) {
-  judge.begin(free);
-  Random random(static_cast<std::uint64_t>(seed));
-  Vec3 p = free;
-  Vec3 velocity(0.0);
-  const double step = speed * Drive::kTick;
-  int leg = 0;
-  Vec3 goal = random.in(box);
-  for (int i = 0; i < ticks; ++i) {
-    if (glm::length(goal - p) < 10.0 * step) goal = ++leg % 6 == 0 ? free : random.in(box);
-    velocity = 0.8 * velocity + 0.2 * step * glm::normalize(goal - p);
-    p += velocity;
-    judge.to(p, 1e-6);
-    if (::testing::Test::HasFatalFailure()) return;
-  }
-  EXPECT_GT(judge.contacts(), judge.ticks() / 10);
-  EXPECT_LT(judge.ambiguous(), judge.ticks() / 10);
-}
 
 TEST(HardSingular, MetaballSaddle) {
   // Two balls that flow together: the neck between them is curved both ways.

@@ -1,0 +1,168 @@
+// The verbs that make and describe files, measure, and help.
+
+#include "command_line/verb.h"
+
+namespace palpate::tools {
+namespace {
+
+/// How a surface is made into a grid, and which.
+void addBaking(CLI::App& app, BakeOptions& o) {
+  const char* g = "The grid";
+  add(app, g, "--voxel", "LENGTH", o.voxel,
+      "voxel size, in the input's unit or with a unit: 0.5mm (default: that of an image or grid; "
+      "else 1/128 of the longest side)");
+  add(app, g, "--half-width", "VOXELS", o.half_width,
+      "width of the narrow band on each side of the surface (default 4)")
+      ->check(CLI::Range(2.0, 64.0));
+  addList(app, g, "--layer", "NAME", o.layers,
+          "scene, grid: only this layer, may be repeated; mesh, --above: what to call it");
+  g = "From a mesh";
+  add(app, g, "--units", "UNIT", o.units,
+      "what one unit of the mesh is: mm (default), cm, m, um, in");
+  g = "From a NIfTI image";
+  add(app, g, "--above", "VALUE", o.above, "the surface around all voxels greater than this");
+  add(app, g, "--keep", "largest|all", o.keep, "--above: which pieces (default largest)")
+      ->check(CLI::IsMember({"largest", "all"}));
+  addFlag(app, g, "--fill", o.fill, "--above: close enclosed cavities");
+  add(app, g, "--labels", "NAME,...", o.labels,
+      "one grid for each of these labels: values, names, or patterns such as 'lung*'")
+      ->expected(1)
+      ->delimiter(',')
+      ->take_all()
+      ->allow_extra_args(false);
+  add(app, g, "--names", "FILE", o.names, "name table: lines `index name` or `value,name`");
+}
+
+void defineBake(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<BakeOptions>(invocation);
+  app.add_option("input", o.input);
+  add(app, "Output", "-o,--output", "FILE.vdb", o.output, "where the grids go (required)");
+  addBaking(app, o);
+}
+
+void defineConvert(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<ConvertOptions>(invocation);
+  app.add_option("input", o.bake.input);
+  const char* g = "Output";
+  add(app, g, "-o,--output", "FILE", o.bake.output,
+      ".stl .obj .ply .glb, .nii .nii.gz or .vdb (required)");
+  add(app, g, "--to-units", "UNIT", o.to_units,
+      "what one unit of the mesh is to be: mm, cm, m, um, in (default: as in the input)");
+  addBaking(app, o.bake);
+}
+
+void defineInfo(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<InfoOptions>(invocation);
+  app.add_option("files", o.files);
+  add(app, "Options", "--units", "UNIT", o.units,
+      "what one unit of a mesh is: mm (default), cm, m, um, in");
+}
+
+void defineBench(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<BenchOptions>(invocation);
+  app.add_option("what", o.what);
+  const char* g = "What to run";
+  addList(app, g, "--scene", "NAME", o.scenes, "only this scene, may be repeated (default: all)");
+  add(app, g, "--renderer", "NAME", o.renderer, "only constraint or only paper (default: both)")
+      ->check(CLI::IsMember({"constraint", "paper"}));
+  add(app, g, "--repeat", "N", o.repeats, "runs, of which the shortest time counts (default 10)")
+      ->check(CLI::Range(1, 100000));
+  g = "Output files";
+  add(app, g, "--csv", "FILE.csv", o.csv, "the table, one row for each scene and renderer");
+  add(app, g, "--svg", "FILE.svg", o.svg, "a plot of error against time");
+}
+
+void defineHelp(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<HelpOptions>(invocation);
+  app.add_option("verb", o.verb);
+  addFlag(app, "Options", "--markdown", o.markdown,
+          "everything, as the reference in tools/README.md");
+}
+
+}  // namespace
+
+Verb bakeVerb() {
+  return {
+      "bake",
+      "Turn a scene, a mesh or a scan into narrow-band level sets (.vdb)",
+      "palpate bake data/scenes/container.yaml -o container.vdb --voxel 0.5",
+      "palpate bake INPUT -o OUT.vdb [OPTIONS]",
+      "INPUT is a scene file, a mesh (.stl .obj .ply .gltf .glb) or an image (.nii .nii.gz). Each "
+      "layer\n"
+      "becomes a grid `<layer>/surface`. An image needs --above or --labels.",
+      {},
+      defineBake,
+      [](const Invocation& i) {
+        need(!chosen<BakeOptions>(i).input.empty(), "INPUT");
+        need(!chosen<BakeOptions>(i).output.empty(), "-o OUT.vdb");
+      },
+      true};
+}
+
+Verb convertVerb() {
+  return {"convert",
+          "Turn grids into meshes or images, meshes into others, and all into grids",
+          "palpate convert data/scenes/container.yaml -o container.stl --voxel 0.5",
+          "palpate convert INPUT -o OUTPUT [OPTIONS]",
+          "INPUT is a grid (.vdb), a mesh, a scene or an image; the output's name says what it "
+          "becomes.\n"
+          "A mesh winds outwards. An image holds signed distances. Scenes, meshes and images are "
+          "baked\n"
+          "on the way, as `palpate bake` does. A file has no more than one mesh or image, so of "
+          "several\n"
+          "layers or grids one must be named with --layer.",
+          {},
+          defineConvert,
+          [](const Invocation& i) {
+            need(!chosen<ConvertOptions>(i).bake.input.empty(), "INPUT");
+            need(!chosen<ConvertOptions>(i).bake.output.empty(), "-o OUTPUT");
+          },
+          true};
+}
+
+Verb infoVerb() {
+  return {"info",
+          "Say what a file is: scene, grid, mesh or scan",
+          "palpate info /usr/share/mricron/templates/ch2.nii.gz",
+          "palpate info FILE... [OPTIONS]",
+          "",
+          {},
+          defineInfo,
+          [](const Invocation& i) { need(!chosen<InfoOptions>(i).files.empty(), "FILE"); }};
+}
+
+Verb benchVerb() {
+  return {
+      "bench",
+      "Measure contact: how long a tick takes, and how far off its force is",
+      "palpate bench contact --scene sphere --scene torus --svg contact.svg",
+      "palpate bench contact [OPTIONS]",
+      "Runs both renderers along the same paths on scenes of known truth and compares the forces "
+      "with\n"
+      "closed forms, or with a slow oracle where there is none. `missed` counts ticks where one "
+      "has a\n"
+      "force and the other none; `step` and `turn` are the largest from tick to tick, with the "
+      "true ones\n"
+      "beside them. Scenes: sphere, sphere-baked, sphere-deep, sphere-small, sphere-hollow, "
+      "ellipsoid,\n"
+      "quadric, torus, box-edge, box-room, crease, groove, saddle, container, balls-1, "
+      "balls-1000,\n"
+      "balls-10000.",
+      {},
+      defineBench,
+      [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact"); },
+      true};
+}
+
+Verb helpVerb() {
+  return {"help",
+          "Print help, also as the reference manual",
+          "palpate help touch",
+          "palpate help [VERB] [--markdown]",
+          "",
+          {},
+          defineHelp,
+          [](const Invocation&) {}};
+}
+
+}  // namespace palpate::tools

@@ -1,0 +1,140 @@
+#include <algorithm>
+
+#include "command_line/verb.h"
+#include "palpate/scene/scene_file.h"
+
+namespace palpate::tools {
+namespace {
+
+/// For an option that nobody knows: what may have been meant.
+Error unknownArgument(const CLI::App& app, const Verb& verb, const std::string& argument) {
+  const std::string more = "see palpate " + std::string(verb.name) + " --help";
+  if (argument.empty() || argument[0] != '-') {
+    return usageError("'" + argument + "' is one argument too many", more);
+  }
+  std::vector<std::string> names = {"--help"};
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  const std::string word = argument.substr(0, argument.find('='));
+  const std::string close =
+      suggest(word, std::vector<std::string_view>(names.begin(), names.end()));
+  return usageError("'" + std::string(verb.name) + "' has no option " + word,
+                    close.empty() ? more : "did you mean " + close + "?");
+}
+
+bool looksLikePoint(const std::string& text) {
+  return std::count(text.begin(), text.end(), ',') == 2 &&
+         text.find_first_not_of("0123456789+-.eE, ") == std::string::npos;
+}
+
+/// `--insert A B C` becomes `--insert A --insert B --insert C`, so that a list of points never swallows
+/// what follows it; and "-.5,..." is told apart from a short option.
+std::vector<std::string> spreadPoints(const Verb& verb, const std::vector<std::string>& arguments) {
+  std::vector<std::string> out;
+  std::string list;
+  bool first = false;
+  for (const std::string& argument : arguments) {
+    if (verb.point_lists.contains(argument)) {
+      list = argument;
+      first = true;
+      out.push_back(argument);
+      continue;
+    }
+    if (!list.empty() && looksLikePoint(argument)) {
+      if (!first) out.push_back(list);
+      first = false;
+    } else {
+      list.clear();
+    }
+    out.push_back(argument.starts_with("-.") ? "-0" + argument.substr(1) : argument);
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<Verb>& verbs() {
+  static const std::vector<Verb> all = {touchVerb(),  bakeVerb(),  convertVerb(),
+                                        infoVerb(),   queryVerb(), explainVerb(),
+                                        renderVerb(), benchVerb(), helpVerb()};
+  return all;
+}
+
+const Verb* findVerb(std::string_view name) {
+  const auto& all = verbs();
+  const auto at =
+      std::find_if(all.begin(), all.end(), [&](const Verb& v) { return v.name == name; });
+  return at == all.end() ? nullptr : &*at;
+}
+
+Error unknownVerb(const std::string& word) {
+  std::vector<std::string_view> names;
+  std::string list;
+  for (const Verb& verb : verbs()) {
+    names.emplace_back(verb.name);
+    list += (list.empty() ? "" : ", ") + std::string(verb.name);
+  }
+  const std::string close = suggest(word, names);
+  return usageError("there is no verb '" + word + "'",
+                    close.empty() ? "the verbs are " + list : "did you mean '" + close + "'?");
+}
+
+Invocation parseCommandLine(const std::vector<std::string>& arguments) {
+  Invocation invocation;
+  // General options may stand before the verb as well.
+  std::size_t at = 0;
+  std::vector<std::string> rest;
+  while (at < arguments.size() && arguments[at].starts_with("--") && arguments[at] != "--help" &&
+         arguments[at] != "--version") {
+    if (arguments[at] != "--json" && arguments[at] != "--quiet" && arguments[at] != "--force") {
+      throw usageError("'" + arguments[at] + "' is not a general option", "the verb comes first");
+    }
+    rest.push_back(arguments[at++]);
+  }
+  if (at == arguments.size()) {
+    throw usageError("a verb is missing", "palpate --help lists them");
+  }
+  const std::string& word = arguments[at];
+  if (word == "--help" || word == "-h") {
+    invocation.print = overview();
+    return invocation;
+  }
+  if (word == "--version") {
+    invocation.print = "palpate " PALPATE_VERSION "\n";
+    return invocation;
+  }
+  const Verb* verb = findVerb(word);
+  if (verb == nullptr) throw unknownVerb(word);
+  rest.insert(rest.end(), arguments.begin() + static_cast<std::ptrdiff_t>(at) + 1, arguments.end());
+  if (std::any_of(rest.begin(), rest.end(),
+                  [](const std::string& a) { return a == "--help" || a == "-h"; })) {
+    invocation.print = verbHelp(*verb);
+    return invocation;
+  }
+
+  invocation.verb = word;
+  auto app = makeApp(*verb, invocation);
+  rest = spreadPoints(*verb, rest);
+  std::reverse(rest.begin(), rest.end());  // as CLI11 wants them
+  try {
+    app->parse(std::move(rest));
+  } catch (const CLI::ExtrasError&) {
+    const auto extras = app->remaining();
+    const auto option = std::find_if(extras.begin(), extras.end(),
+                                     [](const std::string& a) { return a.starts_with('-'); });
+    throw unknownArgument(*app, *verb, option != extras.end() ? *option : extras.front());
+  } catch (const CLI::ParseError& error) {
+    throw usageError(error.what(), "see palpate " + word + " --help");
+  }
+  try {
+    verb->check(invocation);
+  } catch (const Error& error) {
+    Problem problem = error.problem();
+    if (problem.hint.empty()) problem.hint = "usage: " + std::string(verb->usage);
+    throw Error(ErrorKind::kUsage, problem);
+  }
+  return invocation;
+}
+
+}  // namespace palpate::tools

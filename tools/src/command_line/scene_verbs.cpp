@@ -1,0 +1,157 @@
+// The verbs that look at a scene or feel it.
+
+#include "command_line/verb.h"
+
+namespace palpate::tools {
+namespace {
+
+void defineTouch(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<TouchOptions>(invocation);
+  app.add_option("scene", o.scene);
+  const char* g = "The hand's motion, exactly one of";
+  add(app, g, "--path", "FILE.csv", o.path,
+      "follow a recorded hand: header t,x,y,z in s and m, one row a tick");
+  add(app, g, "--press", "X,Y,Z", o.press, "press on this point of a surface, hold, and let go");
+  addList(app, g, "--stroke", "A B", o.stroke, "stroke in a straight line from A to B and back");
+  add(app, g, "--tap", "X,Y,Z", o.tap, "tap on this point of a surface");
+  addList(app, g, "--insert", "A B ...", o.insert, "go straight from point to point");
+  g = "Its parameters (lengths in the scene's unit, or with a unit: 3mm)";
+  add(app, g, "--normal", "X,Y,Z", o.normal,
+      "press, tap: outward direction of the surface (default 0,0,1)");
+  add(app, g, "--depth", "LENGTH", o.depth, "press, tap: how far below the point (default 2 mm)");
+  add(app, g, "--clearance", "LENGTH", o.clearance,
+      "press, tap: how far above it the hand starts (default 5 mm)");
+  add(app, g, "--speed", "SPEED", o.speed,
+      "press, stroke, insert: per second (default 50 mm/s; stroke 100 mm/s)");
+  add(app, g, "--hold", "SECONDS", o.hold,
+      "press, insert: rest at the far end (default 0.2; insert 0.1)");
+  add(app, g, "--repeats", "N", o.repeats, "stroke: there and back N times (default 1)");
+  add(app, g, "--frequency", "HZ", o.frequency, "tap: taps a second (default 4)");
+  add(app, g, "--taps", "N", o.taps, "tap: how many (default 4)");
+  addFlag(app, g, "--back", o.back, "insert: come back the same way");
+  g = "The loop";
+  add(app, g, "--renderer", "NAME", o.renderer, "constraint or paper (default: as the scene says)")
+      ->check(CLI::IsMember({"constraint", "paper"}));
+  add(app, g, "--rate", "HZ", o.rate, "ticks a second (default 1000)")
+      ->check(CLI::Range(1.0, 100000.0));
+  addFlag(app, g, "--realtime", o.realtime,
+          "keep to the clock (default: as fast as the machine goes)");
+  g = "Limits of the force, in this order (default: none)";
+  add(app, g, "--max-force", "FORCE", o.max_force,
+      "shorten longer forces to this, direction kept: 3 (N), 500mN");
+  add(app, g, "--slew", "FORCE/s", o.slew,
+      "let the force grow by no more than this a second: 100 (N/s); it may drop at once");
+  add(app, g, "--ramp", "TIME", o.ramp,
+      "start without force, and reach all of it after this: "
+      "0.2 (s), 200ms");
+  g = "Output files";
+  add(app, g, "--trace", "FILE.csv", o.trace, "write one row a tick (SI units)");
+  add(app, g, "--image", "FILE.png", o.image,
+      "draw the scene cut open, with the path and the forces");
+}
+
+void defineQuery(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<QueryOptions>(invocation);
+  app.add_option("input", o.input);
+  const char* g = "Points, one of (in the scene's unit; RAS mm for an image)";
+  addList(app, g, "--at", "X,Y,Z ...", o.at, "at these points");
+  add(app, g, "--points", "FILE.csv", o.points, "at the points of a file with the header x,y,z");
+  g = "Options";
+  add(app, g, "--field", "NAME", o.field, "scene: this field or layer only");
+}
+
+void defineRender(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<RenderOptions>(invocation);
+  app.add_option("scene", o.scene);
+  const char* g = "Output";
+  add(app, g, "-o,--output", "FILE.png", o.output, "the picture (required)");
+  add(app, g, "--size", "WxH", o.size, "in pixels (default 1600x1000)");
+  g = "Where to cut (default: along the trace, else through the middle)";
+  add(app, g, "--plane", "AXIS=VALUE", o.plane, "across an axis: x=12 (the scene's unit)");
+  add(app, g, "--cut", "X,Y,Z,NX,NY,NZ", o.cut,
+      "any plane: a point and a normal; looked at against it");
+  g = "What to show";
+  add(app, g, "--trace", "FILE.csv", o.trace, "the path and the forces of a `touch --trace`");
+  add(app, g, "--image", "IMAGE", o.image,
+      "grey values of this NIfTI file, or of this image of the scene (default: the scene's first "
+      "that has no names)");
+}
+
+void defineExplain(CLI::App& app, Invocation& invocation) {
+  app.add_option("scene", choose<ExplainOptions>(invocation).scene);
+}
+
+}  // namespace
+
+Verb touchVerb() {
+  return {
+      "touch",
+      "Move a probe through a scene and feel it",
+      "palpate touch data/scenes/container.yaml --insert 0,0,60 0,0,0 --back --trace trace.csv",
+      "palpate touch SCENE MOTION [OPTIONS]",
+      "Prints the regions in the order in which they were entered, with the depth below the "
+      "first\n"
+      "surface met and the peak force in each; the ports passed; how long a tick takes; and what "
+      "each\n"
+      "grid cost. A trace has the header\n"
+      "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,"
+      "tick_ns\n"
+      "and the same input gives the same trace, bit for bit except tick_ns.",
+      {"--stroke", "--insert"},
+      defineTouch,
+      [](const Invocation& i) { need(!chosen<TouchOptions>(i).scene.empty(), "SCENE"); },
+      true};
+}
+
+Verb queryVerb() {
+  return {"query",
+          "Value, gradient, region and material at points; or an image's intensity",
+          "palpate query data/scenes/container.yaml --at 0,0,14 0,0,16",
+          "palpate query SCENE|IMAGE POINTS [OPTIONS]",
+          "An image (.nii .nii.gz) is read at RAS points in mm, trilinear between voxel centres; "
+          "outside\n"
+          "these there is no value.",
+          {"--at"},
+          defineQuery,
+          [](const Invocation& i) {
+            const auto& o = chosen<QueryOptions>(i);
+            need(!o.input.empty(), "SCENE or IMAGE");
+            if (o.at.empty() == o.points.empty()) {
+              throw usageError(
+                  o.at.empty() ? "no points were given" : "--at and --points exclude one another",
+                  "write --at X,Y,Z ... or --points FILE.csv");
+            }
+          }};
+}
+
+Verb explainVerb() {
+  return {"explain",
+          "Show what a scene means: regions, walls, ports, what can be reached",
+          "palpate explain data/scenes/container.yaml",
+          "palpate explain SCENE [OPTIONS]",
+          "",
+          {},
+          defineExplain,
+          [](const Invocation& i) { need(!chosen<ExplainOptions>(i).scene.empty(), "SCENE"); }};
+}
+
+Verb renderVerb() {
+  return {"render",
+          "Draw a scene cut open (.png)",
+          "palpate render data/scenes/container.yaml -o container.png --plane y=0",
+          "palpate render SCENE -o OUT.png [OPTIONS]",
+          "",
+          {},
+          defineRender,
+          [](const Invocation& i) {
+            const auto& o = chosen<RenderOptions>(i);
+            need(!o.scene.empty(), "SCENE");
+            need(!o.output.empty(), "-o OUT.png");
+            if (!o.plane.empty() && !o.cut.empty()) {
+              throw usageError("--plane and --cut exclude one another", "");
+            }
+          },
+          true};
+}
+
+}  // namespace palpate::tools

@@ -1,0 +1,96 @@
+#pragma once
+/// What a verb of the command line is, and the parts that its definition is put together from.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "command_line.h"
+#include "palpate/core/error.h"
+
+namespace palpate::tools {
+
+struct Verb {
+  const char* name;
+  const char* line;     ///< what it does, in one line
+  const char* example;  ///< one that runs from the project's folder
+  const char* usage;
+  const char* details;                ///< after the options; may be empty
+  std::set<std::string> point_lists;  ///< options that take several points after one another
+  std::function<void(CLI::App&, Invocation&)> define;
+  std::function<void(const Invocation&)> check;  ///< what must be there
+  bool writes = false;                           ///< files, so that --force has a meaning
+};
+
+/// In the order of `palpate --help`.
+[[nodiscard]] const std::vector<Verb>& verbs();
+/// Null if there is none.
+[[nodiscard]] const Verb* findVerb(std::string_view name);
+/// The parser of one verb; what it reads goes to `invocation`, which must outlive it.
+[[nodiscard]] std::unique_ptr<CLI::App> makeApp(const Verb& verb, Invocation& invocation);
+
+// scene_verbs.cpp
+[[nodiscard]] Verb touchVerb();
+[[nodiscard]] Verb queryVerb();
+[[nodiscard]] Verb explainVerb();
+[[nodiscard]] Verb renderVerb();
+// file_verbs.cpp
+[[nodiscard]] Verb bakeVerb();
+[[nodiscard]] Verb convertVerb();
+[[nodiscard]] Verb infoVerb();
+[[nodiscard]] Verb benchVerb();
+[[nodiscard]] Verb helpVerb();
+
+// help.cpp
+[[nodiscard]] std::string verbHelp(const Verb& verb);
+[[nodiscard]] std::string overview();
+
+// parse.cpp
+[[nodiscard]] Error unknownVerb(const std::string& word);
+
+[[nodiscard]] inline Error usageError(std::string message, std::string hint) {
+  return Error(ErrorKind::kUsage, {"usage.command_line", std::move(message), std::move(hint)});
+}
+
+inline void need(bool there, const char* what) {
+  if (!there) throw usageError(std::string(what) + " is missing", "");
+}
+
+template <class Options>
+Options& choose(Invocation& invocation) {
+  return invocation.options.emplace<Options>();
+}
+
+template <class Options>
+const Options& chosen(const Invocation& invocation) {
+  return std::get<Options>(invocation.options);
+}
+
+/// An option with a value called `what` in --help, in help group `group`.
+template <class T>
+CLI::Option* add(CLI::App& app, const char* group, const char* names, const char* what, T& value,
+                 const char* text) {
+  auto* option = app.add_option(names, value, text)->group(group)->option_text(what);
+  if constexpr (!std::is_same_v<T, std::vector<std::string>>) {
+    option->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+  }
+  return option;
+}
+
+inline void addFlag(CLI::App& app, const char* group, const char* names, bool& value,
+                    const char* text) {
+  app.add_flag(names, value, text)->group(group);
+}
+
+/// A list that takes one value for each mention.
+inline void addList(CLI::App& app, const char* group, const char* names, const char* what,
+                    std::vector<std::string>& values, const char* text) {
+  add(app, group, names, what, values, text)->expected(1)->take_all()->allow_extra_args(false);
+}
+
+}  // namespace palpate::tools
