@@ -6,7 +6,10 @@
 namespace palpate {
 namespace {
 
-constexpr double kSmallestEigenvalue = 0.02;
+/// Where the proxy is free to turn by nearly as much as the wall bends, steps are long; who takes them sees
+/// whether they came closer as they should. A larger bound than what is left of the distance to the center of
+/// curvature would make Newton's steps a slow descent.
+constexpr double kSmallestEigenvalue = 1e-3;
 constexpr double kLargestTurn = 0.5;  // [rad]
 constexpr int kPullBackSteps = 8;
 

@@ -21,6 +21,9 @@ constexpr double kSticksWithin = 1e-6;
 /// Share of the feature size that a crease's walls are asked for beside it: several times what fields take
 /// differences over, and so short that what they bend over it is below every tolerance.
 constexpr double kBeside = 1e-4;
+/// Tolerances by which walls carried back from there may miss: 0.5 kBeside^2 features at a curvature of
+/// 1 / feature, where the Hessian was no help.
+constexpr double kMisfit = 10.0;
 /// Walls of one crease whose normals' cosine differs from 1 by less are one wall: 1.4e-3 rad.
 constexpr double kSameWall = 1e-6;
 
@@ -123,10 +126,13 @@ bool ConstraintRenderer::feelPieces(LeafId leaf, const Facet& facet) noexcept {
     }
     const double by =
         misfit(*walker_.leaf(leaf).field, walker_.side(leaf), walker_.position(), lowest);
-    for (std::size_t k = first; k < c.planes; ++k) {
-      c.plane[k].gap += by / glm::length(c.jet[k].gradient);
+    // Walls that miss the field by more than a bend over the reach are a smooth bend taken for a fold.
+    if (by >= -kMisfit * walker_.tolerance(leaf)) {
+      for (std::size_t k = first; k < c.planes; ++k) {
+        c.plane[k].gap += by / glm::length(c.jet[k].gradient);
+      }
+      return true;
     }
-    return true;
   }
   c.planes = first;
   for (std::size_t i = 0; i < piece_count_; ++i) {

@@ -64,7 +64,8 @@ class ConstraintRenderer final : public HapticRenderer {
   [[nodiscard]] bool puncture() noexcept;
   [[nodiscard]] bool slide(const Vec3& hip) noexcept;
   [[nodiscard]] bool slideBy(const Vec3& hip, const Vec3& by, bool must_improve,
-                             std::span<const HeldWall> walls) noexcept;
+                             std::span<const HeldWall> walls,
+                             double most_gain = kInfinity) noexcept;
   [[nodiscard]] bool unfold(const Vec3& hip, const Vec3& toward) noexcept;
   [[nodiscard]] bool unfoldLeaf(const Vec3& hip, LeafId leaf, const Vec3& toward) noexcept;
   [[nodiscard]] bool unfoldAround(const Vec3& hip) noexcept;

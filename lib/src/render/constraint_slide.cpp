@@ -16,6 +16,9 @@ constexpr double kClippedShort = 0.1;
 /// A slide that another sheet of the same wall stops within this share of the feature size got nowhere.
 constexpr double kStuck = 1e-6;
 constexpr int kMaxHalvings = 12;
+/// The quadratic model of a slide promises a gain between 0.5 and 1.5 of pull . step. One that gains more
+/// than this has left where the model holds.
+constexpr double kMostGain = 3.0;
 
 /// Whether the middle of the way from one point of `walls` to another is on their free side.
 bool isOpenHalfway(const Vec3& a, const Vec3& b, std::span<const HeldWall> walls) noexcept {
@@ -41,7 +44,7 @@ bool ConstraintRenderer::slide(const Vec3& hip) noexcept {
   }
   const Vec3 from = walker_.position();
   for (int halving = 0; halving < kMaxHalvings; ++halving) {
-    if (slideBy(hip, by, true, c.walls())) return true;
+    if (slideBy(hip, by, true, c.walls(), kMostGain * glm::dot(c.pull, by))) return true;
     if (unfold(hip, walker_.position() + by)) return true;
     by *= 0.5;
   }
@@ -53,9 +56,10 @@ bool ConstraintRenderer::slide(const Vec3& hip) noexcept {
 }
 
 /// Moves along `walls` by about `by`, on a path that stays on the free side of them. False if
-/// that would not come closer (then nothing moved).
+/// that would not come closer, or by more than `most_gain` [m^2] of half the square of the distance (then
+/// nothing moved).
 bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_improve,
-                                 std::span<const HeldWall> walls) noexcept {
+                                 std::span<const HeldWall> walls, double most_gain) noexcept {
   const Contact& c = contact_;
   const Vec3 x = walker_.position();
   const Vec3 ahead = x + by;
@@ -80,6 +84,8 @@ bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_impr
     }
     const double limit = glm::dot(before, before) + 4.0 * sunk * glm::length(before);
     if (glm::dot(after, after) > limit * (1.0 + 1e-13)) return false;
+    const double gain = 0.5 * (glm::dot(before, before) - glm::dot(after, after));
+    if (gain > most_gain + 4.0 * sunk * glm::length(before) + 1e-13 * limit) return false;
   }
   const std::span<const LeafId> sliding(c.sliding.data(), c.sliding_count);
   // The wall that holds the proxy may stand in its way as well, further on.

@@ -40,8 +40,9 @@ struct Fold {
 [[nodiscard]] double misfit(const Field& field, double side, const Vec3& x, double lowest) noexcept;
 
 /// pullBack() for walls of which some have a `probe`: each is asked for beside the point, closer as the point
-/// comes near, and the field at the point itself is never beyond its tolerance in the end. `length` [m] is how far `x` was moved along the crease since the walls were felt. False if
-/// it did not come within the tolerances.
+/// comes near, and the field at the point itself is never beyond its tolerance in the end. `length` [m] is
+/// how far `x` was moved along the crease since the walls were felt. False if it did not come within the
+/// tolerances.
 [[nodiscard]] bool pullBackToCrease(Vec3& x, std::span<const HeldWall> walls, double length,
                                     bool& began_free) noexcept;
 
