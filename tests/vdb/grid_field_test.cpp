@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "palpate/fields/csg.h"
@@ -22,26 +24,32 @@ using palpate::test::FieldCase;
 using palpate::test::FieldContract;
 using palpate::test::Random;
 
-FieldPtr baked(const FieldPtr& field, double voxel, double half_width = 4.0) {
-  return gridField(bake(*field, voxels(voxel, half_width)));
+FieldPtr baked(const FieldPtr& field, double voxel, double half_width = 4.0,
+               Sampler sampler = Sampler::kAccessor) {
+  return gridField(bake(*field, voxels(voxel, half_width)), sampler);
 }
 
 std::vector<FieldCase> contractCases() {
   std::vector<FieldCase> all;
-  const auto add = [&](const char* name, const FieldPtr& field, double voxel, double band) {
+  const auto add = [&](const std::string& name, const FieldPtr& field, double voxel, double band,
+                       Sampler sampler) {
     FieldCase one;
     one.name = name;
-    one.make = [=] { return baked(field, voxel, band); };
+    one.make = [=] { return baked(field, voxel, band, sampler); };
     one.region = field->bounds().grownBy(2e-3);
     all.push_back(one);
   };
-  add("BakedBall", sphere(Vec3(0.3e-3, -1e-3, 0.2e-3), 10e-3), 0.5e-3, 4.0);
-  add("BakedBallNarrow", sphere(Vec3(0.0), 10e-3), 0.7e-3, 2.0);
-  add("BakedRing", torus(10e-3, 4e-3), 0.5e-3, 4.0);
-  add("BakedBrick", box(Vec3(0.0), Vec3(10e-3, 14e-3, 9e-3)), 0.5e-3, 3.0);
-  add("BakedHoles",
-      subtract({box(Vec3(0.0), Vec3(20e-3, 14e-3, 9e-3)), sphere(Vec3(0.0, 6e-3, 0.0), 5e-3)}),
-      0.5e-3, 3.0);
+  const FieldPtr holes =
+      subtract({box(Vec3(0.0), Vec3(20e-3, 14e-3, 9e-3)), sphere(Vec3(0.0, 6e-3, 0.0), 5e-3)});
+  for (const auto& [suffix, sampler] : {std::pair<std::string, Sampler>{"", Sampler::kAccessor},
+                                        {"Trilinear", Sampler::kTrilinear},
+                                        {"Cubic", Sampler::kCubic}}) {
+    add("BakedBall" + suffix, sphere(Vec3(0.3e-3, -1e-3, 0.2e-3), 10e-3), 0.5e-3, 4.0, sampler);
+    add("BakedBallNarrow" + suffix, sphere(Vec3(0.0), 10e-3), 0.7e-3, 2.0, sampler);
+    add("BakedRing" + suffix, torus(10e-3, 4e-3), 0.5e-3, 6.0, sampler);
+    add("BakedBrick" + suffix, box(Vec3(0.0), Vec3(10e-3, 14e-3, 9e-3)), 0.5e-3, 3.0, sampler);
+    add("BakedHoles" + suffix, holes, 0.5e-3, 6.0, sampler);
+  }
   return all;
 }
 

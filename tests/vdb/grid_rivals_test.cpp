@@ -31,10 +31,14 @@ std::vector<Vec3> pointsIn(double half_size, int count) {
   return points;
 }
 
-TEST(GridRivals, SameAsOpenVdbsTrilinearStencil) {
+class GridRivals : public testing::TestWithParam<Sampler> {};
+INSTANTIATE_TEST_SUITE_P(Trilinear, GridRivals,
+                         testing::Values(Sampler::kAccessor, Sampler::kTrilinear));
+
+TEST_P(GridRivals, SameAsOpenVdbsTrilinearStencil) {
   const LevelSet set =
       bake(*subtract({sphere(Vec3(0.0), 10e-3), torus(9e-3, 3e-3)}), voxels(0.5e-3));
-  const FieldPtr field = gridField(set);
+  const FieldPtr field = gridField(set, GetParam());
   const openvdb::FloatGrid& grid = *set.impl().grid;
   openvdb::math::BoxStencil<openvdb::FloatGrid> stencil(grid);
   int checked = 0;
@@ -56,14 +60,18 @@ TEST(GridRivals, SameAsOpenVdbsTrilinearStencil) {
   EXPECT_GT(checked, 4000);
 }
 
-TEST(GridRivals, SamplingAllocatesNothing) {
-  const FieldPtr grid = gridField(bake(*sphere(Vec3(0.0), 10e-3), voxels(0.5e-3)));
+TEST(GridRivalsAll, SamplingAllocatesNothing) {
+  const LevelSet set = bake(*sphere(Vec3(0.0), 10e-3), voxels(0.5e-3));
+  const std::vector<FieldPtr> fields{gridField(set), gridField(set, Sampler::kTrilinear),
+                                     gridField(set, Sampler::kAccessor)};
   const std::vector<Vec3> points = pointsIn(15e-3, 1000);
   double sum = 0.0;
   std::int64_t violations = -1;
   {
     const palpate::testing::AllocGuard guard;
-    for (const Vec3& p : points) sum += grid->sample(p).value;
+    for (const FieldPtr& grid : fields) {
+      for (const Vec3& p : points) sum += grid->sample(p).value + grid->jet(p).value;
+    }
     violations = guard.violations();
   }
   EXPECT_EQ(violations, 0);

@@ -42,7 +42,7 @@ class FunctionField final : public Field {
 /// |p|^2 / radius - radius: zero on the sphere, no distance. L = 2 in the ball of the radius.
 [[nodiscard]] FieldPtr implicitBall(double radius);
 
-[[nodiscard]] BakeOptions voxels(double size, double half_width = 4.0);
+[[nodiscard]] BakeOptions voxels(double size, double half_width = 6.0);
 
 /// Box of twelve triangles, wound outwards.
 [[nodiscard]] Mesh boxMesh(const Vec3& center, const Vec3& size);

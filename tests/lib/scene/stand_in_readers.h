@@ -42,6 +42,7 @@ inline SceneRegistry standInReaders() {
   registry.layers["labels"] = [later, image](MapReader& reader, const std::string& name) {
     const std::string file = image(reader);
     (void)reader.require("match");
+    (void)reader.textOr("sampler", "");
     return SceneRegistry::LayerSurface{
         later("labels of " + file + " for " + name, reader.lengthOr("voxel", 1.0)), file};
   };
@@ -49,6 +50,7 @@ inline SceneRegistry standInReaders() {
     const std::string file = image(reader);
     (void)reader.requireNumber("above");
     (void)reader.textOr("keep", "all");
+    (void)reader.textOr("sampler", "");
     (void)reader.boolOr("fill", false);
     return SceneRegistry::LayerSurface{later("threshold of " + file, reader.lengthOr("voxel", 1.0)),
                                        ""};

@@ -3,8 +3,10 @@
 #include <openvdb/tree/ValueAccessor.h>
 
 #include <algorithm>
+#include <string>
 
 #include "brick/brick_view.h"
+#include "palpate/core/error.h"
 
 namespace palpate::vdb {
 namespace {
@@ -19,6 +21,8 @@ constexpr std::uint32_t kEntriesOfGroup = 512;
 /// A table of one level may have this many entries for each brick, 4 bytes each beside its 5888.
 constexpr std::uint64_t kEntriesPerBrick = 64;
 constexpr std::uint64_t kEntriesAnyway = 1 << 16;
+/// The upper of two levels: 256 MB, for a box of 26000^3 voxels. A box is larger only by mistake.
+constexpr double kMostGroups = 1 << 26;
 
 Coord blockOf(const Coord& voxel) {
   return {voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3};  // rounds down
@@ -170,7 +174,14 @@ BlockTable makeTable(const Tree& tree, const BlockMap& map) {
   const double allowed =
       static_cast<double>(std::max(kEntriesPerBrick * map.bricks.size(), kEntriesAnyway));
   const TableMaker maker(tree, map);
-  return entries <= allowed ? maker.oneLevel() : maker.twoLevels();
+  if (entries <= allowed) return maker.oneLevel();
+  if (entries / kEntriesOfGroup > kMostGroups) {
+    throw inputError("bricks.extent",
+                     "the grid's voxels lie up to " + std::to_string(8LL * size[size.maxIndex()]) +
+                         " voxels apart, too far for a table of bricks",
+                     "remove what lies far off, or use the sampler `accessor`");
+  }
+  return maker.twoLevels();
 }
 
 }  // namespace palpate::vdb

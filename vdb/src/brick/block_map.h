@@ -29,7 +29,8 @@ struct BlockTable {
   openvdb::CoordBBox box;                    ///< [blocks] what the table covers
 };
 
-/// One level while it is small beside the bricks, two levels otherwise.
+/// One level while it is small beside the bricks, two levels otherwise. @throws Error (kInput) if the
+/// blocks lie too far apart for these.
 [[nodiscard]] BlockTable makeTable(const openvdb::FloatTree& tree, const BlockMap& map);
 
 }  // namespace palpate::vdb

@@ -2,8 +2,6 @@
 
 #include "brick/instruction_set.h"
 
-#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between inlined functions only
-
 namespace palpate::vdb {
 namespace {
 

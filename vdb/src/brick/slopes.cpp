@@ -1,33 +1,47 @@
 #include "brick/slopes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace palpate::vdb {
 namespace {
 
+constexpr std::size_t kCount = sizeof(Brick::values) / sizeof(float);
+constexpr std::array<std::size_t, 3> kStrides{Brick::kSlab, Brick::kRow, 1};
+using Numbers = std::array<float, kCount>;
+
+/// Each number becomes the largest of `width` numbers from it on. Runs over the ends of rows; what
+/// comes of that is not looked at.
+void slideMaximum(Numbers& numbers, std::size_t stride, std::size_t width) noexcept {
+  for (std::size_t n = 0; n + (width - 1) * stride < kCount; ++n) {
+    float most = numbers[n];
+    for (std::size_t k = 1; k < width; ++k) most = std::max(most, numbers[n + k * stride]);
+    numbers[n] = most;
+  }
+}
+
 /// Each component of the gradient is a mean of the differences between neighbors along its axis, of
 /// the voxels from `first` to `last` from the cell's own.
 double steepestSquare(const Brick& brick, int first, int last) noexcept {
+  const auto steps = static_cast<std::size_t>(last - first);
+  std::array<Numbers, 3> slopes{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Numbers& slope = slopes[axis];
+    for (std::size_t n = 0; n + kStrides[axis] < kCount; ++n) {
+      slope[n] = std::fabs(brick.values[n + kStrides[axis]] - brick.values[n]);
+    }
+    for (std::size_t other = 0; other < 3; ++other) {
+      slideMaximum(slope, kStrides[other], other == axis ? steps : steps + 1);
+    }
+  }
   float most = 0.0F;
-  const auto step = [&](int x, int y, int z, std::size_t stride) {
-    const std::size_t at = Brick::at(x, y, z);
-    return std::fabs(brick.values[at + stride] - brick.values[at]);
-  };
   for (int x = 0; x < Brick::kSide; ++x) {
     for (int y = 0; y < Brick::kSide; ++y) {
       for (int z = 0; z < Brick::kSide; ++z) {
-        float dx = 0.0F, dy = 0.0F, dz = 0.0F;
-        for (int i = x + first; i <= x + last; ++i) {
-          for (int j = y + first; j <= y + last; ++j) {
-            for (int k = z + first; k <= z + last; ++k) {
-              if (i < x + last) dx = std::max(dx, step(i, j, k, Brick::kSlab));
-              if (j < y + last) dy = std::max(dy, step(i, j, k, Brick::kRow));
-              if (k < z + last) dz = std::max(dz, step(i, j, k, 1));
-            }
-          }
-        }
-        most = std::max(most, dx * dx + dy * dy + dz * dz);
+        const std::size_t at = Brick::at(x + first, y + first, z + first);
+        most = std::max(most, slopes[0][at] * slopes[0][at] + slopes[1][at] * slopes[1][at] +
+                                  slopes[2][at] * slopes[2][at]);
       }
     }
   }

@@ -284,7 +284,8 @@ LevelSet widened(const LevelSet& grid, double half_width, const Progress& progre
     throw inputError("bake.half_width", "a band of " + std::to_string(half_width) +
                                             " voxels is asked for; it may have up to 1000");
   }
-  if (!(info.half_width < half_width)) return grid;
+  // A float of the background may be a little below the width that was asked for.
+  if (!(info.half_width < half_width - 1e-3)) return grid;
   if (info.half_width < 2.0) {
     throw inputError("vdb.narrow", "the band of grid '" + info.name + "' is " +
                                        std::to_string(info.half_width) +
