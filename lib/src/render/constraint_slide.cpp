@@ -10,9 +10,6 @@
 namespace palpate {
 namespace {
 
-/// A slide that its own wall stops within this share of its length took too long a step: a grid's surface
-/// has waves of a voxel's length, and a step from crest to crest dips into the next one.
-constexpr double kClippedShort = 0.1;
 /// A slide that another sheet of the same wall stops within this share of the feature size got nowhere.
 constexpr double kStuck = 1e-6;
 constexpr int kMaxHalvings = 12;
@@ -42,14 +39,11 @@ bool ConstraintRenderer::slide(const Vec3& hip) noexcept {
       break;
     }
   }
-  const Vec3 from = walker_.position();
   for (int halving = 0; halving < kMaxHalvings; ++halving) {
     if (slideBy(hip, by, true, c.walls(), kMostGain * glm::dot(c.pull, by))) return true;
     if (unfold(hip, walker_.position() + by)) return true;
     by *= 0.5;
   }
-  const double stuck = kStuck * walker_.leaf(c.leaf[c.index[0]]).feature;
-  if (glm::length(walker_.position() - from) > stuck) return true;
   if (unfoldAround(hip)) return true;
   // Nothing along the wall comes closer: only settle onto it, where it is not there yet.
   return !isOnWalls() && slideBy(hip, Vec3(0.0), false, c.walls());
@@ -113,7 +107,7 @@ bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_impr
   }
   if (on_way) (void)go(walker_.position(), landed);
   const double moved = glm::length(walker_.position() - x);
-  return !is_clipped || moved > kClippedShort * glm::length(landed - x);
+  return !is_clipped || moved > kStuck * walker_.leaf(c.leaf[c.index[0]]).feature;
 }
 
 /// Where a slide failed, a held leaf may fold on the way to `toward`: then goes to the crease, whose other
