@@ -20,7 +20,7 @@ constexpr double kParallel = 1e-6;
 /// of that wall in steps of the share below.
 constexpr double kSlideDip = 1e-7;
 constexpr double kSlideStride = 0.4;
-constexpr int kEvaluationsPerSlide = 64;
+constexpr int kEvaluationsPerSlide = 256;
 constexpr int kCrossingsPerTick = 32;
 constexpr int kEvaluationsPerTick = 4096;
 constexpr int kEvaluationsPerSweep = 256;
@@ -240,7 +240,9 @@ double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) noexcept
   surface.allowance = kSlideDip * own.feature * own.lipschitz;
   const double value = a == x_ ? valueHere(leaf) : own.field->value(a);
   const double start = surface.side * value + surface.allowance;
-  const SweepResult result = sweepLeaf(leaf, surface, a, b, start, kEvaluationsPerSlide);
+  const int budget = std::min(kEvaluationsPerSlide, evaluations_left_);
+  const SweepResult result = sweepLeaf(leaf, surface, a, b, start, budget);
+  if (result.kind == SweepResult::Kind::kUnsure) evaluations_left_ -= budget;
   return result.kind == SweepResult::Kind::kFree ? 1.0 : result.at;
 }
 

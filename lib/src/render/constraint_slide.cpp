@@ -16,6 +16,8 @@ constexpr int kMaxHalvings = 12;
 /// The quadratic model of a slide promises a gain between 0.5 and 1.5 of pull . step. One that gains more
 /// than this has left where the model holds.
 constexpr double kMostGain = 3.0;
+/// A slide that gets no further than this share of its way goes above it instead.
+constexpr double kWinding = 0.1;
 
 /// Whether the middle of the way from one point of `walls` to another is on their free side.
 bool isOpenHalfway(const Vec3& a, const Vec3& b, std::span<const HeldWall> walls) noexcept {
@@ -96,16 +98,24 @@ bool ConstraintRenderer::slideBy(const Vec3& hip, const Vec3& by, bool must_impr
     (void)walker_.move(landed, sliding, true);
     return true;
   }
-  // Over a bulge the tangent runs in the open and comes down; in a hollow the chord is the open way.
-  bool on_way = !above || go(x, ahead);
-  if (!above && walls.size() > 1 && !isOpenHalfway(x, landed, walls)) {
-    // Of several walls one may bulge and another be hollow: then only above all of them it is open.
+  const auto goAbove = [&] {
     Vec3 up(0.0);
     for (const HeldWall& wall : walls) up += wall.normal;
     const Vec3 lift = 2.0 * glm::length(landed - ahead) * unitOr(up, Vec3(0.0));
-    on_way = go(x, x + lift) && go(walker_.position(), landed + lift);
-  }
+    return go(walker_.position(), walker_.position() + lift) &&
+           go(walker_.position(), landed + lift);
+  };
+  // Over a bulge the tangent runs in the open and comes down; in a hollow the chord is the open way.
+  bool on_way = !above || go(x, ahead);
+  // Of several walls one may bulge and another be hollow: then only above all of them it is open.
+  const bool is_mixed = !above && walls.size() > 1 && !isOpenHalfway(x, landed, walls);
+  if (is_mixed) on_way = goAbove();
   if (on_way) (void)go(walker_.position(), landed);
+  // So may one wall along a valley that winds: tangent and chord are open further on, and closed where they begin.
+  if (is_clipped && !is_mixed && glm::length(walker_.position() - x) < kWinding * glm::length(by) &&
+      goAbove()) {
+    (void)go(walker_.position(), landed);
+  }
   const double moved = glm::length(walker_.position() - x);
   return !is_clipped || moved > kStuck * walker_.leaf(c.leaf[c.index[0]]).feature;
 }
