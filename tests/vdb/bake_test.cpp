@@ -69,8 +69,10 @@ std::vector<BakeCase> cases() {
       {"implicit", implicitBall(8e-3), 0.4e-3,
        [](const Vec3& p) {
          const double r = glm::length(p);
-         const Vec3 out = glm::max(glm::abs(p) - Vec3(8e-3), Vec3(0.0));
-         return std::max(r - 8e-3, out == Vec3(0.0) ? -kInfinity : glm::length(out));
+         // Out of the bounds values rise to the band's width, so that the band ends there.
+         const double out = glm::length(glm::max(glm::abs(p) - Vec3(8e-3), Vec3(0.0)));
+         const double band = BakeCase{}.half_width * 0.4e-3;
+         return std::max(r - 8e-3, out < band ? 2.0 * out - band : out);
        }},
       {"cut_by_a_box", ball, 0.5e-3,
        [=](const Vec3& p) {

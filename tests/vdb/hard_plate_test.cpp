@@ -41,7 +41,7 @@ TEST(HardPlate, OfFourVoxelsIsNeverTunnelled) {
   const double half = 0.5e-3;
   for (const Pose& pose : {Pose{}, kTurned}) {
     const ScenePtr scene =
-        sceneOf(gridField(bake(*plate(2.0 * half, 0.05, pose), voxels(kVoxel, 4.0))));
+        sceneOf(gridField(bake(*plate(2.0 * half, 0.05, pose), voxels(kVoxel, 6.0))));
     for (const double speed : {1.0, 5.0, 20.0}) {
       for (const double slant : {0.0, 30.0, 50.0}) {
         int tunnelled = 0;
@@ -86,7 +86,7 @@ TEST(HardPlate, WhatAGridCannotHoldIsRefusedOrWhole) {
           kVoxel * random.in({Vec3(-1.0), Vec3(1.0)})};
       FieldPtr grid;
       try {
-        grid = gridField(bake(*plate(thickness * kVoxel, 0.01, pose), voxels(kVoxel, 4.0)));
+        grid = gridField(bake(*plate(thickness * kVoxel, 0.01, pose), voxels(kVoxel, 6.0)));
       } catch (const Error&) {
         ++refused;
         continue;
@@ -111,13 +111,13 @@ TEST(HardPlate, WhatAGridCannotHoldIsRefusedOrWhole) {
 TEST(HardPlate, SharpEdgesAndTipsAreNoPlates) {
   // They end in less than a voxel, and a grid rounds them off; nothing opens.
   const FieldPtr spike = cone(Vec3(0.0), Vec3(0, 0, 1), 3e-3, 10e-3);
-  EXPECT_NO_THROW((void)bake(*spike, voxels(kVoxel, 4.0)));
+  EXPECT_NO_THROW((void)bake(*spike, voxels(kVoxel, 6.0)));
   const FieldPtr wedge = intersect({box(Vec3(0.0), Vec3(0.01)), halfSpace(Vec3(0.0), Vec3(1, 0, 2)),
                                     halfSpace(Vec3(0.0), Vec3(1, 0, -2))});
-  EXPECT_NO_THROW((void)bake(*place(wedge, kTurned), voxels(kVoxel, 4.0)));
+  EXPECT_NO_THROW((void)bake(*place(wedge, kTurned), voxels(kVoxel, 6.0)));
   // The wall of a hollow ball, half a voxel thick, is a plate.
   const FieldPtr ball = subtract({sphere(Vec3(0.0), 5e-3), sphere(Vec3(0.0), 5e-3 - 0.5 * kVoxel)});
-  const Error error = errorOf([&] { (void)bake(*ball, voxels(kVoxel, 4.0)); });
+  const Error error = errorOf([&] { (void)bake(*ball, voxels(kVoxel, 6.0)); });
   EXPECT_EQ(error.problem().code, "bake.too_thin");
   EXPECT_NE(error.problem().message.find("0.12"), std::string::npos) << error.problem().message;
 }

@@ -34,6 +34,9 @@ TEST(SceneVocabulary, KindsOfVdbAndTheSchemaKnowTheSameKeys) {
   };
   EXPECT_EQ(keys_in("fields: {f: {mesh: {file: m.stl, @}}}\n"), schemaKeys("mesh"));
   EXPECT_EQ(keys_in("fields: {f: {grid: {file: g.vdb, @}}}\n"), schemaKeys("grid"));
+  EXPECT_EQ(
+      keys_in("fields: {b: {sphere: {center: [0, 0, 0], radius: 1}}, f: {baked: {field: b, @}}}\n"),
+      schemaKeys("baked"));
   EXPECT_EQ(keys_in("fields: {f: {@}}\n"), schemaKeys("field_kind"));
   EXPECT_EQ(keys_in("images: {i: {file: i.nii, @}}\n"), schemaKeys("image"));
   const std::string layer = "images: {i: {file: i.nii}}\nlayers:\n  - {name: a, ";

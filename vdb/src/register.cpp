@@ -11,22 +11,14 @@
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
+#include "scene_baked.h"
 #include "scene_image.h"
+#include "scene_sampler.h"
 
 namespace palpate::vdb {
 namespace {
 
 using GridMaker = std::function<LevelSet(const Progress&)>;
-
-/// `sampler` of a field or layer.
-Sampler readSampler(MapReader& reader) {
-  const std::string name = reader.textOr("sampler", "cubic");
-  if (name == "cubic") return Sampler::kCubic;
-  if (name == "trilinear") return Sampler::kTrilinear;
-  if (name == "accessor") return Sampler::kAccessor;
-  throw reader.errorAt("sampler", "scene.kind", "'sampler' is `" + name + "`",
-                       "write sampler: cubic, sampler: trilinear or sampler: accessor");
-}
 
 /// What the makers need after the scene file is read and its readers are gone.
 struct Common {
@@ -255,6 +247,9 @@ void registerKinds(SceneRegistry& registry, RegisterOptions options) {
   registry.image = [common](MapReader& reader) { return common->images.read(reader); };
   registry.fields["mesh"] = [common](MapReader& reader) { return meshField(common, reader); };
   registry.fields["grid"] = [common](MapReader& reader) { return gridFileField(common, reader); };
+  registry.fields["baked"] = [common](MapReader& reader) {
+    return readBaked(reader, common->options);
+  };
   registry.layers["labels"] = [common](MapReader& reader, const std::string& layer) {
     return labelsLayer(common, reader, layer);
   };

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "palpate/fields/blend.h"
 #include "palpate/fields/csg.h"
@@ -26,7 +27,7 @@ constexpr std::string_view kOperations[] = {
     "smooth_union", "smooth_intersection", "smooth_difference", "scale",      "offset",
     "shell"};
 // Kinds of palpate::vdb: a scene that asks for them is right, only this program cannot read it.
-constexpr std::string_view kKindsOfGrids[] = {"mesh", "grid"};
+constexpr std::string_view kKindsOfGrids[] = {"mesh", "grid", "baked"};
 
 // A constructor's complaint, with the place it does not know.
 template <typename Make>
@@ -97,6 +98,13 @@ std::vector<NamedField> FieldReader::all() const {
     all.push_back({name, named_.find(name)->second.built.source});
   }
   return all;
+}
+
+FieldSourcePtr FieldReader::read(const Node& node) {
+  Built built = build(node);
+  operands_.leaves = std::min(operands_.leaves + built.leaves, kMostLeaves + 1);
+  operands_.height = std::max(operands_.height, built.height);
+  return std::move(built.source);
 }
 
 FieldSourcePtr FieldReader::readName(const Node& node, const std::string& what) {
@@ -327,13 +335,19 @@ FieldReader::Built FieldReader::buildRegistered(const Node::Entry& kind) {
                          suggestOrList(kind.key, kinds, "kinds: "));
   }
   MapReader reader(loader_, kind.value, inQuotes(kind.key));
+  // It may be made of fields, which come here through read(), and whose faces may be new ones then.
+  const Node::Entry* const around = blend_;
+  if (blend_ == nullptr) blend_ = &kind;
+  const Built before = std::exchange(operands_, Built{nullptr, 0, 0});
   FieldSourcePtr source = found->second(reader);
+  const Built operands = std::exchange(operands_, before);
+  blend_ = around;
   reader.finish();
   if (!source) {
     throw document.error(kind.key_mark, "scene.no_reader",
                          "nothing came of this " + inQuotes(kind.key));
   }
-  return {std::move(source)};
+  return {std::move(source), std::max<std::size_t>(operands.leaves, 1), operands.height + 1};
 }
 
 }  // namespace palpate

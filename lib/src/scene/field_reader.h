@@ -21,7 +21,7 @@ class FieldReader {
   void define(const Node& fields);
 
   /// A name, or an inline map of one kind.
-  [[nodiscard]] FieldSourcePtr read(const Node& node) { return build(node).source; }
+  [[nodiscard]] FieldSourcePtr read(const Node& node);
   /// A name only: for what must be the same object elsewhere.
   [[nodiscard]] FieldSourcePtr readName(const Node& node, const std::string& what);
 
@@ -66,6 +66,7 @@ class FieldReader {
   std::vector<std::string> order_ = {};
   std::vector<std::string> path_ = {};  // names under way, to show a cycle
   const Node::Entry* blend_ = nullptr;  // the outermost one that is being read
+  Built operands_ = {nullptr, 0, 0};    // of the registered kind that is being read, all together
   int depth_ = 0;
 };
 

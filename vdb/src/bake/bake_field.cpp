@@ -23,7 +23,8 @@ enum class Verdict : std::uint8_t { kOutside, kInside, kKeep };
 
 /// The distance that is baked: the field's value, made a distance where it is none. A field that is
 /// not exact can fall short of the distance to its own bounds, and would have a band without end
-/// there; and a box may cut it off.
+/// there: so that it ends, values rise with twice that distance to the band's width. Near the surface
+/// the field stays as smooth as it is, also where its bounds touch it. And a box may cut it off.
 class Source {
  public:
   Source(const Field& field, const Box3& domain, bool is_cut, double band)
@@ -44,7 +45,8 @@ class Source {
   [[nodiscard]] Value at(const Vec3& p) const noexcept {
     Value result = fieldAt(p);
     if (is_cut_ || !exact_) {
-      const double wall = boxDistance(p);
+      double wall = boxDistance(p);
+      if (!is_cut_ && wall < band_) wall = 2.0 * wall - band_;
       if (wall > result.distance && (is_cut_ || wall > 0.0)) {
         // A known wall decides over a field that is inside, however deep; elsewhere it is a bound.
         result = {wall, result.known || (is_cut_ && result.distance < 0.0)};

@@ -22,8 +22,9 @@ struct BakeOptions {
 };
 
 /// Voxel (0, 0, 0) has its centre at the origin. Values are the field's own if it is exact or a
-/// bound; the exact distance by projection if it is implicit
-/// (footPoint(); S / |grad S| where no nearest point is found); and never less than the distance to the field's bounds.
+/// bound; the exact distance by projection if it is implicit (footPoint(); S / |grad S| where no
+/// nearest point is found); and, unless it is exact, more than that far out, so that the band ends
+/// within its half width of the field's bounds.
 /// Active are the voxels with |value| less than half_width voxels. The result does not depend on the
 /// number of threads.
 /// @throws Error: kInput for options or an empty result (a shape the voxels cannot hold), kOperation

@@ -18,13 +18,16 @@ struct GridRecord {
 };
 
 struct RegisterOptions {
-  std::function<void(const GridRecord&)> on_grid = {};   ///< told of each grid when it is ready
-  std::function<void(const std::string&)> on_note = {};  ///< told what was assumed, once each
+  std::function<void(const GridRecord&)> on_grid = {};  ///< told of each grid when it is ready
+  std::function<void(const std::string&)> on_note =
+      {};  ///< told what was assumed or decided, once each
 };
 
 /// Adds to a scene's vocabulary (paths are relative to the scene file, lengths in its unit):
 ///   fields  mesh: {file, units, voxel, half_width, sampler}  units: the scene's; voxel: longest side / 128
 ///           grid: {file, name, units, sampler}               units: only if the file does not say
+///           baked: {field, voxel, half_width, sampler, parts, tolerance}   parts: auto | operands | whole,
+///                  see hybrid.h
 ///   images  NAME: {file, names}
 ///   layers  labels: {image, match: [..], voxel, sampler}      its label group is the image's name
 ///           threshold: {image, above, keep: largest | all, fill, voxel, sampler}

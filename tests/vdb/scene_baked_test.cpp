@@ -1,0 +1,137 @@
+// `baked` in scene files: what is made when, what is told, ports on its faces, and where errors point.
+#include <gtest/gtest.h>
+
+#include "palpate/core/error.h"
+#include "palpate/scene/scene.h"
+#include "palpate/vdb/register.h"
+
+namespace palpate::vdb {
+namespace {
+
+constexpr double kMm = 1e-3;
+
+class SceneBaked : public ::testing::Test {
+ protected:
+  SceneBaked() {
+    RegisterOptions options;
+    options.on_grid = [this](const GridRecord& record) { grids_.push_back(record); };
+    options.on_note = [this](const std::string& note) { notes_ += note + "\n"; };
+    registerKinds(registry_, options);
+  }
+
+  SceneDescription read(const std::string& body) {
+    return parseScene("palpate: 1\nlength: mm\nfields:\n" + body, "test.yaml", registry_);
+  }
+
+  /// Expects an error of `code` at line and column of the scene, saying `says`; made() or not.
+  void expectError(const std::string& body, const std::string& code, int line, int column,
+                   const std::string& says) {
+    try {
+      const SceneDescription scene = read(body);
+      for (const NamedField& field : scene.fields) (void)field.source->get();
+      (void)compile(scene);
+      ADD_FAILURE() << "read without complaint:\n" << body;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kInput);
+      EXPECT_EQ(error.problem().code, code) << error.what();
+      EXPECT_EQ(error.problem().file, "test.yaml") << error.what();
+      EXPECT_EQ(error.problem().line, line) << error.what();
+      EXPECT_EQ(error.problem().column, column) << error.what();
+      EXPECT_NE((std::string(error.what()) + error.problem().hint).find(says), std::string::npos)
+          << error.what() << "\n"
+          << error.problem().hint;
+    }
+  }
+
+  std::vector<GridRecord> grids_;
+  std::string notes_;
+  SceneRegistry registry_;
+};
+
+const std::string kBlock = "  block: {box: {center: [0, 0, 0], size: [20, 20, 20]}}\n";
+const std::string kWave = "  wave: {gyroid: {center: [0, 0, 0], period: 20}}\n";
+
+TEST_F(SceneBaked, PartsAreMadeWhenAskedForAndToldOf) {
+  const SceneDescription scene = read(
+      "  foam: {baked: {field: cut, voxel: 0.5, parts: operands}}\n"
+      "  cut: {intersection: [block, wave]}\n" +
+      kBlock + kWave);
+  const FieldSourcePtr foam = scene.fields[0].source;
+  EXPECT_FALSE(foam->isMade());
+  EXPECT_TRUE(grids_.empty());
+  const FieldPtr field = foam->get();
+  ASSERT_EQ(grids_.size(), 1U);
+  EXPECT_EQ(grids_[0].what, "baked field in line 4, part 2");
+  EXPECT_EQ(grids_[0].info.name, "baked/2");
+  EXPECT_EQ(grids_[0].info.length_unit, "mm");
+  EXPECT_NEAR(grids_[0].info.voxel_size, 0.5 * kMm, 1e-15);
+  EXPECT_NE(notes_.find("line 4, part 1 stays analytic: it has edges"), std::string::npos)
+      << notes_;
+  EXPECT_NE(notes_.find("line 4, part 2 is a grid, off by at most"), std::string::npos) << notes_;
+  ASSERT_EQ(field->structure().kind, FieldStructure::Kind::kIntersection);
+  EXPECT_EQ(field->structure().operands[0], scene.fields[2].source->get());
+  EXPECT_DOUBLE_EQ(field->value(Vec3(13, 0, 0) * kMm), 3 * kMm);
+}
+
+TEST_F(SceneBaked, WithoutAVoxelSizeTheLongestSideHasAHundredAndTwentyEight) {
+  const SceneDescription scene = read("  b: {baked: {field: block, parts: whole}}\n" + kBlock);
+  (void)scene.fields[0].source->get();
+  ASSERT_EQ(grids_.size(), 1U);
+  EXPECT_NEAR(grids_[0].info.voxel_size, 20 * kMm / 128, 1e-12);
+  EXPECT_EQ(grids_[0].info.name, "baked");
+  EXPECT_NE(notes_.find("one grid of the whole was asked for; it is off by at most"),
+            std::string::npos)
+      << notes_;
+}
+
+TEST_F(SceneBaked, APortIsOnWhatStayedAnalyticOrOnTheWhole) {
+  const std::string fields =
+      "  foam: {baked: {field: {intersection: [block, wave]}, voxel: 0.5, "
+      "parts: operands}}\n" +
+      kBlock + kWave + "layers: [{name: a, inside: foam}]\n";
+  const auto port = [&](const std::string& on) {
+    return fields + "ports: [{name: p, between: [outside, a], on: " + on + "}]\n";
+  };
+  EXPECT_NO_THROW((void)compile(read(port("block"))));
+  EXPECT_NO_THROW((void)compile(read(port("foam"))));
+  expectError(port("wave"), "scene.port_face", 8, 16, "'wave' went into the baked in line 4");
+}
+
+TEST_F(SceneBaked, ErrorsPointAtWhatIsWrong) {
+  const auto baked = [](const std::string& keys) {
+    return "  b: {baked: {field: block, " + keys + "}}\n" + kBlock;
+  };
+  expectError(baked("voxel: 0"), "scene.range", 4, 36, "more than 0");
+  expectError(baked("voxel: -1"), "scene.range", 4, 36, "more than 0");
+  expectError(baked("half_width: 1"), "scene.range", 4, 41, "2 voxels or more");
+  expectError(baked("tolerance: 0"), "scene.range", 4, 40, "more than 0");
+  expectError(baked("parts: operand"), "scene.kind", 4, 36, "parts: operands");
+  expectError(baked("parts: all"), "scene.kind", 4, 36, "parts: whole");
+  expectError(baked("sampler: linear"), "scene.kind", 4, 38, "trilinear");
+  expectError(baked("parts: whole, tolerance: 1"), "scene.range", 4, 54, "leave out tolerance");
+  expectError(baked("voxels: 1"), "scene.unknown_key", 4, 29, "voxel");
+  expectError("  b: {baked: {voxel: 1}}\n", "scene.missing_key", 4, 14, "field");
+  expectError("  b: {baked: {field: nothing}}\n", "scene.unknown_field", 4, 22, "nothing");
+  expectError("  b: {baked: {field: b}}\n", "scene.cycle", 4, 22, "b -> b");
+  // Known only when it is made.
+  expectError("  b: {baked: {field: wave}}\n" + kWave, "bake.unbounded", 4, 14, "voxel");
+  expectError("  b: {baked: {field: wave, voxel: 1, parts: whole}}\n" + kWave, "bake.unbounded", 4,
+              14, "analytic");
+}
+
+TEST_F(SceneBaked, FieldsInItCountAsNested) {
+  std::string body = "  f0: {sphere: {center: [0, 0, 0], radius: 1}}\n";
+  for (int i = 1; i < 70; ++i) {
+    const std::string before = "f" + std::to_string(i - 1);
+    body += "  f" + std::to_string(i) + ": {baked: {field: " + before + ", voxel: 1}}\n";
+  }
+  try {
+    (void)read(body);
+    ADD_FAILURE() << "read without complaint";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.problem().code, "scene.depth") << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace palpate::vdb
