@@ -45,18 +45,17 @@ void expectDistances(const LevelSet& set, const Exact& exact) {
   std::size_t active_voxels = 0;
   forEachVoxel(set, [&](const Vec3& p, double value, bool active) {
     const double wanted = exact(p);
-    // Half a unit in the last place of the stored float, and rounding of the
-    // mesh's coordinates.
-    const double rounding = std::abs(wanted) * 0x1p-24 + 1e-15;
+    // What bakeMesh() promises, and half a unit in the last place of the stored float.
+    const double rounding = 1e-5 * set.info().voxel_size + std::abs(wanted) * 0x1p-23;
     active_voxels += active ? 1 : 0;
-    if (std::abs(std::abs(wanted) - band) > 1e-6 * band) {
+    if (std::abs(std::abs(wanted) - band) > rounding) {
       ASSERT_EQ(active, std::abs(wanted) < band) << p.x << ' ' << p.y << ' ' << p.z;
     }
     if (active) {
-      ASSERT_NEAR(value, wanted, 4.0 * rounding) << p.x << ' ' << p.y << ' ' << p.z;
+      ASSERT_NEAR(value, wanted, rounding) << p.x << ' ' << p.y << ' ' << p.z;
     } else {
       ASSERT_NEAR(std::abs(value), band, 1e-6 * band);
-      ASSERT_EQ(value < 0.0, wanted < 0.0) << p.x << ' ' << p.y << ' ' << p.z;
+      ASSERT_EQ(std::signbit(value), wanted < 0.0) << p.x << ' ' << p.y << ' ' << p.z;
     }
   });
   EXPECT_EQ(active_voxels, set.info().active_voxels);

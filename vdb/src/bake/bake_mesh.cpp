@@ -153,12 +153,12 @@ class MeshBaker {
     std::vector<Lower*> lower_nodes;
     for (auto upper = tree.root().beginChildOn(); upper; ++upper) {
       for (auto lower = upper->beginChildOn(); lower; ++lower) lower_nodes.push_back(&*lower);
-      for (auto tile = upper->beginValueOff(); tile; ++tile) {
+      for (auto tile = upper->beginChildOff(); tile; ++tile) {
         if (inside(tile.getCoord())) tile.setValue(-plan_.background);
       }
     }
     parallelWithProgress(lower_nodes.size(), {}, "", 1.0, 1.0, [&](std::size_t i) {
-      for (auto tile = lower_nodes[i]->beginValueOff(); tile; ++tile) {
+      for (auto tile = lower_nodes[i]->beginChildOff(); tile; ++tile) {
         if (inside(tile.getCoord())) tile.setValue(-plan_.background);
       }
     });

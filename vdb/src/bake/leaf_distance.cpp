@@ -97,7 +97,7 @@ void findSquares(const LeafQuery& query) noexcept {
 LeafQuery makeQuery(const std::vector<Facet>& facets, float half_width, LeafScratch& scratch,
                     float* squares) {
   const std::size_t count = facets.size();
-  if (scratch.nearby.size() < count) {
+  if (scratch.nearby.size() <= count) {
     scratch.eight.resize(8 * count);
     scratch.four.resize(8 * count);
     // One more: lists are written before it is known that an entry stays.
