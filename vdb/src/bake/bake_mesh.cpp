@@ -12,6 +12,7 @@
 #include "bake/leaf_distance.h"
 #include "bake/solid.h"
 #include "bake/triangle_bins.h"
+#include "bake/walls.h"
 #include "palpate/vdb/bake.h"
 
 namespace palpate::vdb {
@@ -47,13 +48,25 @@ Box3 boundsOf(const Solid& solid) {
   return bounds;
 }
 
-void requireAgreement(const Mesh& mesh, const Columns& columns, const BakePlan& plan) {
+/// @throws Error naming a place that the winding number and the flood differ about.
+void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& columns,
+                      const BakePlan& plan) {
   const std::string hint =
       "mend it in a mesh editor; or choose whether the winding number or the flood decides";
   if (columns.doubt()) {
     throw inputError("mesh.ambiguous",
                      "the mesh does not tell what is solid: at " +
                          placeText(columns.doubt()->place, plan.voxel) + " " + columns.doubt()->why,
+                     hint, mesh.source);
+  }
+  for (const Columns::Pocket& pocket : columns.pockets()) {
+    // A space whose way out is narrower than a voxel is enclosed as well, and rightly outside.
+    const std::optional<Vec3> crossing = findCrossing(solid, pocket.box.grownBy(1.5));
+    if (!crossing) continue;
+    throw inputError("mesh.ambiguous",
+                     "the mesh passes through itself at " + placeText(*crossing, plan.voxel) +
+                         " and encloses a space of " + std::to_string(pocket.voxels) +
+                         " voxels there: inside by the flood, outside by the winding number",
                      hint, mesh.source);
   }
 }
@@ -83,7 +96,10 @@ class MeshBaker {
     requireMemory(estimatedArea(solid_), 1.0, search_);
     if (!shell_) {
       columns_.emplace(solid_, options_.mesh_sign, progress_);
-      if (options_.mesh_sign == MeshSign::kVote) requireAgreement(mesh_, *columns_, plan_);
+      if (options_.mesh_sign == MeshSign::kVote) requireAgreement(mesh_, solid_, *columns_, plan_);
+      if (columns_->hasIdleWalls() || columns_->isFilled() || !solid_.was_closed) {
+        dropIdleWalls(solid_, *columns_, progress_);
+      }
     }
     const TriangleBins bins(solid_.vertices, solid_.triangles, range_, search_, progress_);
     grid_ = emptyGrid(plan_, options_);

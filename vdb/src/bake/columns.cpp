@@ -1,7 +1,6 @@
 #include "bake/columns.h"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,75 +8,11 @@
 #include <tuple>
 
 #include "bake/bake_plan.h"
+#include "bake/radix_sort.h"
+#include "bake/wall_count.h"
 
 namespace palpate::vdb {
 namespace {
-
-/// Twice the area of a, b and (x, y) seen along z; positive if (x, y) is left of a -> b.
-double leftOf(const Vec3& a, const Vec3& b, double x, double y) noexcept {
-  return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
-}
-
-/// What a side adds to the winding number of its triangle about (x, y): whether it crosses the line
-/// from there towards +x, upwards or downwards. Both triangles of an edge compute the very same
-/// number, so that the sum over a closed surface is zero whatever the rounding.
-int crossesUpwards(const Vec3& from, const Vec3& to, double x, double y) noexcept {
-  if (from.y <= y && to.y > y) return leftOf(from, to, x, y) > 0.0 ? 1 : 0;
-  if (to.y <= y && from.y > y) return leftOf(to, from, x, y) > 0.0 ? -1 : 0;
-  return 0;
-}
-
-/// Height of the triangle's plane over (x, y), within the triangle's own.
-double heightAt(const Vec3& a, const Vec3& b, const Vec3& c, double x, double y) noexcept {
-  const double u = leftOf(b, c, x, y);
-  const double v = leftOf(c, a, x, y);
-  const double w = leftOf(a, b, x, y);
-  const double sum = u + v + w;
-  const double lo = std::min({a.z, b.z, c.z});
-  const double hi = std::max({a.z, b.z, c.z});
-  const double z = sum != 0.0 ? (u * a.z + v * b.z + w * c.z) / sum : lo;
-  return std::clamp(z, lo, hi);
-}
-
-/// Winding numbers of the parts that are not zero on the way up a column.
-class Counts {
- public:
-  explicit Counts(const std::vector<int>* roles = nullptr) : roles_(roles) {}
-
-  void add(std::uint32_t part, int entered) {
-    for (auto count = counts_.begin(); count != counts_.end(); ++count) {
-      if (count->first != part) continue;
-      count->second += entered;
-      if (count->second == 0) {
-        change(part, -1);
-        counts_.erase(count);
-      }
-      return;
-    }
-    counts_.emplace_back(part, entered);
-    change(part, 1);
-  }
-  [[nodiscard]] const std::vector<std::pair<std::uint32_t, int>>& all() const { return counts_; }
-  [[nodiscard]] bool isInside() const { return sum_ > 0; }
-  [[nodiscard]] bool isInCavity() const { return cavities_ > 0; }
-  void clear() {
-    counts_.clear();
-    sum_ = 0;
-    cavities_ = 0;
-  }
-
- private:
-  void change(std::uint32_t part, int by) {
-    if (roles_ == nullptr) return;
-    sum_ += by * (*roles_)[part];
-    if ((*roles_)[part] < 0) cavities_ += by;
-  }
-
-  const std::vector<int>* roles_;
-  std::vector<std::pair<std::uint32_t, int>> counts_;
-  int sum_ = 0;
-  int cavities_ = 0;
-};
 
 int signOf(double v) { return v < 0.0 ? -1 : 1; }
 
@@ -85,35 +20,58 @@ int signOf(double v) { return v < 0.0 ? -1 : 1; }
 
 Columns::Columns(const Solid& solid, MeshSign sign, const Progress& progress) {
   tbb::enumerable_thread_specific<std::vector<Crossing>> parts;
-  parallelWithProgress(
-      solid.triangles.size(), progress, "bake mesh: telling inside from outside", 0.1, 0.15,
-      [&](std::size_t t) {
-        const auto& [i, j, k] = solid.triangles[t];
-        const Vec3& a = solid.vertices[i];
-        const Vec3& b = solid.vertices[j];
-        const Vec3& c = solid.vertices[k];
-        // A hair beyond the triangle's box, where rounding could still find a side to be crossed.
-        constexpr double kHair = 1e-6;
-        const Vec3 lo = glm::min(glm::min(a, b), c) - kHair;
-        const Vec3 hi = glm::max(glm::max(a, b), c) + kHair;
-        for (int x = static_cast<int>(std::ceil(lo.x)); x <= hi.x; ++x) {
-          for (int y = static_cast<int>(std::ceil(lo.y)); y <= hi.y; ++y) {
-            const int turns = crossesUpwards(a, b, x, y) + crossesUpwards(b, c, x, y) +
-                              crossesUpwards(c, a, x, y);
-            if (turns == 0) continue;
-            // Seen from above counterclockwise is the upper side, by which +z leaves the solid.
-            parts.local().push_back({x, y, heightAt(a, b, c, x, y), -turns, solid.part_of[t]});
-          }
-        }
-      });
+  parallelWithProgress(solid.triangles.size(), progress, "bake mesh: telling inside from outside",
+                       0.1, 0.15, [&](std::size_t t) {
+                         const auto& [i, j, k] = solid.triangles[t];
+                         const Vec3& a = solid.vertices[i];
+                         const Vec3& b = solid.vertices[j];
+                         const Vec3& c = solid.vertices[k];
+                         // A hair beyond the triangle's box, where rounding could still find a side to be crossed.
+                         constexpr double kHair = 1e-6;
+                         const Vec3 lo = glm::min(glm::min(a, b), c) - kHair;
+                         const Vec3 hi = glm::max(glm::max(a, b), c) + kHair;
+                         for (int x = static_cast<int>(std::ceil(lo.x)); x <= hi.x; ++x) {
+                           for (int y = static_cast<int>(std::ceil(lo.y)); y <= hi.y; ++y) {
+                             const WallHit hit = hitWall(a, b, c, x, y);
+                             if (hit.entered == 0) continue;
+                             parts.local().push_back({x, y, hit.z, hit.entered, solid.part_of[t]});
+                           }
+                         }
+                       });
   std::vector<Crossing> crossings;
   for (auto& part : parts) crossings.insert(crossings.end(), part.begin(), part.end());
-  tbb::parallel_sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-    return std::tie(a.x, a.y, a.z, a.part, a.entered) < std::tie(b.x, b.y, b.z, b.part, b.entered);
-  });
+  sortCrossings(crossings);
   findRoles(solid, crossings, sign);
   makeSpans(crossings);
   flood(sign);
+}
+
+/// By column, and upwards in each.
+void Columns::sortCrossings(std::vector<Crossing>& crossings) {
+  if (crossings.empty()) return;
+  Crossing lo = crossings.front();
+  Crossing hi = lo;
+  for (const Crossing& c : crossings) {
+    lo.x = std::min(lo.x, c.x);
+    lo.y = std::min(lo.y, c.y);
+    hi.x = std::max(hi.x, c.x);
+    hi.y = std::max(hi.y, c.y);
+  }
+  const auto across = [](int from, int to) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(to) - from);
+  };
+  const int bits = bitsFor(across(lo.y, hi.y));
+  radixSort(crossings, bits + bitsFor(across(lo.x, hi.x)),
+            [&](const Crossing& c) { return across(lo.x, c.x) << bits | across(lo.y, c.y); });
+  // Threads left crossings in any order, so that the rest of it must be told by the crossings.
+  for (auto begin = crossings.begin(); begin != crossings.end();) {
+    auto end = begin;
+    while (end != crossings.end() && end->x == begin->x && end->y == begin->y) ++end;
+    std::sort(begin, end, [](const Crossing& a, const Crossing& b) {
+      return std::tie(a.z, a.part, a.entered) < std::tie(b.z, b.part, b.entered);
+    });
+    begin = end;
+  }
 }
 
 void Columns::findRoles(const Solid& solid, const std::vector<Crossing>& crossings, MeshSign sign) {
@@ -127,7 +85,7 @@ void Columns::findRoles(const Solid& solid, const std::vector<Crossing>& crossin
   };
   std::vector<Nest> nests(solid.parts.size());
   const auto size = [&](std::uint32_t part) { return std::abs(solid.parts[part].volume); };
-  Counts counts;
+  WallCount counts(roles_);
   for (std::size_t n = 0; n < crossings.size(); ++n) {
     const Crossing& here = crossings[n];
     if (n == 0 || crossings[n - 1].x != here.x || crossings[n - 1].y != here.y) counts.clear();
@@ -170,7 +128,7 @@ void Columns::findRoles(const Solid& solid, const std::vector<Crossing>& crossin
 
 void Columns::makeSpans(const std::vector<Crossing>& crossings) {
   if (!crossings.empty()) first_x_ = crossings.front().x;
-  Counts counts(&roles_);
+  WallCount counts(roles_);
   bool in_cavity = false;
   for (std::size_t n = 0; n < crossings.size(); ++n) {
     const Crossing& here = crossings[n];

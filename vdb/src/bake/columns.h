@@ -44,6 +44,8 @@ class Columns {
   [[nodiscard]] const std::vector<Pocket>& pockets() const noexcept { return pockets_; }
   /// Whether walls were crossed that have the solid, or nothing, on both sides.
   [[nodiscard]] bool hasIdleWalls() const noexcept { return has_idle_walls_; }
+  /// Whether the flood decided, and filled something.
+  [[nodiscard]] bool isFilled() const noexcept { return is_filled_; }
   /// +1 for a solid, -1 for a cavity, by part.
   [[nodiscard]] const std::vector<int>& roles() const noexcept { return roles_; }
 
@@ -64,6 +66,7 @@ class Columns {
     std::size_t first;  ///< of its spans
   };
 
+  static void sortCrossings(std::vector<Crossing>& crossings);
   void findRoles(const Solid& solid, const std::vector<Crossing>& crossings, MeshSign sign);
   void makeSpans(const std::vector<Crossing>& crossings);
   void flood(MeshSign sign);
@@ -79,6 +82,7 @@ class Columns {
   std::optional<Doubt> doubt_;
   std::vector<Pocket> pockets_;
   bool has_idle_walls_ = false;
+  bool is_filled_ = false;
 };
 
 }  // namespace palpate::vdb

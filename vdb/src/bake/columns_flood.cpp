@@ -100,7 +100,8 @@ void Columns::flood(MeshSign sign) {
       }
     }
   }
-  if (sign == MeshSign::kFlood) fill(enclosed);
+  is_filled_ = sign == MeshSign::kFlood && !pockets_.empty();
+  if (is_filled_) fill(enclosed);
 }
 
 void Columns::fill(const std::vector<bool>& enclosed) {

@@ -1,10 +1,9 @@
 #include "bake/edges.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <cmath>
-#include <tuple>
 #include <utility>
+
+#include "bake/radix_sort.h"
 
 namespace palpate::vdb {
 
@@ -18,9 +17,12 @@ std::vector<Side> sortedSides(const std::vector<Triangle>& triangles) {
       sides.push_back({std::min(from, to), std::max(from, to), t, from < to});
     }
   }
-  tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
+  // Sides come triangle by triangle, and stay so where they have the same corners.
+  std::uint32_t most = 0;
+  for (const Side& side : sides) most = std::max(most, side.high);
+  const int bits = bitsFor(most);
+  radixSort(sides, 2 * bits,
+            [&](const Side& side) { return std::uint64_t{side.low} << bits | side.high; });
   return sides;
 }
 

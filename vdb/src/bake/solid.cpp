@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 
 #include "bake/bake_plan.h"
@@ -75,31 +74,37 @@ void refuseOutliers(const Mesh& mesh) {
   }
 }
 
-struct PlaceHash {
-  std::size_t operator()(const Vec3& p) const noexcept {
-    std::uint64_t hash = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      std::uint64_t bits = 0;
-      const double value = p[axis] + 0.0;  // -0 and 0 are one place
-      std::memcpy(&bits, &value, sizeof bits);
-      hash = (hash ^ bits) * 0x9e3779b97f4a7c15U;
-      hash ^= hash >> 29;
-    }
-    return hash;
+std::size_t hashOf(const Vec3& p) noexcept {
+  std::uint64_t hash = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::uint64_t bits = 0;
+    const double value = p[axis] + 0.0;  // -0 and 0 are one place
+    std::memcpy(&bits, &value, sizeof bits);
+    hash = (hash ^ bits) * 0x9e3779b97f4a7c15U;
+    hash ^= hash >> 29;
   }
-};
+  return hash;
+}
 
 /// Vertices in one place become one.
 void weld(const Mesh& mesh, double voxel, Solid& solid) {
-  std::unordered_map<Vec3, std::uint32_t, PlaceHash> places;
-  places.reserve(mesh.vertices.size());
+  constexpr std::uint32_t kNone = 0xffffffffU;
+  std::size_t slots = 16;
+  while (slots < 2 * mesh.vertices.size()) slots *= 2;
+  std::vector<std::uint32_t> table(slots, kNone);  // of vertices, each the first in its place
   std::vector<std::uint32_t> name(mesh.vertices.size());
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vec3& place = mesh.vertices[v];
-    const auto next = static_cast<std::uint32_t>(solid.vertices.size());
-    const auto found = places.try_emplace(place, next);
-    name[v] = found.first->second;
-    if (found.second) solid.vertices.push_back(place / voxel);
+    if (!isFinite(place)) continue;  // no triangle has it
+    std::size_t slot = hashOf(place) & (slots - 1);
+    while (table[slot] != kNone && mesh.vertices[table[slot]] != place)
+      slot = (slot + 1) & (slots - 1);
+    if (table[slot] == kNone) {
+      table[slot] = v;
+      name[v] = static_cast<std::uint32_t>(solid.vertices.size());
+      solid.vertices.push_back(place / voxel);
+    }
+    name[v] = name[table[slot]];
   }
   solid.triangles.reserve(mesh.triangles.size());
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -243,6 +248,7 @@ Solid makeSolid(const Mesh& mesh, double voxel, MeshSign sign) {
     findParts(solid);
     return solid;
   }
+  solid.was_closed = false;
   const std::vector<bool> turned = turnAlike(solid.vertices, sides, solid.triangles);
   sides = sortedSides(solid.triangles);
   const std::vector<Hole> holes = closeHoles(solid.vertices, sides);

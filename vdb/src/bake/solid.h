@@ -26,6 +26,7 @@ struct Solid {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> part_of;  ///< of each triangle
   std::vector<SolidPart> parts;
+  bool was_closed = true;  ///< as it came: two triangles on each edge, turned alike
 };
 
 /// @throws Error (kInput): no faces, index out of range, vertex not finite or far from all others,

@@ -29,6 +29,7 @@ class TriangleBins {
 
  private:
   openvdb::Coord lo_;
+  std::array<int, 3> bits_{};             ///< of a leaf's place along each axis, in its key
   std::vector<std::uint64_t> keys_;       ///< of the leaves, rising
   std::vector<std::size_t> first_;        ///< of each leaf's triangles, and one more
   std::vector<std::uint32_t> triangles_;  ///< leaf by leaf
