@@ -2,15 +2,15 @@
 # Installs what is missing, builds Palpate and passes its tests, lane by lane. Each lane sees what no other does:
 #   format    clang-format on every file
 #   arrows    no include against the arrows between modules and layers (cmake script, seconds)
-#   dev       assertions on, warnings are errors, every public header compiles alone
 #   release   what users get: optimised code, installed and used by an outside project
-#   asan      memory errors and undefined behaviour; lib and devices, and with --all everything
-#   tsan      data races (without vdb: TBB is not instrumented; and without the longest tests of one thread)
+#   asan      assertions on, memory errors and undefined behaviour; every public header compiles alone
+#   tsan      data races: the devices, and what threads do together (without vdb: TBB is not instrumented)
 #   tidy      names and bug patterns, by clang-tidy, in the sources that changed
+#   dev       as asan without the sanitizers, quick to build; not run unless it is asked for
 # Options:
 #   --quick         format, arrows and dev only
 #   --lane NAME     only this lane; may be given several times
-#   --all           every lane; tidy and asan on everything, and the slow sweeps (PALPATE_SLOW_TESTS=1)
+#   --all           every lane; tidy on everything, and the slow sweeps (PALPATE_SLOW_TESTS=1)
 #   --changed REF   what counts as changed for tidy: since REF, origin/main for one. Default: by the newest
 #                   commit and since
 # The last line says 'N passed, N failed' over all lanes; the exit status is 0 if none failed.
@@ -20,7 +20,8 @@ cd "$root" || exit 1
 source tools/setup.sh
 
 lanes=()
-all_lanes=(format arrows dev release asan tsan tidy)
+default_lanes=(format arrows release asan tsan tidy)
+all_lanes=("${default_lanes[@]}" dev)
 tidy_all=0 changed_since=
 usage() { printf 'error: %s; tools/test.sh --help lists the options\n' "$1" >&2; exit 2; }
 while [ $# -gt 0 ]; do
@@ -29,7 +30,7 @@ while [ $# -gt 0 ]; do
     --lane)
       [[ " ${all_lanes[*]} " == *" ${2:-none} "* ]] || usage "--lane takes one of: ${all_lanes[*]}"
       lanes+=("$2") && shift ;;
-    --all) tidy_all=1 && export PALPATE_SLOW_TESTS=1 ;;
+    --all) tidy_all=1 lanes=("${all_lanes[@]}") && export PALPATE_SLOW_TESTS=1 ;;
     --changed) [ -n "${2:-}" ] || usage "--changed takes a commit" ; changed_since=$2 && shift ;;
     -h | --help) sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "$0" && exit 0 ;;
     *) usage "unknown option $1" ;;
@@ -37,10 +38,8 @@ while [ $# -gt 0 ]; do
   shift
 done
 if [ ${#lanes[@]} = 0 ]; then
-  lanes=("${all_lanes[@]}")
+  lanes=("${default_lanes[@]}")
 fi
-asan_options=(-DPALPATE_VDB=OFF)
-[ $tidy_all = 0 ] || asan_options=(-DPALPATE_VDB=ON)
 
 results=$root/build/test-results
 mkdir -p "$results"
@@ -85,7 +84,7 @@ lane_format() { sources | xargs --no-run-if-empty clang-format --dry-run --Werro
 lane_arrows() { cmake -D ROOT="$root" -P tests/architecture/check_arrows.cmake; count_check $?; }
 lane_dev() { build_and_test dev; }
 lane_release() { build_and_test release; }
-lane_asan() { build_and_test asan "${asan_options[@]}"; }
+lane_asan() { build_and_test asan; }
 lane_tsan() { build_and_test tsan; }
 
 # The sources clang-tidy has to look at: all that changed, and for each header that changed one that includes it.

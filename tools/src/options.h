@@ -59,6 +59,12 @@ struct BakeOptions {
   double half_width = 4.0;  ///< [voxels]
 };
 
+/// What is baked on the way, and into what kind of file it goes.
+struct ConvertOptions {
+  BakeOptions bake;      ///< its output may be a mesh or an image; --layer names a grid of a .vdb
+  std::string to_units;  ///< mesh; empty: the input's
+};
+
 struct InfoOptions {
   std::vector<std::string> files;
   std::string units;
@@ -100,7 +106,8 @@ struct HelpOptions {
   bool markdown = false;
 };
 
-using VerbOptions = std::variant<HelpOptions, TouchOptions, BakeOptions, InfoOptions, QueryOptions,
-                                 ExplainOptions, RenderOptions, BenchOptions>;
+using VerbOptions =
+    std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions, InfoOptions, QueryOptions,
+                 ExplainOptions, RenderOptions, BenchOptions>;
 
 }  // namespace palpate::tools

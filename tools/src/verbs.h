@@ -11,6 +11,8 @@ namespace palpate::tools {
                          Console& console);
 [[nodiscard]] Report run(const BakeOptions& options, const GeneralOptions& general,
                          Console& console);
+[[nodiscard]] Report run(const ConvertOptions& options, const GeneralOptions& general,
+                         Console& console);
 [[nodiscard]] Report run(const InfoOptions& options, const GeneralOptions& general,
                          Console& console);
 [[nodiscard]] Report run(const QueryOptions& options, const GeneralOptions& general,

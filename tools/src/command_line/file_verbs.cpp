@@ -5,11 +5,9 @@
 namespace palpate::tools {
 namespace {
 
-void defineBake(CLI::App& app, Invocation& invocation) {
-  auto& o = choose<BakeOptions>(invocation);
-  app.add_option("input", o.input);
-  const char* g = "Output";
-  add(app, g, "-o,--output", "FILE.vdb", o.output, "where the grids go (required)");
+/// How a surface is made into a grid, and which.
+void addBaking(CLI::App& app, BakeOptions& o) {
+  const char* g = "The grid";
   add(app, g, "--voxel", "LENGTH", o.voxel,
       "voxel size, in the input's unit or with a unit: 0.5mm (default: that of an image or grid; "
       "else 1/128 of the longest side)");
@@ -17,7 +15,7 @@ void defineBake(CLI::App& app, Invocation& invocation) {
       "width of the narrow band on each side of the surface (default 4)")
       ->check(CLI::Range(2.0, 64.0));
   addList(app, g, "--layer", "NAME", o.layers,
-          "scene: only this layer, may be repeated; mesh, --above: what to call it");
+          "scene, grid: only this layer, may be repeated; mesh, --above: what to call it");
   g = "From a mesh";
   add(app, g, "--units", "UNIT", o.units,
       "what one unit of the mesh is: mm (default), cm, m, um, in");
@@ -33,6 +31,24 @@ void defineBake(CLI::App& app, Invocation& invocation) {
       ->take_all()
       ->allow_extra_args(false);
   add(app, g, "--names", "FILE", o.names, "name table: lines `index name` or `value,name`");
+}
+
+void defineBake(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<BakeOptions>(invocation);
+  app.add_option("input", o.input);
+  add(app, "Output", "-o,--output", "FILE.vdb", o.output, "where the grids go (required)");
+  addBaking(app, o);
+}
+
+void defineConvert(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<ConvertOptions>(invocation);
+  app.add_option("input", o.bake.input);
+  const char* g = "Output";
+  add(app, g, "-o,--output", "FILE", o.bake.output,
+      ".stl .obj .ply .glb, .nii .nii.gz or .vdb (required)");
+  add(app, g, "--to-units", "UNIT", o.to_units,
+      "what one unit of the mesh is to be: mm, cm, m, um, in (default: as in the input)");
+  addBaking(app, o.bake);
 }
 
 void defineInfo(CLI::App& app, Invocation& invocation) {
@@ -79,7 +95,29 @@ Verb bakeVerb() {
       [](const Invocation& i) {
         need(!chosen<BakeOptions>(i).input.empty(), "INPUT");
         need(!chosen<BakeOptions>(i).output.empty(), "-o OUT.vdb");
-      }};
+      },
+      true};
+}
+
+Verb convertVerb() {
+  return {"convert",
+          "Turn grids into meshes or images, meshes into others, and all into grids",
+          "palpate convert data/scenes/container.yaml -o container.stl --voxel 0.5",
+          "palpate convert INPUT -o OUTPUT [OPTIONS]",
+          "INPUT is a grid (.vdb), a mesh, a scene or an image; the output's name says what it "
+          "becomes.\n"
+          "A mesh winds outwards. An image holds signed distances. Scenes, meshes and images are "
+          "baked\n"
+          "on the way, as `palpate bake` does. A file has no more than one mesh or image, so of "
+          "several\n"
+          "layers or grids one must be named with --layer.",
+          {},
+          defineConvert,
+          [](const Invocation& i) {
+            need(!chosen<ConvertOptions>(i).bake.input.empty(), "INPUT");
+            need(!chosen<ConvertOptions>(i).bake.output.empty(), "-o OUTPUT");
+          },
+          true};
 }
 
 Verb infoVerb() {
@@ -112,7 +150,8 @@ Verb benchVerb() {
       "balls-10000.",
       {},
       defineBench,
-      [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact"); }};
+      [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact"); },
+      true};
 }
 
 Verb helpVerb() {

@@ -40,9 +40,7 @@ std::unique_ptr<CLI::App> makeApp(const Verb& verb, Invocation& invocation) {
   if (verb.name != std::string_view("help")) {
     addFlag(*app, g, "--json", invocation.general.json, "print one JSON object instead of text");
     addFlag(*app, g, "--quiet", invocation.general.quiet, "no notes and no progress on stderr");
-    const auto& o = invocation.options;
-    if (std::holds_alternative<TouchOptions>(o) || std::holds_alternative<BakeOptions>(o) ||
-        std::holds_alternative<RenderOptions>(o) || std::holds_alternative<BenchOptions>(o)) {
+    if (verb.writes) {
       addFlag(*app, g, "--force", invocation.general.force, "replace existing output files");
     }
   }

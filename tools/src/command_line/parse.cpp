@@ -55,8 +55,9 @@ std::vector<std::string> spreadPoints(const Verb& verb, const std::vector<std::s
 }  // namespace
 
 const std::vector<Verb>& verbs() {
-  static const std::vector<Verb> all = {touchVerb(),   bakeVerb(),   infoVerb(),  queryVerb(),
-                                        explainVerb(), renderVerb(), benchVerb(), helpVerb()};
+  static const std::vector<Verb> all = {touchVerb(),  bakeVerb(),  convertVerb(),
+                                        infoVerb(),   queryVerb(), explainVerb(),
+                                        renderVerb(), benchVerb(), helpVerb()};
   return all;
 }
 

@@ -99,7 +99,8 @@ Verb touchVerb() {
       "and the same input gives the same trace, bit for bit except tick_ns.",
       {"--stroke", "--insert"},
       defineTouch,
-      [](const Invocation& i) { need(!chosen<TouchOptions>(i).scene.empty(), "SCENE"); }};
+      [](const Invocation& i) { need(!chosen<TouchOptions>(i).scene.empty(), "SCENE"); },
+      true};
 }
 
 Verb queryVerb() {
@@ -149,7 +150,8 @@ Verb renderVerb() {
             if (!o.plane.empty() && !o.cut.empty()) {
               throw usageError("--plane and --cut exclude one another", "");
             }
-          }};
+          },
+          true};
 }
 
 }  // namespace palpate::tools

@@ -24,6 +24,7 @@ struct Verb {
   std::set<std::string> point_lists;  ///< options that take several points after one another
   std::function<void(CLI::App&, Invocation&)> define;
   std::function<void(const Invocation&)> check;  ///< what must be there
+  bool writes = false;                           ///< files, so that --force has a meaning
 };
 
 /// In the order of `palpate --help`.
@@ -40,6 +41,7 @@ struct Verb {
 [[nodiscard]] Verb renderVerb();
 // file_verbs.cpp
 [[nodiscard]] Verb bakeVerb();
+[[nodiscard]] Verb convertVerb();
 [[nodiscard]] Verb infoVerb();
 [[nodiscard]] Verb benchVerb();
 [[nodiscard]] Verb helpVerb();

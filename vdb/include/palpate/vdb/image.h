@@ -48,6 +48,11 @@ struct Image {
 /// affine, a detached .hdr / .img pair, ...
 [[nodiscard]] Image readNifti(const std::string& path);
 
+/// The bytes of a NIfTI-1 file: float voxels, the place as sform (code 2, aligned), mm; compressed
+/// with gzip if asked. readNifti() gives the same values back, the place to a float's rounding.
+/// @throws Error (kInput) for an empty image or one longer than 32767 voxels (the format's limit).
+[[nodiscard]] std::string encodeNifti(const Image& image, bool gzip);
+
 /// Header only, for `info`: no voxel is read, so that only what the header and the file's size tell
 /// is checked. Throws as readNifti() does.
 struct ImageInfo {

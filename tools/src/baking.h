@@ -1,0 +1,21 @@
+#pragma once
+/// Whatever can be baked, as grids: what `bake` writes and `convert` takes further.
+
+#include <vector>
+
+#include "console.h"
+#include "options.h"
+#include "palpate/vdb/level_set.h"
+
+namespace palpate::tools {
+
+struct BakedGrid {
+  vdb::LevelSet grid;
+  double seconds = 0.0;
+};
+
+/// One grid for each layer of a scene, for a mesh, for an image's threshold, or for each of its labels.
+/// @throws Error: kUsage for options that do not apply to this kind of input.
+[[nodiscard]] std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console);
+
+}  // namespace palpate::tools

@@ -1,0 +1,148 @@
+#include <algorithm>
+
+#include "baking.h"
+#include "input_kind.h"
+#include "json_parts.h"
+#include "output_files.h"
+#include "palpate/scene/scene_file.h"
+#include "palpate/vdb/grid_image.h"
+#include "palpate/vdb/image.h"
+#include "palpate/vdb/io.h"
+#include "palpate/vdb/surface_mesh.h"
+#include "text.h"
+#include "verbs.h"
+
+namespace palpate::tools {
+namespace {
+
+Error usageError(std::string message, std::string hint = {}) {
+  return Error(ErrorKind::kUsage, {"usage.convert", std::move(message), std::move(hint)});
+}
+
+bool isImageName(const std::string& path) {
+  return hasExtension(path, ".nii") || hasExtension(path, ".nii.gz");
+}
+
+/// A grid is named in full, or by its layer.
+vdb::LevelSet gridOfFile(const BakeOptions& options) {
+  if (options.layers.size() > 1) {
+    throw usageError("one file is made from one grid; --layer was given twice");
+  }
+  std::string name = options.layers.empty() ? "" : options.layers.front();
+  if (!name.empty()) {
+    const auto grids = vdb::listVdb(options.input);
+    const auto has = [&](const std::string& wanted) {
+      return std::any_of(grids.begin(), grids.end(),
+                         [&](const vdb::VdbGridSummary& grid) { return grid.name == wanted; });
+    };
+    if (!has(name) && has(name + "/surface")) name += "/surface";
+  }
+  return vdb::readVdb(options.input, name, options.units);
+}
+
+/// The one grid that a mesh or image file is made from.
+vdb::LevelSet onlyGrid(const ConvertOptions& options, Console& console) {
+  const BakeOptions& bake = options.bake;
+  if (inputKind(bake.input) == InputKind::kGrid) return gridOfFile(bake);
+  const std::vector<BakedGrid> baked = bakeInput(bake, console);
+  if (baked.size() == 1) return baked.front().grid;
+  std::string names;
+  for (const BakedGrid& one : baked) names += (names.empty() ? "" : ", ") + one.grid.info().name;
+  throw usageError(bake.input + " gives " + std::to_string(baked.size()) + " surfaces: " + names,
+                   "choose one with --layer or --labels; `palpate bake` writes all to one .vdb");
+}
+
+/// The unit of the input's own numbers, for a mesh that is written where nothing else was asked.
+std::string unitOf(const ConvertOptions& options, const vdb::LevelSet& grid) {
+  if (!options.to_units.empty()) return options.to_units;
+  return grid ? grid.info().length_unit : options.bake.units.empty() ? "mm" : options.bake.units;
+}
+
+struct Written {
+  std::string bytes;
+  Json json;
+  std::string text;
+};
+
+Written asMesh(const ConvertOptions& options, Console& console) {
+  const vdb::MeshFormat format = vdb::meshFormat(options.bake.output);
+  vdb::LevelSet grid;
+  vdb::Mesh mesh;
+  if (inputKind(options.bake.input) == InputKind::kMesh) {
+    if (options.bake.units.empty()) {
+      console.note(options.bake.input + ": one unit is taken as 1 mm; --units says otherwise");
+    }
+    mesh = vdb::readMesh(options.bake.input,
+                         lengthUnit(options.bake.units.empty() ? "mm" : options.bake.units).metres);
+  } else {
+    grid = onlyGrid(options, console);
+    mesh = vdb::surfaceMesh(grid, console.progress());
+  }
+  const bool metres = format == vdb::MeshFormat::kGlb;
+  if (metres && !options.to_units.empty() && options.to_units != "m") {
+    throw usageError("a .glb file is always in metres", "leave --to-units out");
+  }
+  const LengthUnit unit = lengthUnit(metres ? "m" : unitOf(options, grid));
+  const vdb::MeshReport report = vdb::checkMesh(mesh);
+  Written out;
+  out.bytes = vdb::encodeMesh(mesh, format, unit.metres);
+  out.json = {{"kind", "mesh"},
+              {"unit", unit.name},
+              {"vertices", mesh.vertices.size()},
+              {"triangles", mesh.triangles.size()},
+              {"closed", report.isClosed()},
+              {"volume_m3", report.volume},
+              {"bounds_m", boxJson(report.bounds)}};
+  out.text = formatCount(mesh.triangles.size()) + " triangles, one unit is 1 " + unit.name +
+             (report.isClosed() ? "" : ", not closed") + "\n";
+  return out;
+}
+
+Written asImage(const ConvertOptions& options, Console& console) {
+  const vdb::LevelSet grid = onlyGrid(options, console);
+  const vdb::Image image = vdb::gridImage(grid);
+  Written out;
+  out.bytes = vdb::encodeNifti(image, hasExtension(options.bake.output, ".gz"));
+  out.json = {{"kind", "image"},
+              {"size", image.size},
+              {"voxel_size_m", grid.info().voxel_size},
+              {"values", "signed distance, " + grid.info().length_unit}};
+  out.text = std::to_string(image.size[0]) + " x " + std::to_string(image.size[1]) + " x " +
+             std::to_string(image.size[2]) + " voxels with signed distances in " +
+             grid.info().length_unit + "\n";
+  return out;
+}
+
+}  // namespace
+
+Report run(const ConvertOptions& options, const GeneralOptions& general, Console& console) {
+  const std::string& output = options.bake.output;
+  const bool to_grid = hasExtension(output, ".vdb");
+  const bool to_image = isImageName(output);
+  const InputKind kind = inputKind(options.bake.input);
+  if (!options.to_units.empty() && (to_grid || to_image)) {
+    throw usageError("--to-units applies to meshes", "a grid's unit is that of its input");
+  }
+  if (to_grid && kind == InputKind::kGrid) {
+    throw usageError("this is a .vdb file already", "name a mesh (.stl .obj .ply .glb) or .nii.gz");
+  }
+  if (to_image && kind == InputKind::kImage && !options.bake.above && options.bake.labels.empty()) {
+    throw usageError("an image of distances needs a surface: --above VALUE or --labels NAME");
+  }
+  if (to_grid) return run(options.bake, general, console);
+
+  OutputFiles files(general.force);
+  files.announce(output, {options.bake.input, options.bake.names});
+  const Written written = to_image ? asImage(options, console) : asMesh(options, console);
+  checkStop();
+  files.write(output, written.bytes);
+  files.commit();
+  Report report;
+  report.json = {
+      {"schema", "palpate.convert/1"}, {"input", options.bake.input}, {"output", output}};
+  report.json.update(written.json);
+  report.text = written.text + "Wrote " + output + "\n";
+  return report;
+}
+
+}  // namespace palpate::tools
