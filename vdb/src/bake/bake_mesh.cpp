@@ -93,6 +93,7 @@ class MeshBaker {
                     : makeSolid(mesh_, plan_.voxel, options_.mesh_sign);
     const Box3 bounds = boundsOf(solid_);
     range_ = voxelRange({bounds.lo * plan_.voxel, bounds.hi * plan_.voxel}, search_, options_.name);
+    refuseTooLong();
     requireMemory(estimatedArea(solid_), 1.0, search_);
     if (!shell_) {
       columns_.emplace(solid_, options_.mesh_sign, progress_);
@@ -110,6 +111,18 @@ class MeshBaker {
   }
 
  private:
+  /// Lists by place, below, have a limit that only parts far from each other reach before the memory's.
+  void refuseTooLong() const {
+    constexpr int kMost = 1 << 24;
+    const Coord dim = range_.dim();
+    if (std::max({dim.x(), dim.y(), dim.z()}) < kMost) return;
+    throw Error(ErrorKind::kOperation,
+                {"bake.too_fine",
+                 "'" + options_.name + "' is more than 2^24 voxels of " +
+                     inMillimetres(plan_.voxel) + " long",
+                 "use larger voxels; also check that the mesh has the length unit it should"});
+  }
+
   struct Local {
     LeafScratch scratch;
     std::vector<Facet> facets;

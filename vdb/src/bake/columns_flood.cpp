@@ -38,15 +38,15 @@ void Columns::flood(MeshSign sign) {
   // without spans all are outside, which is group 0; gap n is group n + 1.
   Groups groups(spans_.size() + 1);
   const std::size_t none = columns_.size() - 1;
-  const auto isFirst = [&](std::size_t column, std::size_t n) {
+  const auto is_first = [&](std::size_t column, std::size_t n) {
     return n == columns_[column].first;
   };
   const auto begin = [&](std::size_t column, std::size_t n) {
-    return isFirst(column, n) ? -kInfinity : spans_[n - 1].end;
+    return is_first(column, n) ? -kInfinity : spans_[n - 1].end;
   };
   const auto meet = [&](std::size_t column, std::size_t other) {
     for (std::size_t n = columns_[column].first; n < columns_[column + 1].first; ++n) {
-      if (isFirst(column, n)) continue;
+      if (is_first(column, n)) continue;
       if (other == none) {
         groups.join(n + 1, 0);
         continue;
@@ -56,7 +56,7 @@ void Columns::flood(MeshSign sign) {
       const std::size_t last = columns_[other + 1].first;
       for (std::size_t m = columns_[other].first; m < last; ++m) {
         if (begin(other, m) < hi && lo < spans_[m].begin) {
-          groups.join(n + 1, isFirst(other, m) ? 0 : m + 1);
+          groups.join(n + 1, is_first(other, m) ? 0 : m + 1);
         }
       }
       if (last > columns_[other].first && spans_[last - 1].end < hi) groups.join(n + 1, 0);
@@ -85,7 +85,7 @@ void Columns::flood(MeshSign sign) {
     for (std::size_t column = rows_[row]; column < rows_[row + 1]; ++column) {
       for (std::size_t n = columns_[column].first; n < columns_[column + 1].first; ++n) {
         const std::size_t group = groups.root(n + 1);
-        if (isFirst(column, n) || group == 0 || cavity[group]) continue;
+        if (is_first(column, n) || group == 0 || cavity[group]) continue;
         enclosed[n] = true;
         const std::size_t voxels = voxelsBetween(spans_[n - 1].end, spans_[n].begin);
         if (voxels == 0) continue;

@@ -71,7 +71,7 @@ inline void measure(const LeafQuery& q, const std::uint32_t* list, std::uint32_t
                     const Eight<Lanes>& at, float* squares) {
   for (std::uint32_t n = 0; n < count; ++n) {
     const Facet& facet = q.facets[list == nullptr ? n : list[n]];
-    squaresOf(facet, at.x, at.y, at.z).store(squares + 8 * n);
+    squaresOf(facet, at.x, at.y, at.z).store(squares + std::size_t{8} * n);
   }
 }
 
@@ -104,8 +104,8 @@ inline void searchLeaf(const LeafQuery& q) {
       }
       float found[8];
       least.store(found);
-      float* const corner =
-          q.squares + (4 * fx + 2 * tx) * 64 + (4 * fy + 2 * ty) * 8 + 4 * fz + 2 * tz;
+      const int first = (4 * fx + 2 * tx) * 64 + (4 * fy + 2 * ty) * 8 + 4 * fz + 2 * tz;
+      float* const corner = q.squares + first;
       for (int n = 0; n < 8; ++n) corner[(n >> 2) * 64 + ((n >> 1) & 1) * 8 + (n & 1)] = found[n];
     }
   }

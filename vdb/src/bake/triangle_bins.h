@@ -15,8 +15,8 @@ namespace palpate::vdb {
 /// Leaves in a fixed order, each with its triangles in rising order.
 class TriangleBins {
  public:
-  /// `vertices` [voxels]; `range` holds every voxel that the band can touch.
-  /// @throws Error: kOperation if leaves or their triangles are too many; kCancelled.
+  /// `vertices` [voxels]; `range` holds every voxel that the band can touch, less than 2^24 along
+  /// each axis. @throws Error (kCancelled).
   TriangleBins(const std::vector<Vec3>& vertices,
                const std::vector<std::array<std::uint32_t, 3>>& triangles,
                const openvdb::CoordBBox& range, const BakePlan& plan, const Progress& progress);

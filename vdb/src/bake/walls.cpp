@@ -32,6 +32,8 @@ class Floor {
     for (const Triangle& t : solid.triangles) area += areaOf(solid.vertices, t);
     // As large as a triangle, but not so small that large triangles fill the memory.
     cell_ = std::max(1.0, std::sqrt(area / static_cast<double>(solid.triangles.size())));
+    const double most = 4.0 * static_cast<double>(solid.triangles.size()) + 1e6;
+    cell_ = std::max(cell_, std::sqrt(box_.size().x * box_.size().y / most));
     const auto cells = [&](double size) { return static_cast<std::uint64_t>(size / cell_) + 1; };
     nx_ = cells(box_.size().x);
     ny_ = cells(box_.size().y);
@@ -219,13 +221,13 @@ std::optional<Vec3> findCrossing(const Solid& solid, const Box3& box) {
   }
   std::sort(near.begin(), near.end(),
             [](const Near& a, const Near& b) { return a.box.lo.x < b.box.lo.x; });
-  const auto cornersOf = [&](const Near& n) {
+  const auto corners_of = [&](const Near& n) {
     const auto& [a, b, c] = solid.triangles[n.triangle];
     return std::array<Vec3, 3>{solid.vertices[a], solid.vertices[b], solid.vertices[c]};
   };
   for (std::size_t i = 0; i < near.size(); ++i) {
     const Triangle& mine = solid.triangles[near[i].triangle];
-    const std::array<Vec3, 3> here = cornersOf(near[i]);
+    const std::array<Vec3, 3> here = corners_of(near[i]);
     for (std::size_t k = i + 1; k < near.size() && near[k].box.lo.x <= near[i].box.hi.x; ++k) {
       if (solid.part_of[near[i].triangle] != solid.part_of[near[k].triangle]) continue;
       if (near[i].box.intersectedWith(near[k].box).isEmpty()) continue;
@@ -234,7 +236,7 @@ std::optional<Vec3> findCrossing(const Solid& solid, const Box3& box) {
         return std::find(other.begin(), other.end(), v) != other.end();
       });
       if (touches) continue;
-      const std::array<Vec3, 3> there = cornersOf(near[k]);
+      const std::array<Vec3, 3> there = corners_of(near[k]);
       for (std::size_t n = 0; n < 3; ++n) {
         if (const auto at = passes(here[n], here[(n + 1) % 3], there)) return at;
         if (const auto at = passes(there[n], there[(n + 1) % 3], here)) return at;
