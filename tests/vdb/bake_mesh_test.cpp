@@ -181,7 +181,7 @@ TEST(BakeMesh, BothKernelsAgree) {
 }
 
 TEST(BakeMesh, CavityIsOutside) {
-  const Mesh mesh = together(ballMesh(Vec3(0.0), 8e-3, 2), ballMesh(Vec3(0.5e-3), 4e-3, 2),
+  const Mesh mesh = together(ballMesh(Vec3(0.0), 6e-3, 1), ballMesh(Vec3(0.5e-3), 3e-3, 1),
                              /*inside_out=*/true);
   const LevelSet set = bakeMesh(mesh, voxels(0.7e-3, 2.0));
   expectDistances(set, [&](const Vec3& p) { return signedDistance(p, mesh); });
