@@ -1,91 +1,226 @@
-#include <openvdb/tools/MeshToVolume.h>
+#include <tbb/enumerable_thread_specific.h>
 
-#include <atomic>
-#include <chrono>
+#include <algorithm>
 #include <cmath>
-#include <future>
+#include <memory>
+#include <optional>
+#include <vector>
 
 #include "bake/bake_plan.h"
+#include "bake/columns.h"
+#include "bake/facet.h"
+#include "bake/leaf_distance.h"
+#include "bake/solid.h"
+#include "bake/triangle_bins.h"
+#include "bake/walls.h"
 #include "palpate/vdb/bake.h"
 
 namespace palpate::vdb {
 namespace {
 
-/// The mesh as OpenVDB wants it: points in index space.
-class Adapter {
- public:
-  Adapter(const Mesh& mesh, double voxel) : mesh_(mesh), voxel_(voxel) {}
-  [[nodiscard]] std::size_t polygonCount() const { return mesh_.triangles.size(); }
-  [[nodiscard]] std::size_t pointCount() const { return mesh_.vertices.size(); }
-  [[nodiscard]] static std::size_t vertexCount(std::size_t) { return 3; }
-  void getIndexSpacePoint(std::size_t n, std::size_t v, openvdb::Vec3d& point) const {
-    const Vec3 p = mesh_.vertices[mesh_.triangles[n][v]] / voxel_;
-    point = openvdb::Vec3d(p.x, p.y, p.z);
-  }
+using openvdb::Coord;
+using openvdb::CoordBBox;
+using Tree = openvdb::FloatTree;
+using Leaf = Tree::LeafNodeType;
+using Upper = Tree::RootNodeType::ChildNodeType;
+using Lower = Upper::ChildNodeType;
 
- private:
-  const Mesh& mesh_;
-  double voxel_;
-};
-
-struct Interrupter {
-  std::atomic<bool> stop = false;
-  std::atomic<int> percent = -1;
-  void start(const char* = nullptr) {}
-  void end() {}
-  bool wasInterrupted(int done = -1) {
-    if (done >= 0) percent = done;
-    return stop;
-  }
-};
-
-void requireClosed(const Mesh& mesh) {
-  const MeshReport found = checkMesh(mesh);
-  if (found.isClosed()) return;
-  const Vec3 at = found.first_boundary;
-  throw inputError("mesh.open",
-                   "the mesh is open: it has " + std::to_string(found.boundary_edges) +
-                       " boundary edges, one of them at (" + inMillimetres(at.x) + ", " +
-                       inMillimetres(at.y) + ", " + inMillimetres(at.z) + ")",
-                   "close its holes in a mesh editor", mesh.source);
-}
-
-double area(const Mesh& mesh) {
+/// [voxels^2] that stands for the leaves of a band; long needles have one all along without any area.
+double estimatedArea(const Solid& solid) {
   double sum = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3& p = mesh.vertices[a];
-    sum += 0.5 * glm::length(glm::cross(mesh.vertices[b] - p, mesh.vertices[c] - p));
+  for (const auto& [i, j, k] : solid.triangles) {
+    const Vec3& a = solid.vertices[i];
+    const Vec3& b = solid.vertices[j];
+    const Vec3& c = solid.vertices[k];
+    const double longest =
+        std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+    sum += 0.5 * glm::length(glm::cross(b - a, c - a));
+    if (longest > 32.0) sum += 8.0 * longest;
   }
   return sum;
 }
 
+Box3 boundsOf(const Solid& solid) {
+  Box3 bounds;
+  for (const auto& triangle : solid.triangles) {
+    for (const std::uint32_t vertex : triangle) bounds.include(solid.vertices[vertex]);
+  }
+  return bounds;
+}
+
+/// @throws Error naming a place that the winding number and the flood differ about.
+void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& columns,
+                      const BakePlan& plan) {
+  const std::string hint =
+      "mend it in a mesh editor; or choose whether the winding number or the flood decides";
+  if (columns.doubt()) {
+    throw inputError("mesh.ambiguous",
+                     "the mesh does not tell what is solid: at " +
+                         placeText(columns.doubt()->place, plan.voxel) + " " + columns.doubt()->why,
+                     hint, mesh.source);
+  }
+  for (const Columns::Pocket& pocket : columns.pockets()) {
+    // A space whose way out is narrower than a voxel is enclosed as well, and rightly outside.
+    const std::optional<Vec3> crossing = findCrossing(solid, pocket.box.grownBy(1.5));
+    if (!crossing) continue;
+    throw inputError("mesh.ambiguous",
+                     "the mesh passes through itself at " + placeText(*crossing, plan.voxel) +
+                         " and encloses a space of " + std::to_string(pocket.voxels) +
+                         " voxels there: inside by the flood, outside by the winding number",
+                     hint, mesh.source);
+  }
+}
+
+class MeshBaker {
+ public:
+  MeshBaker(const Mesh& mesh, const BakeOptions& options, const Progress& progress)
+      : mesh_(mesh), options_(options), progress_(progress), plan_(checkOptions(options)) {
+    const double half = 0.5 * options.shell_thickness / plan_.voxel;
+    if (!(half >= 0.0) || !std::isfinite(half)) {
+      throw inputError("bake.shell_thickness", "the shell's thickness is " +
+                                                   inMillimetres(options.shell_thickness) +
+                                                   "; it must be a length, or 0 for a solid");
+    }
+    if (half > 0.0) shell_ = static_cast<float>(half);
+    search_ = plan_;
+    search_.half_width += half;
+    search_.band += half * plan_.voxel;
+  }
+
+  LevelSet run() {
+    report(progress_, "bake mesh: checking", 0.0);
+    solid_ = shell_ ? makeSurface(mesh_, plan_.voxel)
+                    : makeSolid(mesh_, plan_.voxel, options_.mesh_sign);
+    const Box3 bounds = boundsOf(solid_);
+    range_ = voxelRange({bounds.lo * plan_.voxel, bounds.hi * plan_.voxel}, search_, options_.name);
+    refuseTooLong();
+    requireMemory(estimatedArea(solid_), 1.0, search_);
+    if (!shell_) {
+      columns_.emplace(solid_, options_.mesh_sign, progress_);
+      if (options_.mesh_sign == MeshSign::kVote) requireAgreement(mesh_, solid_, *columns_, plan_);
+      if (columns_->hasIdleWalls() || columns_->isFilled() || !solid_.was_closed) {
+        dropIdleWalls(solid_, *columns_, progress_);
+      }
+    }
+    const TriangleBins bins(solid_.vertices, solid_.triangles, range_, search_, progress_);
+    grid_ = emptyGrid(plan_, options_);
+    fillLeaves(bins);
+    if (columns_) fillInside();
+    report(progress_, "bake mesh", 1.0);
+    return finishGrid(grid_, plan_, options_);
+  }
+
+ private:
+  /// Lists by place, below, have a limit that only parts far from each other reach before the memory's.
+  void refuseTooLong() const {
+    constexpr int kMost = 1 << 24;
+    const Coord dim = range_.dim();
+    if (std::max({dim.x(), dim.y(), dim.z()}) < kMost) return;
+    throw Error(ErrorKind::kOperation,
+                {"bake.too_fine",
+                 "'" + options_.name + "' is more than 2^24 voxels of " +
+                     inMillimetres(plan_.voxel) + " long",
+                 "use larger voxels; also check that the mesh has the length unit it should"});
+  }
+
+  struct Local {
+    LeafScratch scratch;
+    std::vector<Facet> facets;
+    std::array<float, Leaf::SIZE> squares{};
+  };
+
+  void fillLeaves(const TriangleBins& bins) {
+    std::vector<std::unique_ptr<Leaf>> leaves(bins.size());
+    tbb::enumerable_thread_specific<Local> locals;
+    parallelWithProgress(bins.size(), progress_, "bake mesh", 0.2, 1.0, [&](std::size_t i) {
+      leaves[i] = makeLeaf(bins.origin(i), bins.triangles(i), locals.local());
+    });
+    for (auto& leaf : leaves) {
+      if (leaf) grid_->tree().addLeaf(leaf.release());
+    }
+  }
+
+  std::unique_ptr<Leaf> makeLeaf(const Coord& origin, std::span<const std::uint32_t> triangles,
+                                 Local& local) const {
+    const Vec3 middle = Vec3(origin.x(), origin.y(), origin.z()) + 3.5;
+    local.facets.clear();
+    for (const std::uint32_t triangle : triangles) {
+      const auto& [a, b, c] = solid_.triangles[triangle];
+      local.facets.push_back(makeFacet(solid_.vertices[a] - middle, solid_.vertices[b] - middle,
+                                       solid_.vertices[c] - middle));
+    }
+    findSquares(makeQuery(local.facets, static_cast<float>(search_.half_width), local.scratch,
+                          local.squares.data()));
+    auto leaf = std::make_unique<Leaf>(origin, plan_.background, false);
+    float* const values = leaf->buffer().data();
+    const auto unit = static_cast<float>(plan_.voxel / plan_.metres_per_unit);
+    const float background = plan_.background;
+    bool any = false;
+    for (openvdb::Index column = 0; column < Leaf::SIZE; column += Leaf::DIM) {
+      std::array<bool, 8> inside{};
+      if (columns_) {
+        const Coord at = Leaf::offsetToLocalCoord(column) + origin;
+        inside = columns_->areInside(at.x(), at.y(), at.z());
+      }
+      for (openvdb::Index z = 0; z < Leaf::DIM; ++z) {
+        float value = (std::sqrt(local.squares[column + z]) - shell_.value_or(0.0F)) * unit;
+        if (inside[z]) value = -value;
+        const bool active = std::abs(value) < background;
+        any = any || active || (shell_ && value < 0.0F);
+        values[column + z] = active ? value : std::copysign(background, value);
+        if (active) leaf->setValueOn(column + z);
+      }
+    }
+    if (!any) leaf.reset();
+    return leaf;
+  }
+
+  /// Gives every tile beside the leaves its side.
+  void fillInside() {
+    Tree& tree = grid_->tree();
+    const auto inside = [&](const Coord& at) { return columns_->isInside(at.x(), at.y(), at.z()); };
+    std::vector<Lower*> lower_nodes;
+    for (auto upper = tree.root().beginChildOn(); upper; ++upper) {
+      for (auto lower = upper->beginChildOn(); lower; ++lower) lower_nodes.push_back(&*lower);
+      for (auto tile = upper->beginChildOff(); tile; ++tile) {
+        if (inside(tile.getCoord())) tile.setValue(-plan_.background);
+      }
+    }
+    parallelWithProgress(lower_nodes.size(), {}, "", 1.0, 1.0, [&](std::size_t i) {
+      for (auto tile = lower_nodes[i]->beginChildOff(); tile; ++tile) {
+        if (inside(tile.getCoord())) tile.setValue(-plan_.background);
+      }
+    });
+    constexpr int kUpper = static_cast<int>(Upper::DIM);
+    const auto down = [](int value) { return value & ~(kUpper - 1); };
+    for (int x = down(range_.min().x()); x <= range_.max().x(); x += kUpper) {
+      for (int y = down(range_.min().y()); y <= range_.max().y(); y += kUpper) {
+        for (int z = down(range_.min().z()); z <= range_.max().z(); z += kUpper) {
+          const Coord at(x, y, z);
+          if (tree.root().probeConstNode<Upper>(at) == nullptr && inside(at)) {
+            tree.addTile(Upper::LEVEL + 1, at, -plan_.background, false);
+          }
+        }
+      }
+    }
+  }
+
+  const Mesh& mesh_;
+  const BakeOptions& options_;
+  const Progress& progress_;
+  BakePlan plan_;
+  BakePlan search_;             ///< the same, with the band that distances are needed in
+  std::optional<float> shell_;  ///< [voxels] half of its thickness
+  Solid solid_;
+  CoordBBox range_;  ///< of the voxels that the band can touch
+  std::optional<Columns> columns_;
+  openvdb::FloatGrid::Ptr grid_;
+};
+
 }  // namespace
 
 LevelSet bakeMesh(const Mesh& mesh, const BakeOptions& options, const Progress& progress) {
-  const BakePlan plan = checkOptions(options);
-  requireClosed(mesh);
-  requireMemory(area(mesh) / (plan.voxel * plan.voxel), 1.0, plan);
-  const openvdb::FloatGrid::Ptr model = emptyGrid(plan, options);
-  Interrupter interrupter;
-  const auto width = static_cast<float>(options.half_width);
-  // OpenVDB asks its interrupter from any thread; progress is for the calling one.
-  std::future<openvdb::FloatGrid::Ptr> work = std::async(std::launch::async, [&] {
-    const Adapter adapter(mesh, plan.voxel);
-    return openvdb::tools::meshToVolume<openvdb::FloatGrid>(interrupter, adapter,
-                                                            model->transform(), width, width);
-  });
-  try {
-    while (work.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
-      report(progress, "bake mesh", interrupter.percent / 100.0);
-    }
-  } catch (...) {
-    interrupter.stop = true;
-    work.wait();
-    throw;
-  }
-  openvdb::FloatGrid::Ptr grid = work.get();
-  grid->setName(options.name);
-  return finishGrid(grid, plan, options);
+  return MeshBaker(mesh, options, progress).run();
 }
 
 }  // namespace palpate::vdb

@@ -1,6 +1,7 @@
 #pragma once
 /// Fields and meshes -> narrow-band level sets, in parallel (TBB).
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -8,6 +9,13 @@
 #include "palpate/vdb/mesh.h"
 
 namespace palpate::vdb {
+
+/// Who tells the inside of a mesh from its outside where a mesh is not one clean closed surface.
+enum class MeshSign : std::uint8_t {
+  kVote,     ///< both of the following; where they differ, and for large holes, bakeMesh() throws
+  kWinding,  ///< inside: the winding number is not 0. Parts turned against the one around are hollows
+  kFlood     ///< inside: whatever cannot be reached from outside; there are no hollows
+};
 
 struct BakeOptions {
   double voxel_size = 0.0;              ///< [m] must be positive
@@ -19,6 +27,10 @@ struct BakeOptions {
   std::string length_unit = "mm";  ///< unit that the grid's world coordinates are stored in
   std::uint64_t max_memory = 0;    ///< [bytes] 0: 80 % of the machine's
   std::map<std::string, std::string> metadata = {};
+  MeshSign mesh_sign = MeshSign::kVote;  ///< of bakeMesh()
+  /// [m] of bakeMesh(): if positive, the mesh is no solid but a surface, closed or not, in the middle
+  /// of a shell of that thickness.
+  double shell_thickness = 0.0;
 };
 
 /// Voxel (0, 0, 0) has its centre at the origin. Values are the field's own if it is exact or a
@@ -32,7 +44,16 @@ struct BakeOptions {
 [[nodiscard]] LevelSet bake(const Field& field, const BakeOptions& options,
                             const Progress& progress = {});
 
-/// `mesh` must be closed (checkMesh()); an open one is refused, naming its boundary edges.
+/// A solid out of a mesh as it comes. Values are the distance to the closest triangle, to 1e-5 voxel;
+/// the result does not depend on the number of threads.
+///
+/// Vertices in one place are joined, doubled triangles dropped, triangles turned as most of their
+/// neighbors are; holes get lids of least area. Parts that overlap are one solid, a part within another
+/// one and turned against it is a cavity, a mesh that is inside out is the same mesh.
+/// @throws Error: kInput, naming a place, for a mesh without faces, with an index out of range, a vertex
+/// that is not finite or a thousand times farther out than the rest, with lids that make up more
+/// than an eighth of a part's surface, or about which winding number and flood differ; kOperation for
+/// memory; kCancelled.
 [[nodiscard]] LevelSet bakeMesh(const Mesh& mesh, const BakeOptions& options,
                                 const Progress& progress = {});
 

@@ -1,0 +1,32 @@
+#pragma once
+/// What the benchmarks of baking share.
+
+#include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
+
+#include <cstdint>
+
+namespace palpate::vdb::bench {
+
+/// [voxels] as in the measurements that others are known by.
+inline constexpr double kHalfWidth = 3.0;
+
+/// Limits the threads while it lives.
+class Threads {
+ public:
+  explicit Threads(std::int64_t count)
+      : control_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)) {}
+
+ private:
+  tbb::global_control control_;
+};
+
+/// Adds the count of active voxels and the seconds that each took.
+inline void perVoxel(benchmark::State& state, std::uint64_t voxels) {
+  state.counters["voxels"] = static_cast<double>(voxels);
+  state.counters["per_voxel"] =
+      benchmark::Counter(static_cast<double>(voxels),
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+}  // namespace palpate::vdb::bench

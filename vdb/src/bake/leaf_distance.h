@@ -1,0 +1,45 @@
+#pragma once
+/// The least distance of each voxel of a leaf to a list of triangles: the inner loop of the mesh bake.
+
+#include <cstdint>
+#include <vector>
+
+#include "bake/facet.h"
+
+namespace palpate::vdb {
+
+/// What the search writes to; kept from leaf to leaf. Sized by prepareScratch().
+struct LeafScratch {
+  std::vector<float> eight;           ///< squares of eight cubes for each facet
+  std::vector<float> four;            ///< and of those one level down
+  std::vector<std::uint32_t> nearby;  ///< facets that matter to a cube of 4^3
+  std::vector<std::uint32_t> close;   ///< and to one of 2^3
+};
+
+/// The same as plain pointers: files compiled for newer processors share no code with others.
+struct LeafQuery {
+  const Facet* facets;  ///< about the leaf's middle
+  std::uint32_t count;
+  float half_width;  ///< [voxels]
+  float* eight;
+  float* four;
+  std::uint32_t* nearby;
+  std::uint32_t* close;
+  float* squares;  ///< [voxels^2] out, in OpenVDB's order; kFarSquare where surely not in the band
+};
+
+inline constexpr float kFarSquare = 3.0e38F;
+
+/// Cubes of 4^3 and 2^3 voxels drop the triangles that are nearest to none of their voxels; eight
+/// voxels at a time. Squares are off by some 1e-6 of a voxel times the distance.
+void findSquares(const LeafQuery& query) noexcept;
+
+/// Its two forms; findSquares() takes the one that the processor has.
+void findSquaresPlain(const LeafQuery& query) noexcept;
+void findSquaresAvx2(const LeafQuery& query) noexcept;
+[[nodiscard]] bool hasAvx2() noexcept;
+
+[[nodiscard]] LeafQuery makeQuery(const std::vector<Facet>& facets, float half_width,
+                                  LeafScratch& scratch, float* squares);
+
+}  // namespace palpate::vdb

@@ -1,0 +1,268 @@
+#include "bake/solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <utility>
+
+#include "bake/bake_plan.h"
+#include "bake/edges.h"
+
+namespace palpate::vdb {
+namespace {
+
+/// A lid may have this share of the closed part's area: beyond, the form does not tell where a wall was.
+constexpr double kMostLid = 0.125;
+/// A vertex farther out than this many times the size of what all others fill is a slip.
+constexpr double kFar = 1000.0;
+
+void requireUsable(const Mesh& mesh) {
+  if (mesh.triangles.empty()) {
+    throw inputError("mesh.no_faces", "the mesh has no faces", "", mesh.source);
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (const std::uint32_t vertex : mesh.triangles[i]) {
+      if (vertex >= mesh.vertices.size()) {
+        throw inputError("mesh.index",
+                         "face " + std::to_string(i) + " (from 0) names vertex " +
+                             std::to_string(vertex) + " of " + std::to_string(mesh.vertices.size()),
+                         "", mesh.source);
+      }
+      if (!isFinite(mesh.vertices[vertex])) {
+        throw inputError("mesh.not_finite",
+                         "vertex " + std::to_string(vertex) + " (from 0) is not a finite point", "",
+                         mesh.source);
+      }
+    }
+  }
+}
+
+void refuseOutliers(const Mesh& mesh) {
+  std::vector<double> values;
+  values.reserve(mesh.vertices.size());
+  Vec3 middle(0.0);
+  Vec3 spread(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    values.clear();
+    for (const Vec3& p : mesh.vertices) {
+      if (isFinite(p)) values.push_back(p[axis]);  // a vertex without faces need not be
+    }
+    // All but a fiftieth on each side; of few vertices, more.
+    const auto fringe = static_cast<std::ptrdiff_t>(
+        std::max<std::size_t>(values.size() / 50, std::min<std::size_t>(values.size() / 3, 6)));
+    const auto lo = values.begin() + fringe;
+    const auto hi = values.end() - 1 - fringe;
+    std::nth_element(values.begin(), lo, values.end());
+    const double low = *lo;
+    std::nth_element(values.begin(), hi, values.end());
+    middle[axis] = 0.5 * (low + *hi);
+    spread[axis] = *hi - low;
+  }
+  const double size = glm::length(spread);
+  if (!(size > 0.0)) return;
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      const Vec3& p = mesh.vertices[vertex];
+      if (glm::distance(p, middle) <= kFar * size) continue;
+      throw inputError("mesh.outlier",
+                       "vertex " + std::to_string(vertex) + " (from 0) lies at " +
+                           placeText(p, 1.0) +
+                           ", more than a thousand times the size of the rest away",
+                       "remove it, or put it where it belongs", mesh.source);
+    }
+  }
+}
+
+std::size_t hashOf(const Vec3& p) noexcept {
+  std::uint64_t hash = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::uint64_t bits = 0;
+    const double value = p[axis] + 0.0;  // -0 and 0 are one place
+    std::memcpy(&bits, &value, sizeof bits);
+    hash = (hash ^ bits) * 0x9e3779b97f4a7c15U;
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
+/// Vertices in one place become one.
+void weld(const Mesh& mesh, double voxel, Solid& solid) {
+  constexpr std::uint32_t kNone = 0xffffffffU;
+  std::size_t slots = 16;
+  while (slots < 2 * mesh.vertices.size()) slots *= 2;
+  std::vector<std::uint32_t> table(slots, kNone);  // of vertices, each the first in its place
+  std::vector<std::uint32_t> name(mesh.vertices.size());
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Vec3& place = mesh.vertices[v];
+    if (!isFinite(place)) continue;  // no triangle has it
+    std::size_t slot = hashOf(place) & (slots - 1);
+    while (table[slot] != kNone && mesh.vertices[table[slot]] != place)
+      slot = (slot + 1) & (slots - 1);
+    if (table[slot] == kNone) {
+      table[slot] = v;
+      name[v] = static_cast<std::uint32_t>(solid.vertices.size());
+      solid.vertices.push_back(place / voxel);
+    }
+    name[v] = name[table[slot]];
+  }
+  solid.triangles.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Triangle t{name[a], name[b], name[c]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) solid.triangles.push_back(t);
+  }
+}
+
+/// Of triangles with the same corners only the first stays, whichever way they are turned.
+void dropDoubles(std::vector<Triangle>& triangles, const std::vector<Side>& sides) {
+  std::vector<bool> doubled(triangles.size(), false);
+  const auto third = [&](const Side& side) {
+    const Triangle& t = triangles[side.triangle];
+    return t[0] + t[1] + t[2] - side.low - side.high;
+  };
+  bool any = false;
+  forEachEdge(sides, [&](std::size_t begin, std::size_t end) {
+    // Sides of an edge come in the order of their triangles.
+    for (std::size_t n = begin + 1; n < end; ++n) {
+      for (std::size_t m = begin; m < n; ++m) {
+        if (third(sides[m]) == third(sides[n])) doubled[sides[n].triangle] = any = true;
+      }
+    }
+  });
+  if (!any) return;
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (!doubled[t]) triangles[kept++] = triangles[t];
+  }
+  triangles.resize(kept);
+}
+
+Solid cleaned(const Mesh& mesh, double voxel, std::vector<Side>& sides) {
+  requireUsable(mesh);
+  refuseOutliers(mesh);
+  Solid solid;
+  weld(mesh, voxel, solid);
+  if (solid.triangles.empty()) {
+    throw inputError("mesh.no_faces", "all faces of the mesh have two corners in one point", "",
+                     mesh.source);
+  }
+  sides = sortedSides(solid.triangles);
+  const std::size_t before = solid.triangles.size();
+  dropDoubles(solid.triangles, sides);
+  if (solid.triangles.size() != before) sides = sortedSides(solid.triangles);
+  return solid;
+}
+
+bool isConsistent(const std::vector<Side>& sides) {
+  bool consistent = true;
+  forEachEdge(sides, [&](std::size_t begin, std::size_t end) {
+    consistent = consistent && end - begin == 2 && sides[begin].upwards != sides[begin + 1].upwards;
+  });
+  return consistent;
+}
+
+/// Names the part of each triangle, by vertices joined.
+void findParts(Solid& solid) {
+  std::vector<std::uint32_t> parent(solid.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const auto& [a, b, c] : solid.triangles) {
+    parent[root(a)] = root(b);
+    parent[root(b)] = root(c);
+  }
+  constexpr std::uint32_t kNone = 0xffffffffU;
+  std::vector<std::uint32_t> name(solid.vertices.size(), kNone);
+  solid.part_of.clear();
+  for (const Triangle& t : solid.triangles) {
+    std::uint32_t& part = name[root(t[0])];
+    if (part == kNone) {
+      part = static_cast<std::uint32_t>(solid.parts.size());
+      solid.parts.push_back({0.0, 0.0, 0.0, solid.vertices[t[0]]});
+    }
+    solid.part_of.push_back(part);
+    SolidPart& here = solid.parts[part];
+    const Vec3 u = solid.vertices[t[0]] - here.place;
+    const Vec3 v = solid.vertices[t[1]] - here.place;
+    const Vec3 w = solid.vertices[t[2]] - here.place;
+    here.volume += glm::dot(u, glm::cross(v, w)) / 6.0;
+    here.area += areaOf(solid.vertices, t);
+  }
+}
+
+/// Lids must be small beside what they close. @throws Error naming the largest hole.
+void requireSmallLids(const Mesh& mesh, const Solid& solid, const std::vector<Hole>& holes,
+                      std::size_t first_lid, double voxel) {
+  std::vector<double> lids(solid.parts.size(), 0.0);
+  for (std::size_t t = first_lid; t < solid.triangles.size(); ++t) {
+    lids[solid.part_of[t]] += areaOf(solid.vertices, solid.triangles[t]);
+  }
+  for (std::size_t part = 0; part < lids.size(); ++part) {
+    if (lids[part] <= kMostLid * solid.parts[part].area) continue;
+    const Hole* worst = nullptr;
+    std::size_t count = 0;
+    std::size_t t = first_lid;
+    for (const Hole& hole : holes) {
+      if (solid.part_of[t] == part) {
+        ++count;
+        if (worst == nullptr || hole.area > worst->area) worst = &hole;
+      }
+      t += hole.lid.size();
+    }
+    if (worst == nullptr) continue;
+    Vec3 middle(0.0);
+    Box3 box;
+    for (const std::uint32_t v : worst->loop) {
+      middle += solid.vertices[v] / static_cast<double>(worst->loop.size());
+      box.include(solid.vertices[v]);
+    }
+    throw inputError(
+        "mesh.open",
+        "the mesh is open: " + std::to_string(count) + (count == 1 ? " hole" : " holes") +
+            ", the largest " + inMillimetres(glm::length(box.size()) * voxel) + " across at " +
+            placeText(middle, voxel) + ", too large beside the surface to guess what closes it",
+        "close it in a mesh editor; or say that the winding number decides, which puts "
+        "flat lids on all holes; or ask for a shell of some thickness",
+        mesh.source);
+  }
+}
+
+}  // namespace
+
+std::string placeText(const Vec3& place, double voxel) {
+  return "(" + inMillimetres(place.x * voxel) + ", " + inMillimetres(place.y * voxel) + ", " +
+         inMillimetres(place.z * voxel) + ")";
+}
+
+Solid makeSurface(const Mesh& mesh, double voxel) {
+  std::vector<Side> sides;
+  return cleaned(mesh, voxel, sides);
+}
+
+Solid makeSolid(const Mesh& mesh, double voxel, MeshSign sign) {
+  std::vector<Side> sides;
+  Solid solid = cleaned(mesh, voxel, sides);
+  if (isConsistent(sides)) {
+    findParts(solid);
+    return solid;
+  }
+  solid.was_closed = false;
+  const std::vector<bool> turned = turnAlike(solid.vertices, sides, solid.triangles);
+  sides = sortedSides(solid.triangles);
+  const std::vector<Hole> holes = closeHoles(solid.vertices, sides);
+  const std::size_t first_lid = solid.triangles.size();
+  for (const Hole& hole : holes) {
+    solid.triangles.insert(solid.triangles.end(), hole.lid.begin(), hole.lid.end());
+  }
+  findParts(solid);
+  for (std::size_t t = 0; t < first_lid; ++t) {
+    SolidPart& part = solid.parts[solid.part_of[t]];
+    if (turned[t]) part.minority += areaOf(solid.vertices, solid.triangles[t]) / part.area;
+  }
+  if (sign == MeshSign::kVote) requireSmallLids(mesh, solid, holes, first_lid, voxel);
+  return solid;
+}
+
+}  // namespace palpate::vdb

@@ -1,0 +1,42 @@
+#pragma once
+/// A mesh made ready for baking: checked, welded, turned alike, its holes closed.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "palpate/vdb/bake.h"
+#include "palpate/vdb/mesh.h"
+
+namespace palpate::vdb {
+
+/// Triangles that hang together by shared vertices.
+struct SolidPart {
+  double volume = 0.0;        ///< [voxels^3] signed
+  double area = 0.0;          ///< [voxels^2]
+  double minority = 0.0;      ///< share of the area that was turned to agree with the rest
+  Vec3 place{0.0, 0.0, 0.0};  ///< [voxels] a vertex
+};
+
+/// Along every edge as many triangles run one way as the other, so that the winding number is whole
+/// and the same on any path to a point.
+struct Solid {
+  std::vector<Vec3> vertices;  ///< [voxels]
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> part_of;  ///< of each triangle
+  std::vector<SolidPart> parts;
+  bool was_closed = true;  ///< as it came: two triangles on each edge, turned alike
+};
+
+/// @throws Error (kInput): no faces, index out of range, vertex not finite or far from all others,
+/// open by more than its form tells (mesh.open; only if `sign` is kVote); each with a place.
+[[nodiscard]] Solid makeSolid(const Mesh& mesh, double voxel, MeshSign sign);
+
+/// Only checked, welded and without doubled triangles: for a shell about the surface.
+[[nodiscard]] Solid makeSurface(const Mesh& mesh, double voxel);
+
+/// "(1 mm, 2 mm, 3 mm)" of a place in voxels.
+[[nodiscard]] std::string placeText(const Vec3& place, double voxel);
+
+}  // namespace palpate::vdb

@@ -1,0 +1,38 @@
+#pragma once
+/// Which triangles the band of each leaf can touch.
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/bake_plan.h"
+
+namespace palpate::vdb {
+
+/// Leaves in a fixed order, each with its triangles in rising order.
+class TriangleBins {
+ public:
+  /// `vertices` [voxels]; `range` holds every voxel that the band can touch, less than 2^24 along
+  /// each axis. @throws Error (kCancelled).
+  TriangleBins(const std::vector<Vec3>& vertices,
+               const std::vector<std::array<std::uint32_t, 3>>& triangles,
+               const openvdb::CoordBBox& range, const BakePlan& plan, const Progress& progress);
+
+  [[nodiscard]] std::size_t size() const noexcept { return first_.size() - 1; }
+  [[nodiscard]] openvdb::Coord origin(std::size_t leaf) const noexcept;
+  [[nodiscard]] std::span<const std::uint32_t> triangles(std::size_t leaf) const noexcept {
+    return std::span(triangles_).subspan(first_[leaf], first_[leaf + 1] - first_[leaf]);
+  }
+
+ private:
+  openvdb::Coord lo_;
+  std::array<int, 3> bits_{};             ///< of a leaf's place along each axis, in its key
+  std::vector<std::uint64_t> keys_;       ///< of the leaves, rising
+  std::vector<std::size_t> first_;        ///< of each leaf's triangles, and one more
+  std::vector<std::uint32_t> triangles_;  ///< leaf by leaf
+};
+
+}  // namespace palpate::vdb
