@@ -31,9 +31,9 @@ std::vector<Vec3> pointsIn(double half_size, int count) {
   return points;
 }
 
-class GridRivals : public testing::TestWithParam<Sampler> {};
+class GridRivals : public ::testing::TestWithParam<Sampler> {};
 INSTANTIATE_TEST_SUITE_P(Trilinear, GridRivals,
-                         testing::Values(Sampler::kAccessor, Sampler::kTrilinear));
+                         ::testing::Values(Sampler::kAccessor, Sampler::kTrilinear));
 
 TEST_P(GridRivals, SameAsOpenVdbsTrilinearStencil) {
   const LevelSet set =
