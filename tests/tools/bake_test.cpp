@@ -64,6 +64,30 @@ Json onlyFile(const std::string& path) {
   return json["files"][0];
 }
 
+TEST(Bake, AnOpenMeshTakesASignOrAShell) {
+  const TempFolder folder;
+  // A cube of 10 mm without its lid, a sixth of its faces.
+  (void)folder.file("open.obj", cubeObj(10.0, 10));
+  const std::vector<std::string> bake{"bake",    "open.obj", "-o",     "o.vdb",
+                                      "--voxel", "0.5",      "--force"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = bake;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runPalpate(arguments, folder.path());
+  };
+  EXPECT_EQ(with({}).exit_code, 3);
+  EXPECT_EQ(with({"--sign", "winding"}).exit_code, 0);
+  EXPECT_EQ(with({"--shell", "2"}).exit_code, 0);
+  const CommandResult none = with({"--shell", "0"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("--shell must be greater than 0"), std::string::npos) << none.err;
+  (void)folder.file("c.yaml", kContainer);
+  const CommandResult scene =
+      runPalpate({"bake", "c.yaml", "-o", "c.vdb", "--sign", "flood"}, folder.path());
+  EXPECT_EQ(scene.exit_code, 2);
+  EXPECT_NE(scene.err.find("--sign applies to meshes"), std::string::npos) << scene.err;
+}
+
 TEST(Bake, ASceneGivesOneSurfaceForEachLayer) {
   const TempFolder folder;
   (void)folder.file("c.yaml", kContainer);

@@ -29,6 +29,11 @@ void refuse(bool given, const char* option, const char* applies_to) {
   if (given) throw usageError(std::string(option) + " applies to " + applies_to);
 }
 
+void refuseMeshOptions(const BakeOptions& options) {
+  refuse(!options.sign.empty(), "--sign", "meshes");
+  refuse(!options.shell.empty(), "--shell", "meshes");
+}
+
 /// --voxel [m], or 0 if it was not given. @throws Error (kUsage).
 double askedVoxel(const BakeOptions& options, const LengthUnit& unit) {
   if (options.voxel.empty()) return 0.0;
@@ -88,6 +93,7 @@ SceneDescription neededFor(const BakeOptions& options, SceneDescription descript
 
 std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
   refuse(!options.units.empty(), "--units", "meshes; a scene names its unit");
+  refuseMeshOptions(options);
   refuse(options.above.has_value(), "--above", "images");
   refuse(!options.labels.empty(), "--labels", "images");
   LoadedScene loaded(options.input, console);
@@ -148,13 +154,22 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
   }
   const LengthUnit unit = lengthUnit(options.units.empty() ? "mm" : options.units);
   const double asked = askedVoxel(options, unit);
+  const vdb::MeshSign sign = options.sign == "winding" ? vdb::MeshSign::kWinding
+                             : options.sign == "flood" ? vdb::MeshSign::kFlood
+                                                       : vdb::MeshSign::kVote;
+  const double shell = options.shell.empty() ? 0.0 : parseLength(options.shell, unit, "--shell");
+  if (!options.shell.empty() && !(shell > 0.0)) {
+    throw usageError("--shell must be greater than 0");
+  }
   const vdb::Mesh mesh = vdb::readMesh(options.input, unit.metres);
   Box3 bounds;
   for (const Vec3& v : mesh.vertices) bounds.include(v);
   return {timed([&] {
     const double voxel = asked > 0.0 ? asked : defaultVoxel(unit, bounds, options.input, console);
-    return vdb::bakeMesh(mesh, bakeOptions(options, layer, voxel, unit.name, options.input),
-                         console.progress());
+    vdb::BakeOptions bake = bakeOptions(options, layer, voxel, unit.name, options.input);
+    bake.mesh_sign = sign;
+    bake.shell_thickness = shell;
+    return vdb::bakeMesh(mesh, bake, console.progress());
   })};
 }
 
@@ -181,6 +196,7 @@ std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOpti
 
 std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   refuse(!options.units.empty(), "--units", "meshes; an image says where its voxels are");
+  refuseMeshOptions(options);
   if (options.above.has_value() == !options.labels.empty()) {
     throw usageError(options.labels.empty() ? "an image needs --above VALUE or --labels NAME,..."
                                             : "--above and --labels exclude one another");

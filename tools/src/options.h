@@ -50,6 +50,8 @@ struct BakeOptions {
   std::string output;
   std::vector<std::string> layers;  ///< scene: which layers; threshold and mesh: the layer's name
   std::string units;                ///< mesh
+  std::string sign;                 ///< mesh: "vote", "winding" or "flood"; empty: vote
+  std::string shell;                ///< mesh: thickness; empty: a solid
   std::optional<double> above;
   std::string keep;  ///< "largest" or "all"; empty: largest
   bool fill = false;

@@ -73,7 +73,8 @@ void ConstraintRenderer::track(const Vec3& hip) noexcept {
       if (stop == CellWalker::Stop::kArrived) return;
       // Blocked where it stands: what is left of the gap is no way to go.
       is_pressed_ = stop == CellWalker::Stop::kBlocked && walker_.position() == from;
-      if (stop == CellWalker::Stop::kSpent) break;
+      // A long way close to walls takes more than one sweep's budget; the tick's ends it.
+      if (stop == CellWalker::Stop::kSpent && walker_.position() == from) break;
       continue;
     }
     if (isSettled(hip)) {

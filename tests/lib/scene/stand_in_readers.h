@@ -30,6 +30,15 @@ inline SceneRegistry standInReaders() {
     (void)reader.textOr("sampler", "");
     return later("grid " + file, 1.0);
   };
+  registry.fields["baked"] = [](MapReader& reader) {
+    const FieldSourcePtr field = reader.loader().field(reader.require("field"));
+    (void)reader.lengthOr("voxel", 1.0);
+    (void)reader.numberOr("half_width", 6.0);
+    (void)reader.textOr("sampler", "");
+    (void)reader.textOr("parts", "");
+    (void)reader.lengthOr("tolerance", 1.0);
+    return field;
+  };
   registry.image = [](MapReader& reader) -> std::shared_ptr<void> {
     auto file = std::make_shared<std::string>(reader.requireText("file"));
     (void)reader.textOr("names", "");

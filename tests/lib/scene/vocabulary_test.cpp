@@ -61,6 +61,7 @@ const std::vector<Probe>& probes() {
        field("{transform: {field: " + ball + ", rotate: {axis: [0, 0, 1], degrees: 1, @}}}")},
       {"mesh", field("{mesh: {file: a.stl, @}}")},
       {"grid", field("{grid: {file: a.vdb, @}}")},
+      {"baked", field("{baked: {field: {sphere: {center: [0, 0, 0], radius: 1}}, @}}")},
       {"material", "materials: {m: {@}}\n"},
       {"friction", "materials: {m: {friction: {static: 1, @}}}\n"},
       {"texture", "materials: {m: {texture: {amplitude: 1, wavelength: 9, @}}}\n"},

@@ -19,6 +19,12 @@ void addBaking(CLI::App& app, BakeOptions& o) {
   g = "From a mesh";
   add(app, g, "--units", "UNIT", o.units,
       "what one unit of the mesh is: mm (default), cm, m, um, in");
+  add(app, g, "--sign", "vote|winding|flood", o.sign,
+      "what is inside: where both agree, else refuse (default); by winding number, holes closed by "
+      "flat lids; or what a flood from outside does not reach")
+      ->check(CLI::IsMember({"vote", "winding", "flood"}));
+  add(app, g, "--shell", "LENGTH", o.shell,
+      "not a solid but a wall of this thickness along the triangles");
   g = "From a NIfTI image";
   add(app, g, "--above", "VALUE", o.above, "the surface around all voxels greater than this");
   add(app, g, "--keep", "largest|all", o.keep, "--above: which pieces (default largest)")

@@ -223,8 +223,8 @@ void requireSmallLids(const Mesh& mesh, const Solid& solid, const std::vector<Ho
         "the mesh is open: " + std::to_string(count) + (count == 1 ? " hole" : " holes") +
             ", the largest " + inMillimetres(glm::length(box.size()) * voxel) + " across at " +
             placeText(middle, voxel) + ", too large beside the surface to guess what closes it",
-        "close it in a mesh editor; or say that the winding number decides, which puts "
-        "flat lids on all holes; or ask for a shell of some thickness",
+        "close it in a mesh editor; or let the winding number decide (--sign winding), which puts "
+        "flat lids on all holes; or ask for a shell of some thickness (--shell 2mm)",
         mesh.source);
   }
 }
