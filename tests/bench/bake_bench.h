@@ -24,9 +24,9 @@ class Threads {
 /// Adds the count of active voxels and the seconds that each took.
 inline void perVoxel(benchmark::State& state, std::uint64_t voxels) {
   state.counters["voxels"] = static_cast<double>(voxels);
-  state.counters["per_voxel"] =
-      benchmark::Counter(static_cast<double>(voxels),
-                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["per_voxel"] = benchmark::Counter(
+      static_cast<double>(voxels),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 }  // namespace palpate::vdb::bench

@@ -28,10 +28,10 @@ FieldPtr fourteenParts() {
   const FieldPtr body =
       intersect({box(kCenter, Vec3(60e-3, 40e-3, 50e-3)), complement(unite(cut))});
   return unite({body, cylinder(kCenter, Vec3(1.0, 0.0, 0.0), 8e-3, 90e-3),
-                  cylinder(kCenter, Vec3(0.0, 1.0, 0.0), 8e-3, 70e-3),
-                  cylinder(kCenter, Vec3(0.0, 0.0, 1.0), 8e-3, 80e-3),
-                  sphere(kCenter + Vec3(45e-3, 0.0, 0.0), 12e-3),
-                  sphere(kCenter + Vec3(0.0, 0.0, 40e-3), 12e-3)});
+                cylinder(kCenter, Vec3(0.0, 1.0, 0.0), 8e-3, 70e-3),
+                cylinder(kCenter, Vec3(0.0, 0.0, 1.0), 8e-3, 80e-3),
+                sphere(kCenter + Vec3(45e-3, 0.0, 0.0), 12e-3),
+                sphere(kCenter + Vec3(0.0, 0.0, 40e-3), 12e-3)});
 }
 
 void bakeOf(benchmark::State& state, const FieldPtr& field) {
