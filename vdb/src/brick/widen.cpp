@@ -68,6 +68,7 @@ class Widening {
       report(progress_, "widen the band", 0.3 + 0.7 * round / kRounds);
       refine();
     }
+    for (int layer = 0; layer < layers; ++layer) lower();
     report(progress_, "widen the band", 1.0);
     return finish();
   }
@@ -241,6 +242,28 @@ class Widening {
       if (length < enough) return q - x;
     }
     return Vec3(std::nan(""));
+  }
+
+  /// A distance grows by no more than the way. What was guessed wrong, outside sharp edges, must not
+  /// claim more room than its neighbors leave: contact would leap into the wall.
+  void lower() {
+    const Tree before(tree_);
+    forLeaves([&](Leaf& leaf, Offsets::LeafNodeType&) {
+      const Known is_old(old_);
+      const Values values(before);
+      for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+        const Coord at = voxel.getCoord();
+        if (is_old.isValueOn(at)) continue;
+        float most = std::fabs(*voxel);
+        for (int n = 0; n < 27; ++n) {
+          const Coord step(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+          float near = 0.0F;
+          if (!values.probeValue(at + step, near) || near * *voxel <= 0.0F) continue;
+          most = std::min(most, std::fabs(near) + toUnits(glm::length(vec(step))));
+        }
+        leaf.setValueOnly(voxel.pos(), std::copysign(most, *voxel));
+      }
+    });
   }
 
   LevelSet finish() {
