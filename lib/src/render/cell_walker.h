@@ -102,6 +102,8 @@ class CellWalker {
   double measure(LeafId leaf) noexcept;
   /// S of the leaf at the point, asked for once as long as the point stays there.
   double valueHere(LeafId leaf) noexcept {
+    // A leaf that held the point a slide ago does so again: its jet will be asked for as well.
+    if (stay_ - jets_[leaf].stay <= kStaysOfSlide) return jetHere(leaf).value;
     Measured& known = measured_[leaf];
     if (known.stay != stay_) known = {leaves_[leaf].field->value(x_), stay_};
     return known.value;
@@ -166,7 +168,10 @@ class CellWalker {
   };
   std::vector<Measured> measured_;  ///< by leaf
   std::vector<Jet> jets_;           ///< by leaf
-  std::uint64_t stay_ = 1;          ///< counts the places where the point was
+  /// A slide takes so many straight moves: to above where it lands, and down.
+  static constexpr std::uint64_t kStaysOfSlide = 2;
+
+  std::uint64_t stay_ = 1 + kStaysOfSlide;  ///< counts the places where the point was
 
   /// A facet looked up in the present state, valid while nothing was crossed.
   struct Known {
