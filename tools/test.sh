@@ -3,14 +3,15 @@
 #   format    clang-format on every file
 #   arrows    no include against the arrows between modules and layers (cmake script, seconds)
 #   release   what users get: optimised code, installed and used by an outside project
-#   asan      assertions on, memory errors and undefined behaviour; every public header compiles alone
+#   asan      assertions on, memory errors and undefined behaviour; every public header compiles alone;
+#             lib and devices, and with --all everything: vdb and tools take half an hour more
 #   tsan      data races: the devices, and what threads do together (without vdb: TBB is not instrumented)
 #   tidy      names and bug patterns, by clang-tidy, in the sources that changed
 #   dev       as asan without the sanitizers, quick to build; not run unless it is asked for
 # Options:
 #   --quick         format, arrows and dev only
 #   --lane NAME     only this lane; may be given several times
-#   --all           every lane; tidy on everything, and the slow sweeps (PALPATE_SLOW_TESTS=1)
+#   --all           every lane; tidy and asan on everything, and the slow sweeps (PALPATE_SLOW_TESTS=1)
 #   --changed REF   what counts as changed for tidy: since REF, origin/main for one. Default: by the newest
 #                   commit and since
 # The last line says 'N passed, N failed' over all lanes; the exit status is 0 if none failed.
@@ -40,6 +41,9 @@ done
 if [ ${#lanes[@]} = 0 ]; then
   lanes=("${default_lanes[@]}")
 fi
+
+asan_options=(-DPALPATE_VDB=OFF)
+[ $tidy_all = 0 ] || asan_options=(-DPALPATE_VDB=ON)
 
 results=$root/build/test-results
 mkdir -p "$results"
@@ -84,7 +88,7 @@ lane_format() { sources | xargs --no-run-if-empty clang-format --dry-run --Werro
 lane_arrows() { cmake -D ROOT="$root" -P tests/architecture/check_arrows.cmake; count_check $?; }
 lane_dev() { build_and_test dev; }
 lane_release() { build_and_test release; }
-lane_asan() { build_and_test asan; }
+lane_asan() { build_and_test asan "${asan_options[@]}"; }
 lane_tsan() { build_and_test tsan; }
 
 # The sources clang-tidy has to look at: all that changed, and for each header that changed one that includes it.
