@@ -68,6 +68,35 @@ std::vector<Vec3> pointsFor(const FieldCase& field_case, const Field& field) {
   return points;
 }
 
+/// Zeros of both signs, the smallest and largest numbers, corners and middles of boxes, the
+/// case's own.
+std::vector<Vec3> awkwardPoints(const FieldCase& field_case, const Field& field) {
+  std::vector<Vec3> points = field_case.awkward;
+  const Vec3 middle = field_case.region.center();
+  for (const Vec3& about : {Vec3(0.0), middle}) {
+    for (const double x : {0.0, -0.0, 1e-300, -1e-300, 5e-324, 1e-160, 1e-20}) {
+      points.insert(points.end(),
+                    {about + Vec3(x), about + Vec3(x, 0.0, 0.0), about + Vec3(0.0, x, -0.0),
+                     about + Vec3(-0.0, x, x), about + Vec3(0.0, 0.0, x)});
+    }
+  }
+  std::vector<double> far{1e3, 1e9};
+  if (field_case.far_away) far.insert(far.end(), {1e80, 1e160, 1e300});
+  for (const double x : far) {
+    points.insert(points.end(), {Vec3(x), Vec3(-x, 0.0, 0.0), Vec3(0.0, x, 1.0), Vec3(1.0, -x, x),
+                                 Vec3(0.0, 0.0, -x), Vec3(1e-300, x, -1e-300)});
+  }
+  const Box3 bounds = field.bounds();
+  for (const Box3& box : {field_case.region, bounds}) {
+    if (!box.isBounded()) continue;
+    for (int i = 0; i < 27; ++i) {  // corners, middles of edges and faces, center
+      const Vec3 share(i % 3, i / 3 % 3, i / 9);
+      points.push_back(box.lo + 0.5 * share * box.size());
+    }
+  }
+  return points;
+}
+
 /// Central differences need a step well above rounding at `p`.
 double stepAt(const FieldCase& field_case, const Field& field, const Vec3& p) {
   const double reach = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
@@ -415,31 +444,45 @@ AssertionResult checkValue(const FieldCase& field_case) {
   return AssertionSuccess();
 }
 
+AssertionResult checkValues(const FieldCase& field_case) {
+  const FieldPtr field = field_case.make();
+  std::vector<Vec3> points = pointsFor(field_case, *field);
+  // Few that a loop over a batch is not made for, among many that it is.
+  std::vector<Vec3> strange = awkwardPoints(field_case, *field);
+  strange.insert(strange.end(), {Vec3(kInfinity), Vec3(std::nan(""), 0.0, 0.0)});
+  for (std::size_t n = 0; n < strange.size(); ++n) {
+    points.insert(points.begin() + static_cast<std::ptrdiff_t>(37 * n % points.size()), strange[n]);
+  }
+  points.insert(points.end(), strange.begin(), strange.end());
+  points.resize((points.size() + PointBatch::kCount - 1) / PointBatch::kCount * PointBatch::kCount,
+                points.front());
+  PointBatch batch{};
+  ValueBatch values{};
+  for (std::size_t first = 0; first < points.size(); first += PointBatch::kCount) {
+    for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+      const Vec3& p = points[first + n];
+      batch.x[n] = p.x;
+      batch.y[n] = p.y;
+      batch.z[n] = p.z;
+    }
+    field->values(batch, values);
+    for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+      const double value = field->value(batch[n]);
+      // One NaN is as good as another.
+      if (std::isnan(value) && std::isnan(values[n])) continue;
+      if (std::bit_cast<std::uint64_t>(value) != std::bit_cast<std::uint64_t>(values[n])) {
+        return AssertionFailure() << std::setprecision(17) << "at " << text(batch[n]) << " (" << n
+                                  << " of the batch) values() is " << values[n] << ", value() is "
+                                  << value;
+      }
+    }
+  }
+  return AssertionSuccess();
+}
+
 AssertionResult checkAwkward(const FieldCase& field_case) {
   const FieldPtr field = field_case.make();
-  std::vector<Vec3> points = field_case.awkward;
-  const Vec3 middle = field_case.region.center();
-  for (const Vec3& about : {Vec3(0.0), middle}) {
-    for (const double x : {0.0, -0.0, 1e-300, -1e-300, 5e-324, 1e-160, 1e-20}) {
-      points.insert(points.end(),
-                    {about + Vec3(x), about + Vec3(x, 0.0, 0.0), about + Vec3(0.0, x, -0.0),
-                     about + Vec3(-0.0, x, x), about + Vec3(0.0, 0.0, x)});
-    }
-  }
-  std::vector<double> far{1e3, 1e9};
-  if (field_case.far_away) far.insert(far.end(), {1e80, 1e160, 1e300});
-  for (const double x : far) {
-    points.insert(points.end(), {Vec3(x), Vec3(-x, 0.0, 0.0), Vec3(0.0, x, 1.0), Vec3(1.0, -x, x),
-                                 Vec3(0.0, 0.0, -x), Vec3(1e-300, x, -1e-300)});
-  }
-  const Box3 bounds = field->bounds();
-  for (const Box3& box : {field_case.region, bounds}) {
-    if (!box.isBounded()) continue;
-    for (int i = 0; i < 27; ++i) {  // corners, middles of edges and faces, center
-      const Vec3 share(i % 3, i / 3 % 3, i / 9);
-      points.push_back(box.lo + 0.5 * share * box.size());
-    }
-  }
+  const std::vector<Vec3> points = awkwardPoints(field_case, *field);
   const bool has_unit_gradient = field->metric() == Metric::kExact && field_case.unit_gradient;
   for (const Vec3& p : points) {
     const FieldJet jet = field->jet(p);
@@ -472,7 +515,7 @@ AssertionResult checkAwkward(const FieldCase& field_case) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {kNan, kInfinity, -kInfinity}) {
     for (int axis = 0; axis < 3; ++axis) {
-      Vec3 p = middle;
+      Vec3 p = field_case.region.center();
       p[axis] = bad;
       if (std::isfinite(field->value(p)) || std::isfinite(field->jet(p).value)) {
         return AssertionFailure() << "at " << text(p) << " the value is " << field->value(p);
@@ -518,6 +561,7 @@ TEST_P(FieldContract, LipschitzBoundHolds) { EXPECT_TRUE(checkLipschitz(GetParam
 TEST_P(FieldContract, ValueIsTheDistanceItClaims) { EXPECT_TRUE(checkMetric(GetParam())); }
 TEST_P(FieldContract, JetAgreesWithSample) { EXPECT_TRUE(checkJet(GetParam())); }
 TEST_P(FieldContract, ValueAloneIsTheSame) { EXPECT_TRUE(checkValue(GetParam())); }
+TEST_P(FieldContract, BatchIsTheSame) { EXPECT_TRUE(checkValues(GetParam())); }
 TEST_P(FieldContract, AwkwardPointsAreHarmless) { EXPECT_TRUE(checkAwkward(GetParam())); }
 TEST_P(FieldContract, ConstantsBelongTogether) { EXPECT_TRUE(checkConstants(GetParam())); }
 

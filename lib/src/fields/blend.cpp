@@ -51,6 +51,14 @@ class Blend final : public Field, public fields::LevelBounded {
     }
     return out;
   }
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    operands_.front()->values(points, out);
+    ValueBatch next;
+    for (std::size_t i = 1; i < operands_.size(); ++i) {
+      operands_[i]->values(points, next);
+      for (std::size_t n = 0; n < PointBatch::kCount; ++n) out[n] = mixOf(out[n], next[n]).value;
+    }
+  }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     FieldJet out = operands_.front()->jet(p);
     for (std::size_t i = 1; i < operands_.size(); ++i) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "fields/batch.h"
 #include "fields/checks.h"
 #include "fields/vector.h"
 #include "palpate/fields/csg.h"
@@ -7,6 +8,24 @@
 
 namespace palpate {
 namespace {
+
+void distances(const PointBatch& points, const Vec3& center, const Vec3& half, double rounding,
+               ValueBatch& out, fields::Leftovers& left) noexcept {
+  const auto positive = [](double a) { return a < 0.0 ? 0.0 : a; };
+  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+    const double x = std::fabs(points.x[n] - center.x) - half.x;
+    const double y = std::fabs(points.y[n] - center.y) - half.y;
+    const double z = std::fabs(points.z[n] - center.z) - half.z;
+    const bool is_inside = (x <= 0.0) & (y <= 0.0) & (z <= 0.0);
+    const double xy = y > x ? y : x;
+    const double nearest = z > xy ? z : xy;
+    const double a = positive(x), b = positive(y), c = positive(z);
+    const double square = a * a + b * b + c * c;
+    const double away = std::sqrt(square);
+    left[n] = (is_inside | fields::isPlain(square)) ? 0 : 1;
+    out[n] = (is_inside ? nearest : away) - rounding;
+  }
+}
 
 /// The points nearer than `rounding` to a box: with 0 the box itself.
 class Box final : public Field {
@@ -34,6 +53,12 @@ class Box final : public Field {
     const Vec3 q = glm::abs(p - center_) - half_;
     if (isInside(q)) return q[nearestFace(q)] - rounding_;
     return fields::length(glm::max(q, Vec3(0.0))) - rounding_;
+  }
+
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    fields::Leftovers left;
+    distances(points, center_, half_, rounding_, out, left);
+    fields::valuesOfLeftovers(*this, points, left, out);
   }
 
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {

@@ -38,6 +38,9 @@ struct ConeProfile {
   [[nodiscard]] fields::ProfileSample sample(double rho, double h) const noexcept {
     return nearest(rho, h).at;
   }
+  [[nodiscard]] fields::ProfileValue plain(double rho, double h) const noexcept {
+    return {sample(rho, h).value};
+  }
   [[nodiscard]] fields::ProfileJet jet(double rho, double h) const noexcept {
     const Nearest n = nearest(rho, h);
     return n.is_corner ? fields::profileAround(n.at, n.from_corner) : fields::ProfileJet{n.at};

@@ -87,6 +87,18 @@ class Extremum final : public Field {
     return isSearched(p) ? tree_.find(operands_, p).value : askAll(p).value;
   }
 
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    if (tree_.isUseful()) return Field::values(points, out);
+    operands_.front()->values(points, out);
+    ValueBatch next;
+    for (std::size_t i = 1; i < operands_.size(); ++i) {
+      operands_[i]->values(points, next);
+      for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+        out[n] = wins(next[n], out[n]) ? next[n] : out[n];
+      }
+    }
+  }
+
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     return operands_[(isSearched(p) ? tree_.find(operands_, p) : askAll(p)).index]->jet(p);
   }
@@ -145,6 +157,10 @@ class Complement final : public Field {
     return out;
   }
   [[nodiscard]] double value(const Vec3& p) const noexcept override { return -operand().value(p); }
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    operand().values(points, out);
+    for (double& value : out) value = -value;
+  }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     FieldJet out = operand().jet(p);
     out.value = -out.value;

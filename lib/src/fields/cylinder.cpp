@@ -24,6 +24,15 @@ struct CylinderProfile {
     if (beyond_cap > beyond_wall) return {beyond_cap, 0.0, up};
     return {beyond_wall, 1.0, 0.0};
   }
+  [[nodiscard]] fields::ProfileValue plain(double rho, double height) const noexcept {
+    const double beyond_wall = rho - radius;
+    const double beyond_cap = std::fabs(height) - half_height;
+    const double nearer = beyond_cap > beyond_wall ? beyond_cap : beyond_wall;
+    const double square = beyond_wall * beyond_wall + beyond_cap * beyond_cap;
+    const double away = std::sqrt(square);
+    const bool is_beyond_rim = (beyond_cap > 0.0) & (beyond_wall > 0.0);
+    return {is_beyond_rim ? away : nearer, is_beyond_rim ? square : 1.0};
+  }
 
   [[nodiscard]] fields::ProfileJet jet(double rho, double height) const noexcept {
     const fields::ProfileSample at = sample(rho, height);
@@ -47,6 +56,9 @@ struct TubeProfile {
 
   [[nodiscard]] fields::ProfileSample sample(double rho, double) const noexcept {
     return {rho - radius, 1.0, 0.0};
+  }
+  [[nodiscard]] fields::ProfileValue plain(double rho, double) const noexcept {
+    return {rho - radius};
   }
   [[nodiscard]] fields::ProfileJet jet(double rho, double height) const noexcept {
     return {sample(rho, height)};

@@ -15,6 +15,9 @@ class WithFaces final : public Field {
     return whole_->sample(p);
   }
   [[nodiscard]] double value(const Vec3& p) const noexcept override { return whole_->value(p); }
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    whole_->values(points, out);
+  }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override { return whole_->jet(p); }
   [[nodiscard]] Box3 bounds() const noexcept override { return whole_->bounds(); }
   [[nodiscard]] Metric metric() const noexcept override { return whole_->metric(); }

@@ -4,6 +4,10 @@
 
 namespace palpate {
 
+void Field::values(const PointBatch& points, ValueBatch& out) const noexcept {
+  for (std::size_t n = 0; n < PointBatch::kCount; ++n) out[n] = value(points[n]);
+}
+
 FieldJet Field::jet(const Vec3& p) const noexcept {
   const FieldSample here = sample(p);
   FieldJet jet{here.value, here.gradient, Mat3(0.0), here.in_band};

@@ -1,3 +1,4 @@
+#include "fields/batch.h"
 #include "fields/checks.h"
 #include "fields/vector.h"
 #include "palpate/fields/primitives.h"
@@ -9,6 +10,14 @@ namespace {
 /// relative to it are far below what can be felt, and far above rounding.
 constexpr double kPlaneFeature = 0.1;
 
+void heights(const PointBatch& points, const Vec3& point, const Vec3& normal,
+             ValueBatch& out) noexcept {
+  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+    out[n] = normal.x * (points.x[n] - point.x) + normal.y * (points.y[n] - point.y) +
+             normal.z * (points.z[n] - point.z);
+  }
+}
+
 class HalfSpace final : public Field {
  public:
   HalfSpace(const Vec3& point, const Vec3& normal) : point_(point), normal_(normal) {}
@@ -18,6 +27,9 @@ class HalfSpace final : public Field {
   }
   [[nodiscard]] double value(const Vec3& p) const noexcept override {
     return glm::dot(normal_, p - point_);
+  }
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    heights(points, point_, normal_, out);
   }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     return {value(p), normal_, Mat3(0.0)};

@@ -29,6 +29,16 @@ class Scaled final : public Field, public fields::LevelBounded {
   [[nodiscard]] double value(const Vec3& p) const noexcept override {
     return field_->value(p / factor_) * factor_;
   }
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    PointBatch shrunk;
+    for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+      shrunk.x[n] = points.x[n] / factor_;
+      shrunk.y[n] = points.y[n] / factor_;
+      shrunk.z[n] = points.z[n] / factor_;
+    }
+    field_->values(shrunk, out);
+    for (double& value : out) value *= factor_;
+  }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     FieldJet out = field_->jet(p / factor_);
     out.value *= factor_;
@@ -71,6 +81,10 @@ class Offset final : public Field, public fields::LevelBounded {
   }
   [[nodiscard]] double value(const Vec3& p) const noexcept override {
     return field_->value(p) - distance_;
+  }
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    field_->values(points, out);
+    for (double& value : out) value -= distance_;
   }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     FieldJet out = field_->jet(p);

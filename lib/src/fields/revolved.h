@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <concepts>
 
+#include "fields/batch.h"
 #include "fields/vector.h"
 #include "palpate/fields/field.h"
 
@@ -21,6 +22,12 @@ struct ProfileJet {
   double rho_rho = 0.0;  ///< [1/m] second derivatives, as the two below
   double rho_height = 0.0;
   double height_height = 0.0;
+};
+
+/// The value of a profile from a square root of `square`, if that isPlain().
+struct ProfileValue {
+  double value = 0.0;  ///< [m]
+  double square = 1.0;
 };
 
 /// Length of (a, b), safe like polar(); `direction` is (1, 0) for the zero vector.
@@ -53,9 +60,39 @@ concept Profile = requires(const T profile, double rho, double height) {
   noexcept->std::same_as<ProfileSample>;
   { profile.jet(rho, height) }
   noexcept->std::same_as<ProfileJet>;
+  // The same value as sample(), in a loop over many.
+  { profile.plain(rho, height) }
+  noexcept->std::same_as<ProfileValue>;
   { profile.bounds(Vec3(), Vec3()) } -> std::same_as<Box3>;  // of the solid, for center and axis
   { profile.featureSize() } -> std::same_as<double>;
 };
+
+/// The part across the axis of a difference `d` from a point on it that is `height` along it is d less
+/// the axis, unless that is mostly rounding.
+[[nodiscard]] inline bool isClearOfAxis(double size, double height) noexcept {
+  return size > 1e-3 * std::fabs(height);
+}
+
+/// Of a profile turned about the line through `center` along the unit vector `axis`.
+template <Profile P>
+inline void distancesOf(const P& profile, const PointBatch& points, const Vec3& center,
+                        const Vec3& axis, ValueBatch& out, Leftovers& left) noexcept {
+  const auto larger = [](double a, double b) { return a < b ? b : a; };
+  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+    const double dx = points.x[n] - center.x;
+    const double dy = points.y[n] - center.y;
+    const double dz = points.z[n] - center.z;
+    const double height = dx * axis.x + dy * axis.y + dz * axis.z;
+    const double x = dx - axis.x * height;
+    const double y = dy - axis.y * height;
+    const double z = dz - axis.z * height;
+    const double size = larger(larger(std::fabs(x), std::fabs(y)), std::fabs(z));
+    const double square = x * x + y * y + z * z;
+    const ProfileValue at = profile.plain(std::sqrt(square), height);
+    left[n] = (isClearOfAxis(size, height) & isPlain(square) & isPlain(at.square)) ? 0 : 1;
+    out[n] = at.value;
+  }
+}
 
 /// The field of a profile turned about the line through `center` along the unit vector `axis`.
 template <Profile P>
@@ -76,6 +113,12 @@ class Revolved final : public Field {
     const Vec3 d = p - center_;
     const double height = glm::dot(d, axis_);
     return profile_.sample(length(acrossAxis(d, height)), height).value;
+  }
+
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    Leftovers left;
+    distancesOf(profile_, points, center_, axis_, out, left);
+    valuesOfLeftovers(*this, points, left, out);
   }
 
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
@@ -110,10 +153,9 @@ class Revolved final : public Field {
   [[nodiscard]] Vec3 acrossAxis(const Vec3& d, double height) const noexcept {
     const Vec3 radial = d - axis_ * height;
     const double size = std::max({std::fabs(radial.x), std::fabs(radial.y), std::fabs(radial.z)});
-    const double far = std::fabs(height);
-    if (size > 1e-3 * far) [[likely]]
+    if (isClearOfAxis(size, height)) [[likely]]
       return radial;
-    if (size <= 1e-15 * far) return Vec3(0.0);
+    if (size <= 1e-15 * std::fabs(height)) return Vec3(0.0);
     return radial - axis_ * glm::dot(radial, axis_);
   }
 

@@ -1,3 +1,4 @@
+#include "fields/batch.h"
 #include "fields/checks.h"
 #include "fields/vector.h"
 #include "palpate/fields/primitives.h"
@@ -6,6 +7,18 @@ namespace palpate {
 namespace {
 
 constexpr Vec3 kAtCenter(1.0, 0.0, 0.0);
+
+void distances(const PointBatch& points, const Vec3& center, double radius, ValueBatch& out,
+               fields::Leftovers& left) noexcept {
+  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+    const double x = points.x[n] - center.x;
+    const double y = points.y[n] - center.y;
+    const double z = points.z[n] - center.z;
+    const double square = x * x + y * y + z * z;
+    left[n] = fields::isPlain(square) ? 0 : 1;
+    out[n] = std::sqrt(square) - radius;
+  }
+}
 
 class Sphere final : public Field {
  public:
@@ -17,6 +30,11 @@ class Sphere final : public Field {
   }
   [[nodiscard]] double value(const Vec3& p) const noexcept override {
     return fields::length(p - center_) - radius_;
+  }
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    fields::Leftovers left;
+    distances(points, center_, radius_, out, left);
+    fields::valuesOfLeftovers(*this, points, left, out);
   }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     const fields::Polar q = fields::polar(p - center_, kAtCenter);

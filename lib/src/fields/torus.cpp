@@ -17,6 +17,11 @@ struct TorusProfile {
     const fields::Polar2 q = fields::polar2(rho - radius, h);
     return {q.length - tube, q.a, q.b};
   }
+  [[nodiscard]] fields::ProfileValue plain(double rho, double h) const noexcept {
+    const double a = rho - radius;
+    const double square = a * a + h * h;
+    return {std::sqrt(square) - tube, square};
+  }
   [[nodiscard]] fields::ProfileJet jet(double rho, double h) const noexcept {
     return fields::profileAround(sample(rho, h), fields::polar2(rho - radius, h));
   }
@@ -35,6 +40,12 @@ struct CapsuleProfile {
   [[nodiscard]] fields::ProfileSample sample(double rho, double h) const noexcept {
     const fields::Polar2 q = fields::polar2(rho, beyond(h));
     return {q.length - radius, q.a, q.b};
+  }
+  [[nodiscard]] fields::ProfileValue plain(double rho, double h) const noexcept {
+    const double below = h < -half ? -half : h;
+    const double b = h - (below > half ? half : below);
+    const double square = rho * rho + b * b;
+    return {std::sqrt(square) - radius, square};
   }
   [[nodiscard]] fields::ProfileJet jet(double rho, double h) const noexcept {
     const fields::ProfileSample at = sample(rho, h);

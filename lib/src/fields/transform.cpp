@@ -24,6 +24,16 @@ class Placed final : public Field {
   [[nodiscard]] double value(const Vec3& p) const noexcept override {
     return operand().value(toOperand(p));
   }
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    PointBatch moved;
+    for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+      const Vec3 p = toOperand(points[n]);
+      moved.x[n] = p.x;
+      moved.y[n] = p.y;
+      moved.z[n] = p.z;
+    }
+    operand().values(moved, out);
+  }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     FieldJet out = operand().jet(toOperand(p));
     out.gradient = pose_.rotate(out.gradient);

@@ -19,6 +19,7 @@ struct Lie {
   double gradient_scale = 1.0;
   double hessian_scale = 1.0;
   double value_offset = 0.0;  ///< [m] of value() alone
+  double batch_offset = 0.0;  ///< [m] of one value of values()
   double dent = 0.0;          ///< [m] depth of a ripple of `value`, its slope in the gradient
   Metric metric = Metric::kExact;
   bool nan_at_center = false;
@@ -40,6 +41,10 @@ class LyingBall final : public Field {
   }
   [[nodiscard]] double value(const Vec3& p) const noexcept override {
     return sample(p).value + lie_.value_offset;
+  }
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    Field::values(points, out);
+    out[17] += lie_.batch_offset;
   }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     FieldJet j = Field::jet(p);
@@ -69,7 +74,7 @@ FieldCase caseOf(const Lie& lie) {
 TEST(FieldContractSuite, AcceptsTheTruth) {
   const FieldCase truth = caseOf({});
   for (const auto& check : {checkGradient, checkSign, checkBounds, checkLipschitz, checkMetric,
-                            checkJet, checkValue, checkAwkward, checkConstants}) {
+                            checkJet, checkValue, checkValues, checkAwkward, checkConstants}) {
     EXPECT_TRUE(check(truth));
   }
 }
@@ -105,6 +110,7 @@ TEST(FieldContractSuite, CatchesEveryOtherLie) {
   EXPECT_TRUE(checkBounds(caseOf({.bounds_margin = 1e-2})));
   EXPECT_FALSE(checkJet(caseOf({.hessian_scale = 1.001})));
   EXPECT_FALSE(checkValue(caseOf({.value_offset = 1e-16})));
+  EXPECT_FALSE(checkValues(caseOf({.batch_offset = 1e-16})));
   EXPECT_FALSE(checkAwkward(caseOf({.nan_at_center = true})));
   EXPECT_FALSE(checkAwkward(caseOf({.gradient_scale = 1.0 + 1e-8})));
   EXPECT_FALSE(checkConstants(caseOf({.lipschitz = 2.0})));

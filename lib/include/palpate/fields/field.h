@@ -1,6 +1,8 @@
 #pragma once
 /// Field: the one interface through which every shape, analytic or from a grid, is felt.
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <span>
 
@@ -24,6 +26,16 @@ struct FieldJet {
   Mat3 hessian{0.0};             ///< [1/m] symmetric
   bool in_band = true;           ///< as in FieldSample; out of band the Hessian is zero too
 };
+
+/// Points that are asked for their values together, so that the work on them can share instructions: a
+/// cube of 4^3 voxels, say. What is not needed may be any finite point.
+struct PointBatch {
+  static constexpr std::size_t kCount = 64;
+  std::array<double, kCount> x, y, z;  ///< [m] the field's frame
+
+  [[nodiscard]] Vec3 operator[](std::size_t n) const noexcept { return {x[n], y[n], z[n]}; }
+};
+using ValueBatch = std::array<double, PointBatch::kCount>;  ///< [m]
 
 /// What |value| means. Contact reads this once, when the scene is compiled.
 enum class Metric {
@@ -67,6 +79,9 @@ class Field {
 
   /// Value alone [m]. Override where it is cheaper than sample().
   [[nodiscard]] virtual double value(const Vec3& p) const noexcept { return sample(p).value; }
+
+  /// value() of each point, bit for bit. Override where many at once are cheaper than one by one.
+  virtual void values(const PointBatch& points, ValueBatch& out) const noexcept;
 
   /// Value, gradient and Hessian. The base version differences the gradient over a step that is a
   /// small share of featureSize().

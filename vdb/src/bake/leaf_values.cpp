@@ -1,0 +1,78 @@
+#include "bake/leaf_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace palpate::vdb {
+namespace {
+
+/// Bit n of the result is the lowest one of byte n.
+std::uint64_t bitsOf(const std::array<std::uint8_t, PointBatch::kCount>& flags) noexcept {
+  std::uint64_t bits = 0;
+  for (std::size_t group = 0; group < 8; ++group) {
+    std::uint64_t bytes = 0;
+    for (std::size_t n = 0; n < 8; ++n) {
+      bytes |= static_cast<std::uint64_t>(flags[8 * group + n]) << n;
+    }
+    bits |= bytes << (8 * group);
+  }
+  return bits;
+}
+
+}  // namespace
+
+void LeafValues::fill(const openvdb::Coord& local, float value) noexcept {
+  for (int x = 0; x < 4; ++x) {
+    for (int y = 0; y < 4; ++y) {
+      std::fill_n(values.begin() + BandLeaf::coordToOffset(local.offsetBy(x, y, 0)), 4, value);
+    }
+  }
+  (value < 0.0F ? any_inside : any_outside) = true;
+}
+
+void LeafValues::store(const openvdb::Coord& local, const ValueBatch& distances,
+                       std::uint64_t known, double units_per_metre, float background) noexcept {
+  std::array<float, PointBatch::kCount> stored;
+  std::array<std::uint8_t, PointBatch::kCount> is_near, is_number, is_inside;
+  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+    stored[n] = static_cast<float>(distances[n] * units_per_metre);
+  }
+  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+    is_near[n] = std::fabs(stored[n]) < background ? 1 : 0;
+    is_inside[n] = stored[n] < 0.0F ? 1 : 0;
+    is_number[n] = stored[n] == stored[n] ? 1 : 0;
+  }
+  const std::uint64_t near = bitsOf(is_near) & known;
+  const std::uint64_t inside = bitsOf(is_inside);
+  is_broken = is_broken || bitsOf(is_number) != ~std::uint64_t{0};
+  any_active = any_active || near != 0;
+  any_inside = any_inside || inside != 0;
+  any_outside = any_outside || inside != ~std::uint64_t{0};
+  for (unsigned n = 0; n < PointBatch::kCount; ++n) {
+    const float far = std::copysign(background, stored[n]);
+    stored[n] = (near >> n & 1U) != 0 ? stored[n] : far;
+  }
+  for (int x = 0; x < 4; ++x) {
+    const auto rows = static_cast<unsigned>(near >> (16 * x) & 0xFFFFU);
+    std::uint64_t spread = 0;
+    for (unsigned y = 0; y < 4; ++y) {
+      const auto to = BandLeaf::coordToOffset(local.offsetBy(x, static_cast<int>(y), 0));
+      std::copy_n(stored.begin() + 16 * x + 4 * y, 4, values.begin() + to);
+      spread |= static_cast<std::uint64_t>(rows >> (4 * y) & 0xFU) << (8 * y);
+    }
+    active[static_cast<std::size_t>(local.x() + x)] |= spread << (8 * local.y() + local.z());
+  }
+}
+
+std::unique_ptr<BandLeaf> LeafValues::leafAt(const openvdb::Coord& origin, float background) const {
+  auto leaf = std::make_unique<BandLeaf>(openvdb::PartialCreate(), origin, background, false);
+  leaf->allocate();
+  std::memcpy(leaf->buffer().data(), values.data(), sizeof values);
+  BandLeaf::NodeMaskType mask;
+  for (openvdb::Index x = 0; x < 8; ++x) mask.getWord<openvdb::Index64>(x) = active[x];
+  leaf->setValueMask(mask);
+  return leaf;
+}
+
+}  // namespace palpate::vdb
