@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -45,36 +46,67 @@ float plateauOf(const LevelSetInfo& info, Sampler sampler) {
   return static_cast<float>((info.half_width - slack) * info.voxel_size / info.metres_per_unit);
 }
 
+/// Three blocks in a row along z, as leaves or tiles.
+struct BlockRow {
+  std::array<const float*, 3> values{};  ///< of a leaf's 512 voxels; null: a tile
+  std::array<const Leaf::NodeMaskType*, 3> masks{};
+  std::array<float, 3> tiles{};  ///< what a tile holds
+};
+
+BlockRow blockRowAt(const Accessor& accessor, const Coord& middle) {
+  BlockRow row;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const Coord at = middle.offsetBy(0, 0, 8 * (static_cast<int>(n) - 1));
+    const Leaf* const leaf = accessor.probeConstLeaf(at);
+    if (leaf == nullptr) {
+      row.tiles[n] = accessor.getValue(at);
+    } else {
+      row.values[n] = leaf->buffer().data();
+      row.masks[n] = &leaf->getValueMask();
+    }
+  }
+  return row;
+}
+
+/// The voxels of a neighborhood's row along z: of the first block the last three, of the last one the
+/// first four. `x` and `y` count within the blocks. Returns a bit for each that is known.
+unsigned gatherRow(const BlockRow& row, unsigned x, unsigned y, float* to) {
+  constexpr std::array<std::ptrdiff_t, 3> kBegin{5, 0, 0};
+  constexpr std::array<std::ptrdiff_t, 3> kCount{3, 8, 4};
+  unsigned known = 0;
+  unsigned shift = 0;
+  for (std::size_t n = 0; n < 3; ++n) {
+    if (row.values[n] == nullptr) {
+      std::fill_n(to, kCount[n], row.tiles[n]);
+    } else {
+      std::copy_n(row.values[n] + (x * 64 + y * 8) + kBegin[n], kCount[n], to);
+      const auto word = row.masks[n]->getWord<openvdb::Index64>(x);  // a byte for each y
+      const auto bits = static_cast<unsigned>(word >> (8 * y) & 0xFFU) >> kBegin[n];
+      known |= (bits & ((1U << kCount[n]) - 1U)) << shift;
+    }
+    to += kCount[n];
+    shift += static_cast<unsigned>(kCount[n]);
+  }
+  return known;
+}
+
 /// Values and topology around a block, from the leaves and tiles there.
 void gather(const Accessor& accessor, const Coord& block, Neighborhood& to) {
-  constexpr int kLast = Neighborhood::kFirst + Neighborhood::kSide - 1;
   const Coord first = block << 3;
-  for (int i = -1; i <= 1; ++i) {
-    for (int j = -1; j <= 1; ++j) {
-      for (int k = -1; k <= 1; ++k) {
-        const Coord shift(8 * i, 8 * j, 8 * k);
-        const Coord lo = Coord::maxComponent(shift, Coord(Neighborhood::kFirst));
-        const Coord hi = Coord::minComponent(shift.offsetBy(7), Coord(kLast));
-        const auto count = static_cast<std::size_t>(hi.z() - lo.z() + 1);
-        const Leaf* const leaf = accessor.probeConstLeaf(first + shift);
-        const float tile = leaf == nullptr ? accessor.getValue(first + shift) : 0.0F;
-        for (int x = lo.x(); x <= hi.x(); ++x) {
-          for (int y = lo.y(); y <= hi.y(); ++y) {
-            const std::size_t at = Neighborhood::at(x, y, lo.z());
-            if (leaf == nullptr) {
-              std::fill_n(to.values.begin() + static_cast<std::ptrdiff_t>(at), count, tile);
-              std::fill_n(to.known.begin() + static_cast<std::ptrdiff_t>(at), count,
-                          std::uint8_t{0});
-              continue;
-            }
-            const openvdb::Index from = Leaf::coordToOffset(first + Coord(x, y, lo.z()));
-            for (openvdb::Index n = 0; n < count; ++n) {
-              to.values[at + n] = leaf->getValue(from + n);
-              to.known[at + n] = leaf->isValueOn(from + n) ? 1 : 0;
-            }
-          }
-        }
-      }
+  std::array<std::array<BlockRow, 3>, 3> blocks;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      blocks[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
+          blockRowAt(accessor, first.offsetBy(8 * (i - 1), 8 * (j - 1), 0));
+    }
+  }
+  constexpr unsigned kFirst = 8 + Neighborhood::kFirst;  // counted from the block before
+  for (unsigned x = 0; x < Neighborhood::kSide; ++x) {
+    for (unsigned y = 0; y < Neighborhood::kSide; ++y) {
+      const BlockRow& row = blocks[(kFirst + x) >> 3][(kFirst + y) >> 3];
+      float* const values = to.values.data() + (x * Neighborhood::kSlab + y * Neighborhood::kRow);
+      to.known[x * Neighborhood::kSide + y] =
+          static_cast<std::uint16_t>(gatherRow(row, (kFirst + x) & 7U, (kFirst + y) & 7U, values));
     }
   }
 }
@@ -87,6 +119,7 @@ struct Part {
 };
 
 void expandByNegative(const Brick& brick, const Coord& block, CoordBBox& negative) {
+  if (negative.isInside(CoordBBox::createCube(block << 3, Brick::kSide))) return;
   for (int x = 0; x < Brick::kSide; ++x) {
     for (int y = 0; y < Brick::kSide; ++y) {
       for (int z = 0; z < Brick::kSide; ++z) {

@@ -7,61 +7,106 @@ namespace palpate::vdb {
 namespace {
 
 constexpr int kSide = Neighborhood::kSide;
-constexpr int kCount = kSide * kSide * kSide;
-constexpr int kStepX = kSide * kSide;
-constexpr int kStepY = kSide;
+constexpr int kRow = Neighborhood::kRow;
+constexpr int kSlab = Neighborhood::kSlab;
 
-/// Rows of a brick, in the neighborhood: its voxels -1 to 9.
-constexpr int kFirstRow = -1 - Neighborhood::kFirst;
+/// A brick's first voxel, -1, in the neighborhood; its last one, 9, is the last but two there.
+constexpr int kMargin = -1 - Neighborhood::kFirst;
+constexpr int kRows = Brick::kRows;
+constexpr unsigned kAllOfRow = (1U << kRows) - 1U;
 
-float clipped(float value, bool known, float plateau) {
-  return known ? std::clamp(value, -plateau, plateau) : std::copysign(plateau, value);
-}
+/// One bit for each voxel of a row of the brick, bit n for voxel n - 1.
+using Flags = std::array<std::array<unsigned, kRows>, kRows>;
 
-/// Second differences along the axes, and their sum, of the voxels that have neighbors.
-struct Differences {
-  std::array<double, kCount> along_x, along_y, along_z, sum;
+/// Where all that a voxel needs is in the band.
+struct Reach {
+  Flags near{};  ///< for D
+  Flags far{};   ///< for D(D)
 };
 
-void difference(const Neighborhood& from, Differences& d) {
-  const auto& f = from.values;
-  for (int x = 1; x + 1 < kSide; ++x) {
-    for (int y = 1; y + 1 < kSide; ++y) {
-      const int row = x * kStepX + y * kStepY;
-      for (int n = row + 1; n < row + kSide - 1; ++n) {
-        const auto i = static_cast<std::size_t>(n);
-        const double twice = 2.0 * static_cast<double>(f[i]);
-        d.along_x[i] = static_cast<double>(f[i - kStepX]) + f[i + kStepX] - twice;
-        d.along_y[i] = static_cast<double>(f[i - kStepY]) + f[i + kStepY] - twice;
-        d.along_z[i] = static_cast<double>(f[i - 1]) + f[i + 1] - twice;
-        d.sum[i] = d.along_x[i] + d.along_y[i] + d.along_z[i];
-      }
+Flags knownOf(const Neighborhood& from) {
+  Flags flags{};
+  for (std::size_t x = 0; x < kRows; ++x) {
+    for (std::size_t y = 0; y < kRows; ++y) {
+      flags[x][y] = from.known[(x + kMargin) * kSide + y + kMargin] >> kMargin & kAllOfRow;
     }
+  }
+  return flags;
+}
+
+Reach reachOf(const Neighborhood& from) {
+  Reach reach;
+  for (int x = 0; x < kRows; ++x) {
+    for (int y = 0; y < kRows; ++y) {
+      const auto row = [&](int dx, int dy) -> unsigned {
+        return from.known[static_cast<std::size_t>((x + kMargin + dx) * kSide + y + kMargin + dy)];
+      };
+      const auto beside = [](unsigned bits) { return bits << 1 & bits >> 1; };
+      const unsigned own = row(0, 0);
+      const unsigned left = row(-1, 0), right = row(1, 0), below = row(0, -1), above = row(0, 1);
+      const unsigned near = own & beside(own) & left & right & below & above;
+      const unsigned far = near & own << 2 & own >> 2 & row(-2, 0) & row(2, 0) & row(0, -2) &
+                           row(0, 2) & row(-1, -1) & row(-1, 1) & row(1, -1) & row(1, 1) &
+                           beside(left) & beside(right) & beside(below) & beside(above);
+      reach.near[static_cast<std::size_t>(x)][static_cast<std::size_t>(y)] =
+          near >> kMargin & kAllOfRow;
+      reach.far[static_cast<std::size_t>(x)][static_cast<std::size_t>(y)] =
+          far >> kMargin & kAllOfRow;
+    }
+  }
+  return reach;
+}
+
+/// Second differences along the axes, and their sum D, of one slab of voxels across x. Loops run over
+/// the ends of rows, so that they are long; what comes of that is not looked at.
+struct Differences {
+  alignas(64) std::array<double, kSlab> along_x, along_y, along_z, sum;
+};
+
+void difference(const Neighborhood& from, int slab, Differences& d) {
+  const float* const f = from.values.data() + static_cast<std::ptrdiff_t>(slab * kSlab);
+  for (int n = kRow; n < kSlab - kRow; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const double twice = 2.0 * static_cast<double>(f[n]);
+    const double x = static_cast<double>(f[n - kSlab]) + static_cast<double>(f[n + kSlab]) - twice;
+    const double y = static_cast<double>(f[n - kRow]) + static_cast<double>(f[n + kRow]) - twice;
+    const double z = static_cast<double>(f[n - 1]) + static_cast<double>(f[n + 1]) - twice;
+    d.along_x[i] = x;
+    d.along_y[i] = y;
+    d.along_z[i] = z;
+    d.sum[i] = x + y + z;
   }
 }
 
-/// Whether voxel i and all that D, or D(D), of it depends on is in the band.
-struct Reach {
-  bool near, far;
+/// The coefficients of one row, in three qualities [units].
+struct RowOfThree {
+  alignas(64) std::array<double, kRows> plain, near, far;
 };
 
-Reach reachOf(const std::array<std::uint8_t, kCount>& known, std::size_t i) {
-  constexpr std::size_t kX = kStepX;
-  constexpr std::size_t kY = kStepY;
-  const unsigned near = known[i] & known[i - kX] & known[i + kX] & known[i - kY] & known[i + kY] &
-                        known[i - 1] & known[i + 1];
-  if (near == 0) return {false, false};
-  const unsigned far = known[i - 2 * kX] & known[i + 2 * kX] & known[i - 2 * kY] &
-                       known[i + 2 * kY] & known[i - 2] & known[i + 2] & known[i - kX - kY] &
-                       known[i - kX + kY] & known[i + kX - kY] & known[i + kX + kY] &
-                       known[i - kX - 1] & known[i - kX + 1] & known[i + kX - 1] &
-                       known[i + kX + 1] & known[i - kY - 1] & known[i - kY + 1] &
-                       known[i + kY - 1] & known[i + kY + 1];
-  return {true, far != 0};
+/// `f` and `at` are the row's first voxel; `before`, `here` and `behind` the slabs around it.
+void filterRow(const float* f, std::size_t at, const Differences& before, const Differences& here,
+               const Differences& behind, RowOfThree& row) {
+  for (std::size_t n = 0; n < kRows; ++n) {
+    const std::size_t i = at + n;
+    const double near = static_cast<double>(f[n]) - here.sum[i] / 6.0;
+    const double sum = 2.0 * here.sum[i];
+    const double x2 = -2.0 * here.along_x[i] + before.along_x[i] + behind.along_x[i];
+    const double y2 = -2.0 * here.along_y[i] + here.along_y[i - kRow] + here.along_y[i + kRow];
+    const double z2 = -2.0 * here.along_z[i] + here.along_z[i - 1] + here.along_z[i + 1];
+    const double twice = before.sum[i] + behind.sum[i] + here.sum[i - kRow] + here.sum[i + kRow] +
+                         here.sum[i - 1] + here.sum[i + 1] - 3.0 * sum;
+    row.near[n] = near;
+    row.far[n] = near + (twice / 72.0 + 11.0 / 720.0 * (x2 + y2 + z2));
+  }
 }
 
-/// Rows of flags along z, one bit a voxel: bit n is voxel n - 1.
-using Flags = std::array<std::array<unsigned, Brick::kRows>, Brick::kRows>;
+/// What a voxel counts whose coefficient is not known: its value within `plateau`, or that.
+void plainRow(const float* f, unsigned known, float plateau, double* out) {
+  for (std::size_t n = 0; n < kRows; ++n) {
+    const float within = std::clamp(f[n], -plateau, plateau);
+    out[n] = (known >> n & 1U) != 0 ? within : std::copysign(plateau, f[n]);
+  }
+}
 
 /// A cell is known if all its voxels are: from `first` to `last` from its own, along each axis.
 void markCells(const Flags& flags, int first, int last, Brick& brick) {
@@ -80,62 +125,65 @@ void markCells(const Flags& flags, int first, int last, Brick& brick) {
   }
 }
 
+/// Calls row(x, y, f, out) for each row of the brick: f is its first voxel, out its place there.
+template <class Row>
+void forRows(const Neighborhood& from, Brick& brick, int x, const Row& row) {
+  for (int y = 0; y < kRows; ++y) {
+    const float* const f =
+        from.values.data() + ((x + kMargin) * kSlab + (y + kMargin) * kRow + kMargin);
+    float* const out = brick.values + (x * Brick::kSlab + y * Brick::kRow);
+    row(static_cast<std::size_t>(y), f, out);
+    out[kRows] = 0.0F;
+  }
+}
+
 }  // namespace
 
 void fillCubic(const Neighborhood& from, float plateau, double units_per_voxel, Brick& brick) {
-  Differences d;
-  difference(from, d);
   const double scale = 1.0 / units_per_voxel;
-  Flags flags{};
-  for (int x = 0; x < Brick::kRows; ++x) {
-    for (int y = 0; y < Brick::kRows; ++y) {
-      const int row = (x + kFirstRow) * kStepX + (y + kFirstRow) * kStepY + kFirstRow;
-      float* const out = brick.values + (x * Brick::kSlab + y * Brick::kRow);
-      unsigned bits = 0;
-      for (int z = 0; z < Brick::kRows; ++z) {
-        const auto i = static_cast<std::size_t>(row + z);
-        const Reach reach = reachOf(from.known, i);
-        double c = clipped(from.values[i], from.known[i] != 0, plateau);
-        if (reach.near) c = static_cast<double>(from.values[i]) - d.sum[i] / 6.0;
-        if (reach.far) {
-          const double sum = 2.0 * d.sum[i];
-          const double x2 = -2.0 * d.along_x[i] + d.along_x[i - kStepX] + d.along_x[i + kStepX];
-          const double y2 = -2.0 * d.along_y[i] + d.along_y[i - kStepY] + d.along_y[i + kStepY];
-          const double z2 = -2.0 * d.along_z[i] + d.along_z[i - 1] + d.along_z[i + 1];
-          const double twice = d.sum[i - kStepX] + d.sum[i + kStepX] + d.sum[i - kStepY] +
-                               d.sum[i + kStepY] + d.sum[i - 1] + d.sum[i + 1] - 3.0 * sum;
-          c += twice / 72.0 + 11.0 / 720.0 * (x2 + y2 + z2);
-        }
-        bits |= (reach.near ? 1U : 0U) << z;
-        out[z] = static_cast<float>(c * scale);
+  const Flags known = knownOf(from);
+  const Reach reach = reachOf(from);
+  std::array<Differences, 3> slabs;  // those around the present one, in turns
+  difference(from, kMargin - 1, slabs[0]);
+  difference(from, kMargin, slabs[1]);
+  for (int x = 0; x < kRows; ++x) {
+    const auto turn = static_cast<std::size_t>(x);
+    const Differences& before = slabs[turn % 3];
+    const Differences& here = slabs[(turn + 1) % 3];
+    Differences& behind = slabs[(turn + 2) % 3];
+    difference(from, x + kMargin + 1, behind);
+    forRows(from, brick, x, [&](std::size_t y, const float* f, float* out) {
+      const unsigned near = reach.near[turn][y];
+      const unsigned far = reach.far[turn][y];
+      RowOfThree row{};
+      if (far != kAllOfRow) plainRow(f, known[turn][y], plateau, row.plain.data());
+      if (near != 0) {
+        filterRow(f, (y + kMargin) * kRow + kMargin, before, here, behind, row);
       }
-      out[Brick::kRows] = 0.0F;
-      flags[static_cast<std::size_t>(x)][static_cast<std::size_t>(y)] = bits;
-    }
+      for (std::size_t n = 0; n < kRows; ++n) {
+        double c = (near >> n & 1U) != 0 ? row.near[n] : row.plain[n];
+        c = (far >> n & 1U) != 0 ? row.far[n] : c;
+        out[n] = static_cast<float>(c * scale);
+      }
+    });
   }
-  markCells(flags, -1, 2, brick);
+  markCells(reach.near, -1, 2, brick);
 }
 
 void fillLinear(const Neighborhood& from, float plateau, double units_per_voxel, Brick& brick) {
   const double scale = 1.0 / units_per_voxel;
-  Flags flags{};
-  for (int x = 0; x < Brick::kRows; ++x) {
-    for (int y = 0; y < Brick::kRows; ++y) {
-      const int row = (x + kFirstRow) * kStepX + (y + kFirstRow) * kStepY + kFirstRow;
-      float* const out = brick.values + (x * Brick::kSlab + y * Brick::kRow);
-      unsigned bits = 0;
-      for (int z = 0; z < Brick::kRows; ++z) {
-        const auto i = static_cast<std::size_t>(row + z);
-        const bool known = from.known[i] != 0;
-        const float value = known ? from.values[i] : std::copysign(plateau, from.values[i]);
-        out[z] = static_cast<float>(value * scale);
-        bits |= (known ? 1U : 0U) << z;
+  const Flags known = knownOf(from);
+  for (int x = 0; x < kRows; ++x) {
+    const auto slab = static_cast<std::size_t>(x);
+    forRows(from, brick, x, [&](std::size_t y, const float* f, float* out) {
+      for (std::size_t n = 0; n < kRows; ++n) {
+        const bool is_known = (known[slab][y] >> n & 1U) != 0;
+        const float value = is_known ? f[n] : std::copysign(plateau, f[n]);
+        out[n] = static_cast<float>(value * scale);
       }
-      out[Brick::kRows] = 0.0F;
-      flags[static_cast<std::size_t>(x)][static_cast<std::size_t>(y)] = bits;
-    }
+    });
   }
-  markCells(flags, 0, 1, brick);
+  markCells(known, 0, 1, brick);
 }
 
 }  // namespace palpate::vdb

@@ -8,20 +8,17 @@
 
 namespace palpate::vdb {
 
-/// The voxels that one brick's coefficients depend on: from -3 to 11 of its block along each axis.
+/// The voxels that one brick's coefficients depend on: from -3 to 11 of its block along each axis, in
+/// rows along z with a float to spare.
 struct Neighborhood {
   static constexpr int kFirst = -3;
   static constexpr int kSide = 15;
-  static constexpr std::size_t kStep[3] = {kSide * kSide, kSide, 1};
+  static constexpr int kRow = 16;
+  static constexpr int kSlab = kSide * kRow;
 
-  std::array<float, kSide * kSide * kSide> values;  ///< [units]
-  std::array<std::uint8_t, kSide * kSide * kSide>
-      known;  ///< 1: in the band; 0: only the sign counts
-
-  [[nodiscard]] static constexpr std::size_t at(int x, int y, int z) noexcept {
-    return static_cast<std::size_t>(x - kFirst) * kStep[0] +
-           static_cast<std::size_t>(y - kFirst) * kStep[1] + static_cast<std::size_t>(z - kFirst);
-  }
+  alignas(64) std::array<float, kSide * kSlab> values{};  ///< [units]
+  /// Bit n of row x * kSide + y: voxel kFirst + n along z is in the band; of others only the sign counts.
+  std::array<std::uint16_t, kSide * kSide> known{};
 };
 
 /// Coefficients of the cubic B-spline that stays closest to the grid's values f. With D the sum of the

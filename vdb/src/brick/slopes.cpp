@@ -8,49 +8,64 @@ namespace palpate::vdb {
 namespace {
 
 constexpr std::size_t kCount = sizeof(Brick::values) / sizeof(float);
-constexpr std::array<std::size_t, 3> kStrides{Brick::kSlab, Brick::kRow, 1};
-using Numbers = std::array<float, kCount>;
+/// Loops run over the ends of rows, and of the brick by as much as the widest window; what comes of
+/// that is not looked at.
+constexpr std::size_t kBehind = 4 * Brick::kSlab;
+using Numbers = std::array<float, kCount + kBehind>;
 
-/// Each number becomes the largest of `width` numbers from it on. Runs over the ends of rows; what
-/// comes of that is not looked at.
-void slideMaximum(Numbers& numbers, std::size_t stride, std::size_t width) noexcept {
-  for (std::size_t n = 0; n + (width - 1) * stride < kCount; ++n) {
-    float most = numbers[n];
-    for (std::size_t k = 1; k < width; ++k) most = std::max(most, numbers[n + k * stride]);
-    numbers[n] = most;
+float larger(float a, float b) noexcept { return a < b ? b : a; }
+
+/// Each number becomes the larger of it and the one `kStep` on.
+template <std::size_t kStep>
+void pairMaximum(Numbers& numbers) noexcept {
+  for (std::size_t n = 0; n < kCount; ++n) numbers[n] = larger(numbers[n], numbers[n + kStep]);
+}
+
+/// Each number becomes the largest of `kWidth` numbers from it on, 1 to 4.
+template <std::size_t kStride, std::size_t kWidth>
+void slideMaximum(Numbers& numbers) noexcept {
+  if constexpr (kWidth > 1) pairMaximum<kStride>(numbers);
+  if constexpr (kWidth > 2) pairMaximum<kStride*(kWidth - 2)>(numbers);
+}
+
+/// The steepest of `kSteps` differences along the axis with `kStride`, of kSteps + 1 rows across it.
+template <std::size_t kStride, std::size_t kSteps>
+void slopesAlong(const Brick& brick, Numbers& slope) noexcept {
+  for (std::size_t n = 0; n < kCount - kStride; ++n) {
+    slope[n] = std::fabs(brick.values[n + kStride] - brick.values[n]);
   }
+  std::fill(slope.begin() + static_cast<std::ptrdiff_t>(kCount - kStride), slope.end(), 0.0F);
+  constexpr auto width = [](std::size_t stride) { return stride == kStride ? kSteps : kSteps + 1; };
+  slideMaximum<Brick::kSlab, width(Brick::kSlab)>(slope);
+  slideMaximum<Brick::kRow, width(Brick::kRow)>(slope);
+  slideMaximum<1, width(1)>(slope);
 }
 
 /// Each component of the gradient is a mean of the differences between neighbors along its axis, of
-/// the voxels from `first` to `last` from the cell's own.
-double steepestSquare(const Brick& brick, int first, int last) noexcept {
-  const auto steps = static_cast<std::size_t>(last - first);
-  std::array<Numbers, 3> slopes{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    Numbers& slope = slopes[axis];
-    for (std::size_t n = 0; n + kStrides[axis] < kCount; ++n) {
-      slope[n] = std::fabs(brick.values[n + kStrides[axis]] - brick.values[n]);
-    }
-    for (std::size_t other = 0; other < 3; ++other) {
-      slideMaximum(slope, kStrides[other], other == axis ? steps : steps + 1);
-    }
-  }
-  float most = 0.0F;
+/// the voxels from `kFirst` to `kLast` from the cell's own.
+template <int kFirst, int kLast>
+double steepestSquare(const Brick& brick) noexcept {
+  constexpr auto kSteps = static_cast<std::size_t>(kLast - kFirst);
+  Numbers by_x, by_y, by_z;
+  slopesAlong<Brick::kSlab, kSteps>(brick, by_x);
+  slopesAlong<Brick::kRow, kSteps>(brick, by_y);
+  slopesAlong<1, kSteps>(brick, by_z);
+  std::array<float, Brick::kSide> most{};
   for (int x = 0; x < Brick::kSide; ++x) {
     for (int y = 0; y < Brick::kSide; ++y) {
-      for (int z = 0; z < Brick::kSide; ++z) {
-        const std::size_t at = Brick::at(x + first, y + first, z + first);
-        most = std::max(most, slopes[0][at] * slopes[0][at] + slopes[1][at] * slopes[1][at] +
-                                  slopes[2][at] * slopes[2][at]);
+      const std::size_t at = Brick::at(x + kFirst, y + kFirst, kFirst);
+      for (std::size_t z = 0; z < Brick::kSide; ++z) {
+        const std::size_t n = at + z;
+        most[z] = larger(most[z], by_x[n] * by_x[n] + by_y[n] * by_y[n] + by_z[n] * by_z[n]);
       }
     }
   }
-  return most;
+  return *std::max_element(most.begin(), most.end());
 }
 
 }  // namespace
 
-double steepestSquareCubic(const Brick& brick) noexcept { return steepestSquare(brick, -1, 2); }
-double steepestSquareLinear(const Brick& brick) noexcept { return steepestSquare(brick, 0, 1); }
+double steepestSquareCubic(const Brick& brick) noexcept { return steepestSquare<-1, 2>(brick); }
+double steepestSquareLinear(const Brick& brick) noexcept { return steepestSquare<0, 1>(brick); }
 
 }  // namespace palpate::vdb
