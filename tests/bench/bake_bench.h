@@ -5,6 +5,9 @@
 #include <tbb/global_control.h>
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <utility>
 
 namespace palpate::vdb::bench {
 
@@ -28,5 +31,12 @@ inline void perVoxel(benchmark::State& state, std::uint64_t voxels) {
       static_cast<double>(voxels),
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
+
+/// What a run made: the thing itself, so that it stays there, and the memory [bytes] that it takes.
+using Made = std::pair<std::shared_ptr<const void>, std::uint64_t>;
+
+/// Runs `make` once more, untimed. Adds "memory_mb" of what it made, and "peak": the most memory that was
+/// in use on the way, as a share of that.
+void addPeak(benchmark::State& state, const std::function<Made()>& make);
 
 }  // namespace palpate::vdb::bench

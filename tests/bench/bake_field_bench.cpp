@@ -1,4 +1,5 @@
-// An analytic ball and a CSG of fourteen parts into bands, beside OpenVDB's createLevelSetSphere.
+// An analytic ball, a CSG of fourteen parts and a heart into bands, beside OpenVDB's createLevelSetSphere;
+// and a band into bricks.
 
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/LevelSetSphere.h>
@@ -7,6 +8,7 @@
 
 #include "bench/bake_bench.h"
 #include "palpate/fields/csg.h"
+#include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
 #include "vdb/shapes.h"
@@ -17,7 +19,7 @@ namespace {
 constexpr double kRadius = 50e-3;
 const Vec3 kCenter(0.31e-3, -0.17e-3, 0.23e-3);
 
-/// A box, eight balls cut out of its corners, three cylinders and two balls added.
+/// A box, eight balls cut out of its corners, three rings and two balls added.
 FieldPtr fourteenParts() {
   std::vector<FieldPtr> cut;
   for (int n = 0; n < 8; ++n) {
@@ -27,37 +29,62 @@ FieldPtr fourteenParts() {
   }
   const FieldPtr body =
       intersect({box(kCenter, Vec3(60e-3, 40e-3, 50e-3)), complement(unite(cut))});
-  return unite({body, cylinder(kCenter, Vec3(1.0, 0.0, 0.0), 8e-3, 90e-3),
-                cylinder(kCenter, Vec3(0.0, 1.0, 0.0), 8e-3, 70e-3),
-                cylinder(kCenter, Vec3(0.0, 0.0, 1.0), 8e-3, 80e-3),
+  return unite({body, torus(kCenter, Vec3(1.0, 0.0, 0.0), 28e-3, 5e-3),
+                torus(kCenter, Vec3(0.0, 1.0, 0.0), 32e-3, 5e-3),
+                torus(kCenter, Vec3(0.0, 0.0, 1.0), 34e-3, 5e-3),
                 sphere(kCenter + Vec3(45e-3, 0.0, 0.0), 12e-3),
                 sphere(kCenter + Vec3(0.0, 0.0, 40e-3), 12e-3)});
 }
 
+BakeOptions optionsOf(const benchmark::State& state, double half_width) {
+  return test::voxels(kRadius / static_cast<double>(state.range(0)), half_width);
+}
+
 void bakeOf(benchmark::State& state, const FieldPtr& field) {
   const bench::Threads threads(state.range(1));
-  const BakeOptions options =
-      test::voxels(kRadius / static_cast<double>(state.range(0)), bench::kHalfWidth);
+  const BakeOptions options = optionsOf(state, bench::kHalfWidth);
   std::uint64_t voxels = 0;
   for (auto run : state) voxels = bake(*field, options).info().active_voxels;
   bench::perVoxel(state, voxels);
+  bench::addPeak(state, [&]() -> bench::Made {
+    const auto set = std::make_shared<const LevelSet>(bake(*field, options));
+    return {set, set->info().memory};
+  });
 }
 
 void ball(benchmark::State& state) { bakeOf(state, sphere(kCenter, kRadius)); }
 void csg(benchmark::State& state) { bakeOf(state, fourteenParts()); }
+/// A value that is no distance: closest points are searched.
+void heartShape(benchmark::State& state) { bakeOf(state, heart(kCenter, 2.0 * kRadius)); }
 
 void createLevelSetSphere(benchmark::State& state) {
   openvdb::initialize();
   const bench::Threads threads(state.range(1));
   const openvdb::Vec3f center(0.31F, -0.17F, 0.23F);
+  const auto make = [&] {
+    return openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
+        50.0F, center, 50.0F / static_cast<float>(state.range(0)),
+        static_cast<float>(bench::kHalfWidth), state.range(1) > 1);
+  };
   std::uint64_t voxels = 0;
-  for (auto run : state) {
-    voxels = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
-                 50.0F, center, 50.0F / static_cast<float>(state.range(0)),
-                 static_cast<float>(bench::kHalfWidth), state.range(1) > 1)
-                 ->activeVoxelCount();
-  }
+  for (auto run : state) voxels = make()->activeVoxelCount();
   bench::perVoxel(state, voxels);
+  bench::addPeak(state, [&]() -> bench::Made {
+    const openvdb::FloatGrid::Ptr grid = make();
+    return {grid, grid->memUsage()};
+  });
+}
+
+/// A band, wide enough for the cubic sampler, into bricks.
+void bricks(benchmark::State& state) {
+  const bench::Threads threads(state.range(1));
+  const LevelSet set = bake(*sphere(kCenter, kRadius), optionsOf(state, kCubicHalfWidth));
+  constexpr double kBytesOfBrick = 5888.0;
+  double count = 0.0;
+  for (auto run : state) count = static_cast<double>(memoryOf(*gridField(set))) / kBytesOfBrick;
+  bench::perVoxel(state, set.info().active_voxels);
+  state.counters["per_brick"] = benchmark::Counter(
+      count, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {
@@ -67,9 +94,16 @@ void sizes(benchmark::internal::Benchmark* bench) {
   }
 }
 
+void fewSizes(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"R/h", "threads"})->Unit(benchmark::kMillisecond)->UseRealTime();
+  for (const int threads : {1, 2}) bench->Args({100, threads});
+}
+
 BENCHMARK(ball)->Name("ball/palpate")->Apply(sizes);
 BENCHMARK(createLevelSetSphere)->Name("ball/createLevelSetSphere")->Apply(sizes);
 BENCHMARK(csg)->Name("csg14/palpate")->Apply(sizes);
+BENCHMARK(heartShape)->Name("heart/palpate")->Apply(fewSizes);
+BENCHMARK(bricks)->Name("bricks/palpate")->Apply(fewSizes);
 
 }  // namespace
 }  // namespace palpate::vdb

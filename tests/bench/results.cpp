@@ -1,11 +1,11 @@
 #include "results.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 
 #include "rivals.h"
+#include "write_results.h"
 
 namespace palpate::bench {
 namespace {
@@ -72,13 +72,7 @@ std::string Results::table() const {
 
 nlohmann::ordered_json Results::json(const tools::Machine& machine) const {
   nlohmann::ordered_json out = {{"schema", "palpate.bench_sampling/1"},
-                                {"machine",
-                                 {{"cpu", machine.cpu},
-                                  {"threads", machine.threads},
-                                  {"system", machine.system},
-                                  {"compiler", machine.compiler},
-                                  {"build", machine.build_type},
-                                  {"palpate", PALPATE_VERSION}}},
+                                {"machine", machineJson(machine)},
                                 {"shapes", nlohmann::ordered_json::array()}};
   for (const Shape& shape : shapes_) {
     nlohmann::ordered_json one = {{"shape", shape.name},
@@ -98,20 +92,6 @@ nlohmann::ordered_json Results::json(const tools::Machine& machine) const {
     out["shapes"].push_back(one);
   }
   return out;
-}
-
-std::string fileNameOf(const std::string& cpu) {
-  std::string name;
-  for (const char c : cpu) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (std::isalnum(byte) != 0) {
-      name += static_cast<char>(std::tolower(byte));
-    } else if (!name.empty() && name.back() != '-') {
-      name += '-';
-    }
-  }
-  while (!name.empty() && name.back() == '-') name.pop_back();
-  return name.empty() ? "unknown" : name;
 }
 
 }  // namespace palpate::bench

@@ -41,7 +41,4 @@ class Results final : public benchmark::BenchmarkReporter {
   std::vector<Shape> shapes_;
 };
 
-/// "amd-epyc-7763" for "AMD EPYC 7763": lower case, what is neither letter nor digit a dash.
-[[nodiscard]] std::string fileNameOf(const std::string& cpu);
-
 }  // namespace palpate::bench

@@ -4,14 +4,13 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "brick/brick_field.h"
 #include "results.h"
 #include "rivals.h"
 #include "shapes.h"
+#include "write_results.h"
 
 namespace palpate::bench {
 namespace {
@@ -58,46 +57,9 @@ void registerShape(Shape made, Results& results) {
   }
 }
 
-struct Options {
-  std::string mesh;    ///< a third shape; empty: none
-  std::string folder;  ///< where the JSON goes; empty: nowhere
-};
-
-/// Takes `--mesh=FILE` and `--write=FOLDER` out of the arguments; the others are Google Benchmark's.
-Options takeOptions(int& count, char** arguments) {
-  Options options;
-  int kept = 0;
-  for (int i = 0; i < count; ++i) {
-    const std::string argument = arguments[i];
-    if (argument.starts_with("--mesh=")) {
-      options.mesh = argument.substr(7);
-    } else if (argument.starts_with("--write=")) {
-      options.folder = argument.substr(8);
-    } else {
-      arguments[kept++] = arguments[i];
-    }
-  }
-  count = kept;
-  return options;
-}
-
-void write(const Results& results, const tools::Machine& machine, const std::string& folder) {
-  const std::filesystem::path path =
-      std::filesystem::path(folder) / (fileNameOf(machine.cpu) + ".json");
-  std::filesystem::path beside = path;
-  beside += ".tmp";
-  std::ofstream out(beside);
-  out << results.json(machine).dump(2) << "\n";
-  out.close();
-  if (!out) {
-    throw Error(ErrorKind::kOperation, {"bench.write", "cannot write", {}, beside.string()});
-  }
-  std::filesystem::rename(beside, path);
-  std::printf("\nWritten  %s\n", path.string().c_str());
-}
-
 int run(int count, char** arguments) {
-  const Options options = takeOptions(count, arguments);
+  const std::string mesh = takeOption("mesh", count, arguments);
+  const std::string folder = takeOption("write", count, arguments);
   benchmark::Initialize(&count, arguments);
   if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 2;
   const tools::Machine machine = tools::thisMachine();
@@ -105,15 +67,15 @@ int run(int count, char** arguments) {
   Results results;
   registerShape(torusShape(), results);
   registerShape(ballShape(), results);
-  if (options.mesh.empty()) {
+  if (mesh.empty()) {
     std::fputs("no mesh was given (--mesh=FILE): skipped\n", stderr);
   } else {
-    registerShape(meshShape(options.mesh), results);
+    registerShape(meshShape(mesh), results);
   }
   benchmark::RunSpecifiedBenchmarks(&results);
   std::printf("%s, %s, %s build\n\n%s", machine.cpu.c_str(), machine.compiler.c_str(),
               machine.build_type.c_str(), results.table().c_str());
-  if (!options.folder.empty()) write(results, machine, options.folder);
+  if (!folder.empty()) write(results.json(machine), machine, folder);
   return 0;
 }
 

@@ -51,9 +51,20 @@ double defaultVoxel(const LengthUnit& unit, const Box3& bounds, const std::strin
   return voxel;
 }
 
+/// [bytes] What --max-memory leaves beside the grids that are made; 0 if it was not given.
+std::uint64_t memoryLeft(const BakeOptions& options, const std::vector<BakedGrid>& made) {
+  if (options.max_memory.empty()) return 0;
+  const std::uint64_t allowed = parseBytes(options.max_memory, "--max-memory");
+  std::uint64_t taken = 0;
+  for (const BakedGrid& one : made) taken += one.grid.info().memory;
+  return allowed > taken ? allowed - taken : 1;
+}
+
 vdb::BakeOptions bakeOptions(const BakeOptions& options, const std::string& layer, double voxel,
-                             const std::string& unit, const std::string& source) {
+                             const std::string& unit, const std::string& source,
+                             const std::vector<BakedGrid>& made = {}) {
   vdb::BakeOptions bake;
+  bake.max_memory = memoryLeft(options, made);
   bake.voxel_size = voxel;
   bake.half_width = options.half_width;
   bake.name = layer + "/surface";
@@ -96,7 +107,7 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
   refuseMeshOptions(options);
   refuse(options.above.has_value(), "--above", "images");
   refuse(!options.labels.empty(), "--labels", "images");
-  LoadedScene loaded(options.input, console);
+  LoadedScene loaded(options.input, console, memoryLeft(options, {}));
   const SceneDescription& description = loaded.description();
   std::vector<std::string_view> names;
   for (const auto& layer : description.layers) names.push_back(layer.name);
@@ -132,7 +143,8 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
                            : !region.source.empty() ? region.field->featureSize()
                                                     : defaultVoxel(unit, region.field->bounds(),
                                                                    "layer " + region.name, console);
-      return vdb::bake(*region.field, bakeOptions(options, region.name, voxel, unit.name, source),
+      return vdb::bake(*region.field,
+                       bakeOptions(options, region.name, voxel, unit.name, source, grids),
                        console.progress());
     }));
   }
@@ -237,7 +249,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
     labels.voxel_size = asked;
     grids.push_back(timed([&, &layer = layer] {
       return vdb::surfaceFromLabels(image, labels,
-                                    bakeOptions(options, layer, voxel, "mm", options.input),
+                                    bakeOptions(options, layer, voxel, "mm", options.input, grids),
                                     console.progress());
     }));
   }
@@ -246,7 +258,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
 
 }  // namespace
 
-std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console) {
+std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console) try {
   switch (inputKind(options.input)) {
     case InputKind::kScene:
       return bakeScene(options, console);
@@ -259,6 +271,11 @@ std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console) {
   }
   throw inputError("bake.kind", "this is a grid already", "bake a scene, a mesh or an image",
                    options.input);
+} catch (const Error& error) {
+  if (error.problem().code != "bake.memory") throw;
+  Problem problem = error.problem();
+  problem.hint += "; --max-memory says how much may be taken";
+  throw Error(error.kind(), std::move(problem));
 }
 
 }  // namespace palpate::tools

@@ -6,11 +6,13 @@
 
 namespace palpate::tools {
 
-LoadedScene::LoadedScene(const std::string& file, Console& console) : console_(&console) {
+LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_t max_memory)
+    : console_(&console) {
   SceneRegistry registry;
   vdb::RegisterOptions options;
   options.on_grid = [this](const vdb::GridRecord& record) { grids_.push_back(record); };
   options.on_note = [this](const std::string& note) { console_->note(note); };
+  options.max_memory = max_memory;
   vdb::registerKinds(registry, std::move(options));
 
   // Pictures want the scans themselves, so the entries are noted down on their way through.

@@ -25,7 +25,8 @@ struct SceneImage {
 class LoadedScene {
  public:
   /// Reads the file; makes nothing yet. @throws Error (kInput).
-  LoadedScene(const std::string& file, Console& console);
+  /// `max_memory` [bytes] of each grid; 0: the library's own limit.
+  LoadedScene(const std::string& file, Console& console, std::uint64_t max_memory = 0);
   LoadedScene(const LoadedScene&) = delete;
   LoadedScene& operator=(const LoadedScene&) = delete;
 

@@ -59,6 +59,7 @@ struct BakeOptions {
   std::string names;
   std::string voxel;
   double half_width = 6.0;  ///< [voxels]
+  std::string max_memory;   ///< of all grids together; empty: 80 % of the machine's
 };
 
 /// What is baked on the way, and into what kind of file it goes.

@@ -1,6 +1,7 @@
 #include "text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <glm/common.hpp>
@@ -75,6 +76,32 @@ double parseForceRate(std::string_view text, const char* what) {
 
 double parseTime(std::string_view text, const char* what) {
   return parseWithUnit(trimmed(text), Dimension::kTime, 1.0, "s", what);
+}
+
+std::uint64_t parseBytes(std::string_view text, const char* what) {
+  struct Unit {
+    std::string_view name;
+    double bytes;
+  };
+  static constexpr std::array<Unit, 9> kUnits{{{"KiB", 1024.0},
+                                               {"MiB", 1048576.0},
+                                               {"GiB", 1073741824.0},
+                                               {"TiB", 1099511627776.0},
+                                               {"kB", 1e3},
+                                               {"MB", 1e6},
+                                               {"GB", 1e9},
+                                               {"TB", 1e12},
+                                               {"B", 1.0}}};
+  text = trimmed(text);
+  for (const Unit& unit : kUnits) {
+    if (!text.ends_with(unit.name)) continue;
+    const auto count = parseNumber(trimmed(text.substr(0, text.size() - unit.name.size())));
+    const double bytes = count ? *count * unit.bytes : 0.0;
+    if (bytes >= 1.0 && bytes < 1e18) return static_cast<std::uint64_t>(bytes);
+    break;
+  }
+  throw usageError(what, "'" + std::string(text) + "' is not an amount of memory",
+                   "write a number with its unit: 500MB, 2GB (also kB, TB, MiB, GiB)");
 }
 
 std::vector<std::string_view> split(std::string_view text, char separator) {

@@ -25,6 +25,8 @@ struct LengthUnit {
 [[nodiscard]] double parseForce(std::string_view text, const char* what);
 [[nodiscard]] double parseForceRate(std::string_view text, const char* what);
 [[nodiscard]] double parseTime(std::string_view text, const char* what);
+/// [bytes] "500MB", "1.5 GB" (powers of ten, as formatBytes() writes them) or "2GiB"; at least 1.
+[[nodiscard]] std::uint64_t parseBytes(std::string_view text, const char* what);
 /// "X,Y,Z": three numbers, unitless.
 [[nodiscard]] Vec3 parseVector(std::string_view text, const char* what);
 /// "X,Y,Z" in `unit`; to [m].

@@ -116,6 +116,7 @@ std::string lengthUnitOr(MapReader& reader, std::string fallback) {
 FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
   const std::string path = existingFile(reader, "file");
   BakeOptions bake;
+  bake.max_memory = common->options.max_memory;
   bake.length_unit = reader.loader().lengthUnit();
   const double metres = *metresPer(lengthUnitOr(reader, bake.length_unit));
   bake.voxel_size = optionalVoxel(reader);
@@ -160,12 +161,13 @@ struct LayerImage {
   SourcePlace place;
   Sampler sampler;
 
-  LayerImage(MapReader& reader, const std::string& layer)
+  LayerImage(MapReader& reader, const std::string& layer, std::uint64_t max_memory)
       : name(reader.requireText("image")),
         image(std::static_pointer_cast<SceneImage>(
             reader.loader().image(name, reader.require("image").mark))),
         place(reader.loader().document().place(reader.node().mark)),
         sampler(readSampler(reader)) {
+    bake.max_memory = max_memory;
     bake.name = layer + "/surface";
     bake.length_unit = reader.loader().lengthUnit();
     bake.metadata["layer"] = layer;
@@ -201,7 +203,7 @@ std::vector<int> readMatch(MapReader& reader, const SceneImage& image) {
 
 SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& reader,
                                         const std::string& layer) {
-  const LayerImage from(reader, layer);
+  const LayerImage from(reader, layer, common->options.max_memory);
   LabelOptions labels;
   labels.values = readMatch(reader, *from.image);
   labels.voxel_size = optionalVoxel(reader);
@@ -217,7 +219,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
 
 SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& reader,
                                            const std::string& layer) {
-  const LayerImage from(reader, layer);
+  const LayerImage from(reader, layer, common->options.max_memory);
   ThresholdOptions threshold;
   const Node& above = reader.require("above");
   threshold.above = reader.requireNumber("above");

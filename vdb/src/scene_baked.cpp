@@ -79,7 +79,8 @@ void tell(const RegisterOptions& options, const std::string& what, const Hybrid&
 
 FieldSourcePtr readBaked(MapReader& reader, const RegisterOptions& options) {
   const FieldSourcePtr field = reader.loader().field(reader.require("field"));
-  const HybridOptions asked = readOptions(reader);
+  HybridOptions asked = readOptions(reader);
+  asked.bake.max_memory = options.max_memory;
   const SourcePlace place = reader.loader().document().place(reader.node().mark);
   const std::string what = "baked field in line " + std::to_string(place.line);
   auto make = [field, asked, place, what, options](const Progress& progress) {

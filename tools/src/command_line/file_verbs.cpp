@@ -14,6 +14,8 @@ void addBaking(CLI::App& app, BakeOptions& o) {
   add(app, g, "--half-width", "VOXELS", o.half_width,
       "width of the narrow band on each side of the surface (default 6)")
       ->check(CLI::Range(2.0, 64.0));
+  add(app, g, "--max-memory", "SIZE", o.max_memory,
+      "refuse, before it is taken, what needs more: 500MB, 2GB (default: 80 % of the machine's)");
   addList(app, g, "--layer", "NAME", o.layers,
           "scene, grid: only this layer, may be repeated; mesh, --above: what to call it");
   g = "From a mesh";

@@ -1,0 +1,103 @@
+// How fast fields, meshes and labels become bands, and bands bricks, beside OpenVDB's own tools in the same
+// run. See README.md.
+
+#include "bench/bake_bench.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "bench/machine.h"
+#include "palpate/core/error.h"
+#include "write_results.h"
+
+namespace palpate::vdb::bench {
+namespace {
+
+/// [bytes] A line of /proc/self/status; 0 if there is none.
+double statusOf(const std::string& key) {
+  std::ifstream in("/proc/self/status");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with(key + ":")) return 1024.0 * std::stod(line.substr(key.size() + 1));
+  }
+  return 0.0;
+}
+
+/// Prints as the console does, and keeps the shortest run of each benchmark.
+class Results final : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
+      const std::string name = run.run_name.function_name + "/" + run.run_name.args;
+      const double seconds = run.real_accumulated_time / static_cast<double>(run.iterations);
+      auto found = std::find_if(rows_.begin(), rows_.end(),
+                                [&](const auto& row) { return row["name"] == name; });
+      if (found == rows_.end()) {
+        rows_.push_back({{"name", name}, {"seconds", seconds}});
+        found = rows_.end() - 1;
+      } else if (seconds >= (*found)["seconds"]) {
+        continue;
+      }
+      nlohmann::ordered_json& row = *found;
+      row["seconds"] = seconds;
+      for (const auto& [key, counter] : run.counters) {
+        // Google Benchmark has seconds for each voxel there.
+        if (key == "per_voxel" || key == "per_brick") {
+          row[key + "_ns"] = 1e9 * counter.value;
+        } else {
+          row[key] = counter.value;
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] nlohmann::ordered_json json(const tools::Machine& machine) const {
+    return {{"schema", "palpate.bench_baking/1"},
+            {"machine", palpate::bench::machineJson(machine)},
+            {"runs", rows_}};
+  }
+
+ private:
+  nlohmann::ordered_json rows_ = nlohmann::ordered_json::array();
+};
+
+int runAll(int count, char** arguments) {
+  const std::string folder = palpate::bench::takeOption("write", count, arguments);
+  benchmark::Initialize(&count, arguments);
+  if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 2;
+  const tools::Machine machine = tools::thisMachine();
+  if (!machine.optimised) std::fputs("warning: not optimised: times say nothing\n", stderr);
+  Results results;
+  benchmark::RunSpecifiedBenchmarks(&results);
+  if (!folder.empty()) palpate::bench::write(results.json(machine), machine, folder, "-baking");
+  return 0;
+}
+
+}  // namespace
+
+void addPeak(benchmark::State& state, const std::function<Made()>& make) {
+  malloc_trim(0);  // What runs before this one left in the heap would be used, and not seen.
+  const double before = statusOf("VmRSS");
+  std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins anew
+  const Made made = make();
+  const double memory = static_cast<double>(made.second);
+  state.counters["memory_mb"] = 1e-6 * memory;
+  state.counters["peak"] = (statusOf("VmHWM") - before) / memory;
+}
+
+}  // namespace palpate::vdb::bench
+
+int main(int argc, char** argv) {
+  try {
+    return palpate::vdb::bench::runAll(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
