@@ -197,20 +197,72 @@ TEST(Bake, NothingIsOverwrittenUnlessForced) {
   EXPECT_NE(textOf(folder.path("c.vdb")), "mine");
 }
 
-TEST(Bake, AnInterruptStopsItAndLeavesNothing) {
-  // A fine ball that takes far longer than the two seconds after which progress is told.
+TEST(Bake, MemoryIsRefusedBeforeItIsTaken) {
   const TempFolder folder;
-  (void)folder.file("ball.yaml", R"(palpate: 1
+  (void)folder.file("c.yaml", kContainer);
+  const CommandResult refused = runPalpate(
+      {"bake", "c.yaml", "-o", "c.vdb", "--voxel", "0.05", "--max-memory", "50MB", "--json"},
+      folder.path());
+  EXPECT_EQ(refused.exit_code, 1);
+  const Json error = parseOnly(refused)["error"];
+  EXPECT_EQ(error["code"], "bake.memory");
+  // The estimate, the limit, and both remedies.
+  EXPECT_NE(error["message"].get<std::string>().find(" GB; 0.050 GB"), std::string::npos) << error;
+  EXPECT_NE(error["hint"].get<std::string>().find("voxels of "), std::string::npos) << error;
+  EXPECT_NE(error["hint"].get<std::string>().find("--max-memory"), std::string::npos) << error;
+  EXPECT_EQ(filesIn(folder.path()), std::vector<std::string>{"c.yaml"});
+
+  EXPECT_EQ(runPalpate({"bake", "c.yaml", "-o", "c.vdb", "--voxel", "1", "--max-memory", "50 MB"},
+                       folder.path())
+                .exit_code,
+            0);
+  for (const char* bad : {"50", "much", "-1GB", "0B", "1e30TB"}) {
+    const CommandResult slip =
+        runPalpate({"bake", "c.yaml", "-o", "d.vdb", "--max-memory", bad}, folder.path());
+    EXPECT_EQ(slip.exit_code, 2) << bad;
+    EXPECT_NE(slip.err.find("500MB"), std::string::npos) << slip.err;
+  }
+}
+
+TEST(Bake, TheLimitIsForAllGridsTogether) {
+  const TempFolder folder;
+  (void)folder.file("two.yaml", R"(palpate: 1
 length: mm
 fields:
   ball: {sphere: {center: [0, 0, 0], radius: 40}}
+  other: {sphere: {center: [0, 0, 90], radius: 40}}
 layers:
   - {name: ball, inside: ball}
+  - {name: other, inside: other}
+)");
+  const auto bake = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"bake", "two.yaml", "-o",      "t.vdb",        "--voxel",
+                                       "0.5",  "--json",   "--force", "--max-memory", "25MB"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runPalpate(arguments, folder.path());
+  };
+  EXPECT_EQ(bake({"--layer", "ball"}).exit_code, 0);
+  EXPECT_EQ(bake({"--layer", "other"}).exit_code, 0);
+  const CommandResult both = bake({});
+  EXPECT_EQ(both.exit_code, 1);
+  EXPECT_EQ(parseOnly(both)["error"]["code"], "bake.memory");
+}
+
+TEST(Bake, AnInterruptStopsItAndLeavesNothing) {
+  // A heart, for which closest points are searched: far longer than the two seconds after which progress
+  // is told.
+  const TempFolder folder;
+  (void)folder.file("heart.yaml", R"(palpate: 1
+length: mm
+fields:
+  heart: {heart: {center: [0, 0, 0], width: 80}}
+layers:
+  - {name: heart, inside: heart}
 )");
   for (const int signal : {SIGINT, SIGTERM}) {
     bool sent = false;
     const CommandResult result =
-        runPalpate({"bake", "ball.yaml", "-o", "b.vdb", "--voxel", "0.03", "--json"}, folder.path(),
+        runPalpate({"bake", "heart.yaml", "-o", "h.vdb", "--voxel", "0.1", "--json"}, folder.path(),
                    [&](std::string_view, pid_t process) {
                      if (!sent) kill(process, signal);
                      sent = true;
@@ -218,7 +270,7 @@ layers:
     EXPECT_TRUE(sent) << "it was over before it told any progress";
     EXPECT_EQ(result.exit_code, 130) << result.err;
     EXPECT_EQ(parseOnly(result)["error"]["code"], "cancelled");
-    EXPECT_EQ(filesIn(folder.path()), std::vector<std::string>{"ball.yaml"});
+    EXPECT_EQ(filesIn(folder.path()), std::vector<std::string>{"heart.yaml"});
   }
 }
 

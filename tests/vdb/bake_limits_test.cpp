@@ -98,6 +98,23 @@ TEST(BakeLimits, SuggestedVoxelSizeFits) {
   }
 }
 
+// What is told before is near what is taken then, so that a limit refuses neither too much nor too little.
+TEST(BakeLimits, TheEstimateIsCloseToWhatIsTaken) {
+  const FieldPtr ball = sphere(Vec3(0.0), 20e-3);
+  const FieldPtr holes = subtract({ball, torus(15e-3, 6e-3), sphere(Vec3(0.0), 8e-3)});
+  for (const FieldPtr& shape : {ball, holes}) {
+    for (const double half_width : {3.0, 6.0}) {
+      BakeOptions options = voxels(0.2e-3, half_width);
+      const auto taken = static_cast<double>(bake(*shape, options).info().memory);
+      // Eight of the tree's upper nodes are counted however small the grid is, 0.3 MB each.
+      options.max_memory = static_cast<std::uint64_t>(1.25 * taken + 2.4e6);
+      EXPECT_NO_THROW(static_cast<void>(bake(*shape, options)));
+      options.max_memory = static_cast<std::uint64_t>(0.95 * taken);
+      EXPECT_EQ(bakeError(shape, options).problem().code, "bake.memory");
+    }
+  }
+}
+
 TEST(BakeLimits, NoVoxelSizeFitsIntoNothing) {
   BakeOptions options = voxels(1e-3);
   options.max_memory = 1000;

@@ -27,6 +27,26 @@ bool isSingle(const Field& field) {
 
 ValueRange negative(const ValueRange& range) { return {-range.hi, -range.lo}; }
 
+/// What value() and sample() ask a leaf for, and what CSG makes of it.
+struct AskValue {
+  using Answer = double;
+  double operator()(const Field& leaf, const Vec3& p) const noexcept { return leaf.value(p); }
+  static double valueOf(double value) noexcept { return value; }
+  static double turnedAbout(double value) noexcept { return -value; }
+  static double moved(double value, const Pose&) noexcept { return value; }
+};
+struct AskSample {
+  using Answer = FieldSample;
+  FieldSample operator()(const Field& leaf, const Vec3& p) const noexcept { return leaf.sample(p); }
+  static double valueOf(const FieldSample& sample) noexcept { return sample.value; }
+  static FieldSample turnedAbout(const FieldSample& sample) noexcept {
+    return {-sample.value, -sample.gradient, sample.in_band};
+  }
+  static FieldSample moved(const FieldSample& sample, const Pose& pose) noexcept {
+    return {sample.value, pose.rotate(sample.gradient), sample.in_band};
+  }
+};
+
 }  // namespace
 
 FieldParts::FieldParts(const Field& field) { take(field); }
@@ -121,6 +141,34 @@ ValueRange FieldParts::narrowNode(const FieldPart& from, std::size_t at, const V
     finish();
   }
   return is_minimum ? all : negative(all);
+}
+
+template <class Ask>
+typename Ask::Answer FieldParts::askNode(const FieldPart& part, std::size_t at, const Vec3& p,
+                                         const Ask& ask) const noexcept {
+  const FieldPart::Node node = part.nodes[at];
+  const Item& item = items_[node.which];
+  if (item.kind == Kind::kLeaf) return ask(*item.field, p);
+  if (item.kind == Kind::kTransform) {
+    return Ask::moved(askNode(part, at + 1, item.pose.applyInverse(p), ask), item.pose);
+  }
+  typename Ask::Answer best = askNode(part, at + 1, p, ask);
+  if (item.kind == Kind::kComplement) return Ask::turnedAbout(best);
+  const double sign = item.kind == Kind::kUnion ? 1.0 : -1.0;
+  for (std::size_t child = at + 1 + part.nodes[at + 1].size; child < at + node.size;
+       child += part.nodes[child].size) {
+    const typename Ask::Answer next = askNode(part, child, p, ask);
+    if (sign * Ask::valueOf(next) < sign * Ask::valueOf(best)) best = next;
+  }
+  return best;
+}
+
+double FieldParts::value(const FieldPart& part, const Vec3& p) const noexcept {
+  return askNode(part, 0, p, AskValue{});
+}
+
+FieldSample FieldParts::sample(const FieldPart& part, const Vec3& p) const noexcept {
+  return askNode(part, 0, p, AskSample{});
 }
 
 void FieldParts::values(const FieldPart& part, const PointBatch& points,

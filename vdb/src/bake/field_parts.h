@@ -38,7 +38,9 @@ class FieldParts {
   ValueRange narrow(const FieldPart& from, const Vec3& center, double radius, double limit,
                     FieldPart& to) const;
 
-  /// Field::values() of the part.
+  /// Field::sample(), value() and values() of the part.
+  [[nodiscard]] FieldSample sample(const FieldPart& part, const Vec3& p) const noexcept;
+  [[nodiscard]] double value(const FieldPart& part, const Vec3& p) const noexcept;
   void values(const FieldPart& part, const PointBatch& points, ValueBatch& out) const noexcept;
 
  private:
@@ -55,6 +57,9 @@ class FieldParts {
                                    double radius) const noexcept;
   ValueRange narrowNode(const FieldPart& from, std::size_t at, const Vec3& center, double radius,
                         double limit, FieldPart& to) const;
+  template <class Ask>
+  [[nodiscard]] typename Ask::Answer askNode(const FieldPart& part, std::size_t at, const Vec3& p,
+                                             const Ask& ask) const noexcept;
   void valuesOfNode(const FieldPart& part, std::size_t at, const PointBatch& points,
                     ValueBatch& out) const noexcept;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bake/field_parts.h"
 #include "palpate/vdb/openvdb_access.h"
 
 namespace palpate::vdb {
@@ -48,40 +49,59 @@ class Search {
  public:
   Search(const Field& field, const LevelSet& grid, const BakePlan& plan,
          const std::optional<Box3>& box)
-      : field_(field), grid_(gridField(grid, Sampler::kAccessor)), plan_(plan), box_(box) {}
+      : parts_(field),
+        has_distances_(field.metric() != Metric::kImplicit),
+        grid_(gridField(grid, Sampler::kAccessor)),
+        plan_(plan),
+        box_(box) {}
 
-  [[nodiscard]] Lost in(const Leaf& leaf) const noexcept {
+  [[nodiscard]] Lost in(const Leaf& leaf) const {
+    // What decides at all points that are looked at from here; of fields that are no distances, these may
+    // be anywhere.
+    constexpr double kReach = 0.5 * 1.7320508075688774 * 7.0 + kBySurface + kHeld + kGoesOn + 0.1;
+    const openvdb::Coord first = leaf.origin();
+    const Vec3 center = (Vec3(first.x(), first.y(), first.z()) + Vec3(3.5)) * plan_.voxel;
+    FieldPart part;
+    const double radius = has_distances_ ? kReach * plan_.voxel : kInfinity;
+    static_cast<void>(parts_.narrow(parts_.whole(), center, radius, kInfinity, part));
     Lost lost;
     const auto near = static_cast<float>(kBySurface * plan_.voxel / plan_.metres_per_unit);
     for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
       if (std::fabs(*voxel) >= near) continue;
       const openvdb::Coord at = voxel.getCoord();
-      look(Vec3(at.x(), at.y(), at.z()) * plan_.voxel, lost);
+      look(part, Vec3(at.x(), at.y(), at.z()) * plan_.voxel, lost);
     }
     return lost;
   }
 
  private:
   /// From a point by the surface: down to it, and on through the shape.
-  void look(const Vec3& p, Lost& lost) const noexcept {
-    const FieldSample here = field_.sample(p);
+  void look(const FieldPart& part, const Vec3& p, Lost& lost) const noexcept {
+    const FieldSample here = parts_.sample(part, p);
     const double slope = glm::length(here.gradient);
     if (!here.in_band || !(slope > 0.0)) return;
     const Vec3 in = -here.gradient / slope;
     const Vec3 foot = p + here.value / slope * in;
+    // A ball inside that holds all the depths below.
+    constexpr double kBall = 0.5 * (1.0 - 1.0 / kDepths) * kHeld;
+    const double ball = kBall * plan_.voxel;
+    if (has_distances_ &&
+        parts_.value(part, foot + (kHeld * plan_.voxel - ball) * in) < -ball * (1.0 + 1e-9)) {
+      return;
+    }
     double inside = 0.0;
     double outside = 0.0;
     for (int i = 1; i <= kDepths && outside == 0.0; ++i) {
       const double depth = kHeld * i / kDepths * plan_.voxel;
-      (field_.value(foot + depth * in) < 0.0 ? inside : outside) = depth;
+      (parts_.value(part, foot + depth * in) < 0.0 ? inside : outside) = depth;
     }
     if (outside == 0.0) return;  // thick
     for (int i = 0; i < 12; ++i) {
       const double middle = 0.5 * (inside + outside);
-      (field_.value(foot + middle * in) < 0.0 ? inside : outside) = middle;
+      (parts_.value(part, foot + middle * in) < 0.0 ? inside : outside) = middle;
     }
     const Vec3 middle = foot + 0.5 * inside * in;
-    if (!(inside > 0.0) || grid_->value(middle) < 0.0 || !goesOn(middle, in)) return;
+    if (!(inside > 0.0) || grid_->value(middle) < 0.0 || !goesOn(part, middle, in)) return;
     if (box_ && !box_->contains(middle)) return;
     if (lost.places++ == 0) {
       lost.where = middle;
@@ -90,16 +110,19 @@ class Search {
     lost.thinnest = std::min(lost.thinnest, inside);
   }
 
-  [[nodiscard]] bool goesOn(const Vec3& middle, const Vec3& normal) const noexcept {
+  [[nodiscard]] bool goesOn(const FieldPart& part, const Vec3& middle,
+                            const Vec3& normal) const noexcept {
     const Vec3 across = std::fabs(normal.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
     const Vec3 u = glm::normalize(glm::cross(normal, across));
     const Vec3 v = glm::cross(normal, u);
     const double far = kGoesOn * plan_.voxel;
-    return field_.value(middle + far * u) < 0.0 && field_.value(middle - far * u) < 0.0 &&
-           field_.value(middle + far * v) < 0.0 && field_.value(middle - far * v) < 0.0;
+    const auto is_inside = [&](const Vec3& p) { return parts_.value(part, p) < 0.0; };
+    return is_inside(middle + far * u) && is_inside(middle - far * u) &&
+           is_inside(middle + far * v) && is_inside(middle - far * v);
   }
 
-  const Field& field_;
+  FieldParts parts_;
+  bool has_distances_;
   FieldPtr grid_;
   const BakePlan& plan_;
   const std::optional<Box3>& box_;
