@@ -1,6 +1,10 @@
 #include "brick/block_map.h"
 
 #include <openvdb/tree/ValueAccessor.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <string>
@@ -32,8 +36,8 @@ Coord blockOf(const Coord& voxel) {
 /// its own and of the one behind it reach.
 constexpr unsigned kReached[3] = {0x03, 0xFF, 0x80};
 
-/// The neighbors (and itself) of a leaf that have active voxels of it in their stencils.
-void addReached(const Leaf& leaf, std::vector<Coord>& blocks) {
+/// The neighbors of a leaf that are none, but have active voxels of it in their stencils.
+void addReached(const Leaf& leaf, const Accessor& accessor, std::vector<Coord>& blocks) {
   const auto& mask = leaf.getValueMask();
   bool reached[3][3][3] = {};
   for (unsigned x = 0; x < 8; ++x) {
@@ -50,12 +54,13 @@ void addReached(const Leaf& leaf, std::vector<Coord>& blocks) {
       }
     }
   }
-  const Coord block = blockOf(leaf.origin());
-  blocks.push_back(block);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       for (int k = 0; k < 3; ++k) {
-        if (reached[i][j][k]) blocks.push_back(block.offsetBy(i - 1, j - 1, k - 1));
+        const Coord at = leaf.origin().offsetBy(8 * (i - 1), 8 * (j - 1), 8 * (k - 1));
+        if (reached[i][j][k] && accessor.probeConstLeaf(at) == nullptr) {
+          blocks.push_back(blockOf(at));
+        }
       }
     }
   }
@@ -63,7 +68,7 @@ void addReached(const Leaf& leaf, std::vector<Coord>& blocks) {
 
 class TableMaker {
  public:
-  TableMaker(const Tree& tree, const BlockMap& map) : accessor_(tree), map_(map) {}
+  TableMaker(const Tree& tree, const BlockMap& map) : tree_(tree), map_(map) {}
 
   [[nodiscard]] BlockTable oneLevel() const {
     BlockTable table = sized(map_.box, 0);
@@ -129,22 +134,22 @@ class TableMaker {
   void fill(const CoordBBox& box, unsigned shift, std::uint32_t* entries, std::uint32_t stride_x,
             std::uint32_t stride_y) const {
     const Coord size = box.dim();
-    for (int x = 0; x < size.x(); ++x) {
-      for (int y = 0; y < size.y(); ++y) {
-        std::uint32_t* const row = entries + static_cast<std::size_t>(x) * stride_x +
-                                   static_cast<std::size_t>(y) * stride_y;
-        for (int z = 0; z < size.z(); ++z) {
-          row[z] = signAt((box.min() + Coord(x, y, z)) << shift);
+    tbb::parallel_for(tbb::blocked_range<int>(0, size.x()), [&](const auto& range) {
+      const Accessor accessor(tree_);
+      for (int x = range.begin(); x != range.end(); ++x) {
+        for (int y = 0; y < size.y(); ++y) {
+          std::uint32_t* const row = entries + static_cast<std::size_t>(x) * stride_x +
+                                     static_cast<std::size_t>(y) * stride_y;
+          for (int z = 0; z < size.z(); ++z) {
+            const Coord voxel = (box.min() + Coord(x, y, z)) << shift;
+            row[z] = accessor.getValue(voxel) < 0.0F ? BrickView::kInside : BrickView::kOutside;
+          }
         }
       }
-    }
+    });
   }
 
-  [[nodiscard]] std::uint32_t signAt(const Coord& voxel) const {
-    return accessor_.getValue(voxel) < 0.0F ? BrickView::kInside : BrickView::kOutside;
-  }
-
-  Accessor accessor_;
+  const Tree& tree_;
   const BlockMap& map_;
 };
 
@@ -152,8 +157,23 @@ class TableMaker {
 
 BlockMap mapBlocks(const Tree& tree) {
   BlockMap map;
-  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) addReached(*leaf, map.bricks);
-  std::sort(map.bricks.begin(), map.bricks.end());
+  std::vector<const Leaf*> leaves;
+  tree.getNodes(leaves);
+  map.bricks.resize(leaves.size());
+  tbb::enumerable_thread_specific<std::vector<Coord>> more;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()), [&](const auto& range) {
+    const Accessor accessor(tree);
+    std::vector<Coord>& reached = more.local();
+    for (std::size_t n = range.begin(); n != range.end(); ++n) {
+      map.bricks[n] = blockOf(leaves[n]->origin());
+      addReached(*leaves[n], accessor, reached);
+    }
+  });
+  for (const std::vector<Coord>& reached : more) {
+    map.bricks.insert(map.bricks.end(), reached.begin(), reached.end());
+  }
+  // Sorted, so that their order does not depend on threads.
+  tbb::parallel_sort(map.bricks.begin(), map.bricks.end());
   map.bricks.erase(std::unique(map.bricks.begin(), map.bricks.end()), map.bricks.end());
   for (const Coord& block : map.bricks) map.box.expand(block);
   auto tiles = tree.cbeginValueAll();

@@ -1,9 +1,11 @@
 #include "palpate/vdb/level_set.h"
 
-#include <openvdb/tree/LeafManager.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "palpate/scene/units.h"
 #include "palpate/vdb/openvdb_access.h"
@@ -39,6 +41,38 @@ Vec3 fromVdb(const openvdb::Vec3d& v, double metres_per_unit) {
   return Vec3(v.x(), v.y(), v.z()) * metres_per_unit;
 }
 
+/// How many voxels are active, and where.
+struct Active {
+  std::uint64_t voxels = 0;
+  openvdb::CoordBBox box;
+};
+
+Active activeOf(const openvdb::FloatTree& tree) {
+  if (tree.hasActiveTiles()) {
+    Active all{tree.activeVoxelCount(), {}};
+    tree.evalActiveVoxelBoundingBox(all.box);
+    return all;
+  }
+  // OpenVDB's box is found by one thread.
+  std::vector<const openvdb::FloatTree::LeafNodeType*> leaves;
+  tree.getNodes(leaves);
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, leaves.size()), Active{},
+      [&](const auto& range, Active all) {
+        for (std::size_t n = range.begin(); n != range.end(); ++n) {
+          const auto count = leaves[n]->onVoxelCount();
+          all.voxels += count;
+          if (count > 0) leaves[n]->evalActiveBoundingBox(all.box, /*visitVoxels=*/true);
+        }
+        return all;
+      },
+      [](Active a, const Active& b) {
+        a.voxels += b.voxels;
+        a.box.expand(b.box);
+        return a;
+      });
+}
+
 LevelSetInfo inspect(const openvdb::FloatGrid& grid, const std::string& length_unit,
                      double metres_per_unit, double scale) {
   LevelSetInfo info;
@@ -48,12 +82,12 @@ LevelSetInfo inspect(const openvdb::FloatGrid& grid, const std::string& length_u
   info.voxel_size = scale * metres_per_unit;
   // The background is a float: no more than a float's digits of the quotient mean anything.
   info.half_width = static_cast<float>(static_cast<double>(grid.background()) / scale);
-  info.active_voxels = grid.activeVoxelCount();
+  const Active active = activeOf(grid.tree());
+  info.active_voxels = active.voxels;
   info.memory = grid.memUsage();
   if (info.active_voxels > 0) {
-    const openvdb::CoordBBox voxels = grid.evalActiveVoxelBoundingBox();
-    info.bounds.include(fromVdb(grid.indexToWorld(voxels.min()), metres_per_unit));
-    info.bounds.include(fromVdb(grid.indexToWorld(voxels.max()), metres_per_unit));
+    info.bounds.include(fromVdb(grid.indexToWorld(active.box.min()), metres_per_unit));
+    info.bounds.include(fromVdb(grid.indexToWorld(active.box.max()), metres_per_unit));
   }
   for (auto entry = grid.beginMeta(); entry != grid.endMeta(); ++entry) {
     if (isReserved(entry->first) || entry->second->typeName() != "string") continue;
