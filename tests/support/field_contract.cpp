@@ -449,7 +449,8 @@ AssertionResult checkValues(const FieldCase& field_case) {
   std::vector<Vec3> points = pointsFor(field_case, *field);
   // Few that a loop over a batch is not made for, among many that it is.
   std::vector<Vec3> strange = awkwardPoints(field_case, *field);
-  strange.insert(strange.end(), {Vec3(kInfinity), Vec3(std::nan(""), 0.0, 0.0)});
+  strange.insert(strange.end(), {Vec3(kInfinity), Vec3(std::nan(""), 0.0, 0.0),
+                                 Vec3(0.0, std::nan(""), 0.0), Vec3(0.0, 0.0, std::nan(""))});
   for (std::size_t n = 0; n < strange.size(); ++n) {
     points.insert(points.begin() + static_cast<std::ptrdiff_t>(37 * n % points.size()), strange[n]);
   }

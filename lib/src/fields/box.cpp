@@ -9,24 +9,6 @@
 namespace palpate {
 namespace {
 
-void distances(const PointBatch& points, const Vec3& center, const Vec3& half, double rounding,
-               ValueBatch& out, fields::Leftovers& left) noexcept {
-  const auto positive = [](double a) { return a < 0.0 ? 0.0 : a; };
-  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
-    const double x = std::fabs(points.x[n] - center.x) - half.x;
-    const double y = std::fabs(points.y[n] - center.y) - half.y;
-    const double z = std::fabs(points.z[n] - center.z) - half.z;
-    const bool is_inside = (x <= 0.0) & (y <= 0.0) & (z <= 0.0);
-    const double xy = y > x ? y : x;
-    const double nearest = z > xy ? z : xy;
-    const double a = positive(x), b = positive(y), c = positive(z);
-    const double square = a * a + b * b + c * c;
-    const double away = std::sqrt(square);
-    left[n] = (is_inside | fields::isPlain(square)) ? 0 : 1;
-    out[n] = (is_inside ? nearest : away) - rounding;
-  }
-}
-
 /// The points nearer than `rounding` to a box: with 0 the box itself.
 class Box final : public Field {
  public:
@@ -56,9 +38,27 @@ class Box final : public Field {
   }
 
   void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    fields::Leftovers left;
-    distances(points, center_, half_, rounding_, out, left);
-    fields::valuesOfLeftovers(*this, points, left, out);
+    const Vec3 center = center_;  // copies: nothing that is written can be they
+    const Vec3 half = half_;
+    const double rounding = rounding_;
+    const auto positive = [](double a) { return a < 0.0 ? 0.0 : a; };
+    fields::Squares squares, distances;
+    for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+      const double x = std::fabs(points.x[n] - center.x) - half.x;
+      const double y = std::fabs(points.y[n] - center.y) - half.y;
+      const double z = std::fabs(points.z[n] - center.z) - half.z;
+      const double xy = y > x ? y : x;
+      const double nearest = z > xy ? z : xy;
+      const double a = positive(x);
+      const double b = positive(y);
+      const double c = positive(z);
+      const double square = a * a + b * b + c * c;
+      const double away = std::sqrt(square);
+      squares[n] = nearest <= 0.0 ? square + 1.0 : square;  // inside it is 0, and does not count
+      distances[n] = (nearest <= 0.0 ? nearest : away) - rounding;
+    }
+    out = distances;
+    fields::valuesOfLeftovers(*this, points, squares, out);
   }
 
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {

@@ -1,4 +1,3 @@
-#include "fields/batch.h"
 #include "fields/checks.h"
 #include "fields/vector.h"
 #include "palpate/fields/primitives.h"
@@ -9,14 +8,6 @@ namespace {
 /// A plane has no size of its own. A tenth of a meter is the scale of a hand's motion: tolerances
 /// relative to it are far below what can be felt, and far above rounding.
 constexpr double kPlaneFeature = 0.1;
-
-void heights(const PointBatch& points, const Vec3& point, const Vec3& normal,
-             ValueBatch& out) noexcept {
-  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
-    out[n] = normal.x * (points.x[n] - point.x) + normal.y * (points.y[n] - point.y) +
-             normal.z * (points.z[n] - point.z);
-  }
-}
 
 class HalfSpace final : public Field {
  public:
@@ -29,7 +20,12 @@ class HalfSpace final : public Field {
     return glm::dot(normal_, p - point_);
   }
   void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    heights(points, point_, normal_, out);
+    const Vec3 point = point_;  // copies: nothing that is written can be they
+    const Vec3 normal = normal_;
+    for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+      out[n] = normal.x * (points.x[n] - point.x) + normal.y * (points.y[n] - point.y) +
+               normal.z * (points.z[n] - point.z);
+    }
   }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     return {value(p), normal_, Mat3(0.0)};

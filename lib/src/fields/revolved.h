@@ -73,27 +73,6 @@ concept Profile = requires(const T profile, double rho, double height) {
   return size > 1e-3 * std::fabs(height);
 }
 
-/// Of a profile turned about the line through `center` along the unit vector `axis`.
-template <Profile P>
-inline void distancesOf(const P& profile, const PointBatch& points, const Vec3& center,
-                        const Vec3& axis, ValueBatch& out, Leftovers& left) noexcept {
-  const auto larger = [](double a, double b) { return a < b ? b : a; };
-  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
-    const double dx = points.x[n] - center.x;
-    const double dy = points.y[n] - center.y;
-    const double dz = points.z[n] - center.z;
-    const double height = dx * axis.x + dy * axis.y + dz * axis.z;
-    const double x = dx - axis.x * height;
-    const double y = dy - axis.y * height;
-    const double z = dz - axis.z * height;
-    const double size = larger(larger(std::fabs(x), std::fabs(y)), std::fabs(z));
-    const double square = x * x + y * y + z * z;
-    const ProfileValue at = profile.plain(std::sqrt(square), height);
-    left[n] = (isClearOfAxis(size, height) & isPlain(square) & isPlain(at.square)) ? 0 : 1;
-    out[n] = at.value;
-  }
-}
-
 /// The field of a profile turned about the line through `center` along the unit vector `axis`.
 template <Profile P>
 class Revolved final : public Field {
@@ -116,9 +95,29 @@ class Revolved final : public Field {
   }
 
   void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    Leftovers left;
-    distancesOf(profile_, points, center_, axis_, out, left);
-    valuesOfLeftovers(*this, points, left, out);
+    const Vec3 center = center_;  // copies: nothing that is written can be they
+    const Vec3 axis = axis_;
+    const P profile = profile_;
+    const auto larger = [](double a, double b) { return a < b ? b : a; };
+    Squares squares, of_profile, distances;
+    for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+      const double dx = points.x[n] - center.x;
+      const double dy = points.y[n] - center.y;
+      const double dz = points.z[n] - center.z;
+      const double height = dx * axis.x + dy * axis.y + dz * axis.z;
+      const double x = dx - axis.x * height;
+      const double y = dy - axis.y * height;
+      const double z = dz - axis.z * height;
+      const double size = larger(larger(std::fabs(x), std::fabs(y)), std::fabs(z));
+      const double square = x * x + y * y + z * z;
+      const ProfileValue at = profile.plain(std::sqrt(square), height);
+      squares[n] = isClearOfAxis(size, height) ? square : 0.0;
+      of_profile[n] = at.square;
+      distances[n] = at.value;
+    }
+    out = distances;
+    valuesOfLeftovers(*this, points, squares, out);
+    valuesOfLeftovers(*this, points, of_profile, out);
   }
 
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {

@@ -8,18 +8,6 @@ namespace {
 
 constexpr Vec3 kAtCenter(1.0, 0.0, 0.0);
 
-void distances(const PointBatch& points, const Vec3& center, double radius, ValueBatch& out,
-               fields::Leftovers& left) noexcept {
-  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
-    const double x = points.x[n] - center.x;
-    const double y = points.y[n] - center.y;
-    const double z = points.z[n] - center.z;
-    const double square = x * x + y * y + z * z;
-    left[n] = fields::isPlain(square) ? 0 : 1;
-    out[n] = std::sqrt(square) - radius;
-  }
-}
-
 class Sphere final : public Field {
  public:
   Sphere(const Vec3& center, double radius) : center_(center), radius_(radius) {}
@@ -32,9 +20,17 @@ class Sphere final : public Field {
     return fields::length(p - center_) - radius_;
   }
   void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    fields::Leftovers left;
-    distances(points, center_, radius_, out, left);
-    fields::valuesOfLeftovers(*this, points, left, out);
+    const Vec3 center = center_;  // a copy: nothing that is written can be it
+    const double radius = radius_;
+    fields::Squares squares;
+    for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+      const double x = points.x[n] - center.x;
+      const double y = points.y[n] - center.y;
+      const double z = points.z[n] - center.z;
+      squares[n] = x * x + y * y + z * z;
+    }
+    for (std::size_t n = 0; n < PointBatch::kCount; ++n) out[n] = std::sqrt(squares[n]) - radius;
+    fields::valuesOfLeftovers(*this, points, squares, out);
   }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     const fields::Polar q = fields::polar(p - center_, kAtCenter);

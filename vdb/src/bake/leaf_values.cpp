@@ -7,15 +7,18 @@
 namespace palpate::vdb {
 namespace {
 
-/// Bit n of the result is the lowest one of byte n.
-std::uint64_t bitsOf(const std::array<std::uint8_t, PointBatch::kCount>& flags) noexcept {
+using Flags = std::array<std::uint8_t, PointBatch::kCount>;
+
+/// Bit n of the result is that of flag n, 0 or 1. Eight at a time: the product puts flag n of them at bit
+/// 56 + n, and no two terms of it at one place.
+std::uint64_t bitsOf(const Flags& flags) noexcept {
   std::uint64_t bits = 0;
   for (std::size_t group = 0; group < 8; ++group) {
-    std::uint64_t bytes = 0;
+    std::uint64_t eight = 0;
     for (std::size_t n = 0; n < 8; ++n) {
-      bytes |= static_cast<std::uint64_t>(flags[8 * group + n]) << n;
+      eight |= static_cast<std::uint64_t>(flags[8 * group + n]) << (8 * n);
     }
-    bits |= bytes << (8 * group);
+    bits |= (eight * 0x0102040810204080U >> 56) << (8 * group);
   }
   return bits;
 }
@@ -33,15 +36,17 @@ void LeafValues::fill(const openvdb::Coord& local, float value) noexcept {
 
 void LeafValues::store(const openvdb::Coord& local, const ValueBatch& distances,
                        std::uint64_t known, double units_per_metre, float background) noexcept {
-  std::array<float, PointBatch::kCount> stored;
-  std::array<std::uint8_t, PointBatch::kCount> is_near, is_number, is_inside;
+  std::array<float, PointBatch::kCount> found, stored;
   for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
-    stored[n] = static_cast<float>(distances[n] * units_per_metre);
+    found[n] = static_cast<float>(distances[n] * units_per_metre);
   }
+  Flags is_near, is_number, is_inside;
   for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
-    is_near[n] = std::fabs(stored[n]) < background ? 1 : 0;
-    is_inside[n] = stored[n] < 0.0F ? 1 : 0;
-    is_number[n] = stored[n] == stored[n] ? 1 : 0;
+    is_near[n] = std::fabs(found[n]) < background ? 1 : 0;
+    is_inside[n] = found[n] < 0.0F ? 1 : 0;
+    is_number[n] = found[n] == found[n] ? 1 : 0;
+    const float far = std::copysign(background, found[n]);
+    stored[n] = std::fabs(found[n]) < background ? found[n] : far;
   }
   const std::uint64_t near = bitsOf(is_near) & known;
   const std::uint64_t inside = bitsOf(is_inside);
@@ -49,19 +54,21 @@ void LeafValues::store(const openvdb::Coord& local, const ValueBatch& distances,
   any_active = any_active || near != 0;
   any_inside = any_inside || inside != 0;
   any_outside = any_outside || inside != ~std::uint64_t{0};
-  for (unsigned n = 0; n < PointBatch::kCount; ++n) {
-    const float far = std::copysign(background, stored[n]);
-    stored[n] = (near >> n & 1U) != 0 ? stored[n] : far;
+  if (known != ~std::uint64_t{0}) {
+    for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
+      if ((known >> n & 1U) == 0) stored[n] = std::copysign(background, found[n]);
+    }
   }
-  for (int x = 0; x < 4; ++x) {
-    const auto rows = static_cast<unsigned>(near >> (16 * x) & 0xFFFFU);
+  const unsigned first = BandLeaf::coordToOffset(local);
+  const unsigned shift = first & 63U;
+  for (unsigned x = 0; x < 4; ++x) {
+    const auto rows = near >> (16 * x) & 0xFFFFU;
     std::uint64_t spread = 0;
     for (unsigned y = 0; y < 4; ++y) {
-      const auto to = BandLeaf::coordToOffset(local.offsetBy(x, static_cast<int>(y), 0));
-      std::copy_n(stored.begin() + 16 * x + 4 * y, 4, values.begin() + to);
-      spread |= static_cast<std::uint64_t>(rows >> (4 * y) & 0xFU) << (8 * y);
+      std::copy_n(stored.begin() + 16 * x + 4 * y, 4, values.begin() + first + 64 * x + 8 * y);
+      spread |= (rows >> (4 * y) & 0xFU) << (8 * y);
     }
-    active[static_cast<std::size_t>(local.x() + x)] |= spread << (8 * local.y() + local.z());
+    active[(first >> 6) + x] |= spread << shift;
   }
 }
 
