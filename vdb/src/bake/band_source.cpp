@@ -7,6 +7,24 @@
 
 namespace palpate::vdb {
 
+namespace {
+
+/// How far it is to the surface at least, if the slope grows by no more than twice what it does here:
+/// where |S| = |grad S| t + |H| t^2.
+double leastDistance(const FieldJet& jet) noexcept {
+  double square = 0.0;
+  for (int column = 0; column < 3; ++column) {
+    square += glm::dot(jet.hessian[column], jet.hessian[column]);
+  }
+  const double slope = glm::length(jet.gradient);
+  const double bend = std::sqrt(square);
+  // The root, written so that it holds for no bend as well.
+  const double value = std::fabs(jet.value);
+  return 2.0 * value / (slope + std::sqrt(slope * slope + 4.0 * bend * value));
+}
+
+}  // namespace
+
 BandSource::BandSource(const Field& field, const Box3& domain, bool is_cut, double band)
     : field_(field),
       parts_(field),
@@ -72,8 +90,9 @@ BandSource::Value BandSource::distanceAt(const Vec3& p) const noexcept {
   // Where the gradient vanishes the quotient says "far away", which is all the band needs.
   const double near = sample.value == 0.0 ? 0.0 : sample.value / slope;
   // Off by second order in the distance. The exact one is worth its time only in the band, for which a
-  // quotient twice as large leaves room.
+  // quotient twice as large leaves room; and less does where the slope does not grow.
   if (std::abs(near) > 2.0 * band_) return {near, true};
+  if (std::abs(near) > band_ && leastDistance(field_.jet(p)) > 1.25 * band_) return {near, true};
   const auto foot = footPoint(field_, p);
   return {foot ? foot->distance : near, true};
 }

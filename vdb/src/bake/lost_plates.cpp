@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "bake/field_parts.h"
@@ -47,13 +48,14 @@ bool mayBeThin(const Field& field, double length) {
 
 class Search {
  public:
-  Search(const Field& field, const LevelSet& grid, const BakePlan& plan,
-         const std::optional<Box3>& box)
+  Search(const Field& field, const BakePlan& plan, const std::optional<Box3>& box)
       : parts_(field),
         has_distances_(field.metric() != Metric::kImplicit),
-        grid_(gridField(grid, Sampler::kAccessor)),
         plan_(plan),
         box_(box) {}
+
+  /// From now on, what this grid holds is not lost.
+  void lookInto(const LevelSet& grid) { grid_ = gridField(grid, Sampler::kAccessor); }
 
   [[nodiscard]] Lost in(const Leaf& leaf) const {
     // What decides at all points that are looked at from here; of fields that are no distances, these may
@@ -101,7 +103,8 @@ class Search {
       (parts_.value(part, foot + middle * in) < 0.0 ? inside : outside) = middle;
     }
     const Vec3 middle = foot + 0.5 * inside * in;
-    if (!(inside > 0.0) || grid_->value(middle) < 0.0 || !goesOn(part, middle, in)) return;
+    if (!(inside > 0.0) || (grid_ && grid_->value(middle) < 0.0)) return;
+    if (!goesOn(part, middle, in)) return;
     if (box_ && !box_->contains(middle)) return;
     if (lost.places++ == 0) {
       lost.where = middle;
@@ -123,7 +126,7 @@ class Search {
 
   FieldParts parts_;
   bool has_distances_;
-  FieldPtr grid_;
+  FieldPtr grid_;  ///< null: taken as if it held nothing
   const BakePlan& plan_;
   const std::optional<Box3>& box_;
 };
@@ -139,14 +142,27 @@ void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& 
   if (!mayBeThin(field, kHeld * plan.voxel)) return;
   std::vector<const Leaf*> leaves;
   grid.impl().grid->tree().getNodes(leaves);
-  std::vector<Lost> found(leaves.size());
-  const Search search(field, grid, plan, options.box);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                        found[i] = search.in(*leaves[i]);
-                      }
-                    });
+  Search search(field, plan, options.box);
+  const auto search_all = [&] {
+    std::vector<Lost> found(leaves.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                          found[i] = search.in(*leaves[i]);
+                        }
+                      });
+    return found;
+  };
+  // A field of the grid is worth its making only where something is thin.
+  std::vector<Lost> found = search_all();
+  std::vector<const Leaf*> thin;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (found[i].places > 0) thin.push_back(leaves[i]);
+  }
+  if (thin.empty()) return;
+  leaves = std::move(thin);
+  search.lookInto(grid);
+  found = search_all();
   Lost all;
   for (const Lost& lost : found) {
     if (lost.places == 0) continue;

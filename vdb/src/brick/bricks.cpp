@@ -68,26 +68,24 @@ BlockRow blockRowAt(const Accessor& accessor, const Coord& middle) {
   return row;
 }
 
+/// `kCount` voxels of block `kBlock` from `kFirst` on.
+template <std::size_t kBlock, unsigned kFirst, unsigned kCount>
+unsigned gatherPart(const BlockRow& row, unsigned x, unsigned y, float* to) {
+  const float* const values = row.values[kBlock];
+  if (values == nullptr) {
+    std::fill_n(to, kCount, row.tiles[kBlock]);
+    return 0;
+  }
+  std::copy_n(values + (x * 64 + y * 8 + kFirst), kCount, to);
+  const auto word = row.masks[kBlock]->getWord<openvdb::Index64>(x);  // a byte for each y
+  return static_cast<unsigned>(word >> (8 * y + kFirst)) & ((1U << kCount) - 1U);
+}
+
 /// The voxels of a neighborhood's row along z: of the first block the last three, of the last one the
 /// first four. `x` and `y` count within the blocks. Returns a bit for each that is known.
 unsigned gatherRow(const BlockRow& row, unsigned x, unsigned y, float* to) {
-  constexpr std::array<std::ptrdiff_t, 3> kBegin{5, 0, 0};
-  constexpr std::array<std::ptrdiff_t, 3> kCount{3, 8, 4};
-  unsigned known = 0;
-  unsigned shift = 0;
-  for (std::size_t n = 0; n < 3; ++n) {
-    if (row.values[n] == nullptr) {
-      std::fill_n(to, kCount[n], row.tiles[n]);
-    } else {
-      std::copy_n(row.values[n] + (x * 64 + y * 8) + kBegin[n], kCount[n], to);
-      const auto word = row.masks[n]->getWord<openvdb::Index64>(x);  // a byte for each y
-      const auto bits = static_cast<unsigned>(word >> (8 * y) & 0xFFU) >> kBegin[n];
-      known |= (bits & ((1U << kCount[n]) - 1U)) << shift;
-    }
-    to += kCount[n];
-    shift += static_cast<unsigned>(kCount[n]);
-  }
-  return known;
+  return gatherPart<0, 5, 3>(row, x, y, to) | gatherPart<1, 0, 8>(row, x, y, to + 3) << 3 |
+         gatherPart<2, 0, 4>(row, x, y, to + 11) << 11;
 }
 
 /// Values and topology around a block, from the leaves and tiles there.
