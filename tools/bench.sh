@@ -2,6 +2,7 @@
 # Makes anew what the documents say of grids, on this machine:
 #   README.md (its table of accuracy) and tools/docs/accuracy.svg, by `palpate accuracy`
 #   data/bench/CPU.json, named after the processor: sampling beside OpenVDB's and NanoVDB's samplers, in one run
+#   data/bench/CPU-baking.json: baking beside OpenVDB's tools, in one run
 # A quiet machine is best; the shortest times count.
 #   tools/bench.sh [MESH]   MESH: a closed mesh in mm (.stl .obj .ply) to sample as a third shape, a bone for one
 set -euo pipefail
@@ -9,7 +10,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 mesh=()
 case ${1:-} in
-  -h | --help) sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" && exit 0 ;;
+  -h | --help) sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" && exit 0 ;;
   -*) echo "error: unknown option $1; --help says what there is" >&2 && exit 2 ;;
   ?*) mesh=("--mesh=$(realpath "$1")") ;;
 esac
@@ -20,7 +21,7 @@ source tools/setup.sh
 install_packages "${build_packages[@]}" "${test_packages[@]}"
 use_ccache
 [ -f build/release/build.ninja ] || configure release -DPALPATE_TESTS=OFF
-cmake --build build/release --target palpate_command palpate_sampler_bench
+cmake --build build/release --target palpate_command palpate_sampler_bench palpate_bake_bench
 
 # The table between the two comments in README.md: a row for each voxel size and sampler.
 write_table() { # CSV
@@ -48,3 +49,4 @@ write_table "$csv"
 mkdir -p data/bench
 build/release/bin/palpate_sampler_bench --benchmark_enable_random_interleaving=true \
   --write=data/bench "${mesh[@]}"
+build/release/bin/palpate_bake_bench --benchmark_repetitions=3 --write=data/bench

@@ -32,6 +32,19 @@ inline void perVoxel(benchmark::State& state, std::uint64_t voxels) {
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
+/// Times `make`, but not what it takes to free what the run before made.
+template <class Make>
+auto timed(benchmark::State& state, const Make& make) {
+  decltype(make()) made{};
+  for (auto run : state) {
+    state.PauseTiming();
+    made = {};
+    state.ResumeTiming();
+    made = make();
+  }
+  return made;
+}
+
 /// What a run made: the thing itself, so that it stays there, and the memory [bytes] that it takes.
 using Made = std::pair<std::shared_ptr<const void>, std::uint64_t>;
 

@@ -43,11 +43,10 @@ BakeOptions optionsOf(const benchmark::State& state, double half_width) {
 void bakeOf(benchmark::State& state, const FieldPtr& field) {
   const bench::Threads threads(state.range(1));
   const BakeOptions options = optionsOf(state, bench::kHalfWidth);
-  std::uint64_t voxels = 0;
-  for (auto run : state) voxels = bake(*field, options).info().active_voxels;
-  bench::perVoxel(state, voxels);
+  const auto make = [&] { return bake(*field, options); };
+  bench::perVoxel(state, bench::timed(state, make).info().active_voxels);
   bench::addPeak(state, [&]() -> bench::Made {
-    const auto set = std::make_shared<const LevelSet>(bake(*field, options));
+    const auto set = std::make_shared<const LevelSet>(make());
     return {set, set->info().memory};
   });
 }
@@ -66,9 +65,7 @@ void createLevelSetSphere(benchmark::State& state) {
         50.0F, center, 50.0F / static_cast<float>(state.range(0)),
         static_cast<float>(bench::kHalfWidth), state.range(1) > 1);
   };
-  std::uint64_t voxels = 0;
-  for (auto run : state) voxels = make()->activeVoxelCount();
-  bench::perVoxel(state, voxels);
+  bench::perVoxel(state, bench::timed(state, make)->activeVoxelCount());
   bench::addPeak(state, [&]() -> bench::Made {
     const openvdb::FloatGrid::Ptr grid = make();
     return {grid, grid->memUsage()};
@@ -80,8 +77,8 @@ void bricks(benchmark::State& state) {
   const bench::Threads threads(state.range(1));
   const LevelSet set = bake(*sphere(kCenter, kRadius), optionsOf(state, kCubicHalfWidth));
   constexpr double kBytesOfBrick = 5888.0;
-  double count = 0.0;
-  for (auto run : state) count = static_cast<double>(memoryOf(*gridField(set))) / kBytesOfBrick;
+  const FieldPtr field = bench::timed(state, [&] { return gridField(set); });
+  const double count = static_cast<double>(memoryOf(*field)) / kBytesOfBrick;
   bench::perVoxel(state, set.info().active_voxels);
   state.counters["per_brick"] = benchmark::Counter(
       count, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);

@@ -36,9 +36,7 @@ void ours(benchmark::State& state) {
   bake.voxel_size = kSpacing;
   bake.half_width = bench::kHalfWidth;
   const auto make = [&] { return surfaceFromLabels(image, {.values = {1}}, bake); };
-  std::uint64_t voxels = 0;
-  for (auto run : state) voxels = make().info().active_voxels;
-  bench::perVoxel(state, voxels);
+  bench::perVoxel(state, bench::timed(state, make).info().active_voxels);
   bench::addPeak(state, [&]() -> bench::Made {
     const auto set = std::make_shared<const LevelSet>(make());
     return {set, set->info().memory};
@@ -63,9 +61,7 @@ void topologyToLevelSet(benchmark::State& state) {
     return openvdb::tools::topologyToLevelSet(mask, static_cast<int>(bench::kHalfWidth), 0, 0,
                                               kSmoothing);
   };
-  std::uint64_t voxels = 0;
-  for (auto run : state) voxels = make()->activeVoxelCount();
-  bench::perVoxel(state, voxels);
+  bench::perVoxel(state, bench::timed(state, make)->activeVoxelCount());
   bench::addPeak(state, [&]() -> bench::Made {
     const openvdb::FloatGrid::Ptr grid = make();
     return {grid, grid->memUsage()};
