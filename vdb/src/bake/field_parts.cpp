@@ -55,7 +55,10 @@ void FieldParts::take(const Field& field) {
   const std::size_t at = items_.size();
   const FieldStructure structure = field.structure();
   const Kind kind = isSingle(field) ? Kind::kLeaf : structure.kind;
-  items_.push_back({&field, kind, structure.pose, field.lipschitz(), field.lipschitzDomain()});
+  const Box3 domain = field.lipschitzDomain();
+  const Box3 everything = Box3::everything();
+  items_.push_back({&field, kind, structure.pose, field.lipschitz(),
+                    domain.lo == everything.lo && domain.hi == everything.hi, domain});
   whole_.nodes.push_back({static_cast<std::uint32_t>(at), 1});
   if (kind == Kind::kLeaf) return;
   for (const FieldPtr& operand : structure.operands) take(*operand);
@@ -70,8 +73,8 @@ ValueRange FieldParts::narrow(const FieldPart& from, const Vec3& center, double 
 
 ValueRange FieldParts::rangeOf(const Field& leaf, const Item& item, const Vec3& center,
                                double radius) const noexcept {
-  if (!item.lipschitz_domain.contains(center - Vec3(radius)) ||
-      !item.lipschitz_domain.contains(center + Vec3(radius))) {
+  if (!item.is_bounded_everywhere && !(item.lipschitz_domain.contains(center - Vec3(radius)) &&
+                                       item.lipschitz_domain.contains(center + Vec3(radius)))) {
     return {-kInfinity, kInfinity};
   }
   // The margins cover the rounding of values and positions.
@@ -108,17 +111,12 @@ ValueRange FieldParts::narrowNode(const FieldPart& from, std::size_t at, const V
   }
   // A maximum is the minimum of what is turned about.
   const bool is_minimum = item.kind == Kind::kUnion;
-  struct Operand {
-    std::size_t begin, end;
-    ValueRange range;
-  };
-  std::vector<Operand> operands;
+  const std::size_t scratch = to.least.size();
   ValueRange all{kInfinity, kInfinity};
   for (std::size_t child = at + 1; child < at + node.size; child += from.nodes[child].size) {
-    const std::size_t first = to.nodes.size();
     ValueRange range = narrowNode(from, child, center, radius, limit, to);
     if (!is_minimum) range = negative(range);
-    operands.push_back({first, to.nodes.size(), range});
+    to.least.push_back(range.lo);
     all.lo = std::min(all.lo, range.lo);
     all.hi = std::min(all.hi, range.hi);
   }
@@ -126,14 +124,18 @@ ValueRange FieldParts::narrowNode(const FieldPart& from, std::size_t at, const V
   const double most = std::min(all.hi, limit);
   std::size_t kept = 0;
   std::size_t end = begin + 1;
-  for (const Operand& operand : operands) {
-    if (operand.range.lo > most && (kept > 0 || operand.range.lo > all.lo)) continue;
-    std::copy(to.nodes.begin() + static_cast<std::ptrdiff_t>(operand.begin),
-              to.nodes.begin() + static_cast<std::ptrdiff_t>(operand.end),
-              to.nodes.begin() + static_cast<std::ptrdiff_t>(end));
-    end += operand.end - operand.begin;
-    ++kept;
+  for (std::size_t operand = begin + 1, n = scratch; n < to.least.size(); ++n) {
+    const std::size_t size = to.nodes[operand].size;
+    const double least = to.least[n];
+    if (!(least > most) || (kept == 0 && least == all.lo)) {
+      std::copy_n(to.nodes.begin() + static_cast<std::ptrdiff_t>(operand), size,
+                  to.nodes.begin() + static_cast<std::ptrdiff_t>(end));
+      end += size;
+      ++kept;
+    }
+    operand += size;
   }
+  to.least.resize(scratch);
   to.nodes.resize(end);
   if (kept == 1) {
     to.nodes.erase(to.nodes.begin() + static_cast<std::ptrdiff_t>(begin));

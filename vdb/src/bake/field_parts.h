@@ -15,6 +15,7 @@ struct FieldPart {
     std::uint32_t size = 1;   ///< of it and all below it
   };
   std::vector<Node> nodes;
+  std::vector<double> least;  ///< [m] scratch of narrow()
 };
 
 /// Where the values in a ball lie, by the Lipschitz bounds of the operands: no less than `lo`, no more
@@ -49,6 +50,7 @@ class FieldParts {
     FieldStructure::Kind kind = FieldStructure::Kind::kLeaf;
     Pose pose;  ///< of a placement
     double lipschitz = 1.0;
+    bool is_bounded_everywhere = false;
     Box3 lipschitz_domain;
   };
 
