@@ -14,16 +14,18 @@ namespace palpate::fields {
 /// made for the point.
 struct alignas(64) Squares : std::array<double, PointBatch::kCount> {};
 
-/// Whether all are plain: two at a time, which compilers do not see by themselves.
+/// Whether all are plain, and not close to leaving the range of double together. Two at a time, which
+/// compilers do not see by themselves.
 [[nodiscard]] inline bool arePlain(const Squares& squares) noexcept {
   using Two [[gnu::vector_size(16)]] = double;
-  using Flags [[gnu::vector_size(16)]] = std::int64_t;
-  Flags all{-1, -1};
+  Two least{1.0, 1.0};
+  Two total{0.0, 0.0};  // what is not a number makes it one that is not
   for (std::size_t n = 0; n < PointBatch::kCount; n += 2) {
     const Two square{squares[n], squares[n + 1]};
-    all &= (square > 1e-280) & (square < 1e300);
+    least = square < least ? square : least;
+    total += square;
   }
-  return (all[0] & all[1]) != 0;
+  return isPlainSquare(least[0]) && isPlainSquare(least[1]) && total[0] < 1e300 && total[1] < 1e300;
 }
 
 /// The field's own value() for what a loop left over.

@@ -1,6 +1,7 @@
 #pragma once
 /// A field's CSG taken apart, so that in a cell only those operands are asked that can matter there.
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -38,6 +39,17 @@ class FieldParts {
   /// become others beyond it with the same sign.
   ValueRange narrow(const FieldPart& from, const Vec3& center, double radius, double limit,
                     FieldPart& to) const;
+
+  /// Whether the part is a union of leaves, placed as they may be, each of which `is_good`.
+  template <class Test>
+  [[nodiscard]] bool isUnionOf(const FieldPart& part, const Test& is_good) const {
+    return std::all_of(part.nodes.begin(), part.nodes.end(), [&](const FieldPart::Node& node) {
+      const Item& item = items_[node.which];
+      if (item.kind == FieldStructure::Kind::kLeaf) return is_good(*item.field);
+      return item.kind == FieldStructure::Kind::kUnion ||
+             item.kind == FieldStructure::Kind::kTransform;
+    });
+  }
 
   /// Field::sample(), value() and values() of the part.
   [[nodiscard]] FieldSample sample(const FieldPart& part, const Vec3& p) const noexcept;

@@ -1,6 +1,7 @@
 #include "bake/leaf_values.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -14,10 +15,9 @@ using Flags = std::array<std::uint8_t, PointBatch::kCount>;
 std::uint64_t bitsOf(const Flags& flags) noexcept {
   std::uint64_t bits = 0;
   for (std::size_t group = 0; group < 8; ++group) {
+    static_assert(std::endian::native == std::endian::little, "the first flag is the lowest byte");
     std::uint64_t eight = 0;
-    for (std::size_t n = 0; n < 8; ++n) {
-      eight |= static_cast<std::uint64_t>(flags[8 * group + n]) << (8 * n);
-    }
+    std::memcpy(&eight, flags.data() + 8 * group, 8);
     bits |= (eight * 0x0102040810204080U >> 56) << (8 * group);
   }
   return bits;

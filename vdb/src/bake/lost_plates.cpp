@@ -67,10 +67,16 @@ class Search {
     const double radius = has_distances_ ? kReach * plan_.voxel : kInfinity;
     static_cast<void>(parts_.narrow(parts_.whole(), center, radius, kInfinity, part));
     Lost lost;
+    const double held = kHeld * plan_.voxel;
+    if (parts_.isUnionOf(part, [&](const Field& field) { return !mayBeThin(field, held); })) {
+      return lost;
+    }
+    // What is out of the band is further off.
     const auto near = static_cast<float>(kBySurface * plan_.voxel / plan_.metres_per_unit);
-    for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
-      if (std::fabs(*voxel) >= near) continue;
-      const openvdb::Coord at = voxel.getCoord();
+    const float* const values = leaf.buffer().data();
+    for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+      if (std::fabs(values[n]) >= near) continue;
+      const openvdb::Coord at = leaf.offsetToGlobalCoord(n);
       look(part, Vec3(at.x(), at.y(), at.z()) * plan_.voxel, lost);
     }
     return lost;
