@@ -32,12 +32,14 @@ class Heart final : public Field {
     return {unit_ * valueOf(root), f.gradient * (std::sqrt(0.5) / root)};
   }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
-    const FieldSample here = sample(p);
-    FieldJet out{here.value, here.gradient, Mat3(0.0)};
     const Vec3 q = (p - center_) * inverse_;
-    if (isFarAway(q)) return out;
+    if (isFarAway(q)) [[unlikely]] {
+      const FieldSample far = farAway(q);
+      return {far.value, far.gradient, Mat3(0.0)};
+    }
     const Parts f = partsAt(q);
     const double root = std::sqrt(2.0 + f.value);
+    FieldJet out{unit_ * valueOf(root), f.gradient * (std::sqrt(0.5) / root), Mat3(0.0)};
     // u_i u_j, then -z g'' w_i w_j - z g' w_ij, then the mixed terms of -z g.
     const Vec3 w_by(2.0 * q.x, 0.225 * q.y, 0.0);
     Mat3 h = outer(w_by, w_by) * (-q.z * f.g2);
