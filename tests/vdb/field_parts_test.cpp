@@ -125,7 +125,7 @@ TEST(FieldParts, SayWhatTheFieldSaysInTheirBall) {
 TEST(FieldParts, BeyondTheLimitOnlyTheSignIsKept) {
   Random random(11);
   constexpr double kLimit = 3e-3;
-  const auto within = [](double value) { return std::clamp(value, -kLimit, kLimit); };
+  const auto within = [&](double value) { return std::clamp(value, -kLimit, kLimit); };
   std::size_t exact = 0, limited = 0;
   for (int round = 0; round < 600; ++round) {
     const FieldPtr field = treeOf(random, 1 + round % 3);
