@@ -4,9 +4,10 @@
 #include <chrono>
 #include <utility>
 
+#include "named_progress.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/hybrid.h"
-#include "scene_sampler.h"
+#include "scene_grid.h"
 
 namespace palpate::vdb {
 namespace {
@@ -22,25 +23,13 @@ Parts readParts(MapReader& reader) {
                        "write parts: auto, parts: operands or parts: whole");
 }
 
-/// A length of more than 0 if it is given; 0 if it is not.
-double positiveOrNone(MapReader& reader, const char* key) {
-  const double length = reader.lengthOr(key, 0.0);
-  if (reader.has(key) && !(length > 0.0)) {
-    throw reader.errorAt(key, "scene.range", "'" + std::string(key) + "' must be more than 0");
-  }
-  return length;
-}
-
 HybridOptions readOptions(MapReader& reader) {
   HybridOptions options;
   options.bake.length_unit = reader.loader().lengthUnit();
   options.bake.name = "baked";
-  options.bake.voxel_size = positiveOrNone(reader, "voxel");
-  options.bake.half_width = reader.numberOr("half_width", options.bake.half_width);
-  if (!(options.bake.half_width >= 2.0)) {
-    throw reader.errorAt("half_width", "scene.range", "'half_width' must be 2 voxels or more");
-  }
-  options.tolerance = positiveOrNone(reader, "tolerance");
+  options.bake.voxel_size = readPositiveOrNone(reader, "voxel");
+  options.bake.half_width = readHalfWidth(reader, options.bake.half_width);
+  options.tolerance = readPositiveOrNone(reader, "tolerance");
   options.parts = readParts(reader);
   options.sampler = readSampler(reader);
   if (options.parts == Parts::kWhole && options.tolerance > 0.0) {
@@ -84,12 +73,6 @@ FieldSourcePtr readBaked(MapReader& reader, const RegisterOptions& options) {
   const std::string what = "baked field in line " + std::to_string(place.line);
   auto make = [field, asked, place, what, options](const Progress& progress) {
     const FieldPtr operand = field->get(progress);
-    Progress named;
-    if (progress) {
-      named = [&](std::string_view step, double fraction) {
-        return progress(what + ": " + std::string(step), fraction);
-      };
-    }
     const auto start = std::chrono::steady_clock::now();
     Hybrid made;
     try {
@@ -97,11 +80,9 @@ FieldSourcePtr readBaked(MapReader& reader, const RegisterOptions& options) {
       if (!(hybrid.bake.voxel_size > 0.0)) {
         hybrid.bake.voxel_size = longestSide(*operand) / kVoxelsAlong;
       }
-      made = bakeHybrid(operand, hybrid, named);
+      made = bakeHybrid(operand, hybrid, namedProgress(progress, what));
     } catch (const Error& error) {
-      const Problem& problem = error.problem();
-      if (error.kind() != ErrorKind::kInput || !problem.file.empty()) throw;
-      throw errorAt(place, problem.code, problem.message, problem.hint);
+      throwAt(place, error);
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     tell(options, what, made, took.count());

@@ -10,6 +10,7 @@
 
 #include "bake/grid_error.h"
 #include "bake/query_cost.h"
+#include "named_progress.h"
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
@@ -240,10 +241,7 @@ class HybridBaker {
   }
 
   [[nodiscard]] Progress named(const Part& part) const {
-    if (!progress_ || part.name.empty()) return progress_;
-    return [this, name = part.name](std::string_view step, double fraction) {
-      return progress_("part " + name + ": " + std::string(step), fraction);
-    };
+    return part.name.empty() ? progress_ : namedProgress(progress_, "part " + part.name);
   }
 
   /// The tree with grids in the place of parts; what did not change is the same object.
