@@ -1,6 +1,5 @@
 // palpate bake: scenes, meshes and images to .vdb files, and how it is stopped.
 
-
 #include <cmath>
 #include <cstdio>
 

@@ -72,20 +72,6 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
   return std::make_shared<FieldSource>(std::move(summary), std::move(maker));
 }
 
-/// Path of the file at `key`, which must be there; nothing of it is read.
-std::string existingFile(MapReader& reader, std::string_view key) {
-  std::string path = reader.loader().resolvePath(reader.requireText(key));
-  std::error_code failure;
-  if (!std::filesystem::exists(path, failure)) {
-    throw reader.errorAt(key, "scene.no_file", "there is no file " + path,
-                         "paths are relative to the folder of the scene");
-  }
-  if (std::filesystem::is_directory(path, failure)) {
-    throw reader.errorAt(key, "scene.no_file", path + " is a directory");
-  }
-  return path;
-}
-
 /// The length unit at `units`, or `fallback`.
 std::string lengthUnitOr(MapReader& reader, std::string fallback) {
   std::string unit = reader.textOr("units", std::move(fallback));
@@ -97,7 +83,7 @@ std::string lengthUnitOr(MapReader& reader, std::string fallback) {
 }
 
 FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
-  const std::string path = existingFile(reader, "file");
+  const std::string path = readExistingFile(reader, "file");
   BakeOptions bake;
   bake.length_unit = reader.loader().lengthUnit();
   const double metres = *metresPer(lengthUnitOr(reader, bake.length_unit));
@@ -120,7 +106,7 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
 }
 
 FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
-  const std::string path = existingFile(reader, "file");
+  const std::string path = readExistingFile(reader, "file");
   const std::string name = reader.textOr("name", "");
   const std::string unit = lengthUnitOr(reader, "");
   const Sampler sampler = readSampler(reader);

@@ -1,5 +1,8 @@
 #include "scene_grid.h"
 
+#include <filesystem>
+#include <system_error>
+
 #include "palpate/core/error.h"
 
 namespace palpate::vdb {
@@ -27,6 +30,19 @@ double readHalfWidth(MapReader& reader, double fallback) {
     throw reader.errorAt("half_width", "scene.range", "'half_width' must be 2 voxels or more");
   }
   return half_width;
+}
+
+std::string readExistingFile(MapReader& reader, std::string_view key) {
+  std::string path = reader.loader().resolvePath(reader.requireText(key));
+  std::error_code failure;
+  if (!std::filesystem::exists(path, failure)) {
+    throw reader.errorAt(key, "scene.no_file", "there is no file " + path,
+                         "paths are relative to the folder of the scene");
+  }
+  if (std::filesystem::is_directory(path, failure)) {
+    throw reader.errorAt(key, "scene.no_file", path + " is a directory");
+  }
+  return path;
 }
 
 void throwAt(const SourcePlace& place, const Error& error) {

@@ -15,6 +15,9 @@ namespace palpate::vdb {
 /// [voxels] The number at `half_width`; `fallback` if it is not there.
 [[nodiscard]] double readHalfWidth(MapReader& reader, double fallback);
 
+/// Path of the file at `key`, which must be there; nothing of it is read.
+[[nodiscard]] std::string readExistingFile(MapReader& reader, std::string_view key);
+
 /// `error` as one of the scene's, at `place`: errors of input that are not told there already. Others
 /// are thrown as they are.
 [[noreturn]] void throwAt(const SourcePlace& place, const Error& error);
