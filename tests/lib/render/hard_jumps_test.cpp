@@ -10,6 +10,7 @@
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 #include "support/field_contract.h"
+#include "support/implicit_ellipsoid.h"
 #include "support/oracle/closed_forms.h"
 
 namespace palpate::test {

@@ -1,6 +1,7 @@
 #include "picture/cutaway.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -20,6 +21,9 @@ constexpr int kMostSteps = 4000;
 constexpr int kFiner = 2;   // rays a pixel, along each side
 constexpr int kTrial = 64;  // [pixels] of the first look
 constexpr double kEdgeShade = 0.45;
+constexpr double kSheetInk = 0.45;  // share of ink in what belongs to no region
+constexpr int kFirstSheet =
+    -2;  // part of a hit on the first sheet; those of the others go down from it
 
 /// The part of a ray within a box, as distances along it.
 std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& origin,
@@ -40,10 +44,16 @@ std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& ori
   return std::pair{enter, leave};
 }
 
-/// What a ray met. Neighbours with different `part` are set apart by a dark edge.
+/// What a ray met. Neighbours with different `part` are set apart by a dark edge, and so are those of the cut face
+/// between which it cuts a sheet.
 struct Hit {
   Color color = rgb(0xFFFFFF);
-  int part = -1;  ///< region and whether it is the cut face; -1: nothing
+  int part = -1;          ///< region and whether it is the cut face; -1: nothing; below: a sheet
+  SheetSides sides = {};  ///< of the cut face
+
+  [[nodiscard]] bool isApartFrom(const Hit& other) const {
+    return part != other.part || sides.crossedTo(other.sides) != 0;
+  }
 };
 
 /// One ray after the other through the scene; owns the scratch.
@@ -58,7 +68,8 @@ class Marcher {
         paint_(paint),
         here_(scene.partition().leaves().size()),
         there_(here_),
-        light_(glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right)) {
+        light_(glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right)),
+        has_sheets_(!scene.passages().sheets().empty()) {
     for (const Leaf& leaf : scene.partition().leaves()) bounds_.push_back(leaf.field->bounds());
   }
 
@@ -79,7 +90,9 @@ class Marcher {
     const RegionId first = scene_.partition().regionOf(here_);
     if (first != kOutside) {
       const Vec3 p = origin + t * way;
-      if (t == cut) return {scaled(paint_.at(first, p), kFaceShade), 2 * first};
+      if (t == cut) {
+        return {scaled(paint_.at(first, p), kFaceShade), 2 * first, sheetSides(scene_, here_)};
+      }
       // The box cuts an endless layer.
       return {shaded(paint_.at(first, p), glm::dot(-way, light_)), 2 * first + 1};
     }
@@ -88,6 +101,11 @@ class Marcher {
     for (int i = 0; i < kMostSteps && t < part->second; ++i) {
       const double distance = probe(origin + t * way, there_);
       if (scene_.partition().regionOf(there_) != kOutside) return surface(origin, way, t);
+      if (has_sheets_ && here_ != there_) {
+        const std::uint64_t crossed =
+            sheetSides(scene_, here_).crossedTo(sheetSides(scene_, there_));
+        if (crossed != 0) return sheet(std::countr_zero(crossed), origin, way, t);
+      }
       std::swap(here_, there_);
       before_ = t;
       t += advance(distance);
@@ -152,6 +170,32 @@ class Marcher {
     return {shaded(base, std::abs(glm::dot(normal, light_))), 2 * region + 1};
   }
 
+  /// One that lies between here_ and there_ (at `t`), with the same air on both sides.
+  Hit sheet(int index, const Vec3& origin, const Vec3& way, double t) {
+    const Sheet& met = scene_.passages().sheets()[static_cast<std::size_t>(index)];
+    const auto solid = static_cast<std::size_t>(met.solid);
+    const bool before = scene_.partition().maskHolds(solid, here_);
+    double low = std::min(before_, t);
+    double high = t;
+    for (int i = 0; i < 12; ++i) {
+      const double half = 0.5 * (low + high);
+      probe(origin + half * way, there_);
+      (scene_.partition().maskHolds(solid, there_) == before ? low : high) = half;
+    }
+    // Of the leaves that it may be part of, the one whose surface is nearest.
+    const Vec3 p = origin + high * way;
+    double nearest = kInfinity;
+    Vec3 normal = -way;
+    for (const LeafId leaf : met.leaves) {
+      const FieldSample sample = scene_.partition().leaves()[leaf].field->sample(p);
+      if (std::abs(sample.value) >= nearest) continue;
+      nearest = std::abs(sample.value);
+      normal = unitOr(sample.gradient, normal);
+    }
+    return {shaded(mixed(kPaper, kWallInk, kSheetInk), std::abs(glm::dot(normal, light_))),
+            kFirstSheet - index};
+  }
+
   static Color shaded(const Color& base, double lambert) {
     return scaled(base, kAmbient + (1.0 - kAmbient) * std::clamp(lambert, 0.0, 1.0));
   }
@@ -164,6 +208,7 @@ class Marcher {
   Signs here_, there_;
   Vec3 light_;
   std::vector<Box3> bounds_;
+  bool has_sheets_;
   double before_ = 0.0;
 };
 
@@ -195,7 +240,7 @@ Camera cameraFor(const Scene& scene, const CutPlane& plane, const Box3& box,
   };
   for (int y = 0; y < kTrial; ++y) {
     for (int x = 0; x < kTrial; ++x) {
-      if (marcher.cast(x + 0.5, y + 0.5).part < 0) continue;
+      if (marcher.cast(x + 0.5, y + 0.5).part == -1) continue;
       include((x + 0.5 - 0.5 * kTrial) * camera.step, (0.5 * kTrial - y - 0.5) * camera.step,
               camera.step);
     }
@@ -237,10 +282,10 @@ Raster drawCutaway(const Scene& scene, const CutPlane& plane, const Box3& box, c
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const Hit& here = hit(x, y);
-      const bool edge = (x + 1 < width && hit(x + 1, y).part != here.part) ||
-                        (y + 1 < height && hit(x, y + 1).part != here.part) ||
-                        (x > 0 && hit(x - 1, y).part != here.part) ||
-                        (y > 0 && hit(x, y - 1).part != here.part);
+      const bool edge = (x + 1 < width && hit(x + 1, y).isApartFrom(here)) ||
+                        (y + 1 < height && hit(x, y + 1).isApartFrom(here)) ||
+                        (x > 0 && hit(x - 1, y).isApartFrom(here)) ||
+                        (y > 0 && hit(x, y - 1).isApartFrom(here));
       const Color color = edge ? mixed(here.color, kWallInk, kEdgeShade) : here.color;
       Color& sum = raster.at(x / kFiner, y / kFiner);
       sum.r += share * color.r;
