@@ -21,7 +21,7 @@ constexpr int kMostSteps = 4000;
 constexpr int kFiner = 2;   // rays a pixel, along each side
 constexpr int kTrial = 64;  // [pixels] of the first look
 constexpr double kEdgeShade = 0.45;
-constexpr double kSheetInk = 0.45;  // share of ink in what belongs to no region
+constexpr double kSheetInk = 0.25;  // share of ink in what belongs to no region
 constexpr int kFirstSheet =
     -2;  // part of a hit on the first sheet; those of the others go down from it
 
@@ -68,6 +68,7 @@ class Marcher {
         paint_(paint),
         here_(scene.partition().leaves().size()),
         there_(here_),
+        middle_(here_),
         light_(glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right)),
         has_sheets_(!scene.passages().sheets().empty()) {
     for (const Leaf& leaf : scene.partition().leaves()) bounds_.push_back(leaf.field->bounds());
@@ -102,9 +103,7 @@ class Marcher {
       const double distance = probe(origin + t * way, there_);
       if (scene_.partition().regionOf(there_) != kOutside) return surface(origin, way, t);
       if (has_sheets_ && here_ != there_) {
-        const std::uint64_t crossed =
-            sheetSides(scene_, here_).crossedTo(sheetSides(scene_, there_));
-        if (crossed != 0) return sheet(std::countr_zero(crossed), origin, way, t);
+        if (const auto hit = sheet(origin, way, t)) return *hit;
       }
       std::swap(here_, there_);
       before_ = t;
@@ -170,30 +169,43 @@ class Marcher {
     return {shaded(base, std::abs(glm::dot(normal, light_))), 2 * region + 1};
   }
 
-  /// One that lies between here_ and there_ (at `t`), with the same air on both sides.
-  Hit sheet(int index, const Vec3& origin, const Vec3& way, double t) {
-    const Sheet& met = scene_.passages().sheets()[static_cast<std::size_t>(index)];
-    const auto solid = static_cast<std::size_t>(met.solid);
-    const bool before = scene_.partition().maskHolds(solid, here_);
-    double low = std::min(before_, t);
-    double high = t;
-    for (int i = 0; i < 12; ++i) {
-      const double half = 0.5 * (low + high);
-      probe(origin + half * way, there_);
-      (scene_.partition().maskHolds(solid, there_) == before ? low : high) = half;
+  /// The first sheet in the list that lies between here_ and there_ (at `t`), both in the same air.
+  std::optional<Hit> sheet(const Vec3& origin, const Vec3& way, double t) {
+    const std::uint64_t inner = sheetSides(scene_, here_).inner;
+    std::uint64_t changed = inner ^ sheetSides(scene_, there_).inner;
+    for (; changed != 0; changed &= changed - 1) {
+      const auto index = static_cast<std::size_t>(std::countr_zero(changed));
+      const std::uint64_t bit = std::uint64_t{1} << index;
+      double low = std::min(before_, t);
+      double high = t;
+      SheetSides beyond;
+      for (int i = 0; i < 12; ++i) {
+        const double half = 0.5 * (low + high);
+        probe(origin + half * way, middle_);
+        const SheetSides sides = sheetSides(scene_, middle_);
+        const bool is_before = ((sides.inner ^ inner) & bit) == 0;
+        (is_before ? low : high) = half;
+        if (!is_before) beyond = sides;
+      }
+      if ((beyond.extent & bit) == 0) continue;
+      return Hit{shaded(mixed(kPaper, kWallInk, kSheetInk),
+                        std::abs(glm::dot(sheetNormal(index, origin + high * way, -way), light_))),
+                 kFirstSheet - static_cast<int>(index)};
     }
-    // Of the leaves that it may be part of, the one whose surface is nearest.
-    const Vec3 p = origin + high * way;
+    return {};
+  }
+
+  /// Of the sheet at `p`: of the leaf whose surface is nearest there.
+  [[nodiscard]] Vec3 sheetNormal(std::size_t index, const Vec3& p, const Vec3& fallback) const {
     double nearest = kInfinity;
-    Vec3 normal = -way;
-    for (const LeafId leaf : met.leaves) {
+    Vec3 normal = fallback;
+    for (const LeafId leaf : scene_.passages().sheets()[index].leaves) {
       const FieldSample sample = scene_.partition().leaves()[leaf].field->sample(p);
       if (std::abs(sample.value) >= nearest) continue;
       nearest = std::abs(sample.value);
-      normal = unitOr(sample.gradient, normal);
+      normal = unitOr(sample.gradient, fallback);
     }
-    return {shaded(mixed(kPaper, kWallInk, kSheetInk), std::abs(glm::dot(normal, light_))),
-            kFirstSheet - index};
+    return normal;
   }
 
   static Color shaded(const Color& base, double lambert) {
@@ -205,7 +217,7 @@ class Marcher {
   const Box3& box_;
   const Camera& camera_;
   const Paint& paint_;
-  Signs here_, there_;
+  Signs here_, there_, middle_;
   Vec3 light_;
   std::vector<Box3> bounds_;
   bool has_sheets_;

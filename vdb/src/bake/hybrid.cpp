@@ -145,19 +145,21 @@ class HybridBaker {
 
   void collect(const FieldPtr& field, const Box3& needed, const std::string& name, bool is_placed) {
     const FieldStructure structure = field->structure();
+    // Out of its bounds it is outside, whatever its parts are there.
+    const Box3 here = needed.intersectedWith(field->bounds());
     switch (structure.kind) {
       case Kind::kUnion:
       case Kind::kIntersection:
         for (std::size_t i = 0; i < structure.operands.size(); ++i) {
-          collect(structure.operands[i], needed,
+          collect(structure.operands[i], here,
                   (name.empty() ? "" : name + ".") + std::to_string(i + 1), is_placed);
         }
         return;
       case Kind::kComplement:
-        collect(structure.operands.front(), needed, name, is_placed);
+        collect(structure.operands.front(), here, name, is_placed);
         return;
       case Kind::kTransform:
-        collect(structure.operands.front(), inverse(structure.pose).apply(needed), name, true);
+        collect(structure.operands.front(), inverse(structure.pose).apply(here), name, true);
         return;
       case Kind::kFaces:
       case Kind::kLeaf:
