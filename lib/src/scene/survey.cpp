@@ -53,25 +53,23 @@ class Line {
       const Box3 domain = leaf.field->lipschitzDomain();
       const bool holds = domain.contains(from) && domain.contains(to);
       candidates_.push_back({static_cast<LeafId>(item), leaf.field.get(), bounds,
-                             holds ? 1.0 / leaf.lipschitz : 0.0, 1.0, 0.0});
+                             holds ? 1.0 / leaf.lipschitz : 0.0, kInfinity, -kInfinity});
     });
   }
 
   /// The region at `p`, a point of the line.
   RegionId at(const Vec3& p) {
     const double place = glm::dot(p - from_, along_) / std::max(length_, 1e-300);
+    if (is_known_ && place > fixed_from_ && place < fixed_to_) return region_;
     bool is_changed = !is_known_;
+    fixed_from_ = -kInfinity;
+    fixed_to_ = kInfinity;
     for (Candidate& candidate : candidates_) {
-      if (place > candidate.fixed_from && place < candidate.fixed_to) continue;
-      const double value = candidate.field->value(p);
-      const bool inside = value < 0.0 && candidate.bounds.contains(p);
-      // Less a share of the line for the rounding of places along it; nothing where the value is not a number.
-      const double fixed = std::fabs(value) * candidate.per_slope - 1e-9 * length_;
-      candidate.fixed_from = fixed > 0.0 ? place - fixed : 1.0;
-      candidate.fixed_to = fixed > 0.0 ? place + fixed : 0.0;
-      if (inside == signs_.inside(candidate.leaf)) continue;
-      signs_.set(candidate.leaf, inside);
-      is_changed = true;
+      if (!(place > candidate.fixed_from && place < candidate.fixed_to)) {
+        is_changed |= ask(candidate, p, place);
+      }
+      fixed_from_ = std::max(fixed_from_, candidate.fixed_from);
+      fixed_to_ = std::min(fixed_to_, candidate.fixed_to);
     }
     if (is_changed) {
       region_ = partition_.regionOf(signs_);
@@ -89,12 +87,27 @@ class Line {
     double fixed_from, fixed_to;  ///< [m] along the line: its sign is the same in between
   };
 
+  /// True if its sign is another one than before.
+  bool ask(Candidate& candidate, const Vec3& p, double place) {
+    const double value = candidate.field->value(p);
+    const bool inside = value < 0.0 && candidate.bounds.contains(p);
+    // Less a share of the line for the rounding of places along it; nothing where the value is not a number.
+    const double fixed = std::fabs(value) * candidate.per_slope - 1e-9 * length_;
+    candidate.fixed_from = fixed > 0.0 ? place - fixed : kInfinity;
+    candidate.fixed_to = fixed > 0.0 ? place + fixed : -kInfinity;
+    if (inside == signs_.inside(candidate.leaf)) return false;
+    signs_.set(candidate.leaf, inside);
+    return true;
+  }
+
   const Partition& partition_;
   Vec3 from_{0.0};
   Vec3 along_{0.0};
   double length_ = 0.0;
   std::vector<Candidate> candidates_;
   Signs signs_;
+  double fixed_from_ = kInfinity;  ///< [m] along the line: no sign changes in between
+  double fixed_to_ = -kInfinity;
   bool is_known_ = false;
   RegionId region_ = kOutside;
 };
