@@ -1,6 +1,7 @@
 #include "survey.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -72,7 +73,7 @@ class Line {
       fixed_to_ = std::min(fixed_to_, candidate.fixed_to);
     }
     if (is_changed) {
-      region_ = partition_.regionOf(signs_);
+      region_ = regionHere();
       is_known_ = true;
     }
     return region_;
@@ -87,6 +88,17 @@ class Line {
     double fixed_from, fixed_to;  ///< [m] along the line: its sign is the same in between
   };
 
+  /// A wall is halved down to between the same few cells.
+  RegionId regionHere() {
+    for (const Cell& cell : cells_) {
+      if (cell.is_known && cell.signs == signs_) return cell.region;
+    }
+    Cell& oldest = cells_[next_cell_];
+    next_cell_ = (next_cell_ + 1) % cells_.size();
+    oldest = {signs_, partition_.regionOf(signs_), true};
+    return oldest.region;
+  }
+
   /// True if its sign is another one than before.
   bool ask(Candidate& candidate, const Vec3& p, double place) {
     const double value = candidate.field->value(p);
@@ -100,7 +112,15 @@ class Line {
     return true;
   }
 
+  struct Cell {
+    Signs signs;
+    RegionId region = kOutside;
+    bool is_known = false;
+  };
+
   const Partition& partition_;
+  std::array<Cell, 4> cells_;  ///< looked at last
+  std::size_t next_cell_ = 0;
   Vec3 from_{0.0};
   Vec3 along_{0.0};
   double length_ = 0.0;
