@@ -37,7 +37,9 @@ LevelSet noiseGrid(const std::vector<Coord>& centers, int half) {
 
 std::vector<InstructionSet> instructionSets() {
   std::vector<InstructionSet> sets{InstructionSet::kBase};
-  if (isSupported(InstructionSet::kAvx2)) sets.push_back(InstructionSet::kAvx2);
+  for (const InstructionSet set : {InstructionSet::kAvx2, InstructionSet::kAvx512}) {
+    if (isSupported(set)) sets.push_back(set);
+  }
   return sets;
 }
 

@@ -1,5 +1,7 @@
 // The kernels for every processor.
 
+#include <bit>
+
 #include "brick/instruction_set.h"
 
 namespace palpate::vdb {
