@@ -74,8 +74,9 @@ std::vector<Answer> ask(const TempFolder& folder, const std::string& scene,
   const CommandResult result =
       runPalpate({"query", scene, "--field", field, "--points", "p.csv", "--json"}, folder.path());
   EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+  const Json json = parseOnly(result);
   std::vector<Answer> answers;
-  for (const Json& point : parseOnly(result)["points"]) {
+  for (const Json& point : json["points"]) {
     const Json& sample = point["fields"][0];
     answers.push_back({sample["value"], vectorOf(sample["gradient"])});
   }
@@ -93,6 +94,7 @@ struct Errors {
 
 Errors compare(const std::vector<Answer>& truth, const std::vector<Answer>& got) {
   EXPECT_EQ(truth.size(), got.size());
+  EXPECT_GT(truth.size(), 0U);
   Errors errors;
   for (std::size_t i = 0; i < std::min(truth.size(), got.size()); ++i) {
     errors.value = std::max(errors.value, std::fabs(truth[i].value - got[i].value));

@@ -1,6 +1,8 @@
 // palpate info, query, explain and render: what they say about known things.
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "tools/helpers.h"
 #include "tools/png_pixels.h"
@@ -244,7 +246,8 @@ TEST(Render, SheetsStandInSpace) {
   // Below the titles, which hold the file's name.
   for (std::size_t y = 60; y < with.height; ++y) {
     for (std::size_t x = 0; x < with.width; ++x) {
-      if (with.at(x, y) == without.at(x, y)) continue;
+      // More than by where along its ray a surface was found.
+      if (std::abs(with.at(x, y)[0] - without.at(x, y)[0]) < 40) continue;
       ++changed;
       lo_x = std::min(lo_x, x);
       hi_x = std::max(hi_x, x);
@@ -254,7 +257,7 @@ TEST(Render, SheetsStandInSpace) {
   }
   // A disk of 24 mm, seen from the side by 35 degrees and from above by 24: an ellipse of which three quarters
   // of its box are full; all in the right part, where the scene stands in space.
-  ASSERT_GT(changed, 200U);
+  ASSERT_GT(changed, 1000U);
   EXPECT_GT(lo_x, 500U);
   const double width = static_cast<double>(hi_x - lo_x + 1);
   const double height = static_cast<double>(hi_y - lo_y + 1);
