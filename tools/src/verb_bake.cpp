@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <numbers>
 
 #include "baking.h"
@@ -14,6 +15,8 @@ namespace palpate::tools {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+/// Of a larger grid no bricks are made just to tell its error: they take several hundred MB.
+constexpr std::uint64_t kMostForBricks = 10'000'000;  // active voxels
 
 /// The grids as a table and as JSON.
 class GridList {
@@ -54,18 +57,19 @@ class GridList {
   std::vector<vdb::LevelSet> grids_;
 };
 
-/// What the grid of an analytic layer loses, as the default sampler feels it.
+/// What the grid of an analytic layer loses, as the default sampler feels it where that can be.
 void tellError(const BakedGrid& baked, Json& json, Console& console) {
   if (!baked.analytic) return;
   const vdb::LevelSetInfo& info = baked.grid.info();
-  // A band too narrow for the spline would be widened first; what it was made with tells the same.
-  const vdb::Sampler sampler =
-      vdb::isTooNarrow(info) ? vdb::Sampler::kTrilinear : vdb::Sampler::kCubic;
+  // A band too narrow for the spline would be widened first; between its voxels it tells the same.
+  const bool is_cubic = !vdb::isTooNarrow(info) && info.active_voxels <= kMostForBricks;
+  const vdb::Sampler sampler = is_cubic ? vdb::Sampler::kCubic : vdb::Sampler::kAccessor;
   const FieldPtr made = vdb::gridField(baked.grid, sampler);
   const vdb::GridError error = vdb::gridError(*baked.analytic, baked.grid, *made);
   const vdb::GridError usual = vdb::smoothGridError(sampler, info.voxel_size);
   const bool loses_edges = error.turn > usual.turn || error.off > usual.off;
-  json["error"] = {{"off_m", error.off},
+  json["error"] = {{"sampler", is_cubic ? "cubic" : "accessor"},
+                   {"off_m", error.off},
                    {"turn_degrees", error.turn / kDegree},
                    {"where_m", {error.where.x, error.where.y, error.where.z}},
                    {"loses_edges", loses_edges}};
