@@ -130,9 +130,10 @@ TEST_F(BakeParts, AGridOfTheWholeTellsWhatItLoses) {
   ASSERT_EQ(json["grids"].size(), 2U);
   for (const Json& grid : json["grids"]) {
     SCOPED_TRACE(grid["name"].get<std::string>());
-    EXPECT_TRUE(grid["error"]["loses_edges"].get<bool>());
+    EXPECT_FALSE(grid["error"]["holds_shape"].get<bool>());
     EXPECT_GT(grid["error"]["turn_degrees"], 10.0);
-    EXPECT_NE(result.err.find(grid["name"].get<std::string>() + " loses edges"), std::string::npos)
+    EXPECT_NE(result.err.find(grid["name"].get<std::string>() + " does not hold all"),
+              std::string::npos)
         << result.err;
   }
   EXPECT_NE(result.err.find("--parts"), std::string::npos) << result.err;
@@ -145,7 +146,7 @@ TEST_F(BakeParts, AGridOfTheWholeTellsWhatItLoses) {
   ASSERT_EQ(ball.exit_code, 0) << ball.err;
   EXPECT_EQ(ball.err, "");
   const Json error = parseOnly(ball)["grids"][0]["error"];
-  EXPECT_FALSE(error["loses_edges"].get<bool>());
+  EXPECT_TRUE(error["holds_shape"].get<bool>());
   EXPECT_LT(error["turn_degrees"], 0.01);
   EXPECT_LT(error["off_m"], 1e-7);
 }

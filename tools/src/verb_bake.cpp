@@ -67,19 +67,21 @@ void tellError(const BakedGrid& baked, Json& json, Console& console) {
   const FieldPtr made = vdb::gridField(baked.grid, sampler);
   const vdb::GridError error = vdb::gridError(*baked.analytic, baked.grid, *made);
   const vdb::GridError usual = vdb::smoothGridError(sampler, info.voxel_size);
-  const bool loses_edges = error.turn > usual.turn || error.off > usual.off;
+  const bool holds_shape = error.turn <= usual.turn && error.off <= usual.off;
   json["error"] = {{"sampler", is_cubic ? "cubic" : "accessor"},
                    {"off_m", error.off},
                    {"turn_degrees", error.turn / kDegree},
                    {"where_m", {error.where.x, error.where.y, error.where.z}},
-                   {"loses_edges", loses_edges}};
-  if (!loses_edges) return;
+                   {"holds_shape", holds_shape}};
+  if (holds_shape) return;
   const double unit = info.metres_per_unit;
-  console.note(info.name + " loses edges or thin parts: it is off by up to " +
-               formatNumber(error.off / unit, 2) + " " + info.length_unit + " and " +
-               formatNumber(error.turn / kDegree, 2) + " degrees, worst near " +
-               formatVector(error.where / unit, 3) + " " + info.length_unit +
-               "; --parts FILE.yaml keeps them");
+  console.note(
+      info.name + " does not hold all of the shape: it is off by up to " +
+      formatNumber(error.off / unit, 2) + " " + info.length_unit + " and " +
+      formatNumber(error.turn / kDegree, 2) + " degrees, worst near " +
+      formatVector(error.where / unit, 3) + " " + info.length_unit +
+      ", where there is an edge, a thin part or a tight bend; --parts FILE.yaml keeps such "
+      "parts as they are");
 }
 
 Json partJson(const std::string& layer, const vdb::HybridPart& part) {
