@@ -1,13 +1,13 @@
 #include <algorithm>
 
 #include "baking.h"
+#include "grid_baking.h"
 #include "input_kind.h"
 #include "json_parts.h"
 #include "output_files.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/image.h"
-#include "palpate/vdb/io.h"
 #include "palpate/vdb/surface_mesh.h"
 #include "text.h"
 #include "verbs.h"
@@ -23,27 +23,18 @@ bool isImageName(const std::string& path) {
   return hasExtension(path, ".nii") || hasExtension(path, ".nii.gz");
 }
 
-/// A grid is named in full, or by its layer.
-vdb::LevelSet gridOfFile(const BakeOptions& options) {
-  if (options.layers.size() > 1) {
-    throw usageError("one file is made from one grid; --layer was given twice");
-  }
-  std::string name = options.layers.empty() ? "" : options.layers.front();
-  if (!name.empty()) {
-    const auto grids = vdb::listVdb(options.input);
-    const auto has = [&](const std::string& wanted) {
-      return std::any_of(grids.begin(), grids.end(),
-                         [&](const vdb::VdbGridSummary& grid) { return grid.name == wanted; });
-    };
-    if (!has(name) && has(name + "/surface")) name += "/surface";
-  }
-  return vdb::readVdb(options.input, name, options.units);
-}
-
 /// The one grid that a mesh or image file is made from.
 vdb::LevelSet onlyGrid(const ConvertOptions& options, Console& console) {
   const BakeOptions& bake = options.bake;
-  if (inputKind(bake.input) == InputKind::kGrid) return gridOfFile(bake);
+  const bool asks_for_more = bake.above || !bake.labels.empty() || !bake.voxel.empty();
+  if (inputKind(bake.input) == InputKind::kGrid && !asks_for_more) {
+    try {
+      return readLevelSet(bake);
+    } catch (const Error& error) {
+      const std::string& code = error.problem().code;
+      if (code != "vdb.transform" && code != "vdb.type") throw;
+    }
+  }
   const std::vector<BakedGrid> baked = bakeInput(bake, console);
   if (baked.size() == 1) return baked.front().grid;
   std::string names;
@@ -122,9 +113,6 @@ Report run(const ConvertOptions& options, const GeneralOptions& general, Console
   const InputKind kind = inputKind(options.bake.input);
   if (!options.to_units.empty() && (to_grid || to_image)) {
     throw usageError("--to-units applies to meshes", "a grid's unit is that of its input");
-  }
-  if (to_grid && kind == InputKind::kGrid) {
-    throw usageError("this is a .vdb file already", "name a mesh (.stl .obj .ply .glb) or .nii.gz");
   }
   if (to_image && kind == InputKind::kImage && !options.bake.above && options.bake.labels.empty()) {
     throw usageError("an image of distances needs a surface: --above VALUE or --labels NAME");
