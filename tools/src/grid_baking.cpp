@@ -34,12 +34,6 @@ std::optional<vdb::VdbGridSummary> summaryOf(const BakeOptions& options, const s
   return {};
 }
 
-/// The grid's own unit, or --units.
-std::string unitOfGrid(const BakeOptions& options, const std::string& name) {
-  const auto grid = summaryOf(options, name);
-  return grid && !grid->info.length_unit.empty() ? grid->info.length_unit : options.units;
-}
-
 /// "liver" for "liver/surface"; the file's name for a grid without one.
 std::string layerOf(const std::string& grid, const BakeOptions& options) {
   constexpr std::string_view kEnd = "/surface";
@@ -68,19 +62,11 @@ double voxelOr(const BakeOptions& options, const std::string& unit, double fallb
 
 /// A level set whose voxels are no cubes along the axes: the surface where its interpolated distances pass
 /// zero, in new voxels.
-vdb::LevelSet straightened(const BakeOptions& options, const std::string& name, Console& console) {
-  const auto grid = summaryOf(options, name);
-  const std::string grid_class = grid ? grid->grid_class : "";
-  if (grid_class != "level set" && !(options.level_set && grid_class == "unknown")) {
-    throw inputError("vdb.class",
-                     "grid '" + name + "' is of class '" + grid_class +
-                         "', so nothing says that its values are signed distances",
-                     "if they are: --level-set; --above DENSITY or --labels VALUE put a surface "
-                     "around its voxels",
-                     options.input);
-  }
-  const std::string unit = unitOfGrid(options, name);
-  vdb::Image image = vdb::readVdbImage(options.input, name, options.units);
+vdb::LevelSet straightened(const BakeOptions& options, Console& console) {
+  const auto grid = summaryOf(options, askedName(options));
+  const std::string name = grid ? grid->name : "";
+  const std::string unit = unitOfGrid(options);
+  vdb::Image image = readDistances(options);
   for (float& value : image.values) value = -value;
   const double spacing = std::min(
       {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])});
@@ -95,10 +81,37 @@ vdb::LevelSet straightened(const BakeOptions& options, const std::string& name, 
 
 }  // namespace
 
+std::string unitOfGrid(const BakeOptions& options) {
+  const auto grid = summaryOf(options, askedName(options));
+  return grid && !grid->info.length_unit.empty() ? grid->info.length_unit : options.units;
+}
+
 vdb::LevelSet readLevelSet(const BakeOptions& options) {
   return vdb::readVdb(
       options.input, askedName(options), options.units,
       options.level_set ? vdb::UnknownClass::kLevelSet : vdb::UnknownClass::kRefuse);
+}
+
+bool isMendable(const Error& error, const BakeOptions& options) {
+  if (error.problem().code == "vdb.transform") return true;
+  if (error.problem().code != "vdb.type") return false;
+  const auto grid = summaryOf(options, askedName(options));
+  return grid && grid->type == "DoubleGrid";
+}
+
+vdb::Image readDistances(const BakeOptions& options) {
+  const std::string name = askedName(options);
+  const auto grid = summaryOf(options, name);
+  const std::string grid_class = grid ? grid->grid_class : "";
+  if (grid_class != "level set" && !(options.level_set && grid_class == "unknown")) {
+    throw inputError("vdb.class",
+                     "grid '" + name + "' is of class '" + grid_class +
+                         "', so nothing says that its values are signed distances",
+                     "if they are: --level-set; --above DENSITY or --labels VALUE put a surface "
+                     "around its voxels",
+                     options.input);
+  }
+  return vdb::readVdbImage(options.input, name, options.units);
 }
 
 BakedGrid rebakeGrid(const BakeOptions& options, Console& console) {
@@ -108,11 +121,8 @@ BakedGrid rebakeGrid(const BakeOptions& options, Console& console) {
   try {
     old = readLevelSet(options);
   } catch (const Error& error) {
-    const std::string name = askedName(options);
-    const auto grid = summaryOf(options, name);
-    const bool is_double = grid && grid->type == "DoubleGrid";
-    if (error.problem().code != "vdb.transform" && !is_double) throw;
-    baked.grid = straightened(options, name, console);
+    if (!isMendable(error, options)) throw;
+    baked.grid = straightened(options, console);
   }
   if (old) {
     const vdb::LevelSetInfo& info = old.info();
@@ -147,7 +157,7 @@ vdb::Image readVoxels(const BakeOptions& options, std::string& length_unit) {
     return vdb::readNifti(options.input);
   }
   const std::string name = askedName(options);
-  length_unit = unitOfGrid(options, name);
+  length_unit = unitOfGrid(options);
   return vdb::readVdbImage(options.input, name, options.units);
 }
 

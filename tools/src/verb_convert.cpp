@@ -23,16 +23,19 @@ bool isImageName(const std::string& path) {
   return hasExtension(path, ".nii") || hasExtension(path, ".nii.gz");
 }
 
+/// Whether a grid is not to be taken as it is.
+bool asksForMore(const BakeOptions& bake) {
+  return bake.above || !bake.labels.empty() || !bake.voxel.empty();
+}
+
 /// The one grid that a mesh or image file is made from.
 vdb::LevelSet onlyGrid(const ConvertOptions& options, Console& console) {
   const BakeOptions& bake = options.bake;
-  const bool asks_for_more = bake.above || !bake.labels.empty() || !bake.voxel.empty();
-  if (inputKind(bake.input) == InputKind::kGrid && !asks_for_more) {
+  if (inputKind(bake.input) == InputKind::kGrid && !asksForMore(bake)) {
     try {
       return readLevelSet(bake);
     } catch (const Error& error) {
-      const std::string& code = error.problem().code;
-      if (code != "vdb.transform" && code != "vdb.type") throw;
+      if (!isMendable(error, bake)) throw;
     }
   }
   const std::vector<BakedGrid> baked = bakeInput(bake, console);
@@ -89,18 +92,42 @@ Written asMesh(const ConvertOptions& options, Console& console) {
   return out;
 }
 
+/// A grid that is turned or stretched becomes an image that is as well, with the same voxels.
+bool staysAsItIs(const BakeOptions& bake) {
+  if (inputKind(bake.input) != InputKind::kGrid || asksForMore(bake)) return false;
+  try {
+    static_cast<void>(readLevelSet(bake));
+    return false;
+  } catch (const Error& error) {
+    if (!isMendable(error, bake)) throw;
+    return true;
+  }
+}
+
 Written asImage(const ConvertOptions& options, Console& console) {
-  const vdb::LevelSet grid = onlyGrid(options, console);
-  const vdb::Image image = vdb::gridImage(grid);
+  vdb::Image image;
+  double metres = 1.0;
+  if (staysAsItIs(options.bake)) {
+    image = readDistances(options.bake);
+    metres = lengthUnit(unitOfGrid(options.bake)).metres;
+  } else {
+    const vdb::LevelSet grid = onlyGrid(options, console);
+    image = vdb::gridImage(grid);
+    metres = grid.info().metres_per_unit;
+  }
+  constexpr double kMillimetre = 1e-3;  // the unit of a NIfTI file
+  for (float& value : image.values) value *= static_cast<float>(metres / kMillimetre);
+  Vec3 spacing(0.0);
+  for (int axis = 0; axis < 3; ++axis) spacing[axis] = glm::length(image.axes[axis]);
   Written out;
   out.bytes = vdb::encodeNifti(image, hasExtension(options.bake.output, ".gz"));
   out.json = {{"kind", "image"},
               {"size", image.size},
-              {"voxel_size_m", grid.info().voxel_size},
-              {"values", "signed distance, " + grid.info().length_unit}};
+              {"voxel_size_m", std::min({spacing.x, spacing.y, spacing.z})},
+              {"spacing_m", vectorJson(spacing)},
+              {"values", "signed distance, mm"}};
   out.text = std::to_string(image.size[0]) + " x " + std::to_string(image.size[1]) + " x " +
-             std::to_string(image.size[2]) + " voxels with signed distances in " +
-             grid.info().length_unit + "\n";
+             std::to_string(image.size[2]) + " voxels with signed distances in mm\n";
   return out;
 }
 

@@ -99,20 +99,22 @@ class LeafCheck {
       tally.inside += 1.0;
     }
     std::array<float, 6> beside{};
-    bool all_active = active;
+    // What is active and constant, as some tools leave the inside, is no band.
+    const float band = grid_.background();
+    bool in_band = active && std::abs(value) < band;
     bool breaks = false;
     for (std::size_t n = 0; n < 6; ++n) {
       const Coord there = at + kBeside[n];
       const bool other_active = accessor.probeValue(there, beside[n]);
-      all_active = all_active && other_active && std::isfinite(beside[n]);
+      in_band = in_band && other_active && std::abs(beside[n]) < band;
       if (active && other_active) continue;
       // Told at the negative one of the two, unless that is no voxel of a leaf.
       const bool is_break = (value < 0.0F) != (beside[n] < 0.0F);
       breaks = breaks || (is_break && (value < 0.0F || accessor.probeConstLeaf(there) == nullptr));
     }
     if (breaks) tally.sign_breaks.add(at);
+    if (in_band) return addGradient(at, beside, tally);
     if (!active) return;
-    if (all_active) return addGradient(at, beside, tally);
     const bool deep = std::abs(value) + 1.5 * voxel_ < grid_.background();
     const bool ends = std::any_of(kBeside.begin(), kBeside.end(), [&](const Coord& step) {
       return !accessor.isValueOn(at + step);

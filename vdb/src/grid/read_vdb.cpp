@@ -70,6 +70,23 @@ void requireFiniteVoxels(const openvdb::FloatGrid& grid, const std::string& path
   }
 }
 
+/// Some tools leave all of the inside active, at minus the background. No band is there.
+void endBandAtItsWidth(openvdb::FloatGrid& grid) {
+  const float width = grid.background();
+  if (!(width > 0.0F)) return;  // refused later
+  openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid.tree());
+  leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
+    for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+      if (std::abs(*voxel) >= width) voxel.setValueOff();
+    }
+  });
+  auto tile = grid.tree().beginValueOn();
+  tile.setMaxDepth(openvdb::FloatTree::ValueOnIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    if (std::abs(*tile) >= width) tile.setActiveState(false);
+  }
+}
+
 /// The same problem, with the file it is in.
 [[noreturn]] void rethrowWithFile(const Error& error, const std::string& path) {
   Problem problem = error.problem();
@@ -85,6 +102,7 @@ LevelSet acceptLevelSet(const openvdb::GridBase::Ptr& base, const std::string& u
   const std::string unit = unitOf(*base, unit_if_missing, path);
   const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(base);
   requireFiniteVoxels(*grid, path);
+  endBandAtItsWidth(*grid);
   try {
     LevelSet set = makeLevelSet(grid, unit);
     if (set.info().active_voxels == 0) {
