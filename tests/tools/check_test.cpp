@@ -79,7 +79,7 @@ TEST(Check, ASoundMeshIsAYes) {
 TEST(Check, WhatABakeMendsIsToldAndIsAYes) {
   const TempFolder folder;
   // A closed cube, one inside out with a triangle more, and one that passes through the first.
-  (void)folder.file("many.obj", cube(10.0, 0.0, 1) + cube(4.0, 30.0, 9, false) + "f 9 10 11\n" +
+  (void)folder.file("many.obj", cube(10.0, 0.0, 1) + cube(4.0, 30.0, 9, false) + "f 9 11 12\n" +
                                     cube(6.0, 5.0, 17));
   const Checked c = checked(folder, {"many.obj", "--voxel", "0.5"});
   EXPECT_EQ(c.exit_code, 0) << c.text;
@@ -88,6 +88,7 @@ TEST(Check, WhatABakeMendsIsToldAndIsAYes) {
     return std::find(found.begin(), found.end(), code) != found.end();
   };
   EXPECT_TRUE(has("mesh.inside_out")) << c.text;
+  EXPECT_TRUE(has("mesh.doubled")) << c.text;
   EXPECT_TRUE(has("mesh.self_intersection")) << c.text;
   EXPECT_EQ(c.file["parts"], 3);
   // One solid of both: 1000 + 216 - 144 mm^3, and the one apart.
