@@ -133,9 +133,11 @@ BakedGrid rebakeGrid(const BakeOptions& options, Console& console) {
           ".nii.gz can be written too");
     }
     const double voxel = voxelOr(options, info.length_unit, 0.0);
-    baked.grid =
-        vdb::bake(*vdb::gridField(old), bakeOptions(options, info.name, info.length_unit, voxel),
-                  console.progress());
+    // The new band, and what a cubic sample at its rim depends on.
+    const double band = options.half_width * voxel / info.voxel_size + vdb::kCubicHalfWidth;
+    const FieldPtr field = vdb::gridField(vdb::widened(old, band, console.progress()));
+    baked.grid = vdb::bake(*field, bakeOptions(options, info.name, info.length_unit, voxel),
+                           console.progress());
   }
   baked.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return baked;

@@ -41,12 +41,7 @@ GridVerdict judge(const vdb::GridCheck& check, const LengthUnit& unit) {
   verdict.is_surface = check.has_distances || check.grid.grid_class == "level set";
   verdict.is_yes = !check.refused;
   if (!check.has_distances) return verdict;
-  findVoxels(check, unit, verdict);
   const vdb::GradientStatistics& g = check.gradient;
-  if (check.grid.info.active_voxels > 0 && check.inside_voxels == 0) {
-    verdict.is_yes = false;
-    verdict.findings.push_back({"grid.no_inside", "no voxel of the band is inside (negative)", 0});
-  }
   if (g.voxels > 0 && !(std::abs(g.mean - 1.0) <= kMostSlope)) {
     verdict.is_yes = false;
     verdict.findings.push_back(
@@ -58,6 +53,11 @@ GridVerdict judge(const vdb::GridCheck& check, const LengthUnit& unit) {
              ")",
          0});
   }
+  if (check.grid.info.active_voxels > 0 && check.inside_voxels == 0) {
+    verdict.is_yes = false;
+    verdict.findings.push_back({"grid.no_inside", "no voxel of the band is inside (negative)", 0});
+  }
+  findVoxels(check, unit, verdict);
   return verdict;
 }
 
