@@ -1,6 +1,5 @@
 #include "grid/vdb_file.h"
 
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -26,24 +25,6 @@ std::ifstream openToRead(const std::string& path) {
     throw inputError("vdb.unreadable", "the file cannot be opened for reading", "", path);
   stream.exceptions(std::ios::failbit | std::ios::badbit);
   return stream;
-}
-
-/// Runs `read`, and says in one way what a damaged file makes OpenVDB throw.
-template <typename Read>
-auto readingFrom(const std::string& path, const Read& read) {
-  const char* const hint = "the file may be damaged or cut short; copy or write it again";
-  const std::string what = "not a .vdb file that can be read: ";
-  try {
-    return read();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::ios_base::failure&) {
-    throw inputError("vdb.unreadable", what + "it ends early", hint, path);
-  } catch (const std::bad_alloc&) {
-    throw inputError("vdb.unreadable", what + "it asks for more memory than there is", hint, path);
-  } catch (const std::exception& error) {
-    throw inputError("vdb.unreadable", what + error.what(), hint, path);
-  }
 }
 
 std::string textOf(const openvdb::GridBase& grid, const std::string& key) {
@@ -133,7 +114,8 @@ std::string unitOf(const openvdb::GridBase& grid, const std::string& unit_if_mis
   if (!unit_if_missing.empty()) return unit_if_missing;
   throw inputError("vdb.no_unit",
                    "grid '" + grid.getName() + "' does not say in which length unit it is",
-                   "give the unit with the file, or write it as string metadata 'length_unit' "
+                   "give the unit with it (--units mm; in a scene units: mm), or write it as "
+                   "string metadata 'length_unit' "
                    "(m, cm, mm) into the grid",
                    path);
 }

@@ -1,7 +1,10 @@
 #pragma once
 /// A .vdb file that is open for reading: what is in it, with one kind of error for what is damaged.
 
+#include <exception>
 #include <fstream>
+#include <ios>
+#include <new>
 #include <string>
 
 #include "grid/vdb_archive.h"
@@ -9,6 +12,24 @@
 #include "palpate/vdb/io.h"
 
 namespace palpate::vdb {
+
+/// Runs `read`, and says in one way what a damaged file makes OpenVDB throw.
+template <typename Read>
+auto readingFrom(const std::string& path, const Read& read) {
+  const char* const hint = "the file may be damaged or cut short; copy or write it again";
+  const std::string what = "not a .vdb file that can be read: ";
+  try {
+    return read();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::ios_base::failure&) {
+    throw inputError("vdb.unreadable", what + "it ends early", hint, path);
+  } catch (const std::bad_alloc&) {
+    throw inputError("vdb.unreadable", what + "it asks for more memory than there is", hint, path);
+  } catch (const std::exception& error) {
+    throw inputError("vdb.unreadable", what + error.what(), hint, path);
+  }
+}
 
 class VdbFile {
  public:
