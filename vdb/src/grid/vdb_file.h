@@ -36,7 +36,6 @@ class VdbFile {
   /// @throws Error (kInput, vdb.missing or vdb.unreadable).
   explicit VdbFile(std::string path);
 
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] const std::vector<VdbArchive::Entry>& entries() const noexcept {
     return archive_.entries();
   }
