@@ -179,7 +179,9 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler) {
   view_.per_voxel = 1.0 / info.voxel_size;
   view_.voxel = info.voxel_size;
   const Coord size = table.box.dim();
-  view_.extent = 8.0 * Vec3(size.x(), size.y(), size.z());
+  view_.shift = -view_.origin * view_.per_voxel - 0.5;
+  for (int axis = 0; axis < 3; ++axis)
+    view_.size[axis] = 8 * static_cast<std::uint64_t>(size[axis]);
   view_.plateau = plateau * info.metres_per_unit;
 }
 
