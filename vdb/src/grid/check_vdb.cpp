@@ -173,7 +173,7 @@ void addTiles(const openvdb::FloatGrid& grid, Tally& tally) {
 }
 
 Tally tallyOf(const openvdb::FloatGrid& grid) {
-  const openvdb::tree::LeafManager<const Tree> leaves(grid.tree());
+  openvdb::tree::LeafManager<const Tree> leaves(grid.tree());
   std::vector<Tally> tallies(leaves.leafCount());
   const LeafCheck check(grid);
   leaves.foreach ([&](const Leaf& leaf, std::size_t n) { tallies[n] = check.of(leaf); });
