@@ -1,71 +1,47 @@
 #include "brick/slopes.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace palpate::vdb {
 namespace {
 
-constexpr std::size_t kCount = sizeof(Brick::values) / sizeof(float);
-/// Loops run over the ends of rows, and of the brick by as much as the widest window; what comes of
-/// that is not looked at.
-constexpr std::size_t kBehind = 4 * Brick::kSlab;
-using Numbers = std::array<float, kCount + kBehind>;
+double larger(double a, double b) noexcept { return a < b ? b : a; }
 
-float larger(float a, float b) noexcept { return a < b ? b : a; }
-
-/// Each number becomes the larger of it and the one `kStep` on.
-template <std::size_t kStep>
-void pairMaximum(Numbers& numbers) noexcept {
-  for (std::size_t n = 0; n < kCount; ++n) numbers[n] = larger(numbers[n], numbers[n + kStep]);
+/// The larger of the squares of the differences from a coefficient to the one before and the one after it.
+double largerSquare(float before, float here, float after) noexcept {
+  const double middle = here;
+  const double down = middle - static_cast<double>(before);
+  const double up = static_cast<double>(after) - middle;
+  return larger(down * down, up * up);
 }
 
-/// Each number becomes the largest of `kWidth` numbers from it on, 1 to 4.
-template <std::size_t kStride, std::size_t kWidth>
-void slideMaximum(Numbers& numbers) noexcept {
-  if constexpr (kWidth > 1) pairMaximum<kStride>(numbers);
-  if constexpr (kWidth > 2) pairMaximum<kStride*(kWidth - 2)>(numbers);
-}
+}  // namespace
 
-/// The steepest of `kSteps` differences along the axis with `kStride`, of kSteps + 1 rows across it.
-template <std::size_t kStride, std::size_t kSteps>
-void slopesAlong(const Brick& brick, Numbers& slope) noexcept {
-  for (std::size_t n = 0; n < kCount - kStride; ++n) {
-    slope[n] = std::fabs(brick.values[n + kStride] - brick.values[n]);
-  }
-  std::fill(slope.begin() + static_cast<std::ptrdiff_t>(kCount - kStride), slope.end(), 0.0F);
-  constexpr auto width = [](std::size_t stride) { return stride == kStride ? kSteps : kSteps + 1; };
-  slideMaximum<Brick::kSlab, width(Brick::kSlab)>(slope);
-  slideMaximum<Brick::kRow, width(Brick::kRow)>(slope);
-  slideMaximum<1, width(1)>(slope);
-}
-
-/// Each component of the gradient is a mean of the differences between neighbors along its axis, of
-/// the voxels from `kFirst` to `kLast` from the cell's own.
-template <int kFirst, int kLast>
-double steepestSquare(const Brick& brick) noexcept {
-  constexpr auto kSteps = static_cast<std::size_t>(kLast - kFirst);
-  Numbers by_x, by_y, by_z;
-  slopesAlong<Brick::kSlab, kSteps>(brick, by_x);
-  slopesAlong<Brick::kRow, kSteps>(brick, by_y);
-  slopesAlong<1, kSteps>(brick, by_z);
-  std::array<float, Brick::kSide> most{};
-  for (int x = 0; x < Brick::kSide; ++x) {
-    for (int y = 0; y < Brick::kSide; ++y) {
-      const std::size_t at = Brick::at(x + kFirst, y + kFirst, kFirst);
-      for (std::size_t z = 0; z < Brick::kSide; ++z) {
-        const std::size_t n = at + z;
-        most[z] = larger(most[z], by_x[n] * by_x[n] + by_y[n] * by_y[n] + by_z[n] * by_z[n]);
+// Row by row, in loops that compilers turn into vector code. Where there is no coefficient before or after, the
+// own one stands for it: no difference.
+double steepestSquare(const float* first, std::size_t side,
+                      const std::array<std::size_t, 2>& strides) noexcept {
+  std::array<double, kMostSide> most{};
+  std::array<float, kMostSide + 2> row{};
+  for (std::size_t x = 0; x < side; ++x) {
+    for (std::size_t y = 0; y < side; ++y) {
+      const float* const here = first + x * strides[0] + y * strides[1];
+      const float* const left = x > 0 ? here - strides[0] : here;
+      const float* const right = x + 1 < side ? here + strides[0] : here;
+      const float* const below = y > 0 ? here - strides[1] : here;
+      const float* const above = y + 1 < side ? here + strides[1] : here;
+      row[0] = here[0];
+      std::copy_n(here, side, row.begin() + 1);
+      row[side + 1] = here[side - 1];
+      for (std::size_t z = 0; z < side; ++z) {
+        const double square = largerSquare(left[z], here[z], right[z]) +
+                              largerSquare(below[z], here[z], above[z]) +
+                              largerSquare(row[z], row[z + 1], row[z + 2]);
+        most[z] = larger(most[z], square);
       }
     }
   }
   return *std::max_element(most.begin(), most.end());
 }
-
-}  // namespace
-
-double steepestSquareCubic(const Brick& brick) noexcept { return steepestSquare<-1, 2>(brick); }
-double steepestSquareLinear(const Brick& brick) noexcept { return steepestSquare<0, 1>(brick); }
 
 }  // namespace palpate::vdb
