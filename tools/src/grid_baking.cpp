@@ -46,6 +46,7 @@ vdb::BakeOptions bakeOptions(const BakeOptions& options, const std::string& grid
   vdb::BakeOptions bake;
   bake.voxel_size = voxel;
   bake.half_width = options.half_width;
+  bake.max_memory = memoryLeft(options);
   const std::string layer = layerOf(grid, options);
   bake.name = layer + "/surface";
   bake.length_unit = unit;
