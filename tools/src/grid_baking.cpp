@@ -9,6 +9,7 @@
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/scan_surface.h"
+#include "scene_baking.h"
 #include "text.h"
 #include "vdb_grid_name.h"
 
