@@ -34,6 +34,7 @@ class FieldBaker {
     std::vector<std::unique_ptr<BandLeaf>> leaves = makeLeaves();
     const openvdb::FloatGrid::Ptr grid = emptyGrid(plan_, options_);
     std::vector<Coord> origins;
+    origins.reserve(cells_.size());
     for (const Cell& cell : cells_) origins.push_back(cell.origin);
     fillTree(grid->tree(), origins, std::move(leaves), inside_);
     report(progress_, "bake", 1.0);
@@ -107,29 +108,30 @@ class FieldBaker {
     return {std::move(cells), size};
   }
 
-  /// What one cell is found to be.
-  struct Judged {
-    Verdict verdict = Verdict::kKeep;
-    FieldPart part;  ///< empty: that of the cell before
-  };
-
   /// Puts the blocks of 8^3 voxels that the band can touch into origins_, those inside into inside_.
   void findLeaves() {
     const CoordBBox range = voxelRange(domain_, plan_, options_.name);
     auto [cells, size] = topCells(range);
     parts_.assign(1, source_.whole());
-    std::vector<Judged> judged;
+    std::vector<Verdict> verdicts;
+    std::vector<FieldPart> left;  // empty where it is that of the cell before
     for (;; size /= 2) {
-      judged.assign(cells.size(), {});
-      parallelWithProgress(cells.size(), progress_, "bake: finding the surface", 0.0, 0.0,
-                           [&](std::size_t i) { judged[i] = judgeCell(cells[i], size); });
+      verdicts.assign(cells.size(), Verdict::kKeep);
+      // Leaves are judged once more when they are filled; what they need not keep, is not kept.
+      const bool is_narrowed = size > 8 && source_.whole().nodes.size() > 1;
+      left.assign(is_narrowed ? cells.size() : 0, {});
+      parallelWithProgress(
+          cells.size(), progress_, "bake: finding the surface", 0.0, 0.0, [&](std::size_t i) {
+            verdicts[i] = judgeCell(cells[i], size, is_narrowed ? &left[i] : nullptr);
+          });
       std::vector<Cell> kept;
       for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (judged[i].verdict == Verdict::kInside) inside_.push_back({cells[i].origin, size});
-        if (judged[i].verdict == Verdict::kKeep) kept.push_back(cells[i]);
-        if (judged[i].part.nodes.empty()) continue;
+        if (verdicts[i] == Verdict::kInside) inside_.push_back({cells[i].origin, size});
+        if (verdicts[i] != Verdict::kKeep) continue;
+        kept.push_back(cells[i]);
+        if (!is_narrowed || left[i].nodes.empty()) continue;
         kept.back().part = static_cast<std::uint32_t>(parts_.size());
-        parts_.push_back(std::move(judged[i].part));
+        parts_.push_back(std::move(left[i]));
       }
       refuseIfTooLarge(kept.size(), size);
       if (size == 8) {
@@ -140,16 +142,15 @@ class FieldBaker {
     }
   }
 
-  [[nodiscard]] Judged judgeCell(const Cell& cell, int size) const {
-    thread_local FieldPart left;
+  /// `left`, if there is one: what decides in the cell, if that is less than in the one before.
+  [[nodiscard]] Verdict judgeCell(const Cell& cell, int size, FieldPart* left) const {
+    thread_local FieldPart here;
     const FieldPart& before = parts_[cell.part];
-    Judged out;
-    out.verdict = judge(cell.origin, size, before, false, left);
-    // Leaves are judged once more when they are filled; what they need not keep, is not kept.
-    if (out.verdict == Verdict::kKeep && size > 8 && left.nodes.size() < before.nodes.size()) {
-      out.part = left;
+    const Verdict verdict = judge(cell.origin, size, before, false, here);
+    if (left != nullptr && verdict == Verdict::kKeep && here.nodes.size() < before.nodes.size()) {
+      *left = here;
     }
-    return out;
+    return verdict;
   }
 
   static std::vector<Cell> split(const std::vector<Cell>& cells, int size, const CoordBBox& range) {
