@@ -108,7 +108,7 @@ class FieldBaker {
     return {std::move(cells), size};
   }
 
-  /// Puts the blocks of 8^3 voxels that the band can touch into origins_, those inside into inside_.
+  /// Puts the blocks of 8^3 voxels that the band can touch into cells_, those inside into inside_.
   void findLeaves() {
     const CoordBBox range = voxelRange(domain_, plan_, options_.name);
     auto [cells, size] = topCells(range);
