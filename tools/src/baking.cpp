@@ -4,6 +4,7 @@
 #include <chrono>
 #include <set>
 
+#include "grid_baking.h"
 #include "input_kind.h"
 #include "loaded_scene.h"
 #include "palpate/scene/scene_file.h"
@@ -138,7 +139,9 @@ std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOpti
 }
 
 std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
-  refuse(!options.units.empty(), "--units", "meshes; an image says where its voxels are");
+  const bool is_grid = inputKind(options.input) == InputKind::kGrid;
+  refuse(!options.units.empty() && !is_grid, "--units",
+         "meshes; an image says where its voxels are");
   refuseMeshOptions(options);
   if (options.above.has_value() == !options.labels.empty()) {
     throw bakeUsageError(options.labels.empty()
@@ -148,13 +151,13 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   refuse(!options.labels.empty() && !options.keep.empty(), "--keep", "--above");
   refuse(!options.labels.empty() && options.fill, "--fill", "--above");
   refuse(options.labels.empty() && !options.names.empty(), "--names", "--labels");
-  refuse(!options.labels.empty() && !options.layers.empty(), "--layer",
+  refuse(!options.labels.empty() && !options.layers.empty() && !is_grid, "--layer",
          "--above; labels are called by their names");
-  const LengthUnit mm = {"mm", 1e-3};
-  const double asked = askedVoxel(options, mm);
   const auto layers = labelLayers(options);
 
-  const vdb::Image image = vdb::readNifti(options.input);
+  std::string unit;
+  const vdb::Image image = readVoxels(options, unit);
+  const double asked = askedVoxel(options, lengthUnit(unit));
   for (const auto& note : image.notes) console.note(options.input + ": " + note);
   const double spacing = std::min(
       {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])});
@@ -170,7 +173,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
     grids.push_back(timed([&] {
       return vdb::surfaceFromThreshold(
           image, threshold,
-          gridOptions(options, onlyLayerName(options), voxel, "mm", options.input),
+          gridOptions(options, onlyLayerName(options), voxel, unit, options.input),
           console.progress());
     }));
     return grids;
@@ -181,7 +184,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
     labels.voxel_size = asked;
     grids.push_back(timed([&, &layer = layer] {
       return vdb::surfaceFromLabels(image, labels,
-                                    gridOptions(options, layer, voxel, "mm", options.input),
+                                    gridOptions(options, layer, voxel, unit, options.input),
                                     console.progress());
     }));
   }
@@ -199,10 +202,12 @@ std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console) {
     case InputKind::kImage:
       return bakeImage(options, console);
     case InputKind::kGrid:
-      break;
+      refuseMeshOptions(options);
+      return inTheSameFrame(options, options.above || !options.labels.empty()
+                                         ? bakeImage(options, console)
+                                         : std::vector<BakedGrid>{rebakeGrid(options, console)});
   }
-  throw inputError("bake.kind", "this is a grid already", "bake a scene, a mesh or an image",
-                   options.input);
+  return {};
 }
 
 }  // namespace palpate::tools

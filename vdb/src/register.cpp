@@ -109,12 +109,19 @@ FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
   const std::string path = readExistingFile(reader, "file");
   const std::string name = reader.textOr("name", "");
   const std::string unit = lengthUnitOr(reader, "");
+  const std::string grid_class = reader.textOr("class", "");
+  if (!grid_class.empty() && grid_class != "level_set") {
+    throw reader.errorAt(
+        "class", "scene.kind", "'class' is `" + grid_class + "`",
+        "write class: level_set for a grid of signed distances that does not say so");
+  }
+  const auto unknown = grid_class.empty() ? UnknownClass::kRefuse : UnknownClass::kLevelSet;
   const Sampler sampler = readSampler(reader);
   return lazyField(common, fileName(path), "grid " + fileName(path),
                    reader.loader().document().place(reader.node().mark), sampler,
-                   [path, name, unit](const Progress& progress) {
+                   [path, name, unit, unknown](const Progress& progress) {
                      report(progress, "read", 0.0);
-                     return readVdb(path, name, unit);
+                     return readVdb(path, name, unit, unknown);
                    });
 }
 

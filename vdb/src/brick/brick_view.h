@@ -11,10 +11,10 @@ namespace palpate::vdb {
 
 /// The stencil of every cell in a block of 8^3 voxels: one voxel before the block and two behind it.
 struct alignas(64) Brick {
-  static constexpr int kSide = 8;   ///< cells along an axis
-  static constexpr int kRows = 11;  ///< voxels along an axis, from -1 to 9
-  static constexpr int kRow = 12;   ///< floats from one row along z to the next: 48 bytes
-  static constexpr int kSlab = kRows * kRow;
+  static constexpr int kSide = 8;              ///< cells along an axis
+  static constexpr std::ptrdiff_t kRows = 11;  ///< voxels along an axis, from -1 to 9
+  static constexpr std::ptrdiff_t kRow = 12;  ///< floats from one row along z to the next: 48 bytes
+  static constexpr std::ptrdiff_t kSlab = kRows * kRow;
 
   float values[kRows *
                kSlab];     ///< [voxels] spline coefficients, or the grid's values; z runs fastest
@@ -24,7 +24,7 @@ struct alignas(64) Brick {
     return static_cast<std::size_t>((x + 1) * kSlab + (y + 1) * kRow + z + 1);
   }
 };
-static_assert(sizeof(Brick) == 92 * 64);
+static_assert(sizeof(Brick) == std::size_t{92} * 64);
 
 /// All that a sample reads. Plain data; whoever made it owns the memory.
 struct BrickView {

@@ -18,8 +18,8 @@ struct Cell {
 
 /// 1.5 * 2^52: a double plus this has its nearest integer in the last bits, and the bits of what is not
 /// a number, infinite or negative are, less those of this, beyond every box.
-constexpr double kRounder = 0x1.8p52;
-constexpr auto kRounderBits = std::bit_cast<std::uint64_t>(kRounder);
+inline constexpr double kRounder = 0x1.8p52;
+inline constexpr auto kRounderBits = std::bit_cast<std::uint64_t>(kRounder);
 
 PALPATE_KERNEL Cell locate(const BrickView& view, const Vec3& p) noexcept {
   const double x = fma(p.x, view.per_voxel, view.shift.x);
@@ -261,3 +261,5 @@ PALPATE_ENTRY FieldSample sampleLinear(const BrickView& view, const Vec3& p) noe
   const double far_z = dz[2] + ty * (dz[3] - dz[2]);
   return {distance, Vec3(dx, near_y + tx * (far_y - near_y), near_z + tx * (far_z - near_z)), true};
 }
+
+inline BrickKernels kernels() noexcept { return {&sampleCubic, &jetCubic, &sampleLinear}; }

@@ -1,5 +1,14 @@
 // The kernels for processors with AVX2 and FMA (2013 and later).
 
 #define PALPATE_TARGET "avx2,fma"
-#define PALPATE_KERNELS avx2Kernels
 #include "brick/kernels_x86.h"
+
+#if defined(__x86_64__)
+
+namespace palpate::vdb {
+
+BrickKernels avx2Kernels() noexcept { return kernels(); }
+
+}  // namespace palpate::vdb
+
+#endif

@@ -1,5 +1,5 @@
-// The kernels for one of x86-64's instruction sets. No include guard: a translation unit includes this once, after
-// PALPATE_TARGET names the instructions and PALPATE_KERNELS the function that gives the kernels.
+// kernels() for one of x86-64's instruction sets. No include guard: a translation unit includes this once,
+// after PALPATE_TARGET names the instructions.
 
 #include "brick/instruction_set.h"
 
@@ -14,14 +14,12 @@ namespace {
 
 #define PALPATE_KERNEL [[gnu::always_inline, gnu::target(PALPATE_TARGET)]] inline
 #define PALPATE_KERNEL_FMA
-#define PALPATE_ENTRY [[gnu::target(PALPATE_TARGET)]]
+#define PALPATE_ENTRY [[gnu::target(PALPATE_TARGET)]] inline
 #include "brick/simd.h"
 // simd.h comes first
 #include "brick/kernels.h"
 
 }  // namespace
-
-BrickKernels PALPATE_KERNELS() noexcept { return {&sampleCubic, &jetCubic, &sampleLinear}; }
 
 }  // namespace palpate::vdb
 
