@@ -50,7 +50,8 @@ std::vector<std::string> gridsOf(const TempFolder& folder, const std::string& na
   const CommandResult result = runPalpate({"info", name, "--json"}, folder.path());
   EXPECT_EQ(result.exit_code, 0) << result.err;
   std::vector<std::string> names;
-  for (const auto& grid : parseOnly(result)["files"][0]["grids"]) names.push_back(grid["name"]);
+  const Json json = parseOnly(result);
+  for (const auto& grid : json["files"][0]["grids"]) names.push_back(grid["name"]);
   return names;
 }
 
@@ -64,28 +65,27 @@ layers:
 TEST(ConvertFiles, MeshesOfEveryFormatWindOutwardsInTheirUnit) {
   const TempFolder folder;
   (void)folder.file("two.yaml", kTwo);
-  (void)converted(folder, {"two.yaml", "-o", "two.vdb", "--voxel", "0.5mm"});
+  (void)converted(folder, {"two.yaml", "-o", "two.vdb", "--voxel", "0.7mm"});
   EXPECT_EQ(gridsOf(folder, "two.vdb"), (std::vector<std::string>{"egg/surface", "pearl/surface"}));
   const double egg = 4.0 / 3.0 * std::numbers::pi * 1.0 * 1.5 * 2.0;  // [cm^3]
-  for (const std::string extension : {"stl", "obj", "ply", "glb"}) {
-    for (const std::string unit : {"", "mm", "m"}) {
-      if (extension == "glb" && unit == "mm") continue;  // always metres
-      SCOPED_TRACE(extension + " " + unit);
-      std::vector<std::string> arguments{"two.vdb", "--layer",          "egg",
-                                         "-o",      "egg." + extension, "--force"};
-      if (!unit.empty()) arguments.insert(arguments.end(), {"--to-units", unit});
-      (void)converted(folder, arguments);
-      const MeshFile mesh = meshFile(folder.path("egg." + extension));
-      const double cm = extension == "glb" || unit == "m" ? 0.01 : (unit == "mm" ? 10.0 : 1.0);
-      EXPECT_EQ(mesh.open_edges, 0.0);
-      // Triangles of half a millimetre lie some 1e-3 of the radii below the surface.
-      EXPECT_NEAR(mesh.volume, egg * cm * cm * cm, 0.005 * egg * cm * cm * cm);
-      const double middle[3] = {1.0, 2.0, 3.0};
-      const double radius[3] = {1.0, 1.5, 2.0};
-      for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_NEAR(mesh.lo[axis], (middle[axis] - radius[axis]) * cm, 0.01 * cm);
-        EXPECT_NEAR(mesh.hi[axis], (middle[axis] + radius[axis]) * cm, 0.01 * cm);
-      }
+  const std::pair<std::string, std::string> cases[] = {
+      {"stl", ""}, {"stl", "m"}, {"obj", "mm"}, {"ply", ""}, {"glb", ""}};
+  for (const auto& [extension, unit] : cases) {
+    SCOPED_TRACE(extension + " " + unit);
+    std::vector<std::string> arguments{"two.vdb", "--layer",          "egg",
+                                       "-o",      "egg." + extension, "--force"};
+    if (!unit.empty()) arguments.insert(arguments.end(), {"--to-units", unit});
+    (void)converted(folder, arguments);
+    const MeshFile mesh = meshFile(folder.path("egg." + extension));
+    const double cm = extension == "glb" || unit == "m" ? 0.01 : (unit == "mm" ? 10.0 : 1.0);
+    EXPECT_EQ(mesh.open_edges, 0.0);
+    // Triangles of 0.7 mm lie some 1e-3 of the radii below the surface.
+    EXPECT_NEAR(mesh.volume, egg * cm * cm * cm, 0.005 * egg * cm * cm * cm);
+    const double middle[3] = {1.0, 2.0, 3.0};
+    const double radius[3] = {1.0, 1.5, 2.0};
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(mesh.lo[axis], (middle[axis] - radius[axis]) * cm, 0.01 * cm);
+      EXPECT_NEAR(mesh.hi[axis], (middle[axis] + radius[axis]) * cm, 0.01 * cm);
     }
   }
 }
@@ -148,8 +148,9 @@ TEST(ConvertFiles, ALabelScanBecomesAGridForEachLabel) {
     EXPECT_GT(mesh.volume, 0.4 * ballVolume(15.0));
     sum += mesh.volume;
   }
-  // A voxel of 1 x 1 x 1.5 mm on a ball of 15 mm: what the labels' own counts leave open.
-  EXPECT_NEAR(sum, ballVolume(15.0), 0.03 * ballVolume(15.0));
+  // A third of a voxel of 1 x 1 x 1.5 mm all around: how exact labels are is tested with them; here, that all of
+  // them arrive, in the right size.
+  EXPECT_NEAR(sum, ballVolume(15.0), 0.06 * ballVolume(15.0));
 }
 
 TEST(ConvertFiles, AMaskBecomesAGrid) {
