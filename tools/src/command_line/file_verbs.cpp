@@ -48,6 +48,9 @@ void defineBake(CLI::App& app, Invocation& invocation) {
   auto& o = choose<BakeOptions>(invocation);
   app.add_option("input", o.input);
   add(app, "Output", "-o,--output", "FILE.vdb", o.output, "where the grids go (required)");
+  add(app, "Output", "--parts", "FILE.yaml", o.parts,
+      "scene: keep its edges. Grids of its smooth parts only, and here the scene that puts them "
+      "together with the rest");
   addBaking(app, o);
 }
 
@@ -115,7 +118,17 @@ Verb bakeVerb() {
       "palpate bake INPUT -o OUT.vdb [OPTIONS]",
       "INPUT is a scene file, a mesh (.stl .obj .ply .gltf .glb) or an image (.nii .nii.gz). Each "
       "layer\n"
-      "becomes a grid `<layer>/surface`. An image needs --above or --labels.",
+      "becomes a grid `<layer>/surface`. An image needs --above or --labels.\n"
+      "\n"
+      "No grid holds an edge: its normal is some ten degrees off there, however small the voxels "
+      "are.\n"
+      "Where a layer has edges, how far its grid is off is told. With --parts, only what a grid "
+      "holds\n"
+      "and is not exact by itself becomes one, `<layer>/surface/<part>`; unions, intersections, "
+      "differences\n"
+      "and placements stay, and so do boxes and the like. FILE.yaml is INPUT with the grids in "
+      "those\n"
+      "places: as exact at its edges as INPUT, for every verb that takes a scene.",
       {},
       defineBake,
       [](const Invocation& i) {
