@@ -50,7 +50,8 @@ std::vector<std::string> gridsOf(const TempFolder& folder, const std::string& na
   const CommandResult result = runPalpate({"info", name, "--json"}, folder.path());
   EXPECT_EQ(result.exit_code, 0) << result.err;
   std::vector<std::string> names;
-  for (const auto& grid : parseOnly(result)["files"][0]["grids"]) names.push_back(grid["name"]);
+  const Json json = parseOnly(result);
+  for (const auto& grid : json["files"][0]["grids"]) names.push_back(grid["name"]);
   return names;
 }
 
@@ -64,28 +65,27 @@ layers:
 TEST(ConvertFiles, MeshesOfEveryFormatWindOutwardsInTheirUnit) {
   const TempFolder folder;
   (void)folder.file("two.yaml", kTwo);
-  (void)converted(folder, {"two.yaml", "-o", "two.vdb", "--voxel", "0.5mm"});
+  (void)converted(folder, {"two.yaml", "-o", "two.vdb", "--voxel", "0.7mm"});
   EXPECT_EQ(gridsOf(folder, "two.vdb"), (std::vector<std::string>{"egg/surface", "pearl/surface"}));
   const double egg = 4.0 / 3.0 * std::numbers::pi * 1.0 * 1.5 * 2.0;  // [cm^3]
-  for (const std::string extension : {"stl", "obj", "ply", "glb"}) {
-    for (const std::string unit : {"", "mm", "m"}) {
-      if (extension == "glb" && unit == "mm") continue;  // always metres
-      SCOPED_TRACE(extension + " " + unit);
-      std::vector<std::string> arguments{"two.vdb", "--layer",          "egg",
-                                         "-o",      "egg." + extension, "--force"};
-      if (!unit.empty()) arguments.insert(arguments.end(), {"--to-units", unit});
-      (void)converted(folder, arguments);
-      const MeshFile mesh = meshFile(folder.path("egg." + extension));
-      const double cm = extension == "glb" || unit == "m" ? 0.01 : (unit == "mm" ? 10.0 : 1.0);
-      EXPECT_EQ(mesh.open_edges, 0.0);
-      // Triangles of half a millimetre lie some 1e-3 of the radii below the surface.
-      EXPECT_NEAR(mesh.volume, egg * cm * cm * cm, 0.005 * egg * cm * cm * cm);
-      const double middle[3] = {1.0, 2.0, 3.0};
-      const double radius[3] = {1.0, 1.5, 2.0};
-      for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_NEAR(mesh.lo[axis], (middle[axis] - radius[axis]) * cm, 0.01 * cm);
-        EXPECT_NEAR(mesh.hi[axis], (middle[axis] + radius[axis]) * cm, 0.01 * cm);
-      }
+  const std::pair<std::string, std::string> cases[] = {
+      {"stl", ""}, {"stl", "m"}, {"obj", "mm"}, {"ply", ""}, {"glb", ""}};
+  for (const auto& [extension, unit] : cases) {
+    SCOPED_TRACE(extension + " " + unit);
+    std::vector<std::string> arguments{"two.vdb", "--layer",          "egg",
+                                       "-o",      "egg." + extension, "--force"};
+    if (!unit.empty()) arguments.insert(arguments.end(), {"--to-units", unit});
+    (void)converted(folder, arguments);
+    const MeshFile mesh = meshFile(folder.path("egg." + extension));
+    const double cm = extension == "glb" || unit == "m" ? 0.01 : (unit == "mm" ? 10.0 : 1.0);
+    EXPECT_EQ(mesh.open_edges, 0.0);
+    // Triangles of 0.7 mm lie some 1e-3 of the radii below the surface.
+    EXPECT_NEAR(mesh.volume, egg * cm * cm * cm, 0.005 * egg * cm * cm * cm);
+    const double middle[3] = {1.0, 2.0, 3.0};
+    const double radius[3] = {1.0, 1.5, 2.0};
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(mesh.lo[axis], (middle[axis] - radius[axis]) * cm, 0.01 * cm);
+      EXPECT_NEAR(mesh.hi[axis], (middle[axis] + radius[axis]) * cm, 0.01 * cm);
     }
   }
 }
@@ -148,8 +148,9 @@ TEST(ConvertFiles, ALabelScanBecomesAGridForEachLabel) {
     EXPECT_GT(mesh.volume, 0.4 * ballVolume(15.0));
     sum += mesh.volume;
   }
-  // A voxel of 1 x 1 x 1.5 mm on a ball of 15 mm: what the labels' own counts leave open.
-  EXPECT_NEAR(sum, ballVolume(15.0), 0.03 * ballVolume(15.0));
+  // A third of a voxel of 1 x 1 x 1.5 mm all around: how exact labels are is tested with them; here, that all of
+  // them arrive, in the right size.
+  EXPECT_NEAR(sum, ballVolume(15.0), 0.06 * ballVolume(15.0));
 }
 
 TEST(ConvertFiles, AMaskBecomesAGrid) {
@@ -180,67 +181,81 @@ TEST(ConvertFiles, AMaskBecomesAGrid) {
 /// Grids as python3-openvdb writes them: the ball about (1, 2, 3) mm with radius 6 mm.
 class ConvertGrids : public ::testing::Test {
  protected:
-  void SetUp() override {
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
     const std::string command = "/usr/bin/python3 '" PALPATE_SOURCE_DIR
                                 "/tests/vdb/vdb_interop.py' '" +
-                                folder_.path() + "'";
+                                folder().path() + "'";
     ASSERT_EQ(std::system(command.c_str()), 0);
   }
-  void expectBall(const std::string& name, double share) const {
-    const MeshFile mesh = meshFile(folder_.path(name));
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static const TempFolder& folder() { return *folder_; }
+
+  /// `share` of the volume, `far` [mm] at its ends.
+  static void expectBall(const std::string& name, double share, double far = 0.1) {
+    const MeshFile mesh = meshFile(folder().path(name));
     EXPECT_EQ(mesh.open_edges, 0.0) << name;
     EXPECT_NEAR(mesh.volume, ballVolume(6.0), share * ballVolume(6.0)) << name;
     const double middle[3] = {1.0, 2.0, 3.0};
     for (int axis = 0; axis < 3; ++axis) {
-      EXPECT_NEAR(mesh.lo[axis], middle[axis] - 6.0, 0.1) << name;
-      EXPECT_NEAR(mesh.hi[axis], middle[axis] + 6.0, 0.1) << name;
+      EXPECT_NEAR(mesh.lo[axis], middle[axis] - 6.0, far) << name;
+      EXPECT_NEAR(mesh.hi[axis], middle[axis] + 6.0, far) << name;
     }
   }
-  TempFolder folder_;
-};
 
-TEST_F(ConvertGrids, WhatCannotBeTouchedAsItIsBecomesAGridThatCan) {
-  const struct {
-    std::string name;
-    std::vector<std::string> options;
-  } cases[] = {
-      {"turned", {}},
-      {"mirrored", {}},
-      {"stretched", {"--voxel", "0.5"}},
-      {"fog", {"--above", "0.5"}},
-      {"mask", {"--labels", "1"}},
-      {"ball", {"--voxel", "0.4"}},
-      {"no_class", {"--level-set", "--voxel", "0.4"}},
-  };
-  for (const auto& c : cases) {
-    SCOPED_TRACE(c.name);
-    std::vector<std::string> arguments{c.name + ".vdb", "-o", c.name + "_new.vdb"};
-    arguments.insert(arguments.end(), c.options.begin(), c.options.end());
-    (void)converted(folder_, arguments);
-    const CommandResult check =
-        runPalpate({"check", c.name + "_new.vdb", "--json"}, folder_.path());
+  /// `name`.vdb becomes a grid that can be touched, and that a mesh of the ball.
+  static void expectGrid(const std::string& name, const std::vector<std::string>& options,
+                         double share, double far = 0.1) {
+    SCOPED_TRACE(name);
+    std::vector<std::string> arguments{name + ".vdb", "-o", name + "_new.vdb"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    (void)converted(folder(), arguments);
+    const CommandResult check = runPalpate({"check", name + "_new.vdb", "--json"}, folder().path());
     EXPECT_EQ(check.exit_code, 0) << check.out;
-    const Json grid = parseOnly(check)["files"][0]["grids"][0];
+    const Json json = parseOnly(check);
+    const Json& grid = json["files"][0]["grids"][0];
     EXPECT_EQ(grid["class"], "level set");
     EXPECT_EQ(grid["half_width_voxels"], 6.0);
-    // A mask has steps of a voxel, of 12 to the radius.
-    const double share = c.name == "mask" ? 0.05 : 0.015;
+    EXPECT_EQ(grid["frame"], "world");
     EXPECT_NEAR(grid["volume_m3"], 1e-9 * ballVolume(6.0), share * 1e-9 * ballVolume(6.0));
-    (void)converted(folder_, {c.name + "_new.vdb", "-o", c.name + ".stl"});
-    expectBall(c.name + ".stl", share);
-    const CommandResult info = runPalpate({"info", c.name + "_new.vdb", "--json"}, folder_.path());
-    EXPECT_EQ(parseOnly(info)["files"][0]["grids"][0]["metadata"]["frame"], "world");
+    EXPECT_NEAR(grid["gradient"]["mean"], 1.0, 0.01);
+    (void)converted(folder(), {name + "_new.vdb", "-o", name + ".stl"});
+    expectBall(name + ".stl", share, far);
   }
+
+ private:
+  static TempFolder* folder_;
+};
+TempFolder* ConvertGrids::folder_ = nullptr;
+
+TEST_F(ConvertGrids, TurnedMirroredAndStretchedGridsAreStraightened) {
+  expectGrid("turned", {}, 0.015);
+  expectGrid("mirrored", {}, 0.015);
+  expectGrid("stretched", {"--voxel", "0.5"}, 0.015);
+}
+
+TEST_F(ConvertGrids, DensitiesAndMasksGetASurface) {
+  expectGrid("fog", {"--above", "0.5"}, 0.015);
+  // Voxels of a mask end half a voxel before the ball where it is widest, at steps of a voxel of 0.5 mm.
+  expectGrid("mask", {"--labels", "1"}, 0.05, 0.35);
+}
+
+TEST_F(ConvertGrids, OtherVoxelsAndAClass) {
+  expectGrid("ball", {"--voxel", "0.4"}, 0.015);
+  expectGrid("no_class", {"--level-set", "--voxel", "0.4"}, 0.015);
 }
 
 TEST_F(ConvertGrids, TurnedGridsBecomeMeshesAndTurnedImages) {
   for (const std::string name : {"turned", "stretched", "mirrored"}) {
     SCOPED_TRACE(name);
-    (void)converted(folder_, {name + ".vdb", "-o", name + ".ply"});
+    (void)converted(folder(), {name + ".vdb", "-o", name + ".ply"});
     expectBall(name + ".ply", 0.015);
-    const Json json = converted(folder_, {name + ".vdb", "-o", name + ".nii.gz"});
+    const Json json = converted(folder(), {name + ".vdb", "-o", name + ".nii.gz"});
     EXPECT_EQ(json["values"], "signed distance, mm");
-    const std::vector<double> n = told("image", folder_.path(name + ".nii.gz"));
+    const std::vector<double> n = told("image", folder().path(name + ".nii.gz"));
     ASSERT_EQ(n.size(), 18U);
     EXPECT_NEAR(n[2], ballVolume(6.0), 0.02 * ballVolume(6.0));
     EXPECT_NEAR(n[3], 1.0, 0.02);
@@ -275,7 +290,7 @@ TEST_F(ConvertGrids, RefusesWithTheOptionThatHelps) {
   for (const auto& c : cases) {
     std::vector<std::string> arguments = c.arguments;
     arguments.insert(arguments.begin(), "convert");
-    const CommandResult result = runPalpate(arguments, folder_.path());
+    const CommandResult result = runPalpate(arguments, folder().path());
     EXPECT_EQ(result.exit_code, c.exit_code) << c.arguments[0] << ": " << result.err;
     EXPECT_NE(result.err.find(c.says), std::string::npos) << c.says << " in: " << result.err;
   }

@@ -21,6 +21,7 @@
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/vdb/register.h"
 #include "support/error_of.h"
 #include "support/temp_file.h"
 
@@ -82,6 +83,27 @@ TEST_F(VdbOfOthers, LevelSetsOfPythonAreRead) {
   expectBall(readVdb(path("half"), "ball", ""), 1e-6);
   expectBall(readVdb(path("no_unit"), "", "mm"), 0.5e-6);
   expectBall(readVdb(path("no_class"), "", "", UnknownClass::kLevelSet), 0.5e-6);
+}
+
+TEST_F(VdbOfOthers, ASceneSaysTheClassOfAGridWithoutOne) {
+  SceneRegistry registry;
+  registerKinds(registry);
+  const TempFolder folder;
+  const auto read = [&](const std::string& more) {
+    return readScene(folder.file("scene.yaml",
+                                 "palpate: 1\nlength: mm\nlayers:\n  - {name: a, inside: {grid: "
+                                 "{file: \"" +
+                                     path("no_class") + "\"" + more + "}}}\n"),
+                     registry);
+  };
+  const FieldPtr field = read(", class: level_set").layers.at(0).inside->get();
+  EXPECT_NEAR(field->value(kCenter + Vec3(0.0, kRadius, 0.0)), 0.0, 0.5e-6);
+  const SceneDescription without = read("");
+  Error error = errorOf([&] { static_cast<void>(without.layers.at(0).inside->get()); });
+  EXPECT_EQ(error.problem().code, "vdb.class");
+  EXPECT_NE(error.problem().hint.find("class: level_set"), std::string::npos);
+  error = errorOf([&] { static_cast<void>(read(", class: fog")); });
+  EXPECT_NE(error.problem().hint.find("level_set"), std::string::npos);
 }
 
 TEST_F(VdbOfOthers, TheRestIsRefusedWithWhatHelps) {

@@ -63,17 +63,19 @@ GridVerdict judge(const vdb::GridCheck& check, const LengthUnit& unit) {
 
 Json gridJson(const vdb::GridCheck& check, const GridVerdict& verdict) {
   const vdb::LevelSetInfo& info = check.grid.info;
-  Json json = {{"name", check.grid.name},
-               {"ok", verdict.is_yes},
-               {"type", check.grid.type},
-               {"class", check.grid.grid_class},
-               {"length_unit", info.length_unit.empty() ? Json() : Json(info.length_unit)},
-               {"voxel_size_m", info.voxel_size},
-               {"half_width_voxels", info.half_width},
-               {"active_voxels", info.active_voxels},
-               {"refused", check.refused ? problemJson(*check.refused) : Json()},
-               {"widened", !check.refused && vdb::isTooNarrow(info)},
-               {"findings", findingsJson(verdict.findings)}};
+  Json json = {
+      {"name", check.grid.name},
+      {"ok", verdict.is_yes},
+      {"type", check.grid.type},
+      {"class", check.grid.grid_class},
+      {"length_unit", info.length_unit.empty() ? Json() : Json(info.length_unit)},
+      {"frame", info.metadata.contains("frame") ? Json(info.metadata.at("frame")) : Json()},
+      {"voxel_size_m", info.voxel_size},
+      {"half_width_voxels", info.half_width},
+      {"active_voxels", info.active_voxels},
+      {"refused", check.refused ? problemJson(*check.refused) : Json()},
+      {"widened", !check.refused && vdb::isTooNarrow(info)},
+      {"findings", findingsJson(verdict.findings)}};
   if (!check.has_distances) return json;
   const vdb::GradientStatistics& g = check.gradient;
   json["inside_voxels"] = check.inside_voxels;
