@@ -158,7 +158,7 @@ TEST(BakeMesh, ThreadsDoNotMatter) {
 }
 
 /// The squares that a kernel finds in the leaf about the origin, against brute force over `mesh` [voxels].
-void expectSquares(void (*findSquaresOfKernel)(const LeafQuery&) noexcept, const Mesh& mesh) {
+void expectSquares(void (*find_squares)(const LeafQuery&) noexcept, const Mesh& mesh) {
   std::vector<Facet> facets;
   for (const auto& [a, b, c] : mesh.triangles) {
     facets.push_back(makeFacet(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]));
@@ -166,7 +166,7 @@ void expectSquares(void (*findSquaresOfKernel)(const LeafQuery&) noexcept, const
   const double half_width = 4.0;
   LeafScratch scratch;
   std::vector<float> squares(512);
-  findSquaresOfKernel(makeQuery(facets, half_width, scratch, squares.data()));
+  find_squares(makeQuery(facets, half_width, scratch, squares.data()));
   int near = 0;
   for (int n = 0; n < 512; ++n) {
     const Vec3 p = Vec3(n / 64, n / 8 % 8, n % 8) - 3.5;

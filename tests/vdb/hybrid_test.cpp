@@ -347,8 +347,8 @@ TEST(Hybrid, GridsMadeOnceTakeTheirPlacesAgain) {
   }
   EXPECT_EQ(recombined(field, {}, Sampler::kCubic), field);
 
-  const auto expectOther = [](const FieldPtr& of, const std::map<std::string, LevelSet>& these,
-                              const std::string& says) {
+  const auto expect_other = [](const FieldPtr& of, const std::map<std::string, LevelSet>& these,
+                               const std::string& says) {
     try {
       (void)recombined(of, these, Sampler::kCubic);
       ADD_FAILURE() << "taken without complaint";
@@ -357,8 +357,8 @@ TEST(Hybrid, GridsMadeOnceTakeTheirPlacesAgain) {
       EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
     }
   };
-  expectOther(tree(30.3 * kMm), grids, "is off its part");
-  expectOther(turnedBox(), grids, "the field lacks");
+  expect_other(tree(30.3 * kMm), grids, "is off its part");
+  expect_other(turnedBox(), grids, "the field lacks");
 }
 
 TEST(Hybrid, WhatAGridCannotHoldStaysAnalyticAndSaysWhy) {

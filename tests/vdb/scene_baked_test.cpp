@@ -155,8 +155,8 @@ TEST_F(SceneBaked, GridsOfAFileTakeTheirPlaces) {
     // Voxels are written in mm, as floats, and read back as they were.
     EXPECT_EQ(made->value(p), hybrid.field->value(p));
   }
-  const auto expectRefused = [&](const std::string& body, const std::string& code,
-                                 const std::string& says) {
+  const auto expect_refused = [&](const std::string& body, const std::string& code,
+                                  const std::string& says) {
     try {
       (void)field(body);
       ADD_FAILURE() << "read without complaint:\n" << body;
@@ -166,11 +166,12 @@ TEST_F(SceneBaked, GridsOfAFileTakeTheirPlaces) {
       EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
     }
   };
-  expectRefused(saved(""), "bake.no_parts", "baked");
-  expectRefused(saved(", name: foam/surface, voxel: 1"), "scene.range", "leave out voxel");
-  expectRefused("  b: {baked: {field: block, file: no.vdb}}\n" + kBlock, "scene.no_file", "no.vdb");
-  expectRefused("  b: {baked: {field: block, file: g.vdb, name: foam/surface}}\n" + kBlock,
-                "bake.other_field", "bake again");
+  expect_refused(saved(""), "bake.no_parts", "baked");
+  expect_refused(saved(", name: foam/surface, voxel: 1"), "scene.range", "leave out voxel");
+  expect_refused("  b: {baked: {field: block, file: no.vdb}}\n" + kBlock, "scene.no_file",
+                 "no.vdb");
+  expect_refused("  b: {baked: {field: block, file: g.vdb, name: foam/surface}}\n" + kBlock,
+                 "bake.other_field", "bake again");
 }
 
 TEST_F(SceneBaked, FieldsInItCountAsNested) {

@@ -13,11 +13,11 @@ namespace fs = std::filesystem;
 
 /// A text that YAML takes for itself wherever it stands, without quotes.
 bool isPlain(std::string_view text) {
-  const auto isSafe = [](char c) {
+  const auto is_safe = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
            std::string_view(" ._/+-^").find(c) != std::string_view::npos;
   };
-  return !text.empty() && std::all_of(text.begin(), text.end(), isSafe) && text.front() != ' ' &&
+  return !text.empty() && std::all_of(text.begin(), text.end(), is_safe) && text.front() != ' ' &&
          text.back() != ' ' && (text.front() != '-' || text.size() > 1);
 }
 

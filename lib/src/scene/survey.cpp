@@ -63,15 +63,17 @@ class Line {
     const double place = glm::dot(p - from_, along_) / std::max(length_, 1e-300);
     if (is_known_ && place > fixed_from_ && place < fixed_to_) return region_;
     bool is_changed = !is_known_;
-    fixed_from_ = -kInfinity;
-    fixed_to_ = kInfinity;
+    double from = -kInfinity;
+    double to = kInfinity;
     for (Candidate& candidate : candidates_) {
       if (!(place > candidate.fixed_from && place < candidate.fixed_to)) {
         is_changed |= ask(candidate, p, place);
       }
-      fixed_from_ = std::max(fixed_from_, candidate.fixed_from);
-      fixed_to_ = std::min(fixed_to_, candidate.fixed_to);
+      from = std::max(from, candidate.fixed_from);
+      to = std::min(to, candidate.fixed_to);
     }
+    fixed_from_ = from;
+    fixed_to_ = to;
     if (is_changed) {
       region_ = regionHere();
       is_known_ = true;

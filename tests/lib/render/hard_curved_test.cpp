@@ -35,13 +35,13 @@ void wander(const Curved& c, int seed) {
   Judge judge(c.field, c.from_within);
   judge.onlyWhere(c.judged);
   Random random(static_cast<std::uint64_t>(seed));
-  const auto onTheBox = [&] {
+  const auto on_the_box = [&] {
     Vec3 q = random.in({c.lo, c.hi});
     const auto axis = static_cast<int>(random.uniform(0.0, 3.0));
     q[axis] = random.uniform(0.0, 1.0) < 0.5 ? c.lo[axis] : c.hi[axis];
     return q;
   };
-  judgeSmoothWay(judge, c.free, {c.speed, 0.9, strokeTicks() / c.share}, onTheBox);
+  judgeSmoothWay(judge, c.free, {c.speed, 0.9, strokeTicks() / c.share}, on_the_box);
   if (::testing::Test::HasFatalFailure()) return;
   EXPECT_GT(judge.contacts(), judge.ticks() / 5);
   EXPECT_LT(judge.ambiguous(), judge.ticks() / 5);

@@ -132,16 +132,16 @@ struct Pace {
   int ticks;
 };
 
-/// A smooth way from `from` to one goal after another, as nextGoal() tells them; each tick judged.
+/// A smooth way from `from` to one goal after another, as next_goal() tells them; each tick judged.
 template <typename NextGoal>
-void judgeSmoothWay(Judge& judge, const Vec3& from, const Pace& pace, NextGoal&& nextGoal) {
+void judgeSmoothWay(Judge& judge, const Vec3& from, const Pace& pace, NextGoal&& next_goal) {
   judge.begin(from);
   const double step = pace.speed * Drive::kTick;
   Vec3 p = from;
   Vec3 velocity(0.0);
-  Vec3 goal = nextGoal();
+  Vec3 goal = next_goal();
   for (int i = 0; i < pace.ticks; ++i) {
-    if (glm::length(goal - p) < 10.0 * step) goal = nextGoal();
+    if (glm::length(goal - p) < 10.0 * step) goal = next_goal();
     velocity = pace.inertia * velocity + (1.0 - pace.inertia) * step * glm::normalize(goal - p);
     p += velocity;
     judge.to(p, 1e-6);
