@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numbers>
 #include <set>
 
 #include "input_kind.h"
@@ -32,6 +33,7 @@ void refuse(bool given, const char* option, const char* applies_to) {
 void refuseMeshOptions(const BakeOptions& options) {
   refuse(!options.sign.empty(), "--sign", "meshes");
   refuse(!options.shell.empty(), "--shell", "meshes");
+  refuse(options.smooth.has_value(), "--smooth", "meshes");
 }
 
 /// --voxel [m], or 0 if it was not given. @throws Error (kUsage).
@@ -169,6 +171,7 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
     vdb::BakeOptions bake = bakeOptions(options, layer, voxel, unit.name, options.input);
     bake.mesh_sign = sign;
     bake.shell_thickness = shell;
+    bake.smooth_angle = options.smooth.value_or(0.0) * std::numbers::pi / 180.0;
     return vdb::bakeMesh(mesh, bake, console.progress());
   })};
 }

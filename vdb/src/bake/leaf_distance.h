@@ -8,12 +8,12 @@
 
 namespace palpate::vdb {
 
-/// What the search writes to; kept from leaf to leaf. Sized by prepareScratch().
+/// What the search writes to; kept from leaf to leaf. Sized by makeQuery().
 struct LeafScratch {
-  std::vector<float> eight;           ///< squares of eight cubes for each facet
-  std::vector<float> four;            ///< and of those one level down
-  std::vector<std::uint32_t> nearby;  ///< facets that matter to a cube of 4^3
-  std::vector<std::uint32_t> close;   ///< and to one of 2^3
+  std::vector<float> distances;       ///< squares of eight cubes for each facet
+  std::vector<std::uint32_t> nearby;  ///< facets that matter to each cube of 4^3
+  std::vector<std::uint32_t> close;   ///< and to each of 2^3 in one of them
+  std::vector<std::uint32_t> kept;    ///< by keepNear()
 };
 
 /// The same as plain pointers: files compiled for newer processors share no code with others.
@@ -21,11 +21,25 @@ struct LeafQuery {
   const Facet* facets;  ///< about the leaf's middle
   std::uint32_t count;
   float half_width;  ///< [voxels]
-  float* eight;
-  float* four;
+  float* distances;
   std::uint32_t* nearby;
   std::uint32_t* close;
   float* squares;  ///< [voxels^2] out, in OpenVDB's order; kFarSquare where surely not in the band
+};
+
+/// About a triangle, from the leaf's middle; its centre is on the triangle.
+struct Ball {
+  float x, y, z;
+  float radius;
+};
+
+/// Which triangles may be nearest to a voxel, told from their balls alone: before facets are made.
+struct BallQuery {
+  const Ball* balls;
+  std::uint32_t count;
+  float half_width;     ///< [voxels]
+  float* squares;       ///< eight for each ball
+  std::uint32_t* kept;  ///< out: their places in the list, rising; of one more than `count`
 };
 
 inline constexpr float kFarSquare = 3.0e38F;
@@ -34,11 +48,18 @@ inline constexpr float kFarSquare = 3.0e38F;
 /// voxels at a time. Squares are off by some 1e-6 of a voxel times the distance.
 void findSquares(const LeafQuery& query) noexcept;
 
-/// Its two forms; findSquares() takes the one that the processor has.
+/// @returns how many were kept: all that are nearest to some voxel of the leaf in the band, and some more.
+std::uint32_t keepNear(const BallQuery& query) noexcept;
+
+/// Their two forms each; findSquares() and keepNear() take the one that the processor has.
 void findSquaresPlain(const LeafQuery& query) noexcept;
 void findSquaresAvx2(const LeafQuery& query) noexcept;
+std::uint32_t keepNearPlain(const BallQuery& query) noexcept;
+std::uint32_t keepNearAvx2(const BallQuery& query) noexcept;
 [[nodiscard]] bool hasAvx2() noexcept;
 
+[[nodiscard]] BallQuery makeQuery(const std::vector<Ball>& balls, float half_width,
+                                  LeafScratch& scratch);
 [[nodiscard]] LeafQuery makeQuery(const std::vector<Facet>& facets, float half_width,
                                   LeafScratch& scratch, float* squares);
 

@@ -11,20 +11,7 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-/// [voxels] No point of the surface is further than that from the centre of some voxel.
-constexpr double kBySurface = 0.9;
-/// [voxels] Plates from here on are held wherever they pass between voxels: a cell's half diagonal
-/// and its mirror image, 1.73, are the longest way that can be free of centres; trilinear values close it at less.
-constexpr double kHeld = 1.75;
 constexpr int kDepths = 4;
-/// [voxels] How far the shape must go on to all sides.
-constexpr double kGoesOn = 2.0;
-
-struct Lost {
-  std::size_t places = 0;
-  Vec3 where{0.0};        ///< [m] the first
-  double thinnest = 0.0;  ///< [m]
-};
 
 /// Whether a shape may have parts thinner than `length`: what solids of such a feature size are united from has none.
 bool mayBeThin(const Field& field, double length) {
@@ -50,8 +37,8 @@ class Search {
          const std::optional<Box3>& box)
       : field_(field), grid_(gridField(grid, Sampler::kAccessor)), plan_(plan), box_(box) {}
 
-  [[nodiscard]] Lost in(const Leaf& leaf) const noexcept {
-    Lost lost;
+  [[nodiscard]] LostPlates in(const Leaf& leaf) const noexcept {
+    LostPlates lost;
     const auto near = static_cast<float>(kBySurface * plan_.voxel / plan_.metres_per_unit);
     for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
       if (std::fabs(*voxel) >= near) continue;
@@ -63,7 +50,7 @@ class Search {
 
  private:
   /// From a point by the surface: down to it, and on through the shape.
-  void look(const Vec3& p, Lost& lost) const noexcept {
+  void look(const Vec3& p, LostPlates& lost) const noexcept {
     const FieldSample here = field_.sample(p);
     const double slope = glm::length(here.gradient);
     if (!here.in_band || !(slope > 0.0)) return;
@@ -83,11 +70,7 @@ class Search {
     const Vec3 middle = foot + 0.5 * inside * in;
     if (!(inside > 0.0) || grid_->value(middle) < 0.0 || !goesOn(middle, in)) return;
     if (box_ && !box_->contains(middle)) return;
-    if (lost.places++ == 0) {
-      lost.where = middle;
-      lost.thinnest = inside;
-    }
-    lost.thinnest = std::min(lost.thinnest, inside);
+    lost.add(middle, inside);
   }
 
   [[nodiscard]] bool goesOn(const Vec3& middle, const Vec3& normal) const noexcept {
@@ -105,18 +88,37 @@ class Search {
   const std::optional<Box3>& box_;
 };
 
-std::string placeText(const Vec3& p) {
-  return "(" + inMillimetres(p.x) + ", " + inMillimetres(p.y) + ", " + inMillimetres(p.z) + ")";
+}  // namespace
+
+void LostPlates::add(const Vec3& place, double thickness) { add({1, place, thickness}); }
+
+void LostPlates::add(const LostPlates& others) {
+  if (others.places == 0) return;
+  if (places == 0) {
+    *this = others;
+    return;
+  }
+  places += others.places;
+  thinnest = std::min(thinnest, others.thinnest);
 }
 
-}  // namespace
+void LostPlates::refuse(const BakePlan& plan, const BakeOptions& options) const {
+  if (places == 0) return;
+  throw inputError("bake.too_thin",
+                   "'" + options.name + "' is " + inMillimetres(thinnest) + " thin near " +
+                       placeText(where / plan.voxel, plan.voxel) +
+                       " and would have holes in a grid of " + inMillimetres(plan.voxel) +
+                       " voxels",
+                   "a voxel of " + inMillimetres(thinnest / kHeld) +
+                       " holds it; or keep this part analytic, or make it a sheet");
+}
 
 void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& plan,
                       const BakeOptions& options) {
   if (!mayBeThin(field, kHeld * plan.voxel)) return;
   std::vector<const Leaf*> leaves;
   grid.impl().grid->tree().getNodes(leaves);
-  std::vector<Lost> found(leaves.size());
+  std::vector<LostPlates> found(leaves.size());
   const Search search(field, grid, plan, options.box);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()),
                     [&](const tbb::blocked_range<std::size_t>& range) {
@@ -124,20 +126,9 @@ void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& 
                         found[i] = search.in(*leaves[i]);
                       }
                     });
-  Lost all;
-  for (const Lost& lost : found) {
-    if (lost.places == 0) continue;
-    if (all.places == 0) all = {0, lost.where, lost.thinnest};
-    all.places += lost.places;
-    all.thinnest = std::min(all.thinnest, lost.thinnest);
-  }
-  if (all.places == 0) return;
-  throw inputError("bake.too_thin",
-                   "'" + options.name + "' is " + inMillimetres(all.thinnest) + " thin near " +
-                       placeText(all.where) + " and would have holes in a grid of " +
-                       inMillimetres(plan.voxel) + " voxels",
-                   "a voxel of " + inMillimetres(all.thinnest / kHeld) +
-                       " holds it; or keep this part analytic, or make it a sheet");
+  LostPlates all;
+  for (const LostPlates& lost : found) all.add(lost);
+  all.refuse(plan, options);
 }
 
 }  // namespace palpate::vdb
