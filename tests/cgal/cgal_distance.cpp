@@ -6,7 +6,10 @@
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Simple_cartesian.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 namespace palpate::vdb::test {
@@ -45,17 +48,43 @@ double CgalDistance::to(const Vec3& p) const {
 
 bool CgalDistance::isInside(const Vec3& p) const {
   // Along no plane of symmetry, so that edges are not met.
-  const Kernel::Ray_3 ray(pointOf(p), Kernel::Vector_3(0.4711, 0.1742, 0.8646));
-  return tree_->tree.number_of_intersected_primitives(ray) % 2 == 1;
+  const Kernel::Vector_3 along(0.4711, 0.1742, 0.8646);
+  std::vector<Triangles::const_iterator> met;
+  tree_->tree.all_intersected_primitives(Kernel::Ray_3(pointOf(p), along), std::back_inserter(met));
+  int left = 0;
+  for (const auto& triangle : met) {
+    left += triangle->supporting_plane().orthogonal_vector() * along > 0.0 ? 1 : -1;
+  }
+  return left != 0;
 }
 
-double cgalVolume(const Mesh& mesh) {
-  double sum = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    sum += CGAL::volume(Point(CGAL::ORIGIN), pointOf(mesh.vertices[a]), pointOf(mesh.vertices[b]),
-                        pointOf(mesh.vertices[c]));
+double CgalDistance::volume(double spacing) const {
+  const CGAL::Bbox_3 box = tree_->tree.bbox();
+  const Kernel::Vector_3 up(0.0, 0.0, 1.0);
+  double length = 0.0;
+  std::vector<Triangles::const_iterator> met;
+  std::vector<std::pair<double, int>> walls;  // by height: how many walls are entered
+  for (double x = box.xmin() + 0.517 * spacing; x < box.xmax(); x += spacing) {
+    for (double y = box.ymin() + 0.483 * spacing; y < box.ymax(); y += spacing) {
+      met.clear();
+      walls.clear();
+      const Point begin(x, y, box.zmin() - spacing);
+      tree_->tree.all_intersected_primitives(Kernel::Ray_3(begin, up), std::back_inserter(met));
+      for (const auto& triangle : met) {
+        const Kernel::Vector_3 normal = triangle->supporting_plane().orthogonal_vector();
+        const double steep = normal * up;
+        if (steep == 0.0) continue;
+        walls.emplace_back(normal * (triangle->vertex(0) - begin) / steep, steep < 0.0 ? 1 : -1);
+      }
+      std::sort(walls.begin(), walls.end());
+      int winding = 0;
+      for (std::size_t n = 0; n < walls.size(); ++n) {
+        if (winding != 0) length += walls[n].first - walls[n - 1].first;
+        winding += walls[n].second;
+      }
+    }
   }
-  return sum;
+  return length * spacing * spacing;
 }
 
 }  // namespace palpate::vdb::test

@@ -17,15 +17,16 @@ class CgalDistance {
 
   [[nodiscard]] double to(const Vec3& p) const;
 
-  /// Whether a ray from p leaves the mesh, which is closed and does not pass through itself.
+  /// Whether the walls on a ray from p, those left less those entered, are any: its winding number, of a closed
+  /// mesh.
   [[nodiscard]] bool isInside(const Vec3& p) const;
+
+  /// [m^3] of all that the winding number is not 0 of: by lines along z, `spacing` [m] apart.
+  [[nodiscard]] double volume(double spacing) const;
 
  private:
   struct Tree;
   std::unique_ptr<Tree> tree_;
 };
-
-/// Of the mesh's tetrahedra with the origin, each with its sign. [m^3]
-[[nodiscard]] double cgalVolume(const Mesh& mesh);
 
 }  // namespace palpate::vdb::test

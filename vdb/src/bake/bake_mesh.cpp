@@ -159,7 +159,6 @@ class MeshBaker {
 
   struct Local {
     LeafScratch scratch;
-    std::vector<Ball> balls;
     std::vector<Facet> facets;
     std::array<float, Leaf::SIZE> squares{};
   };
@@ -180,7 +179,13 @@ class MeshBaker {
 
   std::unique_ptr<Leaf> makeLeaf(const Coord& origin, std::span<const std::uint32_t> triangles,
                                  Local& local) const {
-    makeFacets(Vec3(origin.x(), origin.y(), origin.z()) + 3.5, triangles, local);
+    const Vec3 middle = Vec3(origin.x(), origin.y(), origin.z()) + 3.5;
+    local.facets.clear();
+    for (const std::uint32_t triangle : triangles) {
+      const auto& [a, b, c] = solid_.triangles[triangle];
+      local.facets.push_back(makeFacet(solid_.vertices[a] - middle, solid_.vertices[b] - middle,
+                                       solid_.vertices[c] - middle));
+    }
     findSquares(makeQuery(local.facets, static_cast<float>(search_.half_width), local.scratch,
                           local.squares.data()));
     auto leaf = std::make_unique<Leaf>(origin, plan_.background, false);
@@ -212,34 +217,8 @@ class MeshBaker {
     return leaf;
   }
 
-  /// Of those triangles that may be nearest to a voxel of the leaf about `middle`.
-  void makeFacets(const Vec3& middle, std::span<const std::uint32_t> triangles,
-                  Local& local) const {
-    local.balls.clear();
-    for (const std::uint32_t triangle : triangles) {
-      const auto& [i, j, k] = solid_.triangles[triangle];
-      const glm::vec3 a(solid_.vertices[i] - middle);
-      const glm::vec3 b(solid_.vertices[j] - middle);
-      const glm::vec3 c(solid_.vertices[k] - middle);
-      const glm::vec3 center = (a + b + c) * (1.0F / 3.0F);
-      const auto square = [&](const glm::vec3& p) { return glm::dot(p - center, p - center); };
-      local.balls.push_back(
-          {center.x, center.y, center.z, std::sqrt(std::max({square(a), square(b), square(c)}))});
-    }
-    const BallQuery query =
-        makeQuery(local.balls, static_cast<float>(search_.half_width), local.scratch);
-    const std::uint32_t kept = keepNear(query);
-    local.facets.clear();
-    for (std::uint32_t n = 0; n < kept; ++n) {
-      const auto& [i, j, k] = solid_.triangles[triangles[query.kept[n]]];
-      local.facets.push_back(makeFacet(solid_.vertices[i] - middle, solid_.vertices[j] - middle,
-                                       solid_.vertices[k] - middle));
-    }
-  }
-
   /// Whether walls here may be the two sides of a plate. If not, all normals are near the first.
   static bool facesItself(const std::vector<Facet>& facets) {
-    if (facets.empty()) return false;
     const float* const first = facets.front().normal;
     return std::any_of(facets.begin(), facets.end(), [&](const Facet& facet) {
       const float* const n = facet.normal;

@@ -150,7 +150,7 @@ class Patches {
     // A surface that leaves its facet steeply is no smooth one.
     const double length_of_side = glm::length(along);
     const double cosine = glm::length(result) / length_of_side;
-    if (!(cosine > 0.75 && length_of_side > 0.0)) return along;
+    if (!(cosine > 0.5 && length_of_side > 0.0)) return along;
     // As long as makes an arc's cubic a circle but for the sixth order.
     return 2.0 / ((1.0 + cosine) * cosine) * result;
   }

@@ -79,7 +79,6 @@ inline std::uint32_t atMost(const Lanes& a, const Lanes& b) {
 }  // namespace
 
 void findSquaresPlain(const LeafQuery& query) noexcept { searchLeaf(query); }
-std::uint32_t keepNearPlain(const BallQuery& query) noexcept { return keepNearby(query); }
 
 bool hasAvx2() noexcept {
 #if defined(__x86_64__)
@@ -94,24 +93,12 @@ void findSquares(const LeafQuery& query) noexcept {
   has_avx2 ? findSquaresAvx2(query) : findSquaresPlain(query);
 }
 
-std::uint32_t keepNear(const BallQuery& query) noexcept {
-  static const bool has_avx2 = hasAvx2();
-  return has_avx2 ? keepNearAvx2(query) : keepNearPlain(query);
-}
-
-BallQuery makeQuery(const std::vector<Ball>& balls, float half_width, LeafScratch& scratch) {
-  if (scratch.kept.size() <= balls.size()) scratch.kept.resize(balls.size() + 1);
-  if (scratch.distances.size() < 8 * balls.size()) scratch.distances.resize(8 * balls.size());
-  return {balls.data(), static_cast<std::uint32_t>(balls.size()), half_width,
-          scratch.distances.data(), scratch.kept.data()};
-}
-
 LeafQuery makeQuery(const std::vector<Facet>& facets, float half_width, LeafScratch& scratch,
                     float* squares) {
   const std::size_t count = facets.size();
   const std::size_t lists = 8 * (count + 1);
-  if (scratch.distances.size() < 8 * count) scratch.distances.resize(8 * count);
   if (scratch.nearby.size() < lists) {
+    scratch.distances.resize(8 * count);
     // One more in each: lists are written before it is known that an entry stays.
     scratch.nearby.resize(lists);
     scratch.close.resize(lists);

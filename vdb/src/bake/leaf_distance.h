@@ -13,7 +13,6 @@ struct LeafScratch {
   std::vector<float> distances;       ///< squares of eight cubes for each facet
   std::vector<std::uint32_t> nearby;  ///< facets that matter to each cube of 4^3
   std::vector<std::uint32_t> close;   ///< and to each of 2^3 in one of them
-  std::vector<std::uint32_t> kept;    ///< by keepNear()
 };
 
 /// The same as plain pointers: files compiled for newer processors share no code with others.
@@ -27,39 +26,17 @@ struct LeafQuery {
   float* squares;  ///< [voxels^2] out, in OpenVDB's order; kFarSquare where surely not in the band
 };
 
-/// About a triangle, from the leaf's middle; its centre is on the triangle.
-struct Ball {
-  float x, y, z;
-  float radius;
-};
-
-/// Which triangles may be nearest to a voxel, told from their balls alone: before facets are made.
-struct BallQuery {
-  const Ball* balls;
-  std::uint32_t count;
-  float half_width;     ///< [voxels]
-  float* squares;       ///< eight for each ball
-  std::uint32_t* kept;  ///< out: their places in the list, rising; of one more than `count`
-};
-
 inline constexpr float kFarSquare = 3.0e38F;
 
 /// Cubes of 4^3 and 2^3 voxels drop the triangles that are nearest to none of their voxels; eight
 /// voxels at a time. Squares are off by some 1e-6 of a voxel times the distance.
 void findSquares(const LeafQuery& query) noexcept;
 
-/// @returns how many were kept: all that are nearest to some voxel of the leaf in the band, and some more.
-std::uint32_t keepNear(const BallQuery& query) noexcept;
-
-/// Their two forms each; findSquares() and keepNear() take the one that the processor has.
+/// Its two forms; findSquares() takes the one that the processor has.
 void findSquaresPlain(const LeafQuery& query) noexcept;
 void findSquaresAvx2(const LeafQuery& query) noexcept;
-std::uint32_t keepNearPlain(const BallQuery& query) noexcept;
-std::uint32_t keepNearAvx2(const BallQuery& query) noexcept;
 [[nodiscard]] bool hasAvx2() noexcept;
 
-[[nodiscard]] BallQuery makeQuery(const std::vector<Ball>& balls, float half_width,
-                                  LeafScratch& scratch);
 [[nodiscard]] LeafQuery makeQuery(const std::vector<Facet>& facets, float half_width,
                                   LeafScratch& scratch, float* squares);
 

@@ -49,10 +49,6 @@ PALPATE_KERNEL std::uint32_t atMost(Lanes a, Lanes b) noexcept {
   searchLeaf(query);
 }
 
-[[gnu::target("avx2,fma")]] std::uint32_t keepNearAvx2(const BallQuery& query) noexcept {
-  return keepNearby(query);
-}
-
 }  // namespace palpate::vdb
 
 #else
@@ -60,7 +56,6 @@ PALPATE_KERNEL std::uint32_t atMost(Lanes a, Lanes b) noexcept {
 namespace palpate::vdb {
 
 void findSquaresAvx2(const LeafQuery& query) noexcept { findSquaresPlain(query); }
-std::uint32_t keepNearAvx2(const BallQuery& query) noexcept { return keepNearPlain(query); }
 
 }  // namespace palpate::vdb
 

@@ -86,30 +86,6 @@ PALPATE_KERNEL void scatter(const Lanes& squares, float* corner) noexcept {
 constexpr float kReachFour = 2.598077F;  // [voxels] half diagonals: of the voxels of 4^3
 constexpr float kReachTwo = 0.8660254F;  // and of 2^3
 
-PALPATE_KERNEL std::uint32_t keepNearby(const BallQuery& q) noexcept {
-  const Eight at = eightAbout(0.0F, 0.0F, 0.0F, 2.0F);
-  Lanes least = all(kFarSquare);
-  for (std::uint32_t n = 0; n < q.count; ++n) {
-    const Ball& ball = q.balls[n];
-    const Lanes x = at.x - all(ball.x);
-    const Lanes y = at.y - all(ball.y);
-    const Lanes z = at.z - all(ball.z);
-    const Lanes here = fma(x, x, fma(y, y, z * z));
-    store(here, q.squares + std::size_t{8} * n);
-    least = min(least, here);
-  }
-  // Centres are on their triangles, so that the nearest triangle is no farther than the nearest centre.
-  const Lanes limit =
-      min(root(least) + all(2.0F * kReachFour), all(q.half_width + kReachFour)) + all(1e-3F);
-  std::uint32_t kept = 0;
-  for (std::uint32_t n = 0; n < q.count; ++n) {
-    const Lanes far = fma(all(q.balls[n].radius), all(1.0001F), limit);
-    q.kept[kept] = n;
-    kept += atMost(load(q.squares + std::size_t{8} * n), far * far) != 0 ? 1U : 0U;
-  }
-  return kept;
-}
-
 PALPATE_KERNEL void searchLeaf(const LeafQuery& q) noexcept {
   for (int n = 0; n < 512; ++n) q.squares[n] = kFarSquare;
   Lists nearby{q.nearby, q.count + 1, {}};

@@ -21,6 +21,9 @@ constexpr std::array<double, 3> kFirstDepths{0.2, 0.5, 0.8};
 /// [voxels] A way down along a direction that is known no better ends at its beginning.
 constexpr double kHair = 1e-4;
 
+/// Cosine between the way down and the wall opposite: others are the two sides of an edge.
+constexpr double kOpposite = 0.7;
+
 struct Place {
   Vec3 middle;  ///< [voxels]
   Vec3 in;      ///< across the plate
@@ -150,11 +153,15 @@ class Search {
   void goDown(const Vec3& foot, const Vec3& in, std::span<const std::uint32_t> triangles,
               std::vector<Place>& places) const {
     double thickness = kHeld;
+    double opposite = 0.0;
     for (const std::uint32_t triangle : triangles) {
-      const auto way = meets(cornersOf(triangle), foot, in);
-      if (way && *way > kHair) thickness = std::min(thickness, *way);
+      const std::array<Vec3, 3> t = cornersOf(triangle);
+      const auto way = meets(t, foot, in);
+      if (!way || *way <= kHair || *way >= thickness) continue;
+      thickness = *way;
+      opposite = std::fabs(glm::dot(unitOr(glm::cross(t[1] - t[0], t[2] - t[0]), in), in));
     }
-    if (thickness == kHeld) return;
+    if (opposite < kOpposite) return;
     const Vec3 middle = foot + 0.5 * thickness * in;
     if (valueAt(middle) >= 0.0) places.push_back({middle, in, thickness});
   }
@@ -170,8 +177,12 @@ bool isPlate(const Place& place, const SolidInside& inside, WallCount& count) {
   const Vec3 across = std::fabs(place.in.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
   const Vec3 u = glm::normalize(glm::cross(place.in, across));
   const Vec3 v = glm::cross(place.in, u);
+  // In steps, lest another part beyond a gap is taken for the same.
+  constexpr int kSteps = 8;
   for (const Vec3& way : {u, -u, v, -v}) {
-    if (!inside.at(place.middle + kGoesOn * way, count)) return false;
+    for (int step = 1; step <= kSteps; ++step) {
+      if (!inside.at(place.middle + kGoesOn * step / kSteps * way, count)) return false;
+    }
   }
   return true;
 }
