@@ -7,14 +7,15 @@
 #include <numbers>
 #include <utility>
 
+#include "named_progress.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
 #include "scene_baked.h"
+#include "scene_grid.h"
 #include "scene_image.h"
-#include "scene_sampler.h"
 
 namespace palpate::vdb {
 namespace {
@@ -49,12 +50,7 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
                          SourcePlace place, Sampler sampler, GridMaker make) {
   auto maker = [common, what = std::move(what), summary, place = std::move(place), sampler,
                 make = std::move(make)](const Progress& progress) {
-    Progress named;
-    if (progress) {
-      named = [&](std::string_view step, double fraction) {
-        return progress(what + ": " + std::string(step), fraction);
-      };
-    }
+    const Progress named = namedProgress(progress, what);
     const auto start = std::chrono::steady_clock::now();
     LevelSet grid;
     LevelSetInfo made;
@@ -66,11 +62,7 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
         common->notes->add(what, {widenedNote(made.half_width)});
       }
     } catch (const Error& error) {
-      const Problem& problem = error.problem();
-      if (error.kind() != ErrorKind::kInput || problem.file == place.file) throw;
-      throw errorAt(place, problem.code,
-                    (problem.file.empty() ? "" : problem.file + ": ") + problem.message,
-                    problem.hint);
+      throwAt(place, error);
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     if (common->options.on_grid) {
@@ -79,29 +71,6 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     return gridField(grid, sampler);
   };
   return std::make_shared<FieldSource>(std::move(summary), std::move(maker));
-}
-
-/// A length that must be positive if it is given; 0 if it is not.
-double optionalVoxel(MapReader& reader) {
-  const double voxel = reader.lengthOr("voxel", 0.0);
-  if (reader.has("voxel") && !(voxel > 0.0)) {
-    throw reader.errorAt("voxel", "scene.range", "'voxel' must be more than 0");
-  }
-  return voxel;
-}
-
-/// Path of the file at `key`, which must be there; nothing of it is read.
-std::string existingFile(MapReader& reader, std::string_view key) {
-  std::string path = reader.loader().resolvePath(reader.requireText(key));
-  std::error_code failure;
-  if (!std::filesystem::exists(path, failure)) {
-    throw reader.errorAt(key, "scene.no_file", "there is no file " + path,
-                         "paths are relative to the folder of the scene");
-  }
-  if (std::filesystem::is_directory(path, failure)) {
-    throw reader.errorAt(key, "scene.no_file", path + " is a directory");
-  }
-  return path;
 }
 
 /// The length unit at `units`, or `fallback`.
@@ -125,10 +94,7 @@ void readMeshKeys(MapReader& reader, BakeOptions& bake) {
     throw reader.errorAt("sign", "scene.kind", "'sign' is `" + sign + "`",
                          "write sign: vote, sign: winding or sign: flood");
   }
-  bake.shell_thickness = reader.lengthOr("shell", 0.0);
-  if (reader.has("shell") && !(bake.shell_thickness > 0.0)) {
-    throw reader.errorAt("shell", "scene.range", "'shell' must be more than 0");
-  }
+  bake.shell_thickness = readPositiveOrNone(reader, "shell");
   const double degrees = reader.numberOr("smooth", 0.0);
   if (!(degrees >= 0.0 && degrees <= 180.0)) {
     throw reader.errorAt("smooth", "scene.range", "'smooth' must be from 0 to 180 degrees");
@@ -137,15 +103,12 @@ void readMeshKeys(MapReader& reader, BakeOptions& bake) {
 }
 
 FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
-  const std::string path = existingFile(reader, "file");
+  const std::string path = readExistingFile(reader, "file");
   BakeOptions bake;
   bake.length_unit = reader.loader().lengthUnit();
   const double metres = *metresPer(lengthUnitOr(reader, bake.length_unit));
-  bake.voxel_size = optionalVoxel(reader);
-  bake.half_width = reader.numberOr("half_width", bake.half_width);
-  if (!(bake.half_width >= 2.0)) {
-    throw reader.errorAt("half_width", "scene.range", "'half_width' must be 2 voxels or more");
-  }
+  bake.voxel_size = readPositiveOrNone(reader, "voxel");
+  bake.half_width = readHalfWidth(reader, bake.half_width);
   readMeshKeys(reader, bake);
   bake.metadata["source"] = path;
   const Sampler sampler = readSampler(reader);
@@ -164,15 +127,22 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
 }
 
 FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
-  const std::string path = existingFile(reader, "file");
+  const std::string path = readExistingFile(reader, "file");
   const std::string name = reader.textOr("name", "");
   const std::string unit = lengthUnitOr(reader, "");
+  const std::string grid_class = reader.textOr("class", "");
+  if (!grid_class.empty() && grid_class != "level_set") {
+    throw reader.errorAt(
+        "class", "scene.kind", "'class' is `" + grid_class + "`",
+        "write class: level_set for a grid of signed distances that does not say so");
+  }
+  const auto unknown = grid_class.empty() ? UnknownClass::kRefuse : UnknownClass::kLevelSet;
   const Sampler sampler = readSampler(reader);
   return lazyField(common, fileName(path), "grid " + fileName(path),
                    reader.loader().document().place(reader.node().mark), sampler,
-                   [path, name, unit](const Progress& progress) {
+                   [path, name, unit, unknown](const Progress& progress) {
                      report(progress, "read", 0.0);
-                     return readVdb(path, name, unit);
+                     return readVdb(path, name, unit, unknown);
                    });
 }
 
@@ -228,7 +198,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
   const LayerImage from(reader, layer);
   LabelOptions labels;
   labels.values = readMatch(reader, *from.image);
-  labels.voxel_size = optionalVoxel(reader);
+  labels.voxel_size = readPositiveOrNone(reader, "voxel");
   std::string summary = labels.values.size() == 1 ? "label" : "labels";
   for (const int value : labels.values) summary += " " + std::to_string(value);
   summary += " of " + fileName(from.image->file->path());
@@ -252,7 +222,7 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
   }
   threshold.largest_component = keep == "largest";
   threshold.fill = reader.boolOr("fill", false);
-  threshold.voxel_size = optionalVoxel(reader);
+  threshold.voxel_size = readPositiveOrNone(reader, "voxel");
   std::string summary = fileName(from.image->file->path()) + " above " + above.text;
   return {
       lazyField(common, layer, std::move(summary), from.place, from.sampler,
