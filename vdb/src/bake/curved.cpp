@@ -94,8 +94,10 @@ class Patches {
       // One begins where the other ends.
       const std::size_t at_a = placeOf(a);
       const std::size_t at_b = placeOf(b);
-      parent[root(3 * a.triangle + at_a)] = root(3 * b.triangle + (at_b + 1) % 3);
-      parent[root(3 * b.triangle + at_b)] = root(3 * a.triangle + (at_a + 1) % 3);
+      parent[root(std::size_t{3} * a.triangle + at_a)] =
+          root(std::size_t{3} * b.triangle + (at_b + 1) % 3);
+      parent[root(std::size_t{3} * b.triangle + at_b)] =
+          root(std::size_t{3} * a.triangle + (at_a + 1) % 3);
     });
     std::vector<Vec3> sums(3 * count, Vec3(0.0));
     for (std::size_t t = 0; t < count; ++t) {
@@ -134,7 +136,8 @@ class Patches {
                          const Vec3& along) const {
     const auto normal = [&](const Side& side) {
       const std::size_t begin = placeOf(side);
-      return normals_[3 * side.triangle + (side.upwards == from_low ? begin : (begin + 1) % 3)];
+      return normals_[std::size_t{3} * side.triangle +
+                      (side.upwards == from_low ? begin : (begin + 1) % 3)];
     };
     const Vec3 a = normal(first);
     const Vec3 b = normal(second);

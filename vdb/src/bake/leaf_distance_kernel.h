@@ -47,7 +47,7 @@ PALPATE_KERNEL Eight eightAbout(float x, float y, float z, float step) noexcept 
 /// Facets of each of the eight parts of a cube, in lists of `stride`.
 struct Lists {
   std::uint32_t* lists;
-  std::uint32_t stride;
+  std::size_t stride;
   std::uint32_t counts[8];
 };
 
@@ -69,7 +69,7 @@ PALPATE_KERNEL void select(const LeafQuery& q, const std::uint32_t* from, std::u
     const std::uint32_t name = from == nullptr ? n : from[n];
     const std::uint32_t near = atMost(load(squares + std::size_t{8} * n), limit);
     // Lists are written before it is known that an entry stays: cheaper than a jump.
-    for (std::uint32_t part = 0; part < 8; ++part) {
+    for (std::size_t part = 0; part < 8; ++part) {
       to.lists[part * to.stride + to.counts[part]] = name;
       to.counts[part] += near >> part & 1U;
     }
@@ -83,28 +83,26 @@ PALPATE_KERNEL void scatter(const Lanes& squares, float* corner) noexcept {
   for (int n = 0; n < 8; ++n) corner[(n >> 2) * 64 + ((n >> 1) & 1) * 8 + (n & 1)] = found[n];
 }
 
-constexpr float kReachFour = 2.598077F;  // [voxels] half diagonals: of the voxels of 4^3
-constexpr float kReachTwo = 0.8660254F;  // and of 2^3
-
 PALPATE_KERNEL void searchLeaf(const LeafQuery& q) noexcept {
+  constexpr float kReachFour = 2.598077F;  // [voxels] half diagonals: of the voxels of 4^3
+  constexpr float kReachTwo = 0.8660254F;  // and of 2^3
   for (int n = 0; n < 512; ++n) q.squares[n] = kFarSquare;
-  Lists nearby{q.nearby, q.count + 1, {}};
-  Lists close{q.close, q.count + 1, {}};
+  Lists nearby{q.nearby, std::size_t{q.count} + 1, {}};
+  Lists close{q.close, std::size_t{q.count} + 1, {}};
   select(q, nullptr, q.count, eightAbout(0.0F, 0.0F, 0.0F, 2.0F), kReachFour, q.distances, nearby);
-  for (int four = 0; four < 8; ++four) {
+  for (std::size_t four = 0; four < 8; ++four) {
     const std::uint32_t count = nearby.counts[four];
     if (count == 0) continue;
-    const int fx = four >> 2, fy = (four >> 1) & 1, fz = four & 1;
+    const std::size_t fx = four >> 2, fy = (four >> 1) & 1, fz = four & 1;
     const float x = 4.0F * static_cast<float>(fx) - 2.0F;
     const float y = 4.0F * static_cast<float>(fy) - 2.0F;
     const float z = 4.0F * static_cast<float>(fz) - 2.0F;
-    select(q, nearby.lists + static_cast<std::uint32_t>(four) * nearby.stride, count,
-           eightAbout(x, y, z, 1.0F), kReachTwo, q.distances, close);
-    for (int two = 0; two < 8; ++two) {
+    select(q, nearby.lists + four * nearby.stride, count, eightAbout(x, y, z, 1.0F), kReachTwo,
+           q.distances, close);
+    for (std::size_t two = 0; two < 8; ++two) {
       if (close.counts[two] == 0) continue;
-      const std::uint32_t* const list =
-          close.lists + static_cast<std::uint32_t>(two) * close.stride;
-      const int tx = two >> 2, ty = (two >> 1) & 1, tz = two & 1;
+      const std::uint32_t* const list = close.lists + two * close.stride;
+      const std::size_t tx = two >> 2, ty = (two >> 1) & 1, tz = two & 1;
       const Eight at = eightAbout(x + 2.0F * static_cast<float>(tx) - 1.0F,
                                   y + 2.0F * static_cast<float>(ty) - 1.0F,
                                   z + 2.0F * static_cast<float>(tz) - 1.0F, 0.5F);

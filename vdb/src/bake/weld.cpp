@@ -65,7 +65,7 @@ bool weldRims(Solid& solid, const std::vector<Side>& sides) {
   }
   const double reach = kRounding * glm::length(bounds.size());
   // Cells as large as the reach: what is near is in the same one or in one beside it.
-  const auto cellOf = [&](const Vec3& p) { return glm::floor((p - bounds.lo) / reach); };
+  const auto cell_of = [&](const Vec3& p) { return glm::floor((p - bounds.lo) / reach); };
   std::unordered_map<std::size_t, std::vector<std::uint32_t>> cells;
   std::vector<std::uint32_t> name(solid.vertices.size(), kNone);
   bool joined = false;
@@ -73,7 +73,7 @@ bool weldRims(Solid& solid, const std::vector<Side>& sides) {
     name[v] = v;
     if (!on_rim[v]) continue;
     const Vec3& place = solid.vertices[v];
-    const Vec3 cell = cellOf(place);
+    const Vec3 cell = cell_of(place);
     for (int n = 0; n < 27 && name[v] == v; ++n) {
       const Vec3 beside = cell + Vec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
       const auto there = cells.find(hashOf(beside));
