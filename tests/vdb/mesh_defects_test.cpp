@@ -24,7 +24,7 @@ using namespace palpate::vdb::test;  // NOLINT(google-build-using-namespace)
 
 void turn(std::array<std::uint32_t, 3>& triangle) { std::swap(triangle[1], triangle[2]); }
 
-TEST(MeshDefects, ASoundMeshHasNone) {
+TEST(FindDefects, ASoundMeshHasNone) {
   const Mesh ball = ballMesh(Vec3(0.01, -0.02, 0.03), 0.01, 4);
   const MeshDefects d = findDefects(ball);
   EXPECT_EQ(d.doubled_triangles + d.degenerate_triangles + d.boundary_edges + d.holes.size(), 0U);
@@ -37,7 +37,7 @@ TEST(MeshDefects, ASoundMeshHasNone) {
   EXPECT_NEAR(d.bounds.size().x, 0.02, 1e-4);
 }
 
-TEST(MeshDefects, HolesAreToldWithTheLengthOfTheirBorders) {
+TEST(FindDefects, HolesAreToldWithTheLengthOfTheirBorders) {
   Mesh box = boxMesh(Vec3(0.0), Vec3(2.0, 4.0, 6.0));
   EXPECT_DOUBLE_EQ(findDefects(box).volume, 48.0);
   EXPECT_DOUBLE_EQ(findDefects(box).area, 2.0 * (8.0 + 12.0 + 24.0));
@@ -61,7 +61,7 @@ TEST(MeshDefects, HolesAreToldWithTheLengthOfTheirBorders) {
   EXPECT_EQ(d.holes[1].edges, 3U);
 }
 
-TEST(MeshDefects, TurnedTrianglesAndPartsInsideOut) {
+TEST(FindDefects, TurnedTrianglesAndPartsInsideOut) {
   Mesh ball = ballMesh(Vec3(0.0), 0.01, 3);
   for (const std::size_t t : {3U, 100U, 101U}) turn(ball.triangles[t]);
   MeshDefects d = findDefects(ball);
@@ -75,7 +75,7 @@ TEST(MeshDefects, TurnedTrianglesAndPartsInsideOut) {
   EXPECT_GT(d.volume, 0.0);
 }
 
-TEST(MeshDefects, PartsWithinOthers) {
+TEST(FindDefects, PartsWithinOthers) {
   const Mesh large = ballMesh(Vec3(0.0), 0.01, 3);
   const Mesh small = ballMesh(Vec3(0.001, 0.002, 0.0), 0.005, 3);
   const double v_large = findDefects(large).volume;
@@ -93,9 +93,13 @@ TEST(MeshDefects, PartsWithinOthers) {
   EXPECT_EQ(d.hollow_parts, 1U);
   EXPECT_EQ(d.inside_out_parts, 1U);
   EXPECT_EQ(d.crossings, 0U);
+  // A part that sticks out of another is not within it.
+  d = findDefects(together(large, ballMesh(Vec3(0.009, 0.0, 0.0), 0.005, 3)));
+  EXPECT_NEAR(d.volume, v_large + v_small, 1e-15);
+  EXPECT_GT(d.crossings, 0U);
 }
 
-TEST(MeshDefects, DoubledDegenerateAndNonManifold) {
+TEST(FindDefects, DoubledDegenerateAndNonManifold) {
   Mesh box = boxMesh(Vec3(0.0), Vec3(1.0));
   box.triangles.push_back(box.triangles[0]);
   box.triangles.push_back(box.triangles[5]);
@@ -116,7 +120,7 @@ TEST(MeshDefects, DoubledDegenerateAndNonManifold) {
   EXPECT_EQ(d.degenerate_triangles, 1U);
 }
 
-TEST(MeshDefects, SelfIntersectionsAreCountedWithAPlace) {
+TEST(FindDefects, SelfIntersectionsAreCountedWithAPlace) {
   // Two boxes with their edges across each other: four edges of each pass through a face of the other.
   const Mesh crossed = together(boxMesh(Vec3(0.0), Vec3(4.0, 1.0, 1.0)),
                                 boxMesh(Vec3(0.25, 0.25, 0.125), Vec3(1.0, 4.0, 1.0)));
@@ -272,7 +276,7 @@ TEST(ExactSide, OfPointsAlmostInAPlaneAndInALine) {
   EXPECT_EQ(sideOfLine(p, q, Vec3(std::nextafter(0.2, 1.0), 0.2, 0.0), 2), -1);
 }
 
-TEST(MeshDefects, RealMeshes) {
+TEST(FindDefects, RealMeshes) {
   const std::string folder = PALPATE_SOURCE_DIR "/../shared/data/meshes/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared/data is not there";
   // Parts as the folder's list has them.
@@ -287,7 +291,7 @@ TEST(MeshDefects, RealMeshes) {
   }
 }
 
-TEST(MeshDefects, CanBeStopped) {
+TEST(FindDefects, CanBeStopped) {
   const Mesh ball = ballMesh(Vec3(0.0), 0.01, 3);
   const Error error = errorOf([&] {
     static_cast<void>(

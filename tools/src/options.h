@@ -60,8 +60,8 @@ struct BakeOptions {
   std::string names;
   std::string voxel;
   double half_width = 6.0;  ///< [voxels]
-  std::string parts;  ///< bake of a scene: the scene file that recombines; empty: whole layers
-  bool level_set = false;   ///< grid: signed distances, though it has no class
+  std::string parts;       ///< bake of a scene: the scene file that recombines; empty: whole layers
+  bool level_set = false;  ///< grid: signed distances, though it has no class
 };
 
 /// What is baked on the way, and into what kind of file it goes.

@@ -12,6 +12,7 @@
 #include "scene/field_at_place.h"
 #include "scene/field_reader.h"
 #include "scene/messages.h"
+#include "scene/shape_reader.h"
 #include "scene/values.h"
 
 namespace palpate {

@@ -178,7 +178,7 @@ class Marcher {
       const std::uint64_t bit = std::uint64_t{1} << index;
       double low = std::min(before_, t);
       double high = t;
-      SheetSides beyond;
+      SheetSides beyond = sheetSides(scene_, there_);
       for (int i = 0; i < 12; ++i) {
         const double half = 0.5 * (low + high);
         probe(origin + half * way, middle_);

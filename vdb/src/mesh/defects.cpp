@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -133,8 +134,9 @@ void findCrossings(const std::vector<Vec3>& vertices, const std::vector<Triangle
 
 /// Triangles that hang together by corners.
 struct Part {
-  std::uint32_t vertex = 0;  ///< one of its corners
-  double volume = 0.0;       ///< [m^3] signed
+  /// The corners that lie farthest out along the axes, to both sides.
+  std::array<std::uint32_t, 6> extremes{};
+  double volume = 0.0;  ///< [m^3] signed
 };
 
 std::vector<Part> findParts(const std::vector<Vec3>& vertices,
@@ -147,54 +149,102 @@ std::vector<Part> findParts(const std::vector<Vec3>& vertices,
   }
   constexpr std::uint32_t kNone = 0xffffffffU;
   std::vector<std::uint32_t> name(vertices.size(), kNone);
+  std::vector<Vec3> base;  // of each part
   std::vector<Part> parts;
-  for (const auto& [a, b, c] : triangles) {
-    std::uint32_t& part = name[sets.root(a)];
+  for (const auto& t : triangles) {
+    std::uint32_t& part = name[sets.root(t[0])];
     if (part == kNone) {
       part = static_cast<std::uint32_t>(parts.size());
-      parts.push_back({a, 0.0});
+      parts.emplace_back().extremes.fill(t[0]);
+      base.push_back(vertices[t[0]]);
     }
     part_of.push_back(part);
-    const Vec3& base = vertices[parts[part].vertex];
-    parts[part].volume +=
-        glm::dot(vertices[a] - base, glm::cross(vertices[b] - base, vertices[c] - base)) / 6.0;
+    Part& here = parts[part];
+    const Vec3 u = vertices[t[0]] - base[part];
+    here.volume +=
+        glm::dot(u, glm::cross(vertices[t[1]] - base[part], vertices[t[2]] - base[part])) / 6.0;
+    for (const std::uint32_t vertex : t) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto n = static_cast<std::size_t>(axis);
+        const double at = vertices[vertex][axis];
+        if (at < vertices[here.extremes[n]][axis]) here.extremes[n] = vertex;
+        if (at > vertices[here.extremes[n + 3]][axis]) here.extremes[n + 3] = vertex;
+      }
+    }
   }
   return parts;
 }
 
-/// Tells hollows from parts that are inside out, by what lies around each.
-void sortParts(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-               const BoxTree& tree, MeshDefects& defects) {
-  std::vector<std::uint32_t> part_of;
-  const std::vector<Part> parts = findParts(vertices, triangles, part_of);
-  defects.parts = parts.size();
-  std::vector<std::pair<std::uint32_t, int>> below;  // walls entered, by part
-  for (std::uint32_t n = 0; n < parts.size(); ++n) {
-    const Part& part = parts[n];
-    const Vec3& place = vertices[part.vertex];
-    below.clear();
-    const Box3 line{Vec3(place.x, place.y, -kInfinity), place};
-    tree.forEachMeeting(line, [&](std::uint32_t t) {
-      const auto& [a, b, c] = triangles[t];
-      if (part_of[t] == n) return;
-      const WallHit hit = hitWall(vertices[a], vertices[b], vertices[c], place.x, place.y);
-      if (hit.entered != 0 && hit.z < place.z) below.emplace_back(part_of[t], hit.entered);
+/// Which parts lie around others: by the walls below a place.
+class Surroundings {
+ public:
+  Surroundings(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+               const BoxTree& tree)
+      : vertices_(vertices),
+        triangles_(triangles),
+        tree_(tree),
+        parts_(findParts(vertices, triangles, part_of_)) {}
+
+  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+
+  /// Numbers of the parts that have all extremes of part `n` inside, sorted.
+  [[nodiscard]] std::vector<std::uint32_t> around(std::uint32_t n) const {
+    std::vector<std::uint32_t> all;
+    for (std::size_t i = 0; i < parts_[n].extremes.size(); ++i) {
+      const std::vector<std::uint32_t> here = aroundPlace(vertices_[parts_[n].extremes[i]], n);
+      if (i == 0) all = here;
+      std::vector<std::uint32_t> both;
+      std::set_intersection(all.begin(), all.end(), here.begin(), here.end(),
+                            std::back_inserter(both));
+      all = std::move(both);
+      if (all.empty()) break;
+    }
+    return all;
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::uint32_t> aroundPlace(const Vec3& place, std::uint32_t own) const {
+    std::vector<std::pair<std::uint32_t, int>> below;  // walls entered, by part
+    tree_.forEachMeeting({Vec3(place.x, place.y, -kInfinity), place}, [&](std::uint32_t t) {
+      const auto& [a, b, c] = triangles_[t];
+      if (part_of_[t] == own) return;
+      const WallHit hit = hitWall(vertices_[a], vertices_[b], vertices_[c], place.x, place.y);
+      if (hit.entered != 0 && hit.z < place.z) below.emplace_back(part_of_[t], hit.entered);
     });
     std::sort(below.begin(), below.end());
-    const Part* around = nullptr;
+    std::vector<std::uint32_t> parts;
     for (std::size_t i = 0; i < below.size();) {
-      const std::uint32_t other = below[i].first;
+      const std::uint32_t part = below[i].first;
       int entered = 0;
-      for (; i < below.size() && below[i].first == other; ++i) entered += below[i].second;
-      if (entered == 0) continue;
-      if (around == nullptr || std::abs(parts[other].volume) < std::abs(around->volume)) {
-        around = &parts[other];
+      for (; i < below.size() && below[i].first == part; ++i) entered += below[i].second;
+      if (entered != 0) parts.push_back(part);
+    }
+    return parts;
+  }
+
+  const std::vector<Vec3>& vertices_;
+  const std::vector<Triangle>& triangles_;
+  const BoxTree& tree_;
+  std::vector<std::uint32_t> part_of_;  ///< of each triangle; filled while parts_ is made
+  std::vector<Part> parts_;
+};
+
+/// Tells hollows from parts that are inside out, by what lies around each.
+void sortParts(const Surroundings& surroundings, MeshDefects& defects) {
+  const std::vector<Part>& parts = surroundings.parts();
+  defects.parts = parts.size();
+  for (std::uint32_t n = 0; n < parts.size(); ++n) {
+    const Part& part = parts[n];
+    const Part* next = nullptr;  // the smallest around it
+    for (const std::uint32_t other : surroundings.around(n)) {
+      if (next == nullptr || std::abs(parts[other].volume) < std::abs(next->volume)) {
+        next = &parts[other];
       }
     }
-    if (around == nullptr) {
+    if (next == nullptr) {
       defects.inside_out_parts += part.volume < 0.0 ? 1 : 0;
       defects.volume += std::abs(part.volume);
-    } else if ((part.volume < 0.0) != (around->volume < 0.0)) {
+    } else if ((part.volume < 0.0) != (next->volume < 0.0)) {
       ++defects.hollow_parts;
       defects.volume -= std::abs(part.volume);
     }
@@ -220,7 +270,7 @@ MeshDefects findDefects(const Mesh& mesh, const Progress& progress) {
       static_cast<std::size_t>(std::count(turned.begin(), turned.end(), true));
   const BoxTree tree = treeOf(mesh.vertices, triangles);
   report(progress, "check mesh: parts", 0.25);
-  sortParts(mesh.vertices, triangles, tree, defects);
+  sortParts(Surroundings(mesh.vertices, triangles, tree), defects);
   findCrossings(mesh.vertices, triangles, tree, progress, defects);
   report(progress, "check mesh", 1.0);
   return defects;

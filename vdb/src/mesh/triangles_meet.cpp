@@ -30,21 +30,33 @@ bool holds(const Corners& t, const Vec3& p, int axis) {
   return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
 }
 
+/// The point of the side from p to q where what is `from` at p and `to` at q is zero.
+Vec3 between(const Vec3& p, const Vec3& q, double from, double to) {
+  const double share = std::clamp(from == to ? 0.5 : from / (from - to), 0.0, 1.0);
+  return p + share * (q - p);
+}
+
 /// Whether r, on the line through p and q, lies between them.
 bool isBetween(const Vec3& p, const Vec3& q, const Vec3& r) {
   return glm::all(glm::lessThanEqual(glm::min(p, q), r)) &&
          glm::all(glm::lessThanEqual(r, glm::max(p, q)));
 }
 
-/// Two sides in one plane, seen along `axis`.
-bool sidesMeet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, int axis) {
+/// Where two sides in one plane meet, seen along `axis`.
+std::optional<Vec3> sidesMeet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                              int axis) {
   const int pa = sideOfLine(p, q, a, axis);
   const int pb = sideOfLine(p, q, b, axis);
   const int ap = sideOfLine(a, b, p, axis);
   const int aq = sideOfLine(a, b, q, axis);
-  if (pa * pb < 0 && ap * aq < 0) return true;
-  return (pa == 0 && isBetween(p, q, a)) || (pb == 0 && isBetween(p, q, b)) ||
-         (ap == 0 && isBetween(a, b, p)) || (aq == 0 && isBetween(a, b, q));
+  if (pa == 0 && isBetween(p, q, a)) return a;
+  if (pb == 0 && isBetween(p, q, b)) return b;
+  if (ap == 0 && isBetween(a, b, p)) return p;
+  if (aq == 0 && isBetween(a, b, q)) return q;
+  if (pa * pb >= 0 || ap * aq >= 0) return {};
+  const double from = glm::cross(b - a, p - a)[axis];
+  const double to = glm::cross(b - a, q - a)[axis];
+  return between(p, q, from, to);
 }
 
 /// Where the side from p to q meets the triangle.
@@ -56,7 +68,7 @@ std::optional<Vec3> sideMeets(const Vec3& p, const Vec3& q, const Corners& t, in
     if (holds(t, p, axis)) return p;
     if (holds(t, q, axis)) return q;
     for (std::size_t n = 0; n < 3; ++n) {
-      if (sidesMeet(p, q, t[n], t[(n + 1) % 3], axis)) return 0.5 * (p + q);
+      if (const auto at = sidesMeet(p, q, t[n], t[(n + 1) % 3], axis)) return at;
     }
     return {};
   }
@@ -69,10 +81,7 @@ std::optional<Vec3> sideMeets(const Vec3& p, const Vec3& q, const Corners& t, in
   }
   if (left && right) return {};
   const Vec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
-  const double from = glm::dot(normal, p - t[0]);
-  const double to = glm::dot(normal, q - t[0]);
-  const double share = std::clamp(from == to ? 0.5 : from / (from - to), 0.0, 1.0);
-  return p + share * (q - p);
+  return between(p, q, glm::dot(normal, p - t[0]), glm::dot(normal, q - t[0]));
 }
 
 /// Turned so that what both triangles have comes first.
@@ -109,7 +118,7 @@ std::optional<Vec3> trianglesMeet(const std::vector<Vec3>& vertices,
         sideOfLine(s[0], s[1], s[2], s_axis) != sideOfLine(s[0], s[1], t[2], s_axis)) {
       return {};
     }
-    return (s[0] + s[1] + s[2]) / 3.0;
+    return 0.5 * (s[0] + s[1]);
   }
   if (shared == 1) {
     // From the shared corner, what is common ends at the far side of one of them.
