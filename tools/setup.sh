@@ -12,10 +12,10 @@ build_packages=(
   mricron-data
 )
 
-# To test and measure it as well (NanoVDB: a rival in tests/bench). git tells what changed; Python and OpenVDB's own tools are what results are held against.
+# To test and measure it as well (NanoVDB: a rival in tests/bench). git tells what changed; Python, CGAL and OpenVDB's own tools are what results are held against.
 test_packages=(
   clang-format clang-tidy git
-  libgtest-dev libbenchmark-dev libnanovdb-dev
+  libgtest-dev libbenchmark-dev libnanovdb-dev libcgal-dev
   python3-nibabel python3-numpy python3-scipy python3-openvdb libopenvdb-tools
 )
 

@@ -79,7 +79,13 @@ TEST(Bake, AnOpenMeshTakesASignOrAShell) {
   const CommandResult none = with({"--shell", "0"});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_NE(none.err.find("--shell must be greater than 0"), std::string::npos) << none.err;
+  EXPECT_EQ(with({"--sign", "winding", "--smooth", "30"}).exit_code, 0);
+  EXPECT_EQ(with({"--smooth", "200"}).exit_code, 2);
   (void)folder.file("c.yaml", kContainer);
+  const CommandResult smooth =
+      runPalpate({"bake", "c.yaml", "-o", "c.vdb", "--smooth", "30"}, folder.path());
+  EXPECT_EQ(smooth.exit_code, 2);
+  EXPECT_NE(smooth.err.find("--smooth applies to meshes"), std::string::npos) << smooth.err;
   const CommandResult scene =
       runPalpate({"bake", "c.yaml", "-o", "c.vdb", "--sign", "flood"}, folder.path());
   EXPECT_EQ(scene.exit_code, 2);

@@ -172,6 +172,26 @@ TEST_F(SceneKinds, MeshesAndGridsAreFields) {
   EXPECT_EQ(grids_.at(2).what, "ball.vdb: grid ball.vdb");
 }
 
+TEST_F(SceneKinds, MeshesTakeASignAShellAndSmoothing) {
+  // The octahedron without two of its faces: more than is guessed.
+  (void)folder_.file("open.obj",
+                     "v 10 0 0\nv -10 0 0\nv 0 10 0\nv 0 -10 0\nv 0 0 10\nv 0 0 -10\n"
+                     "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\n");
+  const SceneDescription scene = read(
+      "fields:\n"
+      "  open: {mesh: {file: open.obj, voxel: 0.5}}\n"
+      "  lid: {mesh: {file: open.obj, voxel: 0.5, sign: winding}}\n"
+      "  wall: {mesh: {file: open.obj, voxel: 0.5, shell: 2}}\n"
+      "  round: {mesh: {file: octahedron.obj, voxel: 0.5, smooth: 90}}\n");
+  EXPECT_THROW((void)scene.fields[0].source->get(), Error);
+  EXPECT_LT(scene.fields[1].source->get()->value(Vec3(0)), 0.0);
+  const Field& wall = *scene.fields[2].source->get();
+  EXPECT_GT(wall.value(Vec3(0)), 0.0);
+  EXPECT_NEAR(wall.value(Vec3(-10.0 / 3.0, 10.0 / 3.0, 10.0 / 3.0) * kMm), -1.0 * kMm, 0.02 * kMm);
+  // Its edges of 109 degrees are turns by 70.5: below 90, so that faces bulge.
+  EXPECT_LT(scene.fields[3].source->get()->value(Vec3(10.0 / 3.0) * kMm), -1.0 * kMm);
+}
+
 TEST_F(SceneKinds, WhatCanBeKnownIsRefusedWhenTheSceneIsRead) {
   expectError("images: {i: {file: gone.nii}}\n", "nifti.missing", 3, 20, "gone.nii");
   expectError("images: {i: {file: names.csv}}\n", "nifti.format", 3, 20, "not a NIfTI");
@@ -187,6 +207,12 @@ TEST_F(SceneKinds, WhatCanBeKnownIsRefusedWhenTheSceneIsRead) {
               "more than 0");
   expectError("fields: {m: {mesh: {file: octahedron.obj, half_width: 1}}}\n", "scene.range", 3, 55,
               "2 voxels");
+  expectError("fields: {m: {mesh: {file: octahedron.obj, sign: even}}}\n", "scene.kind", 3, 49,
+              "flood");
+  expectError("fields: {m: {mesh: {file: octahedron.obj, shell: 0}}}\n", "scene.range", 3, 50,
+              "more than 0");
+  expectError("fields: {m: {mesh: {file: octahedron.obj, smooth: 190}}}\n", "scene.range", 3, 51,
+              "180 degrees");
   expectError("fields: {m: {mesh: {file: octahedron.obj, voxle: 1}}}\n", "scene.unknown_key", 3, 43,
               "voxel");
   expectError("fields: {m: {grid: {file: gone.vdb}}}\n", "scene.no_file", 3, 27, "gone.vdb");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numbers>
 #include <set>
 
 #include "grid_baking.h"
@@ -28,6 +29,7 @@ void refuse(bool given, const char* option, const char* applies_to) {
 void refuseMeshOptions(const BakeOptions& options) {
   refuse(!options.sign.empty(), "--sign", "meshes");
   refuse(!options.shell.empty(), "--shell", "meshes");
+  refuse(options.smooth.has_value(), "--smooth", "meshes");
 }
 
 /// [bytes] What these take.
@@ -121,6 +123,7 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
     vdb::BakeOptions bake = gridOptions(options, layer, voxel, unit.name, options.input);
     bake.mesh_sign = sign;
     bake.shell_thickness = shell;
+    bake.smooth_angle = options.smooth.value_or(0.0) * std::numbers::pi / 180.0;
     return vdb::bakeMesh(mesh, bake, console.progress());
   })};
 }

@@ -52,6 +52,7 @@ struct BakeOptions {
   std::string units;                ///< mesh
   std::string sign;                 ///< mesh: "vote", "winding" or "flood"; empty: vote
   std::string shell;                ///< mesh: thickness; empty: a solid
+  std::optional<double> smooth;     ///< mesh: [degrees]
   std::optional<double> above;
   std::string keep;  ///< "largest" or "all"; empty: largest
   bool fill = false;

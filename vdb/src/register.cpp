@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <numbers>
 #include <utility>
 
 #include "named_progress.h"
@@ -82,6 +83,25 @@ std::string lengthUnitOr(MapReader& reader, std::string fallback) {
   return unit;
 }
 
+/// How a mesh becomes a solid.
+void readMeshKeys(MapReader& reader, BakeOptions& bake) {
+  const std::string sign = reader.textOr("sign", "vote");
+  if (sign == "winding") {
+    bake.mesh_sign = MeshSign::kWinding;
+  } else if (sign == "flood") {
+    bake.mesh_sign = MeshSign::kFlood;
+  } else if (sign != "vote") {
+    throw reader.errorAt("sign", "scene.kind", "'sign' is `" + sign + "`",
+                         "write sign: vote, sign: winding or sign: flood");
+  }
+  bake.shell_thickness = readPositiveOrNone(reader, "shell");
+  const double degrees = reader.numberOr("smooth", 0.0);
+  if (!(degrees >= 0.0 && degrees <= 180.0)) {
+    throw reader.errorAt("smooth", "scene.range", "'smooth' must be from 0 to 180 degrees");
+  }
+  bake.smooth_angle = degrees * std::numbers::pi / 180.0;
+}
+
 FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
   const std::string path = readExistingFile(reader, "file");
   BakeOptions bake;
@@ -90,6 +110,7 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
   const double metres = *metresPer(lengthUnitOr(reader, bake.length_unit));
   bake.voxel_size = readPositiveOrNone(reader, "voxel");
   bake.half_width = readHalfWidth(reader, bake.half_width);
+  readMeshKeys(reader, bake);
   bake.metadata["source"] = path;
   const Sampler sampler = readSampler(reader);
   return lazyField(common, fileName(path), "mesh " + fileName(path),

@@ -27,6 +27,9 @@ void addBaking(CLI::App& app, BakeOptions& o) {
       ->check(CLI::IsMember({"vote", "winding", "flood"}));
   add(app, g, "--shell", "LENGTH", o.shell,
       "not a solid but a wall of this thickness along the triangles");
+  add(app, g, "--smooth", "DEGREES", o.smooth,
+      "facets that meet at less than this angle become one smooth surface")
+      ->check(CLI::Range(0.0, 180.0));
   g = "From a NIfTI image, or a grid of densities or labels";
   add(app, g, "--above", "VALUE", o.above, "the surface around all voxels greater than this");
   add(app, g, "--keep", "largest|all", o.keep, "--above: which pieces (default largest)")

@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <vector>
 
 #include "bake/bake_plan.h"
 #include "bake/columns.h"
+#include "bake/curved.h"
+#include "bake/edges.h"
 #include "bake/facet.h"
 #include "bake/leaf_distance.h"
+#include "bake/lost_plates.h"
 #include "bake/solid.h"
 #include "bake/triangle_bins.h"
 #include "bake/walls.h"
@@ -24,6 +28,9 @@ using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 using Upper = Tree::RootNodeType::ChildNodeType;
 using Lower = Upper::ChildNodeType;
+
+/// [voxels] Triangles that smooth facets are cut into: none is felt.
+constexpr double kSmoothSide = 0.6;
 
 /// [voxels^2] that stands for the leaves of a band; long needles have one all along without any area.
 double estimatedArea(const Solid& solid) {
@@ -81,7 +88,19 @@ class MeshBaker {
                                                    inMillimetres(options.shell_thickness) +
                                                    "; it must be a length, or 0 for a solid");
     }
+    if (half > 0.0 && half <= 0.5) {
+      throw inputError("bake.too_thin",
+                       "a shell of " + inMillimetres(options.shell_thickness) +
+                           " would have holes in a grid of " + inMillimetres(plan_.voxel) +
+                           " voxels",
+                       "use voxels of " + inMillimetres(options.shell_thickness / kHeld) +
+                           ", or a thicker shell");
+    }
     if (half > 0.0) shell_ = static_cast<float>(half);
+    if (!(options.smooth_angle >= 0.0 && options.smooth_angle <= std::numbers::pi)) {
+      throw inputError("bake.smooth_angle",
+                       "the angle up to which facets become smooth must be from 0 to 180 degrees");
+    }
     search_ = plan_;
     search_.half_width += half;
     search_.band += half * plan_.voxel;
@@ -91,14 +110,17 @@ class MeshBaker {
     report(progress_, "bake mesh: checking", 0.0);
     solid_ = shell_ ? makeSurface(mesh_, plan_.voxel)
                     : makeSolid(mesh_, plan_.voxel, options_.mesh_sign);
+    if (options_.smooth_angle > 0.0) smooth();
     const Box3 bounds = boundsOf(solid_);
     range_ = voxelRange({bounds.lo * plan_.voxel, bounds.hi * plan_.voxel}, search_, options_.name);
     refuseTooLong();
     requireMemory(estimatedArea(solid_), 1.0, search_);
+    std::optional<Solid> whole;  // where the walls left do not tell the inside by themselves
     if (!shell_) {
       columns_.emplace(solid_, options_.mesh_sign, progress_);
       if (options_.mesh_sign == MeshSign::kVote) requireAgreement(mesh_, solid_, *columns_, plan_);
       if (columns_->hasIdleWalls() || columns_->isFilled() || !solid_.was_closed) {
+        whole = solid_;
         dropIdleWalls(solid_, *columns_, progress_);
       }
     }
@@ -107,7 +129,12 @@ class MeshBaker {
     fillLeaves(bins);
     if (columns_) fillInside();
     report(progress_, "bake mesh", 1.0);
-    return finishGrid(grid_, plan_, options_);
+    const LevelSet result = finishGrid(grid_, plan_, options_);
+    if (columns_) {
+      refuseLostPlates({solid_, bins, faces_itself_, whole ? *whole : solid_, *columns_}, result,
+                       plan_, options_);
+    }
+    return result;
   }
 
  private:
@@ -123,6 +150,13 @@ class MeshBaker {
                  "use larger voxels; also check that the mesh has the length unit it should"});
   }
 
+  void smooth() {
+    // Solids are turned alike already.
+    if (shell_) turnAlike(solid_.vertices, sortedSides(solid_.triangles), solid_.triangles);
+    report(progress_, "bake mesh: smoothing", 0.05);
+    makeCurved(solid_, options_.smooth_angle, kSmoothSide, plan_.max_memory);
+  }
+
   struct Local {
     LeafScratch scratch;
     std::vector<Facet> facets;
@@ -132,8 +166,11 @@ class MeshBaker {
   void fillLeaves(const TriangleBins& bins) {
     std::vector<std::unique_ptr<Leaf>> leaves(bins.size());
     tbb::enumerable_thread_specific<Local> locals;
+    faces_itself_.resize(bins.size());
     parallelWithProgress(bins.size(), progress_, "bake mesh", 0.2, 1.0, [&](std::size_t i) {
-      leaves[i] = makeLeaf(bins.origin(i), bins.triangles(i), locals.local());
+      Local& local = locals.local();
+      leaves[i] = makeLeaf(bins.origin(i), bins.triangles(i), local);
+      faces_itself_[i] = facesItself(local.facets) ? 1 : 0;
     });
     for (auto& leaf : leaves) {
       if (leaf) grid_->tree().addLeaf(leaf.release());
@@ -154,25 +191,39 @@ class MeshBaker {
     auto leaf = std::make_unique<Leaf>(origin, plan_.background, false);
     float* const values = leaf->buffer().data();
     const auto unit = static_cast<float>(plan_.voxel / plan_.metres_per_unit);
+    const float shell = shell_.value_or(0.0F);
     const float background = plan_.background;
+    Leaf::NodeMaskType active = leaf->getValueMask();
     bool any = false;
-    for (openvdb::Index column = 0; column < Leaf::SIZE; column += Leaf::DIM) {
-      std::array<bool, 8> inside{};
-      if (columns_) {
-        const Coord at = Leaf::offsetToLocalCoord(column) + origin;
-        inside = columns_->areInside(at.x(), at.y(), at.z());
+    // Active voxels of eight columns are the 64 bits of a word, y and z in its order.
+    for (int x = 0; x < 8; ++x) {
+      std::array<std::uint8_t, 8> inside{};
+      if (columns_) inside = columns_->areInside(origin.x() + x, origin.y(), origin.z());
+      std::uint64_t word = 0;
+      for (unsigned n = 0; n < 64; ++n) {
+        const std::size_t place = static_cast<std::size_t>(x) * 64 + n;
+        const float distance = (std::sqrt(local.squares[place]) - shell) * unit;
+        const float value = (inside[n >> 3] >> (n & 7) & 1) != 0 ? -distance : distance;
+        const bool is_active = std::abs(value) < background;
+        word |= std::uint64_t{is_active} << n;
+        any = any || (shell_ && value < 0.0F);
+        values[place] = is_active ? value : std::copysign(background, value);
       }
-      for (openvdb::Index z = 0; z < Leaf::DIM; ++z) {
-        float value = (std::sqrt(local.squares[column + z]) - shell_.value_or(0.0F)) * unit;
-        if (inside[z]) value = -value;
-        const bool active = std::abs(value) < background;
-        any = any || active || (shell_ && value < 0.0F);
-        values[column + z] = active ? value : std::copysign(background, value);
-        if (active) leaf->setValueOn(column + z);
-      }
+      active.getWord<std::uint64_t>(static_cast<openvdb::Index>(x)) = word;
+      any = any || word != 0;
     }
+    leaf->setValueMask(active);
     if (!any) leaf.reset();
     return leaf;
+  }
+
+  /// Whether walls here may be the two sides of a plate. If not, all normals are near the first.
+  static bool facesItself(const std::vector<Facet>& facets) {
+    const float* const first = facets.front().normal;
+    return std::any_of(facets.begin(), facets.end(), [&](const Facet& facet) {
+      const float* const n = facet.normal;
+      return n[0] * first[0] + n[1] * first[1] + n[2] * first[2] < 0.71F;
+    });
   }
 
   /// Gives every tile beside the leaves its side.
@@ -214,6 +265,7 @@ class MeshBaker {
   Solid solid_;
   CoordBBox range_;  ///< of the voxels that the band can touch
   std::optional<Columns> columns_;
+  std::vector<std::uint8_t> faces_itself_;  ///< of each leaf
   openvdb::FloatGrid::Ptr grid_;
 };
 

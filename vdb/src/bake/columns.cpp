@@ -155,16 +155,19 @@ void Columns::makeSpans(const std::vector<Crossing>& crossings) {
   columns_.push_back({0, spans_.size()});
 }
 
-std::size_t Columns::find(int x, int y) const noexcept {
-  const std::size_t none = columns_.size() - 1;
+std::pair<std::size_t, std::size_t> Columns::findFrom(int x, int y) const noexcept {
   const auto row = static_cast<std::size_t>(static_cast<std::int64_t>(x) - first_x_);
-  if (x < first_x_ || row + 1 >= rows_.size()) return none;
+  if (x < first_x_ || row + 1 >= rows_.size()) return {0, 0};
   const auto begin = columns_.begin() + static_cast<std::ptrdiff_t>(rows_[row]);
   const auto end = columns_.begin() + static_cast<std::ptrdiff_t>(rows_[row + 1]);
   const auto column = std::lower_bound(
       begin, end, y, [](const Column& candidate, int wanted) { return candidate.y < wanted; });
-  if (column == end || column->y != y) return none;
-  return static_cast<std::size_t>(column - columns_.begin());
+  return {static_cast<std::size_t>(column - columns_.begin()), rows_[row + 1]};
+}
+
+std::size_t Columns::find(int x, int y) const noexcept {
+  const auto [column, end] = findFrom(x, y);
+  return column != end && columns_[column].y == y ? column : columns_.size() - 1;
 }
 
 bool Columns::isInside(int x, int y, int z) const noexcept {
@@ -176,15 +179,16 @@ bool Columns::isInside(int x, int y, int z) const noexcept {
   return false;
 }
 
-std::array<bool, 8> Columns::areInside(int x, int y, int z) const noexcept {
-  std::array<bool, 8> inside{};
-  const std::size_t column = find(x, y);
-  if (column + 1 == columns_.size()) return inside;
-  for (std::size_t n = columns_[column].first; n < columns_[column + 1].first; ++n) {
-    for (int step = 0; step < 8; ++step) {
-      if (spans_[n].begin < z + step && z + step <= spans_[n].end) {
-        inside[static_cast<std::size_t>(step)] = true;
-      }
+std::array<std::uint8_t, 8> Columns::areInside(int x, int y, int z) const noexcept {
+  std::array<std::uint8_t, 8> inside{};
+  for (auto [column, end] = findFrom(x, y); column != end && columns_[column].y < y + 8; ++column) {
+    std::uint8_t& bits = inside[static_cast<std::size_t>(columns_[column].y - y)];
+    for (std::size_t n = columns_[column].first; n < columns_[column + 1].first; ++n) {
+      // Whole numbers after `begin`, up to `end`.
+      const double first = std::clamp(std::floor(spans_[n].begin) + 1.0 - z, 0.0, 8.0);
+      const double last = std::clamp(std::floor(spans_[n].end) + 1.0 - z, 0.0, 8.0);
+      const auto below = [](double count) { return (1U << static_cast<unsigned>(count)) - 1U; };
+      bits = static_cast<std::uint8_t>(bits | (below(last) & ~below(first)));
     }
   }
   return inside;

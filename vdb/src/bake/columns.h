@@ -37,8 +37,8 @@ class Columns {
 
   [[nodiscard]] bool isInside(int x, int y, int z) const noexcept;
 
-  /// The same for the eight voxels from z on.
-  [[nodiscard]] std::array<bool, 8> areInside(int x, int y, int z) const noexcept;
+  /// The same for the voxels from y and z on, eight along each: a byte for each y, a bit for each z.
+  [[nodiscard]] std::array<std::uint8_t, 8> areInside(int x, int y, int z) const noexcept;
 
   [[nodiscard]] const std::optional<Doubt>& doubt() const noexcept { return doubt_; }
   [[nodiscard]] const std::vector<Pocket>& pockets() const noexcept { return pockets_; }
@@ -71,6 +71,8 @@ class Columns {
   void makeSpans(const std::vector<Crossing>& crossings);
   void flood(MeshSign sign);
   void fill(const std::vector<bool>& enclosed);
+  /// The first column of row x from y on, and the row's end.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> findFrom(int x, int y) const noexcept;
   /// Number of the column; columns_.size() - 1 if it never meets the solid.
   [[nodiscard]] std::size_t find(int x, int y) const noexcept;
 

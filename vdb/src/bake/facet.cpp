@@ -7,14 +7,19 @@
 namespace palpate::vdb {
 namespace {
 
+/// [voxels] With corners no farther out, sides no longer and a height over length no less, floats tell a
+/// facet to some 3e-6 voxel.
+constexpr float kNear = 16.0F;
+constexpr float kShort = 6.0F;
+constexpr float kStout = 0.2F;
+
 Vec3 anyAcross(const Vec3& v) noexcept {
   const Vec3 axis = std::abs(v.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
   return unitOr(glm::cross(v, axis), axis);
 }
 
-}  // namespace
-
-Facet makeFacet(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+/// Of any triangle.
+Facet makeAnyFacet(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   std::array<Vec3, 3> corners{a, b, c};
   const std::array<double, 3> squares{glm::dot(b - a, b - a), glm::dot(c - b, c - b),
                                       glm::dot(a - c, a - c)};
@@ -48,6 +53,46 @@ Facet makeFacet(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   }
   for (int i = 0; i < 3; ++i) facet.normal[i] = static_cast<float>(normal[i]);
   facet.normal[3] = static_cast<float>(-glm::dot(normal, corners[0]));
+  return facet;
+}
+
+}  // namespace
+
+Facet makeFacet(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  const std::array<glm::vec3, 3> corners{glm::vec3(a), glm::vec3(b), glm::vec3(c)};
+  std::array<glm::vec3, 3> sides{};
+  std::array<float, 3> squares{};
+  float farthest = 0.0F;
+  for (std::size_t n = 0; n < 3; ++n) {
+    sides[n] = corners[(n + 1) % 3] - corners[n];
+    squares[n] = glm::dot(sides[n], sides[n]);
+    farthest = std::max(farthest, glm::dot(corners[n], corners[n]));
+  }
+  const float longest = std::max({squares[0], squares[1], squares[2]});
+  const glm::vec3 cross = glm::cross(sides[0], sides[1]);
+  const float area = std::sqrt(glm::dot(cross, cross));
+  if (!(farthest < kNear * kNear && longest < kShort * kShort && area > kStout * longest)) {
+    return makeAnyFacet(a, b, c);
+  }
+  Facet facet{};
+  const glm::vec3 normal = cross * (1.0F / area);
+  // The longest side comes first.
+  auto n = static_cast<std::size_t>(std::find(squares.begin(), squares.end(), longest) -
+                                    squares.begin());
+  for (std::size_t to = 0; to < 3; ++to, n = n == 2 ? 0 : n + 1) {
+    const float length = std::sqrt(squares[n]);
+    const glm::vec3 along = sides[n] * (1.0F / length);
+    const glm::vec3 out = glm::cross(along, normal);
+    for (int i = 0; i < 3; ++i) {
+      facet.out[to][i] = out[i];
+      facet.along[to][i] = along[i];
+    }
+    facet.out[to][3] = -glm::dot(out, corners[n]);
+    facet.begin[to] = glm::dot(along, corners[n]);
+    facet.end[to] = facet.begin[to] + length;
+  }
+  for (int i = 0; i < 3; ++i) facet.normal[i] = normal[i];
+  facet.normal[3] = -glm::dot(normal, corners[0]);
   return facet;
 }
 

@@ -5,38 +5,35 @@
 namespace palpate::vdb {
 namespace {
 
+#define PALPATE_KERNEL inline
+
 /// Eight lanes for any processor; compilers make of the loops what it has.
 struct Lanes {
   float v[8];
-  Lanes() = default;
-  explicit Lanes(float each) {
-    for (float& lane : v) lane = each;
-  }
-  static Lanes signs(float s, int bit) {
-    Lanes result;
-    for (int n = 0; n < 8; ++n) result.v[n] = ((n >> bit) & 1) != 0 ? s : -s;
-    return result;
-  }
-  static Lanes xSigns(float s) { return signs(s, 2); }
-  static Lanes ySigns(float s) { return signs(s, 1); }
-  static Lanes zSigns(float s) { return signs(s, 0); }
-  static float root(float s) { return std::sqrt(s); }
-  void store(float* to) const {
-    for (int n = 0; n < 8; ++n) to[n] = v[n];
-  }
 };
 
-struct Mask {
-  bool v[8];
-};
-
-template <typename Result = Lanes, typename Function>
-inline Result each(const Function& function) {
-  Result result;
+template <typename Function>
+inline Lanes each(const Function& function) {
+  Lanes result;
   for (int n = 0; n < 8; ++n) result.v[n] = function(n);
   return result;
 }
 
+inline Lanes all(float a) {
+  return each([&](int) { return a; });
+}
+inline Lanes signs(float s, int bit) {
+  return each([&](int n) { return ((n >> bit) & 1) != 0 ? s : -s; });
+}
+inline Lanes xSigns(float s) { return signs(s, 2); }
+inline Lanes ySigns(float s) { return signs(s, 1); }
+inline Lanes zSigns(float s) { return signs(s, 0); }
+inline Lanes load(const float* from) {
+  return each([&](int n) { return from[n]; });
+}
+inline void store(const Lanes& a, float* to) {
+  for (int n = 0; n < 8; ++n) to[n] = a.v[n];
+}
 inline Lanes operator+(const Lanes& a, const Lanes& b) {
   return each([&](int n) { return a.v[n] + b.v[n]; });
 }
@@ -52,30 +49,36 @@ inline Lanes min(const Lanes& a, const Lanes& b) {
 inline Lanes max(const Lanes& a, const Lanes& b) {
   return each([&](int n) { return a.v[n] > b.v[n] ? a.v[n] : b.v[n]; });
 }
+inline Lanes root(const Lanes& a) {
+  return each([&](int n) { return std::sqrt(a.v[n]); });
+}
 inline Lanes fma(const Lanes& a, const Lanes& b, const Lanes& c) {
   return each([&](int n) { return a.v[n] * b.v[n] + c.v[n]; });
 }
-inline Mask isNegative(const Lanes& a) {
-  return each<Mask>([&](int n) { return a.v[n] < 0.0F; });
-}
-inline Mask isZero(const Lanes& a) {
-  return each<Mask>([&](int n) { return a.v[n] == 0.0F; });
-}
-inline Mask operator&(const Mask& a, const Mask& b) {
-  return each<Mask>([&](int n) { return a.v[n] && b.v[n]; });
-}
-inline Lanes zeroWhere(const Mask& mask, const Lanes& a) {
-  return each([&](int n) { return mask.v[n] ? 0.0F : a.v[n]; });
+
+/// 0 where `outermost` is negative and `beyond` 0, else `otherwise`.
+inline Lanes zeroWhereInside(const Lanes& outermost, const Lanes& beyond, const Lanes& otherwise) {
+  return each(
+      [&](int n) { return outermost.v[n] < 0.0F && beyond.v[n] == 0.0F ? 0.0F : otherwise.v[n]; });
 }
 
-}  // namespace
-}  // namespace palpate::vdb
+/// -1 where a > b, else `otherwise`.
+inline Lanes noneWhereAbove(const Lanes& a, const Lanes& b, const Lanes& otherwise) {
+  return each([&](int n) { return a.v[n] > b.v[n] ? -1.0F : otherwise.v[n]; });
+}
+
+/// A bit for each lane where a <= b.
+inline std::uint32_t atMost(const Lanes& a, const Lanes& b) {
+  std::uint32_t bits = 0;
+  for (int n = 0; n < 8; ++n) bits |= (a.v[n] <= b.v[n] ? 1U : 0U) << n;
+  return bits;
+}
 
 #include "bake/leaf_distance_kernel.h"
 
-namespace palpate::vdb {
+}  // namespace
 
-void findSquaresPlain(const LeafQuery& query) noexcept { searchLeaf<Lanes>(query); }
+void findSquaresPlain(const LeafQuery& query) noexcept { searchLeaf(query); }
 
 bool hasAvx2() noexcept {
 #if defined(__x86_64__)
@@ -87,27 +90,26 @@ bool hasAvx2() noexcept {
 
 void findSquares(const LeafQuery& query) noexcept {
   static const bool has_avx2 = hasAvx2();
-  if (has_avx2) {
-    findSquaresAvx2(query);
-  } else {
-    findSquaresPlain(query);
-  }
+  has_avx2 ? findSquaresAvx2(query) : findSquaresPlain(query);
 }
 
 LeafQuery makeQuery(const std::vector<Facet>& facets, float half_width, LeafScratch& scratch,
                     float* squares) {
   const std::size_t count = facets.size();
-  if (scratch.nearby.size() <= count) {
-    scratch.eight.resize(8 * count);
-    scratch.four.resize(8 * count);
-    // One more: lists are written before it is known that an entry stays.
-    scratch.nearby.resize(count + 1);
-    scratch.close.resize(count + 1);
+  const std::size_t lists = 8 * (count + 1);
+  if (scratch.nearby.size() < lists) {
+    scratch.distances.resize(8 * count);
+    // One more in each: lists are written before it is known that an entry stays.
+    scratch.nearby.resize(lists);
+    scratch.close.resize(lists);
   }
-  return {facets.data(),        static_cast<std::uint32_t>(count),
-          half_width,           scratch.eight.data(),
-          scratch.four.data(),  scratch.nearby.data(),
-          scratch.close.data(), squares};
+  return {facets.data(),
+          static_cast<std::uint32_t>(count),
+          half_width,
+          scratch.distances.data(),
+          scratch.nearby.data(),
+          scratch.close.data(),
+          squares};
 }
 
 }  // namespace palpate::vdb

@@ -8,12 +8,11 @@
 
 namespace palpate::vdb {
 
-/// What the search writes to; kept from leaf to leaf. Sized by prepareScratch().
+/// What the search writes to; kept from leaf to leaf. Sized by makeQuery().
 struct LeafScratch {
-  std::vector<float> eight;           ///< squares of eight cubes for each facet
-  std::vector<float> four;            ///< and of those one level down
-  std::vector<std::uint32_t> nearby;  ///< facets that matter to a cube of 4^3
-  std::vector<std::uint32_t> close;   ///< and to one of 2^3
+  std::vector<float> distances;       ///< squares of eight cubes for each facet
+  std::vector<std::uint32_t> nearby;  ///< facets that matter to each cube of 4^3
+  std::vector<std::uint32_t> close;   ///< and to each of 2^3 in one of them
 };
 
 /// The same as plain pointers: files compiled for newer processors share no code with others.
@@ -21,8 +20,7 @@ struct LeafQuery {
   const Facet* facets;  ///< about the leaf's middle
   std::uint32_t count;
   float half_width;  ///< [voxels]
-  float* eight;
-  float* four;
+  float* distances;
   std::uint32_t* nearby;
   std::uint32_t* close;
   float* squares;  ///< [voxels^2] out, in OpenVDB's order; kFarSquare where surely not in the band

@@ -1,51 +1,53 @@
-// Compiled for processors with AVX2 and FMA; called where they are.
+// The search for processors with AVX2 and FMA; called where they are.
 #include "bake/leaf_distance.h"
 
-#if defined(__AVX2__) && defined(__FMA__)
+#if defined(__x86_64__)
 
 #include <immintrin.h>
+
+#define PALPATE_KERNEL [[gnu::target("avx2,fma"), gnu::always_inline]] inline
 
 namespace palpate::vdb {
 namespace {
 
-struct Lanes {
-  __m256 v;
-  explicit Lanes(__m256 all) : v(all) {}
-  explicit Lanes(float each) : v(_mm256_set1_ps(each)) {}
-  static Lanes xSigns(float s) { return Lanes(_mm256_setr_ps(-s, -s, -s, -s, s, s, s, s)); }
-  static Lanes ySigns(float s) { return Lanes(_mm256_setr_ps(-s, -s, s, s, -s, -s, s, s)); }
-  static Lanes zSigns(float s) { return Lanes(_mm256_setr_ps(-s, s, -s, s, -s, s, -s, s)); }
-  static float root(float s) { return _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(s))); }
-  void store(float* to) const { _mm256_storeu_ps(to, v); }
-};
+using Lanes = __m256;
 
-inline Lanes operator+(const Lanes& a, const Lanes& b) { return Lanes(_mm256_add_ps(a.v, b.v)); }
-inline Lanes operator-(const Lanes& a, const Lanes& b) { return Lanes(_mm256_sub_ps(a.v, b.v)); }
-inline Lanes operator*(const Lanes& a, const Lanes& b) { return Lanes(_mm256_mul_ps(a.v, b.v)); }
-inline Lanes operator&(const Lanes& a, const Lanes& b) { return Lanes(_mm256_and_ps(a.v, b.v)); }
-inline Lanes min(const Lanes& a, const Lanes& b) { return Lanes(_mm256_min_ps(a.v, b.v)); }
-inline Lanes max(const Lanes& a, const Lanes& b) { return Lanes(_mm256_max_ps(a.v, b.v)); }
-inline Lanes fma(const Lanes& a, const Lanes& b, const Lanes& c) {
-  return Lanes(_mm256_fmadd_ps(a.v, b.v, c.v));
-}
-inline Lanes isNegative(const Lanes& a) {
-  return Lanes(_mm256_cmp_ps(a.v, _mm256_setzero_ps(), _CMP_LT_OQ));
-}
-inline Lanes isZero(const Lanes& a) {
-  return Lanes(_mm256_cmp_ps(a.v, _mm256_setzero_ps(), _CMP_EQ_OQ));
-}
-inline Lanes zeroWhere(const Lanes& mask, const Lanes& a) {
-  return Lanes(_mm256_andnot_ps(mask.v, a.v));
+PALPATE_KERNEL Lanes all(float each) noexcept { return _mm256_set1_ps(each); }
+PALPATE_KERNEL Lanes xSigns(float s) noexcept { return _mm256_setr_ps(-s, -s, -s, -s, s, s, s, s); }
+PALPATE_KERNEL Lanes ySigns(float s) noexcept { return _mm256_setr_ps(-s, -s, s, s, -s, -s, s, s); }
+PALPATE_KERNEL Lanes zSigns(float s) noexcept { return _mm256_setr_ps(-s, s, -s, s, -s, s, -s, s); }
+PALPATE_KERNEL Lanes load(const float* from) noexcept { return _mm256_loadu_ps(from); }
+PALPATE_KERNEL void store(Lanes a, float* to) noexcept { _mm256_storeu_ps(to, a); }
+PALPATE_KERNEL Lanes min(Lanes a, Lanes b) noexcept { return _mm256_min_ps(a, b); }
+PALPATE_KERNEL Lanes max(Lanes a, Lanes b) noexcept { return _mm256_max_ps(a, b); }
+PALPATE_KERNEL Lanes root(Lanes a) noexcept { return _mm256_sqrt_ps(a); }
+PALPATE_KERNEL Lanes fma(Lanes a, Lanes b, Lanes c) noexcept { return _mm256_fmadd_ps(a, b, c); }
+
+/// 0 where `outermost` is negative and `beyond` 0, else `otherwise`.
+PALPATE_KERNEL Lanes zeroWhereInside(Lanes outermost, Lanes beyond, Lanes otherwise) noexcept {
+  const Lanes zero = _mm256_setzero_ps();
+  const Lanes inside = _mm256_and_ps(_mm256_cmp_ps(outermost, zero, _CMP_LT_OQ),
+                                     _mm256_cmp_ps(beyond, zero, _CMP_EQ_OQ));
+  return _mm256_andnot_ps(inside, otherwise);
 }
 
-}  // namespace
-}  // namespace palpate::vdb
+/// -1 where a > b, else `otherwise`.
+PALPATE_KERNEL Lanes noneWhereAbove(Lanes a, Lanes b, Lanes otherwise) noexcept {
+  return _mm256_blendv_ps(otherwise, _mm256_set1_ps(-1.0F), _mm256_cmp_ps(a, b, _CMP_GT_OQ));
+}
+
+/// A bit for each lane where a <= b.
+PALPATE_KERNEL std::uint32_t atMost(Lanes a, Lanes b) noexcept {
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
+}
 
 #include "bake/leaf_distance_kernel.h"
 
-namespace palpate::vdb {
+}  // namespace
 
-void findSquaresAvx2(const LeafQuery& query) noexcept { searchLeaf<Lanes>(query); }
+[[gnu::target("avx2,fma")]] void findSquaresAvx2(const LeafQuery& query) noexcept {
+  searchLeaf(query);
+}
 
 }  // namespace palpate::vdb
 

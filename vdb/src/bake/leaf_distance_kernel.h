@@ -1,115 +1,116 @@
-#pragma once
-/// The search of leaf_distance.h, over a type of eight lanes. In an unnamed namespace and without any
-/// of the standard library's code, since it is compiled for several processors.
+// The search of leaf_distance.h over eight lanes. No include guard and no namespace of its own: a file for
+// one kind of processor includes it once, after PALPATE_KERNEL says with what attributes to compile, and
+// after `Lanes` and its functions. Attributes rather than compiler flags, and none of the standard
+// library's code, so that no inline function of another header is compiled for more than the least processor.
 
-#include "bake/leaf_distance.h"
+#if !defined(PALPATE_KERNEL)
+#error "define PALPATE_KERNEL and Lanes"
+#endif
 
-namespace palpate::vdb {
-namespace {  // NOLINT(google-build-namespaces): see above
+/// n . (x, y, z) + offset
+PALPATE_KERNEL Lanes planeOf(const float* n, const Lanes& offset, const Lanes& x, const Lanes& y,
+                             const Lanes& z) noexcept {
+  return fma(all(n[0]), x, fma(all(n[1]), y, fma(all(n[2]), z, offset)));
+}
 
-/// Squares of the distances from eight points about `middle` to a facet.
-template <typename Lanes>
-inline Lanes squaresOf(const Facet& f, const Lanes& x, const Lanes& y, const Lanes& z) {
-  const auto plane = [&](const float* n, const Lanes& offset) {
-    return fma(Lanes(n[0]), x, fma(Lanes(n[1]), y, fma(Lanes(n[2]), z, offset)));
-  };
-  const Lanes zero(0.0F);
-  Lanes outermost(0.0F);
-  Lanes beyond_longest(0.0F);
-  Lanes least(0.0F);
+/// Squares of the distances from eight points to a facet.
+PALPATE_KERNEL Lanes squaresOf(const Facet& f, const Lanes& x, const Lanes& y,
+                               const Lanes& z) noexcept {
+  const Lanes zero = all(0.0F);
+  Lanes outermost = zero;
+  Lanes beyond_longest = zero;
+  Lanes least = zero;
   for (int n = 0; n < 3; ++n) {
-    const Lanes out = plane(f.out[n], Lanes(f.out[n][3]));
-    const Lanes along = plane(f.along[n], zero);
-    const Lanes beyond = max(max(Lanes(f.begin[n]) - along, along - Lanes(f.end[n])), zero);
+    const Lanes out = planeOf(f.out[n], all(f.out[n][3]), x, y, z);
+    const Lanes along = planeOf(f.along[n], zero, x, y, z);
+    const Lanes beyond = max(max(all(f.begin[n]) - along, along - all(f.end[n])), zero);
     const Lanes square = fma(out, out, beyond * beyond);
     outermost = n == 0 ? out : max(outermost, out);
     if (n == 0) beyond_longest = beyond;
     least = n == 0 ? square : min(least, square);
   }
-  const Lanes height = plane(f.normal, Lanes(f.normal[3]));
+  const Lanes height = planeOf(f.normal, all(f.normal[3]), x, y, z);
   // Beside the longest side, or else rounding could take the way beyond a needle's tip for its inside.
-  const Lanes in_plane = zeroWhere(isNegative(outermost) & isZero(beyond_longest), least);
+  const Lanes in_plane = zeroWhereInside(outermost, beyond_longest, least);
   return fma(height, height, in_plane);
 }
 
-/// Coordinates of the middles of the eight parts of a cube.
-template <typename Lanes>
+/// The middles of the eight parts of a cube.
 struct Eight {
   Lanes x, y, z;
-  Eight(float mx, float my, float mz, float step)
-      : x(Lanes::xSigns(step) + Lanes(mx)),
-        y(Lanes::ySigns(step) + Lanes(my)),
-        z(Lanes::zSigns(step) + Lanes(mz)) {}
 };
 
-inline float squareOf(float v) { return v * v; }
+PALPATE_KERNEL Eight eightAbout(float x, float y, float z, float step) noexcept {
+  return {xSigns(step) + all(x), ySigns(step) + all(y), zSigns(step) + all(z)};
+}
 
-/// Of `count` facets those within reach of the cube in `lane`; `reach` is its half diagonal.
-template <typename Lanes>
-inline std::uint32_t select(const float* squares, const std::uint32_t* from, std::uint32_t count,
-                            int lane, float reach, float half_width, std::uint32_t* to) {
-  float least = kFarSquare;
+/// Facets of each of the eight parts of a cube, in lists of `stride`.
+struct Lists {
+  std::uint32_t* lists;
+  std::size_t stride;
+  std::uint32_t counts[8];
+};
+
+/// Of `count` facets, those within reach of each part; `reach` is its half diagonal. From nullptr: all.
+PALPATE_KERNEL void select(const LeafQuery& q, const std::uint32_t* from, std::uint32_t count,
+                           const Eight& at, float reach, float* squares, Lists& to) noexcept {
+  Lanes least = all(kFarSquare);
   for (std::uint32_t n = 0; n < count; ++n) {
-    const float here = squares[8 * n + static_cast<std::uint32_t>(lane)];
-    least = here < least ? here : least;
+    const Lanes here = squaresOf(q.facets[from == nullptr ? n : from[n]], at.x, at.y, at.z);
+    store(here, squares + std::size_t{8} * n);
+    least = min(least, here);
   }
   // A hundred-thousandth covers the rounding.
-  const float most = half_width + reach + 1e-4F;
-  if (least > squareOf(most)) return 0;
-  float limit = Lanes::root(least) * 1.00001F + 2.0F * reach + 1e-4F;
-  limit = squareOf(limit < most ? limit : most);
-  std::uint32_t kept = 0;
+  const Lanes most = all(q.half_width + reach + 1e-4F);
+  Lanes limit = min(fma(root(least), all(1.00001F), all(2.0F * reach + 1e-4F)), most);
+  limit = noneWhereAbove(least, most * most, limit * limit);
+  for (std::uint32_t& kept : to.counts) kept = 0;
   for (std::uint32_t n = 0; n < count; ++n) {
-    to[kept] = from == nullptr ? n : from[n];
-    kept += squares[8 * n + static_cast<std::uint32_t>(lane)] <= limit ? 1U : 0U;
-  }
-  return kept;
-}
-
-template <typename Lanes>
-inline void measure(const LeafQuery& q, const std::uint32_t* list, std::uint32_t count,
-                    const Eight<Lanes>& at, float* squares) {
-  for (std::uint32_t n = 0; n < count; ++n) {
-    const Facet& facet = q.facets[list == nullptr ? n : list[n]];
-    squaresOf(facet, at.x, at.y, at.z).store(squares + std::size_t{8} * n);
-  }
-}
-
-template <typename Lanes>
-inline void searchLeaf(const LeafQuery& q) {
-  constexpr float kReachFour = 2.598077F;
-  constexpr float kReachTwo = 0.8660254F;
-  for (int n = 0; n < 512; ++n) q.squares[n] = kFarSquare;
-  measure<Lanes>(q, nullptr, q.count, Eight<Lanes>(0.0F, 0.0F, 0.0F, 2.0F), q.eight);
-  for (int four = 0; four < 8; ++four) {
-    const std::uint32_t nearby =
-        select<Lanes>(q.eight, nullptr, q.count, four, kReachFour, q.half_width, q.nearby);
-    if (nearby == 0) continue;
-    const int fx = four >> 2, fy = (four >> 1) & 1, fz = four & 1;
-    const float x = 4.0F * static_cast<float>(fx) - 2.0F;
-    const float y = 4.0F * static_cast<float>(fy) - 2.0F;
-    const float z = 4.0F * static_cast<float>(fz) - 2.0F;
-    measure<Lanes>(q, q.nearby, nearby, Eight<Lanes>(x, y, z, 1.0F), q.four);
-    for (int two = 0; two < 8; ++two) {
-      const std::uint32_t close =
-          select<Lanes>(q.four, q.nearby, nearby, two, kReachTwo, q.half_width, q.close);
-      if (close == 0) continue;
-      const int tx = two >> 2, ty = (two >> 1) & 1, tz = two & 1;
-      const Eight<Lanes> at(x + 2.0F * static_cast<float>(tx) - 1.0F,
-                            y + 2.0F * static_cast<float>(ty) - 1.0F,
-                            z + 2.0F * static_cast<float>(tz) - 1.0F, 0.5F);
-      Lanes least(kFarSquare);
-      for (std::uint32_t n = 0; n < close; ++n) {
-        least = min(least, squaresOf(q.facets[q.close[n]], at.x, at.y, at.z));
-      }
-      float found[8];
-      least.store(found);
-      const int first = (4 * fx + 2 * tx) * 64 + (4 * fy + 2 * ty) * 8 + 4 * fz + 2 * tz;
-      float* const corner = q.squares + first;
-      for (int n = 0; n < 8; ++n) corner[(n >> 2) * 64 + ((n >> 1) & 1) * 8 + (n & 1)] = found[n];
+    const std::uint32_t name = from == nullptr ? n : from[n];
+    const std::uint32_t near = atMost(load(squares + std::size_t{8} * n), limit);
+    // Lists are written before it is known that an entry stays: cheaper than a jump.
+    for (std::size_t part = 0; part < 8; ++part) {
+      to.lists[part * to.stride + to.counts[part]] = name;
+      to.counts[part] += near >> part & 1U;
     }
   }
 }
 
-}  // namespace
-}  // namespace palpate::vdb
+/// Writes what was found for the eight voxels of a cube of 2^3 to their places.
+PALPATE_KERNEL void scatter(const Lanes& squares, float* corner) noexcept {
+  float found[8];
+  store(squares, found);
+  for (int n = 0; n < 8; ++n) corner[(n >> 2) * 64 + ((n >> 1) & 1) * 8 + (n & 1)] = found[n];
+}
+
+PALPATE_KERNEL void searchLeaf(const LeafQuery& q) noexcept {
+  constexpr float kReachFour = 2.598077F;  // [voxels] half diagonals: of the voxels of 4^3
+  constexpr float kReachTwo = 0.8660254F;  // and of 2^3
+  for (int n = 0; n < 512; ++n) q.squares[n] = kFarSquare;
+  Lists nearby{q.nearby, std::size_t{q.count} + 1, {}};
+  Lists close{q.close, std::size_t{q.count} + 1, {}};
+  select(q, nullptr, q.count, eightAbout(0.0F, 0.0F, 0.0F, 2.0F), kReachFour, q.distances, nearby);
+  for (std::size_t four = 0; four < 8; ++four) {
+    const std::uint32_t count = nearby.counts[four];
+    if (count == 0) continue;
+    const std::size_t fx = four >> 2, fy = (four >> 1) & 1, fz = four & 1;
+    const float x = 4.0F * static_cast<float>(fx) - 2.0F;
+    const float y = 4.0F * static_cast<float>(fy) - 2.0F;
+    const float z = 4.0F * static_cast<float>(fz) - 2.0F;
+    select(q, nearby.lists + four * nearby.stride, count, eightAbout(x, y, z, 1.0F), kReachTwo,
+           q.distances, close);
+    for (std::size_t two = 0; two < 8; ++two) {
+      if (close.counts[two] == 0) continue;
+      const std::uint32_t* const list = close.lists + two * close.stride;
+      const std::size_t tx = two >> 2, ty = (two >> 1) & 1, tz = two & 1;
+      const Eight at = eightAbout(x + 2.0F * static_cast<float>(tx) - 1.0F,
+                                  y + 2.0F * static_cast<float>(ty) - 1.0F,
+                                  z + 2.0F * static_cast<float>(tz) - 1.0F, 0.5F);
+      Lanes least = all(kFarSquare);
+      for (std::uint32_t n = 0; n < close.counts[two]; ++n) {
+        least = min(least, squaresOf(q.facets[list[n]], at.x, at.y, at.z));
+      }
+      scatter(least, q.squares + (4 * fx + 2 * tx) * 64 + (4 * fy + 2 * ty) * 8 + 4 * fz + 2 * tz);
+    }
+  }
+}

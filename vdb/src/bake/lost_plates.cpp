@@ -13,20 +13,7 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-/// [voxels] No point of the surface is further than that from the centre of some voxel.
-constexpr double kBySurface = 0.9;
-/// [voxels] Plates from here on are held wherever they pass between voxels: a cell's half diagonal
-/// and its mirror image, 1.73, are the longest way that can be free of centres; trilinear values close it at less.
-constexpr double kHeld = 1.75;
 constexpr int kDepths = 4;
-/// [voxels] How far the shape must go on to all sides.
-constexpr double kGoesOn = 2.0;
-
-struct Lost {
-  std::size_t places = 0;
-  Vec3 where{0.0};        ///< [m] the first
-  double thinnest = 0.0;  ///< [m]
-};
 
 /// Whether a shape may have parts thinner than `length`: what solids of such a feature size are united from has none.
 bool mayBeThin(const Field& field, double length) {
@@ -57,7 +44,7 @@ class Search {
   /// From now on, what this grid holds is not lost.
   void lookInto(const LevelSet& grid) { grid_ = gridField(grid, Sampler::kAccessor); }
 
-  [[nodiscard]] Lost in(const Leaf& leaf) const {
+  [[nodiscard]] LostPlates in(const Leaf& leaf) const {
     // What decides at all points that are looked at from here; of fields that are no distances, these may
     // be anywhere.
     constexpr double kReach = 0.5 * 1.7320508075688774 * 7.0 + kBySurface + kHeld + kGoesOn + 0.1;
@@ -66,7 +53,7 @@ class Search {
     FieldPart part;
     const double radius = has_distances_ ? kReach * plan_.voxel : kInfinity;
     static_cast<void>(parts_.narrow(parts_.whole(), center, radius, kInfinity, part));
-    Lost lost;
+    LostPlates lost;
     const double held = kHeld * plan_.voxel;
     if (parts_.isUnionOf(part, [&](const Field& field) { return !mayBeThin(field, held); })) {
       return lost;
@@ -84,7 +71,7 @@ class Search {
 
  private:
   /// From a point by the surface: down to it, and on through the shape.
-  void look(const FieldPart& part, const Vec3& p, Lost& lost) const noexcept {
+  void look(const FieldPart& part, const Vec3& p, LostPlates& lost) const noexcept {
     const FieldSample here = parts_.sample(part, p);
     const double slope = glm::length(here.gradient);
     if (!here.in_band || !(slope > 0.0)) return;
@@ -112,11 +99,7 @@ class Search {
     if (!(inside > 0.0) || (grid_ && grid_->value(middle) < 0.0)) return;
     if (!goesOn(part, middle, in)) return;
     if (box_ && !box_->contains(middle)) return;
-    if (lost.places++ == 0) {
-      lost.where = middle;
-      lost.thinnest = inside;
-    }
-    lost.thinnest = std::min(lost.thinnest, inside);
+    lost.add(middle, inside);
   }
 
   [[nodiscard]] bool goesOn(const FieldPart& part, const Vec3& middle,
@@ -137,11 +120,30 @@ class Search {
   const std::optional<Box3>& box_;
 };
 
-std::string placeText(const Vec3& p) {
-  return "(" + inMillimetres(p.x) + ", " + inMillimetres(p.y) + ", " + inMillimetres(p.z) + ")";
+}  // namespace
+
+void LostPlates::add(const Vec3& place, double thickness) { add({1, place, thickness}); }
+
+void LostPlates::add(const LostPlates& others) {
+  if (others.places == 0) return;
+  if (places == 0) {
+    *this = others;
+    return;
+  }
+  places += others.places;
+  thinnest = std::min(thinnest, others.thinnest);
 }
 
-}  // namespace
+void LostPlates::refuse(const BakePlan& plan, const BakeOptions& options) const {
+  if (places == 0) return;
+  throw inputError("bake.too_thin",
+                   "'" + options.name + "' is " + inMillimetres(thinnest) + " thin near " +
+                       placeText(where / plan.voxel, plan.voxel) +
+                       " and would have holes in a grid of " + inMillimetres(plan.voxel) +
+                       " voxels",
+                   "a voxel of " + inMillimetres(thinnest / kHeld) +
+                       " holds it; or keep this part analytic, or make it a sheet");
+}
 
 void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& plan,
                       const BakeOptions& options) {
@@ -150,7 +152,7 @@ void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& 
   grid.impl().grid->tree().getNodes(leaves);
   Search search(field, plan, options.box);
   const auto search_all = [&] {
-    std::vector<Lost> found(leaves.size());
+    std::vector<LostPlates> found(leaves.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -160,7 +162,7 @@ void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& 
     return found;
   };
   // A field of the grid is worth its making only where something is thin.
-  std::vector<Lost> found = search_all();
+  std::vector<LostPlates> found = search_all();
   std::vector<const Leaf*> thin;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     if (found[i].places > 0) thin.push_back(leaves[i]);
@@ -169,20 +171,9 @@ void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& 
   leaves = std::move(thin);
   search.lookInto(grid);
   found = search_all();
-  Lost all;
-  for (const Lost& lost : found) {
-    if (lost.places == 0) continue;
-    if (all.places == 0) all = {0, lost.where, lost.thinnest};
-    all.places += lost.places;
-    all.thinnest = std::min(all.thinnest, lost.thinnest);
-  }
-  if (all.places == 0) return;
-  throw inputError("bake.too_thin",
-                   "'" + options.name + "' is " + inMillimetres(all.thinnest) + " thin near " +
-                       placeText(all.where) + " and would have holes in a grid of " +
-                       inMillimetres(plan.voxel) + " voxels",
-                   "a voxel of " + inMillimetres(all.thinnest / kHeld) +
-                       " holds it; or keep this part analytic, or make it a sheet");
+  LostPlates all;
+  for (const LostPlates& lost : found) all.add(lost);
+  all.refuse(plan, options);
 }
 
 }  // namespace palpate::vdb

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <utility>
 
 #include "bake/bake_plan.h"
 #include "bake/edges.h"
+#include "bake/weld.h"
 
 namespace palpate::vdb {
 namespace {
@@ -74,45 +74,6 @@ void refuseOutliers(const Mesh& mesh) {
   }
 }
 
-std::size_t hashOf(const Vec3& p) noexcept {
-  std::uint64_t hash = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::uint64_t bits = 0;
-    const double value = p[axis] + 0.0;  // -0 and 0 are one place
-    std::memcpy(&bits, &value, sizeof bits);
-    hash = (hash ^ bits) * 0x9e3779b97f4a7c15U;
-    hash ^= hash >> 29;
-  }
-  return hash;
-}
-
-/// Vertices in one place become one.
-void weld(const Mesh& mesh, double voxel, Solid& solid) {
-  constexpr std::uint32_t kNone = 0xffffffffU;
-  std::size_t slots = 16;
-  while (slots < 2 * mesh.vertices.size()) slots *= 2;
-  std::vector<std::uint32_t> table(slots, kNone);  // of vertices, each the first in its place
-  std::vector<std::uint32_t> name(mesh.vertices.size());
-  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
-    const Vec3& place = mesh.vertices[v];
-    if (!isFinite(place)) continue;  // no triangle has it
-    std::size_t slot = hashOf(place) & (slots - 1);
-    while (table[slot] != kNone && mesh.vertices[table[slot]] != place)
-      slot = (slot + 1) & (slots - 1);
-    if (table[slot] == kNone) {
-      table[slot] = v;
-      name[v] = static_cast<std::uint32_t>(solid.vertices.size());
-      solid.vertices.push_back(place / voxel);
-    }
-    name[v] = name[table[slot]];
-  }
-  solid.triangles.reserve(mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Triangle t{name[a], name[b], name[c]};
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) solid.triangles.push_back(t);
-  }
-}
-
 /// Of triangles with the same corners only the first stays, whichever way they are turned.
 void dropDoubles(std::vector<Triangle>& triangles, const std::vector<Side>& sides) {
   std::vector<bool> doubled(triangles.size(), false);
@@ -142,11 +103,17 @@ Solid cleaned(const Mesh& mesh, double voxel, std::vector<Side>& sides) {
   refuseOutliers(mesh);
   Solid solid;
   weld(mesh, voxel, solid);
-  if (solid.triangles.empty()) {
+  const auto requireSome = [&] {
+    if (!solid.triangles.empty()) return;
     throw inputError("mesh.no_faces", "all faces of the mesh have two corners in one point", "",
                      mesh.source);
-  }
+  };
+  requireSome();
   sides = sortedSides(solid.triangles);
+  if (weldRims(solid, sides)) {
+    requireSome();
+    sides = sortedSides(solid.triangles);
+  }
   const std::size_t before = solid.triangles.size();
   dropDoubles(solid.triangles, sides);
   if (solid.triangles.size() != before) sides = sortedSides(solid.triangles);

@@ -30,6 +30,10 @@ class Walk {
     normal_ = unitOr(glm::cross(b - a, c - a), Vec3(0.0));
     tilt_ = std::abs(normal_.x) + std::abs(normal_.y) + std::abs(normal_.z);
     const Box3 reach = box_.grownBy(half_width);
+    if (largest(reach.size()) <= kMostLeaves * 8.0 - 16.0) {
+      listAll(reach);
+      return;
+    }
     int side = 8;
     while (side < (1 << 29) && largest(reach.size()) > 3.0 * side) side *= 2;
     // From voxel centers: a cube of voxels from x on reaches to x + side - 1.
@@ -44,6 +48,51 @@ class Walk {
   }
 
  private:
+  static constexpr int kMostLeaves = 6;
+
+  /// For a small triangle, leaf by leaf; what depends on one axis only is told once for each row of them.
+  void listAll(const Box3& reach) {
+    struct Row {
+      double gap, away;
+      std::uint64_t place;
+    };
+    std::array<std::array<Row, kMostLeaves>, 3> rows{};
+    std::array<std::size_t, 3> counts{};
+    const double most = half_width_ * half_width_;
+    double slack = 1e-9;
+    for (int axis = 0; axis < 3; ++axis) {
+      slack += 1e-9 * (8.0 + std::max(std::abs(reach.lo[axis]), std::abs(reach.hi[axis])));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto n = static_cast<std::size_t>(axis);
+      const int begin = static_cast<int>(std::ceil(reach.lo[axis] - 7.0)) & ~7;
+      for (int at = begin; at <= reach.hi[axis]; at += 8) {
+        const double middle = at + 3.5;
+        const double gap =
+            std::max({box_.lo[axis] - middle - 3.5, middle - 3.5 - box_.hi[axis], slack}) - slack;
+        if (gap > half_width_) continue;
+        rows[n][counts[n]++] = {gap * gap, normal_[axis] * (middle - corner_[axis]),
+                                static_cast<std::uint64_t>((at - lo_[axis]) >> 3)};
+      }
+    }
+    const double by_plane = 3.5 * tilt_ + half_width_ + slack;
+    for (std::size_t i = 0; i < counts[0]; ++i) {
+      const Row& x = rows[0][i];
+      for (std::size_t j = 0; j < counts[1]; ++j) {
+        const Row& y = rows[1][j];
+        const double gap = x.gap + y.gap;
+        if (gap > most) continue;
+        const double away = x.away + y.away;
+        const std::uint64_t key = (x.place << bits_[1] | y.place) << bits_[2];
+        for (std::size_t k = 0; k < counts[2]; ++k) {
+          const Row& z = rows[2][k];
+          if (gap + z.gap > most || std::abs(away + z.away) > by_plane) continue;
+          entries_.push_back({key | z.place, triangle_});
+        }
+      }
+    }
+  }
+
   static double largest(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
 
   void visit(const Coord& origin, int side) {

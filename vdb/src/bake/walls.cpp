@@ -6,8 +6,7 @@
 
 #include "bake/bake_plan.h"
 #include "bake/edges.h"
-#include "bake/radix_sort.h"
-#include "bake/wall_count.h"
+#include "bake/solid_inside.h"
 
 namespace palpate::vdb {
 namespace {
@@ -23,83 +22,11 @@ double longestSide(const std::array<Vec3, 3>& t) {
       {glm::distance(t[0], t[1]), glm::distance(t[1], t[2]), glm::distance(t[2], t[0])});
 }
 
-/// Triangles over the cells of a grid in the plane z = 0.
-class Floor {
- public:
-  explicit Floor(const Solid& solid) : solid_(solid) {
-    for (const Vec3& v : solid.vertices) box_.include(v);
-    double area = 0.0;
-    for (const Triangle& t : solid.triangles) area += areaOf(solid.vertices, t);
-    // As large as a triangle, but not so small that large triangles fill the memory.
-    cell_ = std::max(1.0, std::sqrt(area / static_cast<double>(solid.triangles.size())));
-    const double most = 4.0 * static_cast<double>(solid.triangles.size()) + 1e6;
-    cell_ = std::max(cell_, std::sqrt(box_.size().x * box_.size().y / most));
-    const auto cells = [&](double size) { return static_cast<std::uint64_t>(size / cell_) + 1; };
-    nx_ = cells(box_.size().x);
-    ny_ = cells(box_.size().y);
-    struct Entry {
-      std::uint64_t cell;
-      std::uint32_t triangle;
-    };
-    std::vector<Entry> entries;
-    for (std::uint32_t n = 0; n < solid.triangles.size(); ++n) {
-      const auto& [i, j, k] = solid.triangles[n];
-      const Vec3& a = solid.vertices[i];
-      const Vec3& b = solid.vertices[j];
-      const Vec3& c = solid.vertices[k];
-      const Vec3 lo = glm::min(glm::min(a, b), c) - 1e-6;
-      const Vec3 hi = glm::max(glm::max(a, b), c) + 1e-6;
-      for (std::uint64_t x = column(lo.x, 0, nx_); x <= column(hi.x, 0, nx_); ++x) {
-        for (std::uint64_t y = column(lo.y, 1, ny_); y <= column(hi.y, 1, ny_); ++y) {
-          entries.push_back({x * ny_ + y, n});
-        }
-      }
-    }
-    radixSort(entries, bitsFor(nx_ * ny_), [](const Entry& e) { return e.cell; });
-    first_.assign(nx_ * ny_ + 1, entries.size());
-    for (std::size_t n = entries.size(); n-- > 0;) first_[entries[n].cell] = n;
-    for (std::size_t n = first_.size() - 1; n-- > 0;)
-      first_[n] = std::min(first_[n], first_[n + 1]);
-    triangles_.reserve(entries.size());
-    for (const Entry& entry : entries) triangles_.push_back(entry.triangle);
-  }
-
-  /// Whether p is in the solid, by the walls below it.
-  [[nodiscard]] bool isInside(const Vec3& p, WallCount& count) const {
-    count.clear();
-    if (p.x < box_.lo.x || p.y < box_.lo.y || p.x > box_.hi.x || p.y > box_.hi.y) return false;
-    const std::uint64_t cell = column(p.x, 0, nx_) * ny_ + column(p.y, 1, ny_);
-    for (std::size_t n = first_[cell]; n < first_[cell + 1]; ++n) {
-      const std::uint32_t triangle = triangles_[n];
-      const auto& [i, j, k] = solid_.triangles[triangle];
-      const WallHit hit =
-          hitWall(solid_.vertices[i], solid_.vertices[j], solid_.vertices[k], p.x, p.y);
-      if (hit.entered != 0 && hit.z < p.z) count.add(solid_.part_of[triangle], hit.entered);
-    }
-    return count.isInside();
-  }
-
- private:
-  [[nodiscard]] std::uint64_t column(double v, int axis, std::uint64_t count) const {
-    const double place = std::max(0.0, (v - box_.lo[axis]) / cell_);
-    return std::min(static_cast<std::uint64_t>(place), count - 1);
-  }
-
-  const Solid& solid_;
-  Box3 box_;
-  double cell_ = 1.0;
-  std::uint64_t nx_ = 1;
-  std::uint64_t ny_ = 1;
-  std::vector<std::size_t> first_;        ///< of each cell's triangles, and one more
-  std::vector<std::uint32_t> triangles_;  ///< cell by cell
-};
-
 enum class Use : std::uint8_t { kIdle, kNeeded, kMixed };
 
 class Sorter {
  public:
-  Sorter(const Floor& floor, const Columns& columns, bool filled)
-      : floor_(floor), columns_(columns), count_(columns.roles()), filled_(filled) {}
+  explicit Sorter(const SolidInside& inside) : inside_(inside), count_(inside.counter()) {}
 
   /// Of a triangle; the pieces that are needed go to `pieces`.
   Use sort(const std::array<Vec3, 3>& t, std::vector<std::array<Vec3, 3>>& pieces) {
@@ -133,27 +60,12 @@ class Sorter {
   }
 
   Use useAt(const Vec3& p, const Vec3& aside) {
-    return isInside(p + aside) == isInside(p - aside) ? Use::kIdle : Use::kNeeded;
+    return inside_.at(p + aside, count_) == inside_.at(p - aside, count_) ? Use::kIdle
+                                                                          : Use::kNeeded;
   }
 
-  bool isInside(const Vec3& p) {
-    if (floor_.isInside(p, count_)) return true;
-    if (!filled_) return false;
-    // What the flood filled is known at voxels only; a point between eight of them is as they are.
-    const Vec3 lo = glm::floor(p);
-    const auto x = static_cast<int>(lo.x);
-    const auto y = static_cast<int>(lo.y);
-    const auto z = static_cast<int>(lo.z);
-    for (int n = 0; n < 8; ++n) {
-      if (!columns_.isInside(x + (n >> 2), y + ((n >> 1) & 1), z + (n & 1))) return false;
-    }
-    return true;
-  }
-
-  const Floor& floor_;
-  const Columns& columns_;
+  const SolidInside& inside_;
   WallCount count_;
-  bool filled_;
 };
 
 /// Where the segment from p to q passes through a triangle.
@@ -174,14 +86,14 @@ std::optional<Vec3> passes(const Vec3& p, const Vec3& q, const std::array<Vec3, 
 
 void dropIdleWalls(Solid& solid, const Columns& columns, const Progress& progress) {
   using Pieces = std::vector<std::array<Vec3, 3>>;
-  const Floor floor(solid);
+  const SolidInside inside(solid, columns);
   constexpr std::size_t kBatch = 256;
   std::vector<Use> uses(solid.triangles.size(), Use::kNeeded);
   std::vector<Pieces> pieces(solid.triangles.size());
   const std::size_t batches = (uses.size() + kBatch - 1) / kBatch;
   parallelWithProgress(
       batches, progress, "bake mesh: removing inner walls", 0.15, 0.15, [&](std::size_t batch) {
-        Sorter sorter(floor, columns, columns.isFilled());
+        Sorter sorter(inside);
         const std::size_t end = std::min(uses.size(), (batch + 1) * kBatch);
         for (std::size_t t = batch * kBatch; t < end; ++t) {
           const auto& [a, b, c] = solid.triangles[t];

@@ -31,6 +31,10 @@ struct BakeOptions {
   /// [m] of bakeMesh(): if positive, the mesh is no solid but a surface, closed or not, in the middle
   /// of a shell of that thickness.
   double shell_thickness = 0.0;
+  /// [rad] of bakeMesh(), up to pi: if positive, facets that meet at less than this angle become pieces of one
+  /// smooth surface through the vertices. For scans and balls whose facets are larger than about 1.5
+  /// voxels and would be felt; edges that are steeper stay.
+  double smooth_angle = 0.0;
 };
 
 /// Voxel (0, 0, 0) has its centre at the origin. Values are the field's own if it is exact or a
@@ -47,13 +51,14 @@ struct BakeOptions {
 /// A solid out of a mesh as it comes. Values are the distance to the closest triangle, to 1e-5 voxel;
 /// the result does not depend on the number of threads.
 ///
-/// Vertices in one place are joined, doubled triangles dropped, triangles turned as most of their
+/// Vertices in one place are joined (where edges are open, also those within a millionth of the mesh's
+/// size), doubled triangles dropped, triangles turned as most of their
 /// neighbors are; holes get lids of least area. Parts that overlap are one solid, a part within another
 /// one and turned against it is a cavity, a mesh that is inside out is the same mesh.
 /// @throws Error: kInput, naming a place, for a mesh without faces, with an index out of range, a vertex
 /// that is not finite or a thousand times farther out than the rest, with lids that make up more
-/// than an eighth of a part's surface, or about which winding number and flood differ; kOperation for
-/// memory; kCancelled.
+/// than an eighth of a part's surface, about which winding number and flood differ, or with a plate or shell
+/// so thin that the grid would have holes; kOperation for memory; kCancelled.
 [[nodiscard]] LevelSet bakeMesh(const Mesh& mesh, const BakeOptions& options,
                                 const Progress& progress = {});
 

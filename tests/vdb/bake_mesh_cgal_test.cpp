@@ -1,0 +1,129 @@
+// Bands of meshes against CGAL's closest points.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "cgal/cgal_distance.h"
+#include "palpate/vdb/bake.h"
+#include "palpate/vdb/openvdb_access.h"
+#include "vdb/shapes.h"
+
+namespace palpate::vdb {
+namespace {
+
+using namespace palpate::vdb::test;  // NOLINT(google-build-using-namespace)
+
+/// Of some voxels all over a band. [voxels]
+struct Off {
+  std::uint64_t voxels = 0;
+  double worst = 0.0;   ///< of the distance
+  double nearer = 0.0;  ///< most by which a voxel is nearer to the surface than to any triangle
+  std::uint64_t farther = 0;  ///< by more than 1e-5
+  std::uint64_t wrong_sides = 0;
+};
+
+Off offOf(const LevelSet& set, const CgalDistance& exact, std::uint64_t count, bool with_sides) {
+  const double voxel = set.info().voxel_size;
+  const std::uint64_t every = std::max<std::uint64_t>(1, set.info().active_voxels / count);
+  Off off;
+  std::uint64_t n = 0;
+  for (auto at = set.impl().grid->cbeginValueOn(); at; ++at) {
+    if (n++ % every != 0) continue;
+    const openvdb::Coord c = at.getCoord();
+    const Vec3 p = Vec3(c.x(), c.y(), c.z()) * voxel;
+    const double value = static_cast<double>(*at) * 1e-3;
+    const double error = (std::abs(value) - exact.to(p)) / voxel;
+    ++off.voxels;
+    off.worst = std::max(off.worst, std::abs(error));
+    off.nearer = std::max(off.nearer, -error);
+    if (error > 1e-5) ++off.farther;
+    if (with_sides && (value < 0.0) != exact.isInside(p)) ++off.wrong_sides;
+  }
+  return off;
+}
+
+/// [m^3] Each voxel by its share: exact for planes, second order for curved faces.
+double volumeOf(const LevelSet& set) {
+  const openvdb::FloatGrid& grid = *set.impl().grid;
+  const double voxel = set.info().voxel_size;
+  double voxels = 0.0;
+  for (auto at = grid.cbeginValueAll(); at; ++at) {
+    const double share = std::clamp(0.5 - static_cast<double>(*at) * 1e-3 / voxel, 0.0, 1.0);
+    voxels += share * static_cast<double>(at.getVoxelCount());
+  }
+  return voxels * std::pow(voxel, 3.0);
+}
+
+TEST(BakeMeshCgal, BallsAreExact) {
+  const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
+  for (const int levels : slow ? std::vector<int>{5, 7, 8} : std::vector<int>{5}) {
+    const Mesh mesh = ballMesh(Vec3(0.31e-3, -0.17e-3, 0.23e-3), 50e-3, levels);
+    const CgalDistance exact(mesh);
+    for (const double resolution :
+         slow ? std::vector<double>{100.0, 200.0, 400.0} : std::vector<double>{12.0, 25.0, 50.0}) {
+      const LevelSet set = bakeMesh(mesh, voxels(50e-3 / resolution, 3.0));
+      const double worst = offOf(set, exact, slow ? 300'000 : 10'000, false).worst;
+      EXPECT_LE(worst, 1e-5) << mesh.triangles.size() << " triangles, R/h " << resolution;
+      if (slow) {
+        std::printf("%zu triangles, R/h %g: worst %.2g voxel of %llu voxels\n",
+                    mesh.triangles.size(), resolution, worst,
+                    static_cast<unsigned long long>(set.info().active_voxels));
+      }
+    }
+  }
+}
+
+struct Known {
+  const char* name;
+  double unit, voxel;  ///< [m]
+  double overlaps;     ///< share of the band that is near to walls within the solid, at most
+};
+
+class BakeMeshCgalReal : public testing::TestWithParam<Known> {};
+
+TEST_P(BakeMeshCgalReal, IsExactAndAsLargeAsItsMesh) {
+  const std::string folder = PALPATE_SOURCE_DIR "/../shared/data/meshes/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared/data is not there";
+  const Known& known = GetParam();
+  const Mesh mesh = readMesh(folder + known.name, known.unit);
+  const LevelSet set = bakeMesh(mesh, voxels(known.voxel, 3.0));
+  const CgalDistance exact(mesh);
+  const Off off = offOf(set, exact, 5000, true);
+  EXPECT_LE(off.nearer, 1e-5);
+  EXPECT_EQ(off.wrong_sides, 0U);
+  // Parts overlap in some of them: walls within the solid are gone, and what was near to those is farther
+  // from the surface than from them.
+  EXPECT_LE(static_cast<double>(off.farther), known.overlaps * static_cast<double>(off.voxels));
+  if (known.overlaps == 0.0) {
+    EXPECT_LE(off.worst, 1e-5);
+  }
+  const double volume = exact.volume(known.voxel);
+  RecordProperty("volume", std::to_string(volumeOf(set) / volume));
+  EXPECT_NEAR(volumeOf(set) / volume, 1.0, 2e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BakeMeshCgalReal,
+                         testing::Values(Known{"brain_region.stl", 1e-3, 0.25e-3, 0.0},
+                                         Known{"brain_region2.stl", 1e-3, 0.25e-3, 0.0},
+                                         Known{"footbones.ply", 10e-3, 0.3e-3, 0.1},
+                                         Known{"liver-smooth.obj", 1e-3, 0.04e-3, 0.05},
+                                         Known{"malleus.obj", 1e-3, 0.04e-3, 0.05},
+                                         Known{"tooth.obj", 1e-4, 0.3e-3, 0.5}),
+                         [](const auto& known) {
+                           std::string name = known.param.name;
+                           std::replace_if(
+                               name.begin(), name.end(),
+                               [](char c) {
+                                 return std::isalnum(static_cast<unsigned char>(c)) == 0;
+                               },
+                               '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace palpate::vdb
