@@ -3,6 +3,7 @@ find_package(benchmark QUIET)
 if(benchmark_FOUND)
   add_executable(palpate_bake_bench
     ${CMAKE_CURRENT_LIST_DIR}/bake_field_bench.cpp ${CMAKE_CURRENT_LIST_DIR}/bake_mesh_bench.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/bake_labels_bench.cpp
     ${PROJECT_SOURCE_DIR}/tests/vdb/shapes.cpp)
   set_target_properties(palpate_bake_bench PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin CXX_EXTENSIONS OFF)
