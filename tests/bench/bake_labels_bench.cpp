@@ -62,10 +62,19 @@ void topologyToLevelSet(benchmark::State& state) {
   perVoxel(state, voxels);
 }
 
-BENCHMARK(labels)->ArgNames({"radius", "threads"})->Args({25, 1})->Args({60, 1})->Args({60, 2})
-    ->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK(topologyToLevelSet)->ArgNames({"radius", "threads"})->Args({25, 1})->Args({60, 1})
-    ->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK(labels)
+    ->ArgNames({"radius", "threads"})
+    ->Args({25, 1})
+    ->Args({60, 1})
+    ->Args({60, 2})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+BENCHMARK(topologyToLevelSet)
+    ->ArgNames({"radius", "threads"})
+    ->Args({25, 1})
+    ->Args({60, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 
 }  // namespace
 }  // namespace palpate::vdb::bench

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <tuple>
 
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/scan_surface.h"
@@ -95,8 +96,9 @@ Image voxelsOf(const Shape& shape, const Mat3& axes) {
 }
 
 struct Errors {
-  double bias = 0.0;    ///< [mm] mean of the value on the true surface; positive: the grid's is inside
-  double rms = 0.0;     ///< [mm]
+  double bias =
+      0.0;           ///< [mm] mean of the value on the true surface; positive: the grid's is inside
+  double rms = 0.0;  ///< [mm]
   double normal = 0.0;  ///< [degree] RMS
   double worst = 0.0;   ///< [degree]
 };
@@ -125,8 +127,8 @@ Errors measured(const Shape& shape, const Mat3& axes, const char* voxels) {
   const Image image = voxelsOf(shape, axes);
   const FieldPtr field = gridField(surfaceFromLabels(image, {.values = {1}}, {}));
   const Errors errors = errorsOf(*field, shape);
-  std::printf("%-6s %-22s normal %.3f degree (worst %.2f), bias %+.4f mm, rms %.4f mm\n", shape.name,
-              voxels, errors.normal, errors.worst, errors.bias, errors.rms);
+  std::printf("%-6s %-22s normal %.3f degree (worst %.2f), bias %+.4f mm, rms %.4f mm\n",
+              shape.name, voxels, errors.normal, errors.worst, errors.bias, errors.rms);
   return errors;
 }
 
@@ -159,6 +161,51 @@ TEST(LabelSurface, ThickSlicesAndAnyOrientation) {
     EXPECT_LT(std::abs(turned.bias), 0.03) << shape.name;
     (void)measured(shape, awkward, "0.8 x 1.1 x 1.6 mm");
     (void)measured(shape, thick, "1 x 1 x 3 mm");
+  }
+}
+
+// A ball whose edge rises like a sigmoid 1.5 mm wide, with its own gradient of intensity: the iso-surface is
+// known, and differs from the half-way mask's.
+TEST(ThresholdSurface, IsTheIsoSurfaceOfTheImage) {
+  Mat3 thick(1.0);
+  thick[2] *= 3.0;
+  Mat3 oblique = rotationAbout(Vec3(1, 2, 3), 0.7);
+  for (const auto& [axes, name, steepest, tolerance, lean] :
+       {std::tuple(Mat3(1.0), "1 mm", 1.5, 0.005, 0.1),
+        std::tuple(oblique, "1 mm, oblique", 1.5, 0.005, 0.1),
+        std::tuple(thick, "1 x 1 x 3 mm", 3.0, 0.02, 0.6)}) {
+    const Shape shape = ballShape(kOffCenter, 22);
+    Image image = voxelsOf(shape, axes);
+    std::size_t n = 0;
+    for (int k = 0; k < image.size[2]; ++k) {
+      for (int j = 0; j < image.size[1]; ++j) {
+        for (int i = 0; i < image.size[0]; ++i, ++n) {
+          const double d = shape.distance(image.toWorld(Vec3(i, j, k)) / kMm);
+          image.values[n] = static_cast<float>(1000.0 / (1.0 + std::exp(d / steepest)) - 200.0);
+        }
+      }
+    }
+    // Where the sigmoid has 1/4: log 3 widths outside the ball.
+    const double out = steepest * std::log(3.0);
+    const FieldPtr field = gridField(surfaceFromThreshold(image, {.above = 50}, {}));
+    const Errors errors = errorsOf(*field, ballShape(kOffCenter, 22 + out));
+    std::printf("threshold %-14s normal %.4f degree (worst %.3f), bias %+.5f mm, rms %.5f mm\n",
+                name, errors.normal, errors.worst, errors.bias, errors.rms);
+    EXPECT_LT(std::abs(errors.bias), tolerance) << name;
+    EXPECT_LT(errors.rms, tolerance) << name;
+    EXPECT_LT(errors.normal, lean) << name;
+  }
+}
+
+TEST(ThresholdSurface, RefusesWhatIsNoIntensity) {
+  const Image image = voxelsOf(ballShape(kOffCenter, 5), Mat3(1.0));
+  for (const double above : {std::nan(""), kInfinity, -kInfinity}) {
+    try {
+      (void)surfaceFromThreshold(image, {.above = above}, {});
+      ADD_FAILURE() << above;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.problem().code, "scan.threshold");
+    }
   }
 }
 
@@ -253,11 +300,16 @@ void checkScan(const std::string& file, double least_voxels) {
     const LevelSet grid = surfaces.surface(n, 0.0, {});
     active += grid.info().active_voxels;
     fields[labels[n]] = gridField(grid);
-    std::size_t faces = 0;
+    std::size_t faces = 0, lost = 0, won = 0;
     for (int k = 0; k < image.size[2]; ++k) {
       for (int j = 0; j < image.size[1]; ++j) {
         for (int i = 0; i < image.size[0]; ++i) {
-          if (at(Vec3(i, j, k)) != labels[n]) continue;
+          const FieldPtr& field = fields[labels[n]];
+          const double off = field->value(image.toWorld(Vec3(i, j, k))) / field->featureSize();
+          const bool own = at(Vec3(i, j, k)) == labels[n];
+          lost += own && off > 0.3 ? 1U : 0U;
+          won += !own && off < -0.3 ? 1U : 0U;
+          if (!own) continue;
           for (int a = 0; a < 3; ++a) {
             Vec3 step(0.0);
             step[a] = 1.0;
@@ -271,9 +323,12 @@ void checkScan(const std::string& file, double least_voxels) {
     const double enclosed = volumeOf(grid);
     // Voxel faces overstate the area of a surface of all directions by 3 / 2.
     const double area = static_cast<double>(faces) / 1.5;
-    std::printf("  label %3d: %7.0f voxels, %9.1f enclosed (%+.2f %%, wall %+.3f voxel)\n",
-                labels[n], counted, enclosed, 100 * (enclosed / counted - 1),
-                (enclosed - counted) / area);
+    std::printf(
+        "  label %3d: %7.0f voxels, %9.1f enclosed (%+.2f %%, wall %+.3f voxel), centers %zu lost, "
+        "%zu won\n",
+        labels[n], counted, enclosed, 100 * (enclosed / counted - 1), (enclosed - counted) / area,
+        lost, won);
+    EXPECT_EQ(won, 0U) << labels[n];
     if (counted < least_voxels) continue;
     EXPECT_LT(std::abs(enclosed - counted), std::max(0.01 * counted, 0.05 * area)) << labels[n];
   }
@@ -281,9 +336,9 @@ void checkScan(const std::string& file, double least_voxels) {
 
   double apart = 0.0, gap = 0.0, overlap = 0.0;
   std::size_t walls = 0;
-  for (int k = 2; k + 3 < image.size[2]; ++k) {
-    for (int j = 2; j + 3 < image.size[1]; ++j) {
-      for (int i = 2; i + 3 < image.size[0]; ++i) {
+  for (int k = 3; k + 4 < image.size[2]; ++k) {
+    for (int j = 3; j + 4 < image.size[1]; ++j) {
+      for (int i = 3; i + 4 < image.size[0]; ++i) {
         for (int a = 0; a < 3; ++a) {
           Vec3 step(0.0);
           step[a] = 1.0;
@@ -292,8 +347,8 @@ void checkScan(const std::string& file, double least_voxels) {
           const int two = at(here + step);
           if (one == two || one == 0 || two == 0) continue;
           bool alone = true;
-          for (int n = 0; n < 6 * 25 && alone; ++n) {
-            const Vec3 near = here + Vec3(n / 25, n / 5 % 5, n % 5) - Vec3(2);
+          for (int n = 0; n < 8 * 49 && alone; ++n) {
+            const Vec3 near = here + Vec3(n / 49, n / 7 % 7, n % 7) - Vec3(3);
             const int third = at(near);
             alone = third == one || third == two;
           }
@@ -310,8 +365,10 @@ void checkScan(const std::string& file, double least_voxels) {
       }
     }
   }
-  std::printf("  %zu faces between two labels alone: fields differ by %.2e voxel; everywhere: gap %.3f, "
-              "overlap %.3f\n", walls, apart, gap, overlap);
+  std::printf(
+      "  %zu faces between two labels alone: fields differ by %.2e voxel; everywhere: gap %.3f, "
+      "overlap %.3f\n",
+      walls, apart, gap, overlap);
   EXPECT_LT(apart, 0.01);
 }
 

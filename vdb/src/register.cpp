@@ -209,11 +209,11 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
   summary += " of " + fileName(from.image->file->path());
   const std::size_t index = from.image->layers.size();
   from.image->layers.push_back(values);
-  return {lazyField(common, layer, std::move(summary), from.place, from.sampler,
-                    [image = from.image, index, voxel_size, bake = from.bake](
-                        const Progress& progress) {
-                      return image->surfaces().surface(index, voxel_size, bake, progress);
-                    }),
+  return {lazyField(
+              common, layer, std::move(summary), from.place, from.sampler,
+              [image = from.image, index, voxel_size, bake = from.bake](const Progress& progress) {
+                return image->surfaces().surface(index, voxel_size, bake, progress);
+              }),
           from.name};
 }
 

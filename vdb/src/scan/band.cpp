@@ -10,9 +10,10 @@
 namespace palpate::vdb {
 namespace {
 
-/// A voxel centre may lie on the surface; in a part that is thinner than three voxels it must not, lest
-/// the part vanish.
+/// A voxel centre may lie on the surface; in a part one voxel thin, and beside it, it must not, lest the part
+/// vanish or swell.
 constexpr double kHold = 0.3;
+constexpr double kBeside = 1.8;  ///< voxels that share a corner
 /// Steps by which the surface may be nearer than the nearest voxel of the other side: a smooth one by about
 /// one; and no less, or curved ones would be bent.
 constexpr double kSlack = 1.3;
@@ -114,7 +115,8 @@ class Finder {
         const int a = x + n / 9 - 1;
         const int b = y + n / 3 % 3 - 1;
         const int c = z + n % 3 - 1;
-        any = a >= 0 && b >= 0 && c >= 0 && a < tx && b < ty && c < tz && near[tableAt(a, b, c)] != 0;
+        any =
+            a >= 0 && b >= 0 && c >= 0 && a < tx && b < ty && c < tz && near[tableAt(a, b, c)] != 0;
       }
       if (!any) return;
       band_.blocks.emplace_back();
@@ -133,7 +135,8 @@ class Finder {
     for (int i = x; i < std::min(x + 8, nx); ++i) {
       for (int j = y; j < std::min(y + 8, ny); ++j) {
         for (int k = z; k < std::min(z + 8, nz); ++k) {
-          if (fillVoxel(block, bounds, {i, j, k})) block.rows |= std::uint64_t{1} << (8 * (i & 7) + (j & 7));
+          if (fillVoxel(block, bounds, {i, j, k}))
+            block.rows |= std::uint64_t{1} << (8 * (i & 7) + (j & 7));
         }
       }
     }
@@ -154,7 +157,10 @@ class Finder {
     }
     if (is_inside) size = std::min(size, borderDistance(at));
     if (!(size < kInfinity)) return false;
-    if (isThin(at, n)) lower = std::max(lower, kHold);
+    if (other != nullptr && other->steps < kBeside &&
+        (isThin(at, is_inside) || facesThin(at, is_inside))) {
+      lower = std::max(lower, kHold);
+    }
     size = std::clamp(size, lower, upper);
     const std::size_t place = Band::placeOf(at[0], at[1], at[2]);
     block.value[place] = static_cast<float>(is_inside ? -size : size);
@@ -175,18 +181,13 @@ class Finder {
         continue;
       }
       // What lies beyond the image is unknown, and no outside.
-      if (inBox(at, offset.step) && inside(n + offset.place) != is_inside) return &offset;
+      const auto& step = offset.step;
+      if (isIn({at[0] + step[0], at[1] + step[1], at[2] + step[2]}) &&
+          inside(n + offset.place) != is_inside) {
+        return &offset;
+      }
     }
     return nullptr;
-  }
-
-  [[nodiscard]] bool inBox(const std::array<int, 3>& at,
-                           const std::array<int, 3>& step) const noexcept {
-    bool in = true;
-    for (std::size_t a = 0; a < 3; ++a) {
-      in = in && at[a] + step[a] >= 0 && at[a] + step[a] < mask_.box[a];
-    }
-    return in;
   }
 
   /// To the image's border, if that is within reach. An inside voxel near the box's border is near the
@@ -201,32 +202,69 @@ class Finder {
     return nearest;
   }
 
-  /// Whether a voxel and its six neighbors are on one side; what lies beyond the image goes with it.
-  [[nodiscard]] bool isCore(const std::array<int, 3>& at, std::ptrdiff_t n) const noexcept {
-    const auto strides = mask_.strides();
-    const bool side = inside(n);
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (at[a] > 0 && inside(n - strides[a]) != side) return false;
-      if (at[a] + 1 < mask_.box[a] && inside(n + strides[a]) != side) return false;
+  /// Whether the cube of 2^3 voxels from `low` on is on one side; what lies beyond the image goes with it.
+  [[nodiscard]] bool isCube(const std::array<int, 3>& low, bool side) const noexcept {
+    for (int corner = 0; corner < 8; ++corner) {
+      const std::array<int, 3> at = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
+                                     low[2] + (corner >> 2)};
+      if (isIn(at) && inside(mask_.at(at[0], at[1], at[2])) != side) return false;
     }
     return true;
   }
 
-  /// Whether no such cross of seven voxels covers it.
-  [[nodiscard]] bool isThin(const std::array<int, 3>& at, std::ptrdiff_t n) const noexcept {
-    if (isCore(at, n)) return false;
-    const auto strides = mask_.strides();
-    const bool side = inside(n);
+  [[nodiscard]] bool isIn(const std::array<int, 3>& at) const noexcept {
+    bool in = true;
+    for (std::size_t a = 0; a < 3; ++a) in = in && at[a] >= 0 && at[a] < mask_.box[a];
+    return in;
+  }
+
+  /// Whether no such cube holds it or one of the 26 voxels around it. A lone voxel on a body is none, nor the
+  /// tip of a ball.
+  [[nodiscard]] bool isThin(const std::array<int, 3>& at, bool side) const noexcept {
+    // Nearest cubes first: nearly always one of them is whole.
+    for (const int reach : {1, 2}) {
+      for (int n = 0; n < 64; ++n) {
+        const std::array<int, 3> step = {n & 3, n >> 2 & 3, n >> 4};
+        std::array<int, 3> low{};
+        bool near = true;
+        for (std::size_t a = 0; a < 3; ++a) {
+          low[a] = at[a] + step[a] - 2;
+          near = near && (step[a] == 1 || step[a] == 2);
+        }
+        if (near != (reach == 1)) continue;
+        if (isCube(low, side) && holdsSide(low, at, side)) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Whether a thin part of the other side begins across one of its faces: held off both ways, it keeps its
+  /// volume.
+  [[nodiscard]] bool facesThin(const std::array<int, 3>& at, bool side) const noexcept {
     for (std::size_t a = 0; a < 3; ++a) {
       for (const int step : {-1, 1}) {
         std::array<int, 3> next = at;
         next[a] += step;
-        if (next[a] < 0 || next[a] >= mask_.box[a]) continue;
-        const std::ptrdiff_t m = n + step * strides[a];
-        if (inside(m) == side && isCore(next, m)) return false;
+        if (isIn(next) && inside(mask_.at(next[0], next[1], next[2])) != side &&
+            isThin(next, !side)) {
+          return true;
+        }
       }
     }
-    return true;
+    return false;
+  }
+
+  /// Whether a cube holds a voxel of that side next to `at`: not only what lies beyond the image.
+  [[nodiscard]] bool holdsSide(const std::array<int, 3>& low, const std::array<int, 3>& at,
+                               bool side) const noexcept {
+    for (int corner = 0; corner < 8; ++corner) {
+      const std::array<int, 3> voxel = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
+                                        low[2] + (corner >> 2)};
+      bool next = isIn(voxel);
+      for (std::size_t a = 0; a < 3; ++a) next = next && std::abs(voxel[a] - at[a]) <= 1;
+      if (next && inside(mask_.at(voxel[0], voxel[1], voxel[2])) == side) return true;
+    }
+    return false;
   }
 
   void dropEmpty() {
@@ -257,7 +295,8 @@ class Finder {
           at[a] = block.first[a] / 8 + step[a];
           in = in && at[a] >= 0 && at[a] < band_.table_size[a];
         }
-        block.near[static_cast<std::size_t>(n)] = in ? band_.table[tableAt(at[0], at[1], at[2])] : -1;
+        block.near[static_cast<std::size_t>(n)] =
+            in ? band_.table[tableAt(at[0], at[1], at[2])] : -1;
       }
     }
   }

@@ -33,12 +33,12 @@ struct BandBounds {
 struct Band {
   static constexpr int kReach = 5;
 
-  std::array<int, 3> first{};        ///< as in Mask
-  std::array<int, 3> box{};          ///< as in Mask
-  std::array<int, 3> table_size{};   ///< blocks along each axis
-  std::vector<std::int32_t> table;   ///< place of each block in `blocks`, or -1; first axis fastest
+  std::array<int, 3> first{};       ///< as in Mask
+  std::array<int, 3> box{};         ///< as in Mask
+  std::array<int, 3> table_size{};  ///< blocks along each axis
+  std::vector<std::int32_t> table;  ///< place of each block in `blocks`, or -1; first axis fastest
   std::vector<BandBlock> blocks;
-  std::vector<BandBounds> bounds;    ///< one for each block
+  std::vector<BandBounds> bounds;  ///< one for each block
 
   /// The block of voxel (i, j, k), or -1.
   [[nodiscard]] std::int32_t blockAt(int i, int j, int k) const noexcept {
@@ -53,7 +53,7 @@ struct Band {
 };
 
 /// From the voxel centers alone: a voxel whose nearest one on the other side is d away has a surface at
-/// most d away, and not much nearer than the step before it. Parts thinner than three voxels are held open.
+/// most d away, and not much nearer than the step before it. Parts one voxel thin are held open.
 /// `spacing` of the voxels along each axis, in steps of the smallest.
 [[nodiscard]] Band bandOf(const Mask& mask, const Vec3& spacing);
 

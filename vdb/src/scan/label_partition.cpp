@@ -95,33 +95,34 @@ MaskedBand LabelPartition::layer(std::size_t index, const Progress& progress) {
     }
   }
   const Band* const whole = others.empty() ? nullptr : &cached(all, progress)->band;
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, own.band.blocks.size()),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t b = range.begin(); b != range.end(); ++b) {
-          BandBlock& block = own.band.blocks[b];
-          for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
-            float& value = block.value[n];
-            if (std::isnan(value)) continue;
-            const auto place = static_cast<int>(n);
-            const int i = block.first[0] + (place >> 6);
-            const int j = block.first[1] + (place >> 3 & 7);
-            const int k = block.first[2] + (place & 7);
-            if (whole != nullptr) {
-              const int x = own.band.first[0] + i;
-              const int y = own.band.first[1] + j;
-              const int z = own.band.first[2] + k;
-              // What is in no layer; NaN is less than nothing.
-              float least = -whole->valueAt(x, y, z);
-              for (const Band* const other : others) least = std::fmin(least, other->valueAt(x, y, z));
-              if (!std::isnan(least)) value = 0.5F * (value - least);
-            }
-            const bool inside =
-                own.mask.inside[static_cast<std::size_t>(own.mask.at(i, j, k))] != 0;
-            value = inside ? std::min(value, -kLeastValue) : std::max(value, kLeastValue);
-          }
-        }
-      });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, own.band.blocks.size()),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t b = range.begin(); b != range.end(); ++b) {
+                        BandBlock& block = own.band.blocks[b];
+                        for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+                          float& value = block.value[n];
+                          if (std::isnan(value)) continue;
+                          const auto place = static_cast<int>(n);
+                          const int i = block.first[0] + (place >> 6);
+                          const int j = block.first[1] + (place >> 3 & 7);
+                          const int k = block.first[2] + (place & 7);
+                          if (whole != nullptr) {
+                            const int x = own.band.first[0] + i;
+                            const int y = own.band.first[1] + j;
+                            const int z = own.band.first[2] + k;
+                            // What is in no layer; NaN is less than nothing.
+                            float least = -whole->valueAt(x, y, z);
+                            for (const Band* const other : others)
+                              least = std::fmin(least, other->valueAt(x, y, z));
+                            if (!std::isnan(least)) value = 0.5F * (value - least);
+                          }
+                          const bool inside =
+                              own.mask.inside[static_cast<std::size_t>(own.mask.at(i, j, k))] != 0;
+                          value =
+                              inside ? std::min(value, -kLeastValue) : std::max(value, kLeastValue);
+                        }
+                      }
+                    });
   return own;
 }
 

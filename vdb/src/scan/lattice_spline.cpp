@@ -47,10 +47,10 @@ void mirror(const Band& band, openvdb::FloatGrid& grid) {
         for (int j = 0; j < y.count; ++j) {
           for (int k = 0; k < z.count; ++k) {
             if (i + j + k == 0) continue;
-            accessor.setValueOn(Coord(x.at[static_cast<std::size_t>(i)],
-                                      y.at[static_cast<std::size_t>(j)],
-                                      z.at[static_cast<std::size_t>(k)]),
-                                std::fabs(value));
+            accessor.setValueOn(
+                Coord(x.at[static_cast<std::size_t>(i)], y.at[static_cast<std::size_t>(j)],
+                      z.at[static_cast<std::size_t>(k)]),
+                std::fabs(value));
           }
         }
       }

@@ -35,7 +35,8 @@ class NetField final : public Field {
   [[nodiscard]] Box3 bounds() const noexcept override { return bounds_; }
   [[nodiscard]] Metric metric() const noexcept override { return Metric::kExact; }
   [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
-  [[nodiscard]] double featureSize() const noexcept override { return diagonal_; }
+  /// Parts thinner than the voxels are no reason to refuse a scan; who bakes it counts them.
+  [[nodiscard]] double featureSize() const noexcept override { return reach_; }
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;

@@ -28,8 +28,8 @@ void hessianForcePlain(const Patch& patch, std::uint64_t rows, const RelaxWeight
   hessianForceOf(patch, rows, weights, out);
 }
 
-void diffusePlain(const Patch& patch, std::uint64_t rows, int stride,
-                  const float* share, float* out) noexcept {
+void diffusePlain(const Patch& patch, std::uint64_t rows, int stride, const float* share,
+                  float* out) noexcept {
   diffuseOf(patch, rows, stride, share, out);
 }
 

@@ -44,9 +44,9 @@ void hessianForcePlain(const Patch& patch, std::uint64_t rows, const RelaxWeight
                        float* out) noexcept;
 void hessianForceAvx2(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
                       float* out) noexcept;
-void diffusePlain(const Patch& patch, std::uint64_t rows, int stride,
-                  const float* share, float* out) noexcept;
-void diffuseAvx2(const Patch& patch, std::uint64_t rows, int stride,
-                 const float* share, float* out) noexcept;
+void diffusePlain(const Patch& patch, std::uint64_t rows, int stride, const float* share,
+                  float* out) noexcept;
+void diffuseAvx2(const Patch& patch, std::uint64_t rows, int stride, const float* share,
+                 float* out) noexcept;
 
 }  // namespace palpate::vdb

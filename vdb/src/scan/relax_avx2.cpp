@@ -12,8 +12,8 @@ void hessianForceAvx2(const Patch& patch, std::uint64_t rows, const RelaxWeights
   hessianForceOf(patch, rows, weights, out);
 }
 
-void diffuseAvx2(const Patch& patch, std::uint64_t rows, int stride,
-                 const float* share, float* out) noexcept {
+void diffuseAvx2(const Patch& patch, std::uint64_t rows, int stride, const float* share,
+                 float* out) noexcept {
   diffuseOf(patch, rows, stride, share, out);
 }
 
@@ -28,8 +28,8 @@ void hessianForceAvx2(const Patch& patch, std::uint64_t rows, const RelaxWeights
   hessianForcePlain(patch, rows, weights, out);
 }
 
-void diffuseAvx2(const Patch& patch, std::uint64_t rows, int stride,
-                 const float* share, float* out) noexcept {
+void diffuseAvx2(const Patch& patch, std::uint64_t rows, int stride, const float* share,
+                 float* out) noexcept {
   diffusePlain(patch, rows, stride, share, out);
 }
 

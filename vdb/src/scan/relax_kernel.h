@@ -58,18 +58,16 @@ inline void hessianForceOf(const Patch& patch, std::uint64_t rows, const RelaxWe
   for (; rows != 0; rows &= rows - 1) {
     const int row = __builtin_ctzll(rows);
     const float* const c = rowOf(patch, row);
-    const Eight force = w.axis[0] * alongAxis(c, kStepX) +
-                        w.axis[1] * alongAxis(c, kStepY) +
-                        w.axis[2] * alongAxis(c, kStepZ) +
-                        w.plane[0] * inPlane(c, kStepY, kStepZ) +
+    const Eight force = w.axis[0] * alongAxis(c, kStepX) + w.axis[1] * alongAxis(c, kStepY) +
+                        w.axis[2] * alongAxis(c, kStepZ) + w.plane[0] * inPlane(c, kStepY, kStepZ) +
                         w.plane[1] * inPlane(c, kStepZ, kStepX) +
                         w.plane[2] * inPlane(c, kStepX, kStepY);
     __builtin_memcpy(out + 8 * row, &force, sizeof force);
   }
 }
 
-inline void diffuseOf(const Patch& patch, std::uint64_t rows, int stride,
-                      const float* share, float* out) noexcept {
+inline void diffuseOf(const Patch& patch, std::uint64_t rows, int stride, const float* share,
+                      float* out) noexcept {
   for (; rows != 0; rows &= rows - 1) {
     const int row = __builtin_ctzll(rows);
     const float* const c = rowOf(patch, row);

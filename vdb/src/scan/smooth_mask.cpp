@@ -4,9 +4,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "scan/lattice_spline.h"
 #include "scan/relax.h"
@@ -33,12 +36,17 @@ constexpr double kSamePlace = 0.75;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
+constexpr double kBySurface = 1.2;
+constexpr std::uint8_t kUnknown = 255;
+
 /// What a block has while it is worked on.
 struct Work {
   alignas(32) Values ahead;  ///< where the gradient is taken: the value and its momentum
   alignas(32) Values next;
-  alignas(32) Values step;   ///< by which the force moves each voxel
-  alignas(32) Values force;  ///< that is taken out
+  alignas(32) Values step;     ///< by which the force moves each voxel
+  alignas(32) Values force;    ///< that is taken out
+  std::array<Values, 3> foot;  ///< from a voxel to its closest point of the surface
+  std::array<std::uint8_t, BandBlock::kVoxels> round;  ///< in which that was found, or kUnknown
 };
 
 class Smoothing {
@@ -94,7 +102,8 @@ class Smoothing {
       if (from == nullptr) {
         std::fill_n(to, count, kNone);
       } else {
-        std::memcpy(to, from + Band::placeOf(x, y, z), static_cast<std::size_t>(count) * sizeof(float));
+        std::memcpy(to, from + Band::placeOf(x, y, z),
+                    static_cast<std::size_t>(count) * sizeof(float));
       }
     };
     for (int x = -Patch::kHalo; x < 8 + Patch::kHalo; ++x) {
@@ -116,7 +125,8 @@ class Smoothing {
   /// 1 / (3.5 x the diagonal): how many of the energy's squares hold each voxel.
   void findSteps(std::size_t b) noexcept {
     Patch patch;
-    gather(b, [&](std::size_t n) -> const Values& { return band_.blocks[n].value; }, patch);
+    gather(
+        b, [&](std::size_t n) -> const Values& { return band_.blocks[n].value; }, patch);
     Values& step = work_[b].step;
     step.fill(0.0F);
     for (int n = 0; n < 512; ++n) {
@@ -181,7 +191,8 @@ class Smoothing {
 
   void relaxBlock(std::size_t b, float momentum) noexcept {
     Patch patch;
-    gather(b, [&](std::size_t n) -> const Values& { return work_[n].ahead; }, patch);
+    gather(
+        b, [&](std::size_t n) -> const Values& { return work_[n].ahead; }, patch);
     alignas(32) Values force;
     BandBlock& block = band_.blocks[b];
     const BandBounds& bounds = band_.bounds[b];
@@ -200,39 +211,102 @@ class Smoothing {
     }
   }
 
-  /// Each voxel its distance to the surface that the values have now, within its bounds.
+  /// Each voxel its distance to the surface that the values have now, within its bounds. Those by the surface
+  /// find its closest point along their slope, the others from those of their neighbors, layer by layer.
   void makeDistances() {
     report(progress_, "smooth the labels", 0.4);
     const LatticeSpline spline(band_, mask_, axes_, Vec3(0.0));
     const Mat3 back = glm::transpose(glm::inverse(axes_));
     forBlocks([&](std::size_t b) {
-      Patch patch;
-      gather(b, [&](std::size_t n) -> const Values& { return band_.blocks[n].value; }, patch);
-      const BandBlock& block = band_.blocks[b];
-      const BandBounds& bounds = band_.bounds[b];
-      Values& next = work_[b].next;
-      next = block.value;
-      for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
-        if (std::isnan(block.value[n])) continue;
-        const auto place = static_cast<int>(n);
-        const int i = place >> 6;
-        const int j = place >> 3 & 7;
-        const int k = place & 7;
-        const double value = static_cast<double>(block.value[n]);
-        const Vec3 slope = back * slopeAt(patch.values + Patch::at(i, j, k));
-        const double square = glm::dot(slope, slope);
-        if (!(square > 0.0)) continue;
-        const Vec3 p = axes_ * Vec3(block.first[0] + i, block.first[1] + j, block.first[2] + k);
-        const auto foot = spline.foot(p, p - slope * (value / square));
-        if (!foot || std::abs(std::abs(foot->distance) - std::abs(value)) > kSamePlace) continue;
-        next[n] = std::clamp(std::copysign(static_cast<float>(foot->distance), block.value[n]),
-                             bounds.lower[n], bounds.upper[n]);
-      }
+      work_[b].round.fill(kUnknown);
+      work_[b].next = band_.blocks[b].value;
     });
+    for (int round = 0; round <= Band::kReach + 1; ++round) {
+      forBlocks([&](std::size_t b) {
+        Patch patch;
+        if (round == 0) {
+          gather(
+              b, [&](std::size_t n) -> const Values& { return band_.blocks[n].value; }, patch);
+        }
+        const BandBlock& block = band_.blocks[b];
+        for (int n = 0; n < 512; ++n) {
+          const auto place = static_cast<std::size_t>(n);
+          const auto value = static_cast<double>(block.value[place]);
+          if (std::isnan(value) || work_[b].round[place] != kUnknown) continue;
+          const Vec3 p = positionOf(block, n);
+          Vec3 start(0.0);
+          if (round == 0) {
+            if (!(std::abs(value) < kBySurface)) continue;
+            const Vec3 slope = back * slopeAt(patch.values + Patch::at(n >> 6, n >> 3 & 7, n & 7));
+            const double square = glm::dot(slope, slope);
+            if (!(square > 0.0)) continue;
+            start = p - slope * (value / square);
+          } else if (!nearestFoot(block, n, round, p, start)) {
+            continue;
+          }
+          takeFoot(b, place, round, spline.foot(p, start), p);
+        }
+      });
+    }
     forBlocks([&](std::size_t b) {
       band_.blocks[b].value = work_[b].next;
       work_[b].ahead = work_[b].next;
     });
+  }
+
+  [[nodiscard]] Vec3 positionOf(const BandBlock& block, int n) const noexcept {
+    return axes_ *
+           Vec3(block.first[0] + (n >> 6), block.first[1] + (n >> 3 & 7), block.first[2] + (n & 7));
+  }
+
+  void takeFoot(std::size_t b, std::size_t place, int round,
+                const std::optional<LatticeSpline::Foot>& foot, const Vec3& p) noexcept {
+    if (!foot) return;
+    Work& work = work_[b];
+    const float value = band_.blocks[b].value[place];
+    if (std::abs(std::abs(foot->distance) - static_cast<double>(std::fabs(value))) >
+        kSamePlace * std::max(1.0, 0.5 * std::abs(foot->distance))) {
+      return;
+    }
+    const Vec3 offset = foot->point - p;
+    for (int a = 0; a < 3; ++a) {
+      work.foot[static_cast<std::size_t>(a)][place] = static_cast<float>(offset[a]);
+    }
+    std::atomic_ref<std::uint8_t>(work.round[place])
+        .store(static_cast<std::uint8_t>(round), std::memory_order_relaxed);
+    const BandBounds& bounds = band_.bounds[b];
+    work.next[place] = std::clamp(std::copysign(static_cast<float>(foot->distance), value),
+                                  bounds.lower[place], bounds.upper[place]);
+  }
+
+  /// The nearest of the closest points that neighbors found in rounds before.
+  [[nodiscard]] bool nearestFoot(const BandBlock& block, int n, int round, const Vec3& p,
+                                 Vec3& nearest) noexcept {
+    double best = kInfinity;
+    for (int step = 0; step < 27; ++step) {
+      const int i = (n >> 6) + step / 9 - 1;
+      const int j = (n >> 3 & 7) + step / 3 % 3 - 1;
+      const int k = (n & 7) + step % 3 - 1;
+      const auto side = [](int x) { return x < 0 ? 0 : x > 7 ? 2 : 1; };
+      const std::int32_t b =
+          block.near[static_cast<std::size_t>(9 * side(i) + 3 * side(j) + side(k))];
+      if (b < 0) continue;
+      Work& work = work_[static_cast<std::size_t>(b)];
+      const std::size_t place = Band::placeOf(i, j, k);
+      // Others may be writing this round's number there; kUnknown is the largest.
+      const std::atomic_ref<std::uint8_t> found(work.round[place]);
+      if (found.load(std::memory_order_relaxed) >= round) continue;
+      const Vec3 offset(work.foot[0][place], work.foot[1][place], work.foot[2][place]);
+      const Vec3 foot =
+          positionOf(band_.blocks[static_cast<std::size_t>(b)], static_cast<int>(place)) + offset;
+      const Vec3 apart = foot - p;
+      const double square = glm::dot(apart, apart);
+      if (square < best) {
+        best = square;
+        nearest = foot;
+      }
+    }
+    return best < kInfinity;
   }
 
   /// By the voxels around, one-sided at the band's edge.
@@ -254,7 +328,8 @@ class Smoothing {
   void takeOutForces() {
     forBlocks([&](std::size_t b) {
       Patch patch;
-      gather(b, [&](std::size_t n) -> const Values& { return work_[n].ahead; }, patch);
+      gather(
+          b, [&](std::size_t n) -> const Values& { return work_[n].ahead; }, patch);
       BandBlock& block = band_.blocks[b];
       Work& work = work_[b];
       work.force.fill(0.0F);
@@ -279,9 +354,12 @@ class Smoothing {
       const int stride = step < kDiffuseNear ? 1 : 2;
       forBlocks([&](std::size_t b) {
         Patch patch;
-        gather(b, [&](std::size_t n) -> const Values& {
-          return step % 2 == 0 ? work_[n].next : work_[n].ahead;
-        }, patch);
+        gather(
+            b,
+            [&](std::size_t n) -> const Values& {
+              return step % 2 == 0 ? work_[n].next : work_[n].ahead;
+            },
+            patch);
         Values& to = step % 2 == 0 ? work_[b].ahead : work_[b].next;
         to.fill(kNone);
         diffuse(patch, band_.blocks[b].rows, stride, share, to.data());
