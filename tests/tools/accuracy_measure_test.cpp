@@ -11,25 +11,18 @@
 #include "palpate/fields/csg.h"
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
+#include "support/implicit_ellipsoid.h"
 
 namespace palpate::tools {
 namespace {
+
+using testing::implicitEllipsoid;
 
 constexpr double kVoxel = 0.5e-3;
 const Vec3 kCenter(0.3e-3, -0.2e-3, 0.1e-3);
 
 PointSet aroundTheBall(std::size_t count, double radius = 10e-3) {
   return pointsNear(Truth(sphere(kCenter, radius)), kVoxel, count, kVoxel);
-}
-
-/// An ellipsoid as a polynomial, not a distance: its exact distance is ellipsoid()'s.
-FieldPtr implicitEllipsoid(const Vec3& radii) {
-  QuadricCoefficients c;
-  c.xx = 1.0 / (radii.x * radii.x);
-  c.yy = 1.0 / (radii.y * radii.y);
-  c.zz = 1.0 / (radii.z * radii.z);
-  c.constant = -1.0;
-  return quadric(kCenter, c);
 }
 
 TEST(AccuracyMeasure, AFieldAgainstItselfHasNoError) {
@@ -76,7 +69,7 @@ TEST(AccuracyMeasure, ABentSurfaceShowsItsCurvature) {
 }
 
 TEST(AccuracyMeasure, ImplicitValuesAreDividedByTheirSlopeIfAsked) {
-  const FieldPtr ball = implicitEllipsoid(Vec3(10e-3));
+  const FieldPtr ball = implicitEllipsoid(kCenter, Vec3(10e-3));
   const PointSet set = pointsNear(Truth(ball), 0.1e-3, 500, 0.1e-3);
   // To second order S / |grad S| of (r / R)^2 - 1 is off by d^2 / (2 R).
   const Errors errors = errorsAt(*ball, set.points, true, ValueIs::kOverSlope);
@@ -134,7 +127,7 @@ TEST(AccuracyPoints, StrokesFollowTheSurfaceStepByStep) {
 TEST(AccuracyTruth, TheFootOfAnImplicitFieldIsItsNearestPoint) {
   const Vec3 radii(9e-3, 6e-3, 7e-3);
   const FieldPtr exact = ellipsoid(kCenter, radii);
-  const Truth truth(implicitEllipsoid(radii));
+  const Truth truth(implicitEllipsoid(kCenter, radii));
   EXPECT_TRUE(truth.projects());
   const PointSet set = pointsNear(Truth(exact), 2e-3, 2000, 0.1e-3);
   for (const JudgedPoint& point : set.points) {

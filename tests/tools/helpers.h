@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -23,6 +24,20 @@ inline Json parseOnly(const CommandResult& result) {
   Json json = Json::parse(result.out, nullptr, false);
   EXPECT_TRUE(json.is_object()) << "stdout is not one JSON object:\n" << result.out << result.err;
   return json.is_object() ? json : Json::object();
+}
+
+/// Runs `palpate ARGUMENTS...` in `folder` and sends it `signal` as soon as it talks; it must end as
+/// interrupted.
+inline CommandResult runInterrupted(const std::vector<std::string>& arguments,
+                                    const std::string& folder, int signal = SIGTERM) {
+  bool sent = false;
+  CommandResult result = runPalpate(arguments, folder, [&](std::string_view, pid_t process) {
+    if (!sent) kill(process, signal);
+    sent = true;
+  });
+  EXPECT_TRUE(sent) << "it was over before it said anything";
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  return result;
 }
 
 inline std::string textOf(const std::string& path) {

@@ -1,8 +1,11 @@
 // palpate info, query, explain and render: what they say about known things.
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "tools/helpers.h"
+#include "tools/png_pixels.h"
 #include "vdb/nifti_writer.h"
 
 namespace palpate::testing {
@@ -211,6 +214,56 @@ TEST(Render, APictureOfTheSizeAskedFor) {
 
   EXPECT_EQ(runPalpate({"render", scene, "-o", out}).exit_code, 1);  // it exists
   EXPECT_EQ(textOf(out), png);
+}
+
+TEST(Render, SheetsStandInSpace) {
+  // A plate without thickness above a slab, behind the cut: the section does not meet it.
+  const auto scene = [](const std::string& sheets) {
+    return "palpate: 1\nlength: mm\nfields:\n"
+           "  plate: {half_space: {point: [0, 20, 0], normal: [0, 1, 0]}}\n"
+           "  around: {sphere: {center: [0, 20, 20], radius: 12}}\n"
+           "materials: {skin: {stiffness: 100 N/m}}\n"
+           "layers:\n"
+           "  - {name: slab, inside: {box: {center: [0, 0, -10], size: [80, 80, 10]}}}\n"
+           "  - {name: post, inside: {box: {center: [38, 38, 20], size: [2, 2, 50]}}}\n" +
+           sheets;
+  };
+  const TempFolder folder;
+  const auto drawn = [&](const std::string& name, const std::string& sheets) {
+    (void)folder.file(name + ".yaml", scene(sheets));
+    const CommandResult result = runPalpate(
+        {"render", name + ".yaml", "-o", name + ".png", "--plane", "y=-10", "--size", "800x500"},
+        folder.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return pixelsOf(textOf(folder.path(name + ".png")));
+  };
+  const Pixels without = drawn("s", "");
+  const Pixels with = drawn("t", "sheets: [{name: flag, on: plate, where: around, wall: skin}]\n");
+  ASSERT_EQ(with.width, 800U);
+  ASSERT_EQ(with.colors.size(), without.colors.size());
+  std::size_t changed = 0;
+  std::size_t lo_x = with.width, hi_x = 0, lo_y = with.height, hi_y = 0;
+  // Below the titles, which hold the file's name, and left of the post, whose edges may be found elsewhere by a
+  // share of a pixel.
+  for (std::size_t y = 60; y < with.height; ++y) {
+    for (std::size_t x = 0; x < with.width - 50; ++x) {
+      // More than by where along its ray a surface was found.
+      if (std::abs(with.at(x, y)[0] - without.at(x, y)[0]) < 40) continue;
+      ++changed;
+      lo_x = std::min(lo_x, x);
+      hi_x = std::max(hi_x, x);
+      lo_y = std::min(lo_y, y);
+      hi_y = std::max(hi_y, y);
+    }
+  }
+  // A disk of 24 mm, seen from the side by 35 degrees and from above by 24: an ellipse of which three quarters
+  // of its box are full; all in the right part, where the scene stands in space.
+  ASSERT_GT(changed, 1000U);
+  EXPECT_GT(lo_x, 500U);
+  const double width = static_cast<double>(hi_x - lo_x + 1);
+  const double height = static_cast<double>(hi_y - lo_y + 1);
+  EXPECT_NEAR(width / height, 0.86, 0.1);
+  EXPECT_NEAR(static_cast<double>(changed) / (width * height), 0.77, 0.06);
 }
 
 TEST(Render, CutsAlongTheTrace) {

@@ -1,5 +1,5 @@
 // Bricks against a plain evaluation of the same spline, on noise: a voxel that is taken from a wrong place
-// shows at once. And what holds at borders, in every instruction set, from several threads.
+// shows at once. And what holds at borders.
 
 #include "brick/bricks.h"
 
@@ -7,17 +7,11 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <limits>
-#include <thread>
-#include <vector>
 
 #include "brick/brick_field.h"
-#include "palpate/fields/primitives.h"
-#include "palpate/vdb/openvdb_access.h"
+#include "palpate/core/error.h"
 #include "support/field_contract.h"
-#include "vdb/shapes.h"
+#include "vdb/noise_grid.h"
 
 namespace palpate::vdb {
 namespace {
@@ -26,37 +20,7 @@ using namespace palpate::vdb::test;  // NOLINT(google-build-using-namespace)
 using openvdb::Coord;
 using palpate::test::Random;
 
-constexpr double kVoxel = 0.5e-3;  // [m]
-
-/// [voxels] One number for each voxel, from -3 to 3.
-double noise(int x, int y, int z) {
-  std::uint64_t bits = 0x9E3779B97F4A7C15ULL;
-  for (const int i : {x, y, z}) {
-    bits = (bits ^ static_cast<std::uint32_t>(i)) * 0xBF58476D1CE4E5B9ULL;
-    bits ^= bits >> 29;
-  }
-  const double share = static_cast<double>(bits >> 40) / static_cast<double>(1 << 24);
-  return static_cast<float>((6.0 * share - 3.0) * kVoxel * 1e3) / (kVoxel * 1e3);
-}
-
-/// Noise in cubes of 2 * `half` voxels about `centers`; nothing elsewhere.
-LevelSet noiseGrid(const std::vector<Coord>& centers, int half) {
-  initializeOpenVdb();
-  auto grid = openvdb::FloatGrid::create(static_cast<float>(6.0 * kVoxel * 1e3));
-  grid->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel * 1e3));
-  auto accessor = grid->getAccessor();
-  for (const Coord& center : centers) {
-    for (int x = -half; x < half; ++x) {
-      for (int y = -half; y < half; ++y) {
-        for (int z = -half; z < half; ++z) {
-          const Coord at = center.offsetBy(x, y, z);
-          accessor.setValue(at, static_cast<float>(noise(at.x(), at.y(), at.z()) * kVoxel * 1e3));
-        }
-      }
-    }
-  }
-  return makeLevelSet(grid, "mm");
-}
+constexpr double kVoxel = kNoiseVoxel;
 
 /// The coefficient of one voxel as the formula in prefilter.h has it, term by term.
 double coefficient(const Coord& at) {
@@ -130,12 +94,6 @@ void expectIsSpline(const Field& field, const Vec3& q) {
       ASSERT_NEAR(jet.hessian[a][b] * kVoxel, spline(q, twice), 8.0 * kRounding) << a << b;
     }
   }
-}
-
-std::vector<InstructionSet> instructionSets() {
-  std::vector<InstructionSet> sets{InstructionSet::kBase};
-  if (isSupported(InstructionSet::kAvx2)) sets.push_back(InstructionSet::kAvx2);
-  return sets;
 }
 
 TEST(Bricks, AreTheSplineOfTheirFormulaInEveryInstructionSet) {
@@ -242,127 +200,6 @@ TEST(Bricks, AreKnownWhereAllVoxelsAre) {
   }
   EXPECT_GT(in, 1000);
   EXPECT_GT(out, 1000);
-}
-
-/// |value| and its sign against the true distance, at the rim of the band, beyond it and deep inside.
-TEST(Bricks, OutOfTheBandTheyBoundTheDistance) {
-  const std::vector<FieldPtr> shapes{sphere(Vec3(0.0), 12e-3), torus(10e-3, 4.5e-3),
-                                     box(Vec3(0.0), Vec3(20e-3, 13e-3, 14e-3))};
-  for (const FieldPtr& exact : shapes) {
-    const FieldPtr grid = gridField(bake(*exact, voxels(kVoxel, 6.0)));
-    // The spline without a prefilter, where the band ends, is off by voxel^2 / 6 of the second
-    // derivatives, 2 / distance in all, and reaches 3.5 voxels.
-    const double slack = kVoxel / 3.0 / 2.5;
-    Random random(9);
-    int in = 0, out = 0, deep = 0;
-    for (int i = 0; i < 60000; ++i) {
-      const Vec3 p = random.in(exact->bounds().grownBy((i % 10 + 1) * 1e-3));
-      const double distance = exact->value(p);
-      const FieldSample sample = grid->sample(p);
-      if (std::abs(distance) > 0.3 * kVoxel) {
-        ASSERT_EQ(std::signbit(sample.value), std::signbit(distance)) << distance;
-      }
-      // The farthest voxel that a sample needs is (3, 2, 2) off: 4.12.
-      if (std::abs(distance) < 1.87 * kVoxel) {
-        ASSERT_TRUE(sample.in_band) << distance;
-      }
-      if (std::abs(distance) > 6.0 * kVoxel) {
-        ASSERT_FALSE(sample.in_band) << distance;
-      }
-      ++(sample.in_band ? in : out);
-      if (sample.in_band) continue;
-      ASSERT_EQ(sample.gradient, Vec3(0.0));
-      ASSERT_LE(std::abs(sample.value), std::abs(distance) + slack);
-      ASSERT_GE(std::abs(sample.value), 1.5 * kVoxel);
-      deep += distance < -6.0 * kVoxel ? 1 : 0;
-    }
-    EXPECT_GT(in, 1000);
-    EXPECT_GT(out, 1000);
-    EXPECT_GT(deep, 100);
-  }
-}
-
-TEST(Bricks, AllInstructionSetsAgree) {
-  const LevelSet grid = noiseGrid({Coord(0)}, 14);
-  for (const Sampler sampler : {Sampler::kCubic, Sampler::kTrilinear}) {
-    const BrickField base(grid, sampler, InstructionSet::kBase);
-    for (const InstructionSet set : instructionSets()) {
-      const BrickField other(grid, sampler, set);
-      Random random(7);
-      for (int i = 0; i < 2000; ++i) {
-        const Vec3 p = kVoxel * random.in({Vec3(-25.0), Vec3(25.0)});
-        const FieldJet a = base.jet(p);
-        const FieldJet b = other.jet(p);
-        ASSERT_EQ(a.in_band, b.in_band);
-        ASSERT_NEAR(a.value / kVoxel, b.value / kVoxel, 1e-12);  // sums of 64 doubles
-        ASSERT_LE(glm::distance(a.gradient, b.gradient), 1e-12);
-        ASSERT_NEAR(other.sample(p).value / kVoxel, b.value / kVoxel, 1e-13);
-        if (sampler == Sampler::kTrilinear) continue;  // its Hessian is a difference of gradients
-        for (int n = 0; n < 3; ++n) {
-          ASSERT_LE(glm::distance(a.hessian[n], b.hessian[n]) * kVoxel, 1e-12);
-        }
-      }
-    }
-  }
-}
-
-TEST(Bricks, TheEnvironmentChoosesTheInstructionSet) {
-  ASSERT_EQ(setenv("PALPATE_INSTRUCTION_SET", "base", 1), 0);
-  EXPECT_EQ(chosenInstructionSet(), InstructionSet::kBase);
-  ASSERT_EQ(setenv("PALPATE_INSTRUCTION_SET", "sse9", 1), 0);
-  try {
-    static_cast<void>(chosenInstructionSet());
-    ADD_FAILURE();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.problem().code, "bricks.instruction_set");
-    EXPECT_NE(error.problem().message.find("sse9"), std::string::npos);
-  }
-  ASSERT_EQ(unsetenv("PALPATE_INSTRUCTION_SET"), 0);
-  EXPECT_EQ(chosenInstructionSet() == InstructionSet::kAvx2, isSupported(InstructionSet::kAvx2));
-}
-
-TEST(Bricks, NumbersOfAllSizesAreHarmless) {
-  const FieldPtr field = gridField(bake(*sphere(Vec3(0.0), 10e-3), voxels(kVoxel)));
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  for (const double x : {kNan, kInfinity, -kInfinity}) {
-    for (int a = 0; a < 3; ++a) {
-      Vec3 p(1e-3);
-      p[a] = x;
-      const FieldSample sample = field->sample(p);
-      EXPECT_FALSE(std::isfinite(sample.value));
-      EXPECT_FALSE(sample.in_band);
-      EXPECT_EQ(sample.gradient, Vec3(0.0));
-      EXPECT_FALSE(field->jet(p).in_band);
-    }
-  }
-  for (const double x : {0.05, 1.0, 1e3, 1e9, 3e9, 1e18, 1e300}) {
-    for (const double sign : {-1.0, 1.0}) {
-      const FieldSample sample = field->sample(Vec3(0.0, sign * x, 0.0));
-      EXPECT_FALSE(sample.in_band);
-      EXPECT_LE(sample.value, x - 10e-3);
-      EXPECT_GE(sample.value, (x - 18e-3) * (1.0 - 1e-12));
-    }
-  }
-}
-
-TEST(Bricks, TwoThreadsGetWhatOneGets) {
-  const FieldPtr field = gridField(bake(*torus(10e-3, 4e-3), voxels(kVoxel)));
-  std::vector<Vec3> points;
-  Random random(8);
-  for (int i = 0; i < 20000; ++i) points.push_back(random.in(field->bounds().grownBy(3e-3)));
-  const auto run = [&](std::vector<double>& values) {
-    for (const Vec3& p : points) values.push_back(field->sample(p).value + field->jet(p).value);
-  };
-  std::vector<double> alone;
-  std::array<std::vector<double>, 2> together;
-  run(alone);
-  std::thread first([&] { run(together[0]); });
-  std::thread second([&] { run(together[1]); });
-  first.join();
-  second.join();
-  EXPECT_EQ(alone, together[0]);
-  EXPECT_EQ(alone, together[1]);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -291,6 +292,73 @@ TEST(Hybrid, APartIsBakedOnceInItsOwnFrameAndWhatDidNotChangeStaysTheSameObject)
                 1e-12);
   }
   EXPECT_EQ(made(plain, 0.5 * kMm, Parts::kOperands).field, plain);
+}
+
+TEST(Hybrid, ABallThatTouchesItsBoundsIsHeldByAGrid) {
+  const FieldPtr ball = metaballs({{Vec3(0.31 * kMm), 0.012, 1.0}}, FallOff::kWyvill, 0.4);
+  const Hybrid hybrid = made(ball, 0.5 * kMm, Parts::kOperands);
+  ASSERT_EQ(hybrid.parts.size(), 1U);
+  EXPECT_TRUE(hybrid.parts[0].grid) << hybrid.parts[0].reason;
+  EXPECT_LT(hybrid.parts[0].turn, 0.1) << hybrid.parts[0].reason;
+}
+
+TEST(Hybrid, WhatIsToStayStays) {
+  const FieldPtr drop = test::implicitBall(0.012);
+  const FieldPtr other = place(drop, {Mat3(1.0), Vec3(0.03, 0.0, 0.0)});
+  const FieldPtr third = test::implicitBall(0.011);
+  HybridOptions options;
+  options.bake = test::voxels(kMm);
+  options.parts = Parts::kOperands;
+  options.keep = {unite({other, box(Vec3(0.0), Vec3(kMm))})};  // all that is in it
+  const Hybrid hybrid =
+      bakeHybrid(unite({drop, place(third, {Mat3(1.0), Vec3(0.0, 0.03, 0.0)})}), options);
+  ASSERT_EQ(hybrid.parts.size(), 2U);
+  EXPECT_FALSE(hybrid.parts[0].grid) << hybrid.parts[0].reason;
+  EXPECT_TRUE(hybrid.parts[1].grid) << hybrid.parts[1].reason;
+  EXPECT_EQ(hybrid.field->structure().operands[0], drop);
+}
+
+TEST(Hybrid, GridsMadeOnceTakeTheirPlacesAgain) {
+  const auto tree = [](double period) {
+    return subtract({intersect({turnedBox(), gyroid(Vec3(0.0), period)}),
+                     place(test::implicitBall(8 * kMm), kTurned)});
+  };
+  const FieldPtr field = tree(30 * kMm);
+  const Hybrid hybrid = made(field, 1 * kMm, Parts::kOperands);
+  std::map<std::string, LevelSet> grids;
+  for (const HybridPart& part : hybrid.parts) {
+    if (!part.grid) continue;
+    EXPECT_EQ(part.grid.info().name, "surface/" + part.name);
+    EXPECT_EQ(part.grid.info().metadata.at("part"), part.name);
+    grids[part.name] = part.grid;
+  }
+  ASSERT_EQ(grids.size(), 2U);
+  // The ball lies in a frame of its own.
+  EXPECT_EQ(grids.rbegin()->second.info().metadata.at("frame"), "part");
+  EXPECT_EQ(grids.begin()->second.info().metadata.at("frame"), "world");
+  const FieldPtr again = recombined(field, grids, Sampler::kCubic);
+  Scattered points;
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 p = points.in(kHalf * 1.2);
+    const FieldSample a = hybrid.field->sample(p);
+    const FieldSample b = again->sample(p);
+    ASSERT_EQ(a.value, b.value);
+    ASSERT_EQ(a.gradient, b.gradient);
+  }
+  EXPECT_EQ(recombined(field, {}, Sampler::kCubic), field);
+
+  const auto expectOther = [](const FieldPtr& of, const std::map<std::string, LevelSet>& these,
+                              const std::string& says) {
+    try {
+      (void)recombined(of, these, Sampler::kCubic);
+      ADD_FAILURE() << "taken without complaint";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.problem().code, "bake.other_field");
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+  };
+  expectOther(tree(30.3 * kMm), grids, "is off its part");
+  expectOther(turnedBox(), grids, "the field lacks");
 }
 
 TEST(Hybrid, WhatAGridCannotHoldStaysAnalyticAndSaysWhy) {

@@ -1,9 +1,15 @@
 // `baked` in scene files: what is made when, what is told, ports on its faces, and where errors point.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "palpate/core/error.h"
 #include "palpate/scene/scene.h"
+#include "palpate/vdb/hybrid.h"
+#include "palpate/vdb/io.h"
 #include "palpate/vdb/register.h"
+#include "support/temp_file.h"
+#include "vdb/shapes.h"
 
 namespace palpate::vdb {
 namespace {
@@ -117,6 +123,54 @@ TEST_F(SceneBaked, ErrorsPointAtWhatIsWrong) {
   expectError("  b: {baked: {field: wave}}\n" + kWave, "bake.unbounded", 4, 14, "voxel");
   expectError("  b: {baked: {field: wave, voxel: 1, parts: whole}}\n" + kWave, "bake.unbounded", 4,
               14, "analytic");
+}
+
+TEST_F(SceneBaked, GridsOfAFileTakeTheirPlaces) {
+  const palpate::testing::TempFolder folder;
+  const std::string foam = "{intersection: [block, wave]}";
+  HybridOptions options;
+  options.bake = test::voxels(0.5 * kMm);
+  options.bake.name = "foam/surface";
+  options.parts = Parts::kOperands;
+  const auto field = [&](const std::string& body) {
+    return readScene(folder.file("s.yaml", "palpate: 1\nlength: mm\nfields:\n" + body), registry_)
+        .fields[0]
+        .source->get();
+  };
+  const Hybrid hybrid = bakeHybrid(field("  foam: " + foam + "\n" + kBlock + kWave), options);
+  std::vector<LevelSet> grids;
+  for (const HybridPart& part : hybrid.parts) {
+    if (part.grid) grids.push_back(part.grid);
+  }
+  writeVdb(folder.path("g.vdb"), grids, true);
+  const auto saved = [&](const std::string& keys) {
+    return "  b: {baked: {field: " + foam + ", file: g.vdb" + keys + "}}\n" + kBlock + kWave;
+  };
+  grids_.clear();
+  const FieldPtr made = field(saved(", name: foam/surface"));
+  ASSERT_EQ(grids_.size(), 1U);
+  EXPECT_EQ(grids_[0].what, "baked field in line 4, part 2");
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p = Vec3(11.0 * std::sin(1.7 * i), 11.0 * std::sin(2.3 * i), 0.03 * i - 7) * kMm;
+    // Voxels are written in mm, as floats, and read back as they were.
+    EXPECT_EQ(made->value(p), hybrid.field->value(p));
+  }
+  const auto expectRefused = [&](const std::string& body, const std::string& code,
+                                 const std::string& says) {
+    try {
+      (void)field(body);
+      ADD_FAILURE() << "read without complaint:\n" << body;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.problem().code, code) << error.what();
+      EXPECT_EQ(error.problem().line, 4) << error.what();
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+  };
+  expectRefused(saved(""), "bake.no_parts", "baked");
+  expectRefused(saved(", name: foam/surface, voxel: 1"), "scene.range", "leave out voxel");
+  expectRefused("  b: {baked: {field: block, file: no.vdb}}\n" + kBlock, "scene.no_file", "no.vdb");
+  expectRefused("  b: {baked: {field: block, file: g.vdb, name: foam/surface}}\n" + kBlock,
+                "bake.other_field", "bake again");
 }
 
 TEST_F(SceneBaked, FieldsInItCountAsNested) {

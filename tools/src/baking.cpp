@@ -4,6 +4,7 @@
 #include <chrono>
 #include <set>
 
+#include "grid_baking.h"
 #include "input_kind.h"
 #include "loaded_scene.h"
 #include "palpate/scene/scene_file.h"
@@ -11,55 +12,22 @@
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
+#include "scene_baking.h"
 #include "text.h"
 
 namespace palpate::tools {
 namespace {
 
-constexpr double kDefaultVoxelsPerSide = 128.0;
-
 using Clock = std::chrono::steady_clock;
-
-Error usageError(std::string message, std::string hint = {}) {
-  return Error(ErrorKind::kUsage, {"usage.bake", std::move(message), std::move(hint)});
-}
 
 /// Options that make no sense for this kind of input are refused, not ignored.
 void refuse(bool given, const char* option, const char* applies_to) {
-  if (given) throw usageError(std::string(option) + " applies to " + applies_to);
+  if (given) throw bakeUsageError(std::string(option) + " applies to " + applies_to);
 }
 
 void refuseMeshOptions(const BakeOptions& options) {
   refuse(!options.sign.empty(), "--sign", "meshes");
   refuse(!options.shell.empty(), "--shell", "meshes");
-}
-
-/// --voxel [m], or 0 if it was not given. @throws Error (kUsage).
-double askedVoxel(const BakeOptions& options, const LengthUnit& unit) {
-  if (options.voxel.empty()) return 0.0;
-  const double voxel = parseLength(options.voxel, unit, "--voxel");
-  if (!(voxel > 0.0)) throw usageError("--voxel must be greater than 0");
-  return voxel;
-}
-
-double defaultVoxel(const LengthUnit& unit, const Box3& bounds, const std::string& what,
-                    Console& console) {
-  const Vec3 size = bounds.size();
-  const double voxel = std::max({size.x, size.y, size.z}) / kDefaultVoxelsPerSide;
-  console.note(what + ": voxels of " + formatNumber(voxel / unit.metres, 3) + " " + unit.name +
-               ", 1/128 of the longest side; --voxel says otherwise");
-  return voxel;
-}
-
-vdb::BakeOptions bakeOptions(const BakeOptions& options, const std::string& layer, double voxel,
-                             const std::string& unit, const std::string& source) {
-  vdb::BakeOptions bake;
-  bake.voxel_size = voxel;
-  bake.half_width = options.half_width;
-  bake.name = layer + "/surface";
-  bake.length_unit = unit;
-  bake.metadata = {{"layer", layer}, {"source", source}};
-  return bake;
 }
 
 template <class Make>
@@ -74,16 +42,13 @@ BakedGrid timed(Make&& make) {
 /// The description without what the layers asked for do not depend on. Labels of one image share it, so they
 /// stay together; nothing is entered, so ports and walls go.
 SceneDescription neededFor(const BakeOptions& options, SceneDescription description) {
-  const auto wanted = [&](const LayerDescription& layer) {
-    return options.layers.empty() || std::find(options.layers.begin(), options.layers.end(),
-                                               layer.name) != options.layers.end();
-  };
   std::set<std::string> groups;
   for (const auto& layer : description.layers) {
-    if (wanted(layer) && !layer.label_group.empty()) groups.insert(layer.label_group);
+    if (isAskedFor(options, layer.name) && !layer.label_group.empty())
+      groups.insert(layer.label_group);
   }
   std::erase_if(description.layers, [&](const LayerDescription& layer) {
-    return !wanted(layer) && !groups.contains(layer.label_group);
+    return !isAskedFor(options, layer.name) && !groups.contains(layer.label_group);
   });
   description.ports.clear();
   description.walls.clear();
@@ -92,38 +57,16 @@ SceneDescription neededFor(const BakeOptions& options, SceneDescription descript
 }
 
 std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
-  refuse(!options.units.empty(), "--units", "meshes; a scene names its unit");
-  refuseMeshOptions(options);
-  refuse(options.above.has_value(), "--above", "images");
-  refuse(!options.labels.empty(), "--labels", "images");
   LoadedScene loaded(options.input, console);
   const SceneDescription& description = loaded.description();
-  std::vector<std::string_view> names;
-  for (const auto& layer : description.layers) names.push_back(layer.name);
-  for (const std::string& wanted : options.layers) {
-    if (std::find(names.begin(), names.end(), wanted) != names.end()) continue;
-    const std::string close = suggest(wanted, names);
-    throw inputError(
-        "scene.unknown_layer", "there is no layer '" + wanted + "'",
-        close.empty() ? "palpate info names the layers" : "did you mean '" + close + "'?",
-        options.input);
-  }
+  checkSceneOptions(options, description);
   const LengthUnit unit = loaded.unit();
   const double asked = askedVoxel(options, unit);
   const ScenePtr scene = palpate::compile(neededFor(options, description), console.progress());
   std::vector<BakedGrid> grids;
   for (const Region& region : scene->regions()) {
-    if (!region.field) continue;
-    if (!options.layers.empty() && std::find(options.layers.begin(), options.layers.end(),
-                                             region.name) == options.layers.end()) {
-      continue;
-    }
-    if (!region.field->bounds().isBounded()) {
-      throw inputError("bake.unbounded", "layer '" + region.name + "' reaches to infinity",
-                       "bake the others with --layer, or cut it in the scene: inside: "
-                       "{intersection: [it, a box]}",
-                       options.input);
-    }
+    if (!region.field || !isAskedFor(options, region.name)) continue;
+    requireBounds(*region.field, region.name, options.input);
     const std::string source =
         region.source.empty() ? options.input : options.input + ": " + region.source;
     grids.push_back(timed([&] {
@@ -132,16 +75,17 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
                            : !region.source.empty() ? region.field->featureSize()
                                                     : defaultVoxel(unit, region.field->bounds(),
                                                                    "layer " + region.name, console);
-      return vdb::bake(*region.field, bakeOptions(options, region.name, voxel, unit.name, source),
+      return vdb::bake(*region.field, gridOptions(options, region.name, voxel, unit.name, source),
                        console.progress());
     }));
+    if (region.source.empty()) grids.back().analytic = region.field;
   }
   return grids;
 }
 
 std::string onlyLayerName(const BakeOptions& options) {
   if (options.layers.size() > 1)
-    throw usageError("one surface has one name; --layer was given twice");
+    throw bakeUsageError("one surface has one name; --layer was given twice");
   return options.layers.empty() ? stemOf(options.input) : options.layers.front();
 }
 
@@ -159,14 +103,14 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
                                                        : vdb::MeshSign::kVote;
   const double shell = options.shell.empty() ? 0.0 : parseLength(options.shell, unit, "--shell");
   if (!options.shell.empty() && !(shell > 0.0)) {
-    throw usageError("--shell must be greater than 0");
+    throw bakeUsageError("--shell must be greater than 0");
   }
   const vdb::Mesh mesh = vdb::readMesh(options.input, unit.metres);
   Box3 bounds;
   for (const Vec3& v : mesh.vertices) bounds.include(v);
   return {timed([&] {
     const double voxel = asked > 0.0 ? asked : defaultVoxel(unit, bounds, options.input, console);
-    vdb::BakeOptions bake = bakeOptions(options, layer, voxel, unit.name, options.input);
+    vdb::BakeOptions bake = gridOptions(options, layer, voxel, unit.name, options.input);
     bake.mesh_sign = sign;
     bake.shell_thickness = shell;
     return vdb::bakeMesh(mesh, bake, console.progress());
@@ -195,22 +139,25 @@ std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOpti
 }
 
 std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
-  refuse(!options.units.empty(), "--units", "meshes; an image says where its voxels are");
+  const bool is_grid = inputKind(options.input) == InputKind::kGrid;
+  refuse(!options.units.empty() && !is_grid, "--units",
+         "meshes; an image says where its voxels are");
   refuseMeshOptions(options);
   if (options.above.has_value() == !options.labels.empty()) {
-    throw usageError(options.labels.empty() ? "an image needs --above VALUE or --labels NAME,..."
-                                            : "--above and --labels exclude one another");
+    throw bakeUsageError(options.labels.empty()
+                             ? "an image needs --above VALUE or --labels NAME,..."
+                             : "--above and --labels exclude one another");
   }
   refuse(!options.labels.empty() && !options.keep.empty(), "--keep", "--above");
   refuse(!options.labels.empty() && options.fill, "--fill", "--above");
   refuse(options.labels.empty() && !options.names.empty(), "--names", "--labels");
-  refuse(!options.labels.empty() && !options.layers.empty(), "--layer",
+  refuse(!options.labels.empty() && !options.layers.empty() && !is_grid, "--layer",
          "--above; labels are called by their names");
-  const LengthUnit mm = {"mm", 1e-3};
-  const double asked = askedVoxel(options, mm);
   const auto layers = labelLayers(options);
 
-  const vdb::Image image = vdb::readNifti(options.input);
+  std::string unit;
+  const vdb::Image image = readVoxels(options, unit);
+  const double asked = askedVoxel(options, lengthUnit(unit));
   for (const auto& note : image.notes) console.note(options.input + ": " + note);
   const double spacing = std::min(
       {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])});
@@ -226,7 +173,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
     grids.push_back(timed([&] {
       return vdb::surfaceFromThreshold(
           image, threshold,
-          bakeOptions(options, onlyLayerName(options), voxel, "mm", options.input),
+          gridOptions(options, onlyLayerName(options), voxel, unit, options.input),
           console.progress());
     }));
     return grids;
@@ -237,7 +184,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   for (std::size_t n = 0; n < layers.size(); ++n) {
     grids.push_back(timed([&] {
       return surfaces.surface(n, asked,
-                              bakeOptions(options, layers[n].first, voxel, "mm", options.input),
+                              gridOptions(options, layers[n].first, voxel, unit, options.input),
                               console.progress());
     }));
   }
@@ -255,10 +202,12 @@ std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console) {
     case InputKind::kImage:
       return bakeImage(options, console);
     case InputKind::kGrid:
-      break;
+      refuseMeshOptions(options);
+      return inTheSameFrame(options, options.above || !options.labels.empty()
+                                         ? bakeImage(options, console)
+                                         : std::vector<BakedGrid>{rebakeGrid(options, console)});
   }
-  throw inputError("bake.kind", "this is a grid already", "bake a scene, a mesh or an image",
-                   options.input);
+  return {};
 }
 
 }  // namespace palpate::tools

@@ -12,6 +12,7 @@ namespace palpate::tools {
 struct BakedGrid {
   vdb::LevelSet grid;
   double seconds = 0.0;
+  FieldPtr analytic = {};  ///< what it was made of, if that was no grid, mesh or image
 };
 
 /// One grid for each layer of a scene, for a mesh, for an image's threshold, or for each of its labels.

@@ -70,6 +70,7 @@ static int runCommand(const std::vector<std::string>& arguments) {
   try {
     const Invocation invocation = parseCommandLine(arguments);
     bool printed = false;
+    bool is_yes = true;
     if (!invocation.print.empty()) {
       printed = print(invocation.print);
     } else if (const auto* help = std::get_if<HelpOptions>(&invocation.options)) {
@@ -88,13 +89,14 @@ static int runCommand(const std::vector<std::string>& arguments) {
             },
             invocation.options);
       }
+      is_yes = report.is_yes;
       printed = invocation.general.json ? print(report.json) : print(report.text);
     }
     if (!printed) {
       std::fputs("error: cannot write to standard output\n", stderr);
       return 1;
     }
-    return 0;
+    return is_yes ? 0 : 1;
   } catch (const Error& error) {
     return fail(error, json);
   } catch (const std::bad_alloc&) {

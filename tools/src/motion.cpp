@@ -109,13 +109,16 @@ devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {
     if (!(glm::length(n) > 0.0)) throw usageError("--normal has no direction");
     return glm::normalize(n);
   };
-
-  if (!o.press.empty()) {
-    devices::PressPath shape;
-    shape.surface = point(o.press, "--press");
+  const auto aim = [&](auto& shape, const std::string& at, const char* option) {
+    shape.surface = point(at, option);
     shape.normal = normal(shape.normal);
     shape.depth = length(o.depth, "--depth", shape.depth);
     shape.clearance = length(o.clearance, "--clearance", shape.clearance);
+  };
+
+  if (!o.press.empty()) {
+    devices::PressPath shape;
+    aim(shape, o.press, "--press");
     shape.speed = speed(shape.speed);
     shape.hold = notNegative(o.hold.value_or(shape.hold), "--hold");
     checkDuration(2.0 * (shape.depth + shape.clearance) / shape.speed + shape.hold, o.rate);
@@ -123,10 +126,7 @@ devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {
   }
   if (!o.tap.empty()) {
     devices::TapPath shape;
-    shape.surface = point(o.tap, "--tap");
-    shape.normal = normal(shape.normal);
-    shape.depth = length(o.depth, "--depth", shape.depth);
-    shape.clearance = length(o.clearance, "--clearance", shape.clearance);
+    aim(shape, o.tap, "--tap");
     shape.frequency = positive(o.frequency.value_or(shape.frequency), "--frequency");
     shape.taps = atLeastOne(o.taps.value_or(shape.taps), "--taps");
     checkDuration(shape.taps / shape.frequency, o.rate);

@@ -59,6 +59,8 @@ struct BakeOptions {
   std::string names;
   std::string voxel;
   double half_width = 6.0;  ///< [voxels]
+  std::string parts;       ///< bake of a scene: the scene file that recombines; empty: whole layers
+  bool level_set = false;  ///< grid: signed distances, though it has no class
 };
 
 /// What is baked on the way, and into what kind of file it goes.
@@ -70,6 +72,14 @@ struct ConvertOptions {
 struct InfoOptions {
   std::vector<std::string> files;
   std::string units;
+};
+
+struct CheckOptions {
+  std::vector<std::string> files;
+  std::string units;  ///< mesh, or grid without a unit
+  std::string voxel;  ///< mesh: of the bake that is tried
+  std::string layer;  ///< grid; empty: all of the file
+  bool level_set = false;
 };
 
 struct QueryOptions {
@@ -122,7 +132,7 @@ struct HelpOptions {
 };
 
 using VerbOptions =
-    std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions, InfoOptions, QueryOptions,
-                 ExplainOptions, RenderOptions, BenchOptions, AccuracyOptions>;
+    std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions, InfoOptions, CheckOptions,
+                 QueryOptions, ExplainOptions, RenderOptions, BenchOptions, AccuracyOptions>;
 
 }  // namespace palpate::tools

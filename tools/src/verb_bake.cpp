@@ -1,12 +1,98 @@
+#include <cstdint>
+#include <numbers>
+
 #include "baking.h"
 #include "input_kind.h"
 #include "json_parts.h"
 #include "output_files.h"
+#include "palpate/vdb/grid_error.h"
 #include "palpate/vdb/io.h"
+#include "part_baking.h"
 #include "text.h"
 #include "verbs.h"
 
 namespace palpate::tools {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+/// Of a larger grid no bricks are made just to tell its error: they take several hundred MB.
+constexpr std::uint64_t kMostForBricks = 10'000'000;  // active voxels
+
+/// The grids as a table and as JSON.
+class GridList {
+ public:
+  /// The added grid's JSON, for more to be said of it.
+  Json& add(const vdb::LevelSet& grid, double seconds) {
+    const vdb::LevelSetInfo& info = grid.info();
+    const double unit = info.metres_per_unit;
+    table_.add({info.name, formatNumber(info.voxel_size / unit, 3) + " " + info.length_unit,
+                formatCount(info.active_voxels), formatBytes(info.memory), formatSeconds(seconds),
+                formatVector(info.bounds.lo / unit) + " to " + formatVector(info.bounds.hi / unit) +
+                    " " + info.length_unit});
+    json_.push_back({{"name", info.name},
+                     {"voxel_size_m", info.voxel_size},
+                     {"half_width_voxels", info.half_width},
+                     {"active_voxels", info.active_voxels},
+                     {"memory_bytes", info.memory},
+                     {"bounds_m", boxJson(info.bounds)},
+                     {"seconds", seconds}});
+    grids_.push_back(grid);
+    return json_.back();
+  }
+
+  [[nodiscard]] const std::vector<vdb::LevelSet>& grids() const noexcept { return grids_; }
+  [[nodiscard]] Report report(const BakeOptions& options, const std::string& written) const {
+    Report report;
+    report.json = {{"schema", "palpate.bake/1"},
+                   {"input", options.input},
+                   {"output", options.output},
+                   {"grids", json_}};
+    report.text = table_.text("") + "\nWrote " + written + "\n";
+    return report;
+  }
+
+ private:
+  Table table_{{"grid", "voxel", "active voxels", "memory", "made in", "bounds"}};
+  Json json_ = Json::array();
+  std::vector<vdb::LevelSet> grids_;
+};
+
+/// What the grid of an analytic layer loses, as the default sampler feels it where that can be.
+void tellError(const BakedGrid& baked, Json& json, Console& console) {
+  if (!baked.analytic) return;
+  const vdb::LevelSetInfo& info = baked.grid.info();
+  // A band too narrow for the spline would be widened first; between its voxels it tells the same.
+  const bool is_cubic = !vdb::isTooNarrow(info) && info.active_voxels <= kMostForBricks;
+  const vdb::Sampler sampler = is_cubic ? vdb::Sampler::kCubic : vdb::Sampler::kAccessor;
+  const FieldPtr made = vdb::gridField(baked.grid, sampler);
+  const vdb::GridError error = vdb::gridError(*baked.analytic, baked.grid, *made);
+  const vdb::GridError usual = vdb::smoothGridError(sampler, info.voxel_size);
+  const bool holds_shape = error.turn <= usual.turn && error.off <= usual.off;
+  json["error"] = {{"sampler", is_cubic ? "cubic" : "accessor"},
+                   {"off_m", error.off},
+                   {"turn_degrees", error.turn / kDegree},
+                   {"where_m", {error.where.x, error.where.y, error.where.z}},
+                   {"holds_shape", holds_shape}};
+  if (holds_shape) return;
+  const double unit = info.metres_per_unit;
+  console.note(
+      info.name + " does not hold all of the shape: it is off by up to " +
+      formatNumber(error.off / unit, 2) + " " + info.length_unit + " and " +
+      formatNumber(error.turn / kDegree, 2) + " degrees, worst near " +
+      formatVector(error.where / unit, 3) + " " + info.length_unit +
+      ", where there is an edge, a thin part or a tight bend; --parts FILE.yaml keeps such "
+      "parts as they are");
+}
+
+Json partJson(const std::string& layer, const vdb::HybridPart& part) {
+  Json json = {{"layer", layer}, {"part", part.name}, {"reason", part.reason}};
+  json["grid"] = part.grid ? Json(part.grid.info().name) : Json();
+  json["off_m"] = part.grid ? Json(part.off) : Json();
+  json["turn_degrees"] = part.grid ? Json(part.turn) : Json();
+  return json;
+}
+
+}  // namespace
 
 Report run(const BakeOptions& options, const GeneralOptions& general, Console& console) {
   if (!hasExtension(options.output, ".vdb")) {
@@ -16,39 +102,37 @@ Report run(const BakeOptions& options, const GeneralOptions& general, Console& c
   }
   OutputFiles files(general.force);
   files.announce(options.output, {options.input, options.names});
+  if (!options.parts.empty()) files.announce(options.parts, {options.input, options.names});
 
-  const std::vector<BakedGrid> baked = bakeInput(options, console);
-  std::vector<vdb::LevelSet> grids;
-  grids.reserve(baked.size());
-  for (const BakedGrid& one : baked) grids.push_back(one.grid);
+  GridList list;
+  Json parts = Json::array();
+  std::string written = options.output;
+  if (options.parts.empty()) {
+    for (const BakedGrid& baked : bakeInput(options, console)) {
+      tellError(baked, list.add(baked.grid, baked.seconds), console);
+    }
+  } else {
+    const BakedParts baked = bakeParts(options, console);
+    for (const LayerParts& layer : baked.layers) {
+      for (const vdb::HybridPart& part : layer.parts) {
+        parts.push_back(partJson(layer.layer, part));
+        // The time is that of the layer's parts together.
+        if (part.grid) (void)list.add(part.grid, layer.seconds);
+      }
+    }
+    files.write(options.parts, baked.scene);
+    written += " and " + options.parts;
+  }
   checkStop();
-  vdb::writeVdb(files.temporary(options.output), grids, true);
+  vdb::writeVdb(files.temporary(options.output), list.grids(), true);
   checkStop();
   files.commit();
 
-  Report report;
-  report.json = {{"schema", "palpate.bake/1"},
-                 {"input", options.input},
-                 {"output", options.output},
-                 {"grids", Json::array()}};
-  Table table({"grid", "voxel", "active voxels", "memory", "made in", "bounds"});
-  for (const BakedGrid& one : baked) {
-    const vdb::LevelSetInfo& info = one.grid.info();
-    const double unit = info.metres_per_unit;
-    report.json["grids"].push_back({{"name", info.name},
-                                    {"voxel_size_m", info.voxel_size},
-                                    {"half_width_voxels", info.half_width},
-                                    {"active_voxels", info.active_voxels},
-                                    {"memory_bytes", info.memory},
-                                    {"bounds_m", boxJson(info.bounds)},
-                                    {"seconds", one.seconds}});
-    table.add({info.name, formatNumber(info.voxel_size / unit, 3) + " " + info.length_unit,
-               formatCount(info.active_voxels), formatBytes(info.memory),
-               formatSeconds(one.seconds),
-               formatVector(info.bounds.lo / unit) + " to " + formatVector(info.bounds.hi / unit) +
-                   " " + info.length_unit});
+  Report report = list.report(options, written);
+  if (!options.parts.empty()) {
+    report.json["scene"] = options.parts;
+    report.json["parts"] = parts;
   }
-  report.text = table.text("") + "\nWrote " + options.output + "\n";
   return report;
 }
 

@@ -1,13 +1,13 @@
 #include <algorithm>
 
 #include "baking.h"
+#include "grid_baking.h"
 #include "input_kind.h"
 #include "json_parts.h"
 #include "output_files.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/image.h"
-#include "palpate/vdb/io.h"
 #include "palpate/vdb/surface_mesh.h"
 #include "text.h"
 #include "verbs.h"
@@ -23,27 +23,21 @@ bool isImageName(const std::string& path) {
   return hasExtension(path, ".nii") || hasExtension(path, ".nii.gz");
 }
 
-/// A grid is named in full, or by its layer.
-vdb::LevelSet gridOfFile(const BakeOptions& options) {
-  if (options.layers.size() > 1) {
-    throw usageError("one file is made from one grid; --layer was given twice");
-  }
-  std::string name = options.layers.empty() ? "" : options.layers.front();
-  if (!name.empty()) {
-    const auto grids = vdb::listVdb(options.input);
-    const auto has = [&](const std::string& wanted) {
-      return std::any_of(grids.begin(), grids.end(),
-                         [&](const vdb::VdbGridSummary& grid) { return grid.name == wanted; });
-    };
-    if (!has(name) && has(name + "/surface")) name += "/surface";
-  }
-  return vdb::readVdb(options.input, name, options.units);
+/// Whether a grid is not to be taken as it is.
+bool asksForMore(const BakeOptions& bake) {
+  return bake.above || !bake.labels.empty() || !bake.voxel.empty();
 }
 
 /// The one grid that a mesh or image file is made from.
 vdb::LevelSet onlyGrid(const ConvertOptions& options, Console& console) {
   const BakeOptions& bake = options.bake;
-  if (inputKind(bake.input) == InputKind::kGrid) return gridOfFile(bake);
+  if (inputKind(bake.input) == InputKind::kGrid && !asksForMore(bake)) {
+    try {
+      return readLevelSet(bake);
+    } catch (const Error& error) {
+      if (!isMendable(error, bake)) throw;
+    }
+  }
   const std::vector<BakedGrid> baked = bakeInput(bake, console);
   if (baked.size() == 1) return baked.front().grid;
   std::string names;
@@ -98,18 +92,42 @@ Written asMesh(const ConvertOptions& options, Console& console) {
   return out;
 }
 
+/// A grid that is turned or stretched becomes an image that is as well, with the same voxels.
+bool staysAsItIs(const BakeOptions& bake) {
+  if (inputKind(bake.input) != InputKind::kGrid || asksForMore(bake)) return false;
+  try {
+    static_cast<void>(readLevelSet(bake));
+    return false;
+  } catch (const Error& error) {
+    if (!isMendable(error, bake)) throw;
+    return true;
+  }
+}
+
 Written asImage(const ConvertOptions& options, Console& console) {
-  const vdb::LevelSet grid = onlyGrid(options, console);
-  const vdb::Image image = vdb::gridImage(grid);
+  vdb::Image image;
+  double metres = 1.0;
+  if (staysAsItIs(options.bake)) {
+    image = readDistances(options.bake);
+    metres = lengthUnit(unitOfGrid(options.bake)).metres;
+  } else {
+    const vdb::LevelSet grid = onlyGrid(options, console);
+    image = vdb::gridImage(grid);
+    metres = grid.info().metres_per_unit;
+  }
+  constexpr double kMillimetre = 1e-3;  // the unit of a NIfTI file
+  for (float& value : image.values) value *= static_cast<float>(metres / kMillimetre);
+  Vec3 spacing(0.0);
+  for (int axis = 0; axis < 3; ++axis) spacing[axis] = glm::length(image.axes[axis]);
   Written out;
   out.bytes = vdb::encodeNifti(image, hasExtension(options.bake.output, ".gz"));
   out.json = {{"kind", "image"},
               {"size", image.size},
-              {"voxel_size_m", grid.info().voxel_size},
-              {"values", "signed distance, " + grid.info().length_unit}};
+              {"voxel_size_m", std::min({spacing.x, spacing.y, spacing.z})},
+              {"spacing_m", vectorJson(spacing)},
+              {"values", "signed distance, mm"}};
   out.text = std::to_string(image.size[0]) + " x " + std::to_string(image.size[1]) + " x " +
-             std::to_string(image.size[2]) + " voxels with signed distances in " +
-             grid.info().length_unit + "\n";
+             std::to_string(image.size[2]) + " voxels with signed distances in mm\n";
   return out;
 }
 
@@ -122,9 +140,6 @@ Report run(const ConvertOptions& options, const GeneralOptions& general, Console
   const InputKind kind = inputKind(options.bake.input);
   if (!options.to_units.empty() && (to_grid || to_image)) {
     throw usageError("--to-units applies to meshes", "a grid's unit is that of its input");
-  }
-  if (to_grid && kind == InputKind::kGrid) {
-    throw usageError("this is a .vdb file already", "name a mesh (.stl .obj .ply .glb) or .nii.gz");
   }
   if (to_image && kind == InputKind::kImage && !options.bake.above && options.bake.labels.empty()) {
     throw usageError("an image of distances needs a surface: --above VALUE or --labels NAME");

@@ -15,6 +15,8 @@ namespace palpate::tools {
                          Console& console);
 [[nodiscard]] Report run(const InfoOptions& options, const GeneralOptions& general,
                          Console& console);
+[[nodiscard]] Report run(const CheckOptions& options, const GeneralOptions& general,
+                         Console& console);
 [[nodiscard]] Report run(const QueryOptions& options, const GeneralOptions& general,
                          Console& console);
 [[nodiscard]] Report run(const ExplainOptions& options, const GeneralOptions& general,

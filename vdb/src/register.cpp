@@ -6,14 +6,15 @@
 #include <filesystem>
 #include <utility>
 
+#include "named_progress.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
 #include "scene_baked.h"
+#include "scene_grid.h"
 #include "scene_image.h"
-#include "scene_sampler.h"
 
 namespace palpate::vdb {
 namespace {
@@ -48,12 +49,7 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
                          SourcePlace place, Sampler sampler, GridMaker make) {
   auto maker = [common, what = std::move(what), summary, place = std::move(place), sampler,
                 make = std::move(make)](const Progress& progress) {
-    Progress named;
-    if (progress) {
-      named = [&](std::string_view step, double fraction) {
-        return progress(what + ": " + std::string(step), fraction);
-      };
-    }
+    const Progress named = namedProgress(progress, what);
     const auto start = std::chrono::steady_clock::now();
     LevelSet grid;
     LevelSetInfo made;
@@ -65,11 +61,7 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
         common->notes->add(what, {widenedNote(made.half_width)});
       }
     } catch (const Error& error) {
-      const Problem& problem = error.problem();
-      if (error.kind() != ErrorKind::kInput || problem.file == place.file) throw;
-      throw errorAt(place, problem.code,
-                    (problem.file.empty() ? "" : problem.file + ": ") + problem.message,
-                    problem.hint);
+      throwAt(place, error);
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     if (common->options.on_grid) {
@@ -78,29 +70,6 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     return gridField(grid, sampler);
   };
   return std::make_shared<FieldSource>(std::move(summary), std::move(maker));
-}
-
-/// A length that must be positive if it is given; 0 if it is not.
-double optionalVoxel(MapReader& reader) {
-  const double voxel = reader.lengthOr("voxel", 0.0);
-  if (reader.has("voxel") && !(voxel > 0.0)) {
-    throw reader.errorAt("voxel", "scene.range", "'voxel' must be more than 0");
-  }
-  return voxel;
-}
-
-/// Path of the file at `key`, which must be there; nothing of it is read.
-std::string existingFile(MapReader& reader, std::string_view key) {
-  std::string path = reader.loader().resolvePath(reader.requireText(key));
-  std::error_code failure;
-  if (!std::filesystem::exists(path, failure)) {
-    throw reader.errorAt(key, "scene.no_file", "there is no file " + path,
-                         "paths are relative to the folder of the scene");
-  }
-  if (std::filesystem::is_directory(path, failure)) {
-    throw reader.errorAt(key, "scene.no_file", path + " is a directory");
-  }
-  return path;
 }
 
 /// The length unit at `units`, or `fallback`.
@@ -114,15 +83,12 @@ std::string lengthUnitOr(MapReader& reader, std::string fallback) {
 }
 
 FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
-  const std::string path = existingFile(reader, "file");
+  const std::string path = readExistingFile(reader, "file");
   BakeOptions bake;
   bake.length_unit = reader.loader().lengthUnit();
   const double metres = *metresPer(lengthUnitOr(reader, bake.length_unit));
-  bake.voxel_size = optionalVoxel(reader);
-  bake.half_width = reader.numberOr("half_width", bake.half_width);
-  if (!(bake.half_width >= 2.0)) {
-    throw reader.errorAt("half_width", "scene.range", "'half_width' must be 2 voxels or more");
-  }
+  bake.voxel_size = readPositiveOrNone(reader, "voxel");
+  bake.half_width = readHalfWidth(reader, bake.half_width);
   bake.metadata["source"] = path;
   const Sampler sampler = readSampler(reader);
   return lazyField(common, fileName(path), "mesh " + fileName(path),
@@ -140,15 +106,22 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
 }
 
 FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
-  const std::string path = existingFile(reader, "file");
+  const std::string path = readExistingFile(reader, "file");
   const std::string name = reader.textOr("name", "");
   const std::string unit = lengthUnitOr(reader, "");
+  const std::string grid_class = reader.textOr("class", "");
+  if (!grid_class.empty() && grid_class != "level_set") {
+    throw reader.errorAt(
+        "class", "scene.kind", "'class' is `" + grid_class + "`",
+        "write class: level_set for a grid of signed distances that does not say so");
+  }
+  const auto unknown = grid_class.empty() ? UnknownClass::kRefuse : UnknownClass::kLevelSet;
   const Sampler sampler = readSampler(reader);
   return lazyField(common, fileName(path), "grid " + fileName(path),
                    reader.loader().document().place(reader.node().mark), sampler,
-                   [path, name, unit](const Progress& progress) {
+                   [path, name, unit, unknown](const Progress& progress) {
                      report(progress, "read", 0.0);
-                     return readVdb(path, name, unit);
+                     return readVdb(path, name, unit, unknown);
                    });
 }
 
@@ -203,7 +176,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
                                         const std::string& layer) {
   const LayerImage from(reader, layer);
   const std::vector<int> values = readMatch(reader, *from.image);
-  const double voxel_size = optionalVoxel(reader);
+  const double voxel_size = readPositiveOrNone(reader, "voxel");
   std::string summary = values.size() == 1 ? "label" : "labels";
   for (const int value : values) summary += " " + std::to_string(value);
   summary += " of " + fileName(from.image->file->path());
@@ -230,7 +203,7 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
   }
   threshold.largest_component = keep == "largest";
   threshold.fill = reader.boolOr("fill", false);
-  threshold.voxel_size = optionalVoxel(reader);
+  threshold.voxel_size = readPositiveOrNone(reader, "voxel");
   std::string summary = fileName(from.image->file->path()) + " above " + above.text;
   return {
       lazyField(common, layer, std::move(summary), from.place, from.sampler,

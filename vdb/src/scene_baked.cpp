@@ -4,9 +4,11 @@
 #include <chrono>
 #include <utility>
 
+#include "named_progress.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/hybrid.h"
-#include "scene_sampler.h"
+#include "palpate/vdb/io.h"
+#include "scene_grid.h"
 
 namespace palpate::vdb {
 namespace {
@@ -22,25 +24,13 @@ Parts readParts(MapReader& reader) {
                        "write parts: auto, parts: operands or parts: whole");
 }
 
-/// A length of more than 0 if it is given; 0 if it is not.
-double positiveOrNone(MapReader& reader, const char* key) {
-  const double length = reader.lengthOr(key, 0.0);
-  if (reader.has(key) && !(length > 0.0)) {
-    throw reader.errorAt(key, "scene.range", "'" + std::string(key) + "' must be more than 0");
-  }
-  return length;
-}
-
 HybridOptions readOptions(MapReader& reader) {
   HybridOptions options;
   options.bake.length_unit = reader.loader().lengthUnit();
-  options.bake.name = "baked";
-  options.bake.voxel_size = positiveOrNone(reader, "voxel");
-  options.bake.half_width = reader.numberOr("half_width", options.bake.half_width);
-  if (!(options.bake.half_width >= 2.0)) {
-    throw reader.errorAt("half_width", "scene.range", "'half_width' must be 2 voxels or more");
-  }
-  options.tolerance = positiveOrNone(reader, "tolerance");
+  options.bake.name = reader.textOr("name", "baked");
+  options.bake.voxel_size = readPositiveOrNone(reader, "voxel");
+  options.bake.half_width = readHalfWidth(reader, options.bake.half_width);
+  options.tolerance = readPositiveOrNone(reader, "tolerance");
   options.parts = readParts(reader);
   options.sampler = readSampler(reader);
   if (options.parts == Parts::kWhole && options.tolerance > 0.0) {
@@ -75,33 +65,63 @@ void tell(const RegisterOptions& options, const std::string& what, const Hybrid&
   }
 }
 
+/// The file that the grids are in; empty: they are made.
+std::string readFile(MapReader& reader) {
+  if (reader.optional("file") == nullptr) return {};
+  for (const char* key : {"voxel", "half_width", "parts", "tolerance"}) {
+    if (!reader.has(key)) continue;
+    throw reader.errorAt(
+        key, "scene.range",
+        "'" + std::string(key) + "' is for grids that are made; those of a file are as they are",
+        "leave out " + std::string(key) + ", or leave out file");
+  }
+  return readExistingFile(reader, "file");
+}
+
+/// `field` with the grids of the file at `path` in the place of its parts: that of part 2.1 is called NAME/2.1, where
+/// NAME is the one in `asked`.
+FieldPtr withSaved(const FieldPtr& field, const std::string& path, const HybridOptions& asked,
+                   const std::string& what, const RegisterOptions& options) {
+  const std::string& name = asked.bake.name;
+  std::map<std::string, LevelSet> grids;
+  for (const VdbGridSummary& summary : listVdb(path)) {
+    const bool is_whole = summary.name == name;
+    if (!is_whole && !summary.name.starts_with(name + "/")) continue;
+    grids[is_whole ? "" : summary.name.substr(name.size() + 1)] = readVdb(path, summary.name, "");
+  }
+  if (grids.empty()) {
+    throw inputError("bake.no_parts", "no grid in it is called " + name + " or " + name + "/PART",
+                     "palpate info lists its grids", path);
+  }
+  FieldPtr out = recombined(field, grids, asked.sampler);
+  for (const auto& [part, grid] : grids) {
+    if (!options.on_grid) break;
+    options.on_grid({part.empty() ? what : what + ", part " + part, grid.info(), 0.0});
+  }
+  return out;
+}
+
 }  // namespace
 
 FieldSourcePtr readBaked(MapReader& reader, const RegisterOptions& options) {
   const FieldSourcePtr field = reader.loader().field(reader.require("field"));
   const HybridOptions asked = readOptions(reader);
+  const std::string file = readFile(reader);
   const SourcePlace place = reader.loader().document().place(reader.node().mark);
   const std::string what = "baked field in line " + std::to_string(place.line);
-  auto make = [field, asked, place, what, options](const Progress& progress) {
+  auto make = [field, file, asked, place, what, options](const Progress& progress) {
     const FieldPtr operand = field->get(progress);
-    Progress named;
-    if (progress) {
-      named = [&](std::string_view step, double fraction) {
-        return progress(what + ": " + std::string(step), fraction);
-      };
-    }
     const auto start = std::chrono::steady_clock::now();
     Hybrid made;
     try {
+      if (!file.empty()) return withSaved(operand, file, asked, what, options);
       HybridOptions hybrid = asked;
       if (!(hybrid.bake.voxel_size > 0.0)) {
         hybrid.bake.voxel_size = longestSide(*operand) / kVoxelsAlong;
       }
-      made = bakeHybrid(operand, hybrid, named);
+      made = bakeHybrid(operand, hybrid, namedProgress(progress, what));
     } catch (const Error& error) {
-      const Problem& problem = error.problem();
-      if (error.kind() != ErrorKind::kInput || !problem.file.empty()) throw;
-      throw errorAt(place, problem.code, problem.message, problem.hint);
+      throwAt(place, error);
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     tell(options, what, made, took.count());

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -62,7 +63,37 @@ class BallTree {
   std::vector<std::uint32_t> place_;  ///< of an item of the tree among the balls
 };
 
-/// scale * (iso - sum of strength * kernel) + distance to the bounds.
+/// What is added at a distance from the bounds, so that the field has a gradient everywhere: almost nothing next
+/// to them, as the surface may touch them, and far away as steep as the distance. Twice differentiable
+/// across the bounds, monotonous, and never steeper than 1: d - w atan(d / w).
+class Rise {
+ public:
+  explicit Rise(double width) : width_(width) {}
+
+  [[nodiscard]] double value(double d) const noexcept { return d - width_ * std::atan(d / width_); }
+  [[nodiscard]] double slope(double d) const noexcept {
+    const double q = width_ / d;  // may overflow, but never be 0 / 0 or infinite / infinite
+    return d > 0.0 ? 1.0 / (1.0 + q * q) : 0.0;
+  }
+  [[nodiscard]] double bend(double d) const noexcept {
+    return d > 0.0 ? 2.0 * slope(d) * (1.0 - slope(d)) / d : 0.0;
+  }
+  /// The distance up to which no more than `level` is added, or a little more.
+  [[nodiscard]] double reach(double level) const {
+    double lo = 0.0;
+    double hi = level + 2.0 * width_;  // atan stays below pi / 2
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (lo + hi);
+      (value(middle) > level ? hi : lo) = middle;
+    }
+    return hi;
+  }
+
+ private:
+  double width_;  ///< [m]
+};
+
+/// scale * (iso - sum of strength * kernel) + the rise out of the bounds.
 template <FallOff kFallOff>
 class Metaballs final : public Field, public fields::LevelBounded {
  public:
@@ -73,7 +104,8 @@ class Metaballs final : public Field, public fields::LevelBounded {
         iso_(iso),
         scale_(scale),
         lipschitz_(lipschitz),
-        bounds_(bounds) {
+        bounds_(bounds),
+        rise_(riseWidth(balls_)) {
     for (const Metaball& ball : balls_) {
       feature_ = std::min(feature_, 0.1 * ball.radius);
       inverse_squares_.push_back(1.0 / (ball.radius * ball.radius));
@@ -93,8 +125,8 @@ class Metaballs final : public Field, public fields::LevelBounded {
     const Vec3 beyond = beyondBounds(p);
     if (beyond != Vec3(0.0)) {
       const fields::Polar away = fields::polar(beyond, Vec3(1.0, 0.0, 0.0));
-      out.value += away.length;
-      out.gradient += away.direction;
+      out.value += rise_.value(away.length);
+      out.gradient += rise_.slope(away.length) * away.direction;
     }
     return out;
   }
@@ -107,7 +139,7 @@ class Metaballs final : public Field, public fields::LevelBounded {
     });
     const double inner = scale_ * (iso_ - sum);
     const Vec3 beyond = beyondBounds(p);
-    return beyond != Vec3(0.0) ? inner + fields::length(beyond) : inner;
+    return beyond != Vec3(0.0) ? inner + rise_.value(fields::length(beyond)) : inner;
   }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     const FieldSample here = sample(p);
@@ -123,9 +155,10 @@ class Metaballs final : public Field, public fields::LevelBounded {
     const Vec3 beyond = beyondBounds(p);
     const fields::Polar away = fields::polar(beyond, Vec3(0.0));
     if (away.length > 1e-100) {
-      out.hessian -= outer(away.direction, away.direction) * (1.0 / away.length);
+      const double across = rise_.slope(away.length) / away.length;
+      out.hessian += outer(away.direction, away.direction) * (rise_.bend(away.length) - across);
       for (int axis = 0; axis < 3; ++axis) {
-        if (beyond[axis] != 0.0) out.hessian[axis][axis] += 1.0 / away.length;
+        if (beyond[axis] != 0.0) out.hessian[axis][axis] += across;
       }
     }
     return out;
@@ -134,10 +167,19 @@ class Metaballs final : public Field, public fields::LevelBounded {
   [[nodiscard]] Metric metric() const noexcept override { return Metric::kImplicit; }
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
   [[nodiscard]] double featureSize() const noexcept override { return feature_; }
-  /// Out of the bounds the field is at least the distance to them.
-  [[nodiscard]] Box3 boundsBelow(double level) const override { return bounds_.grownBy(level); }
+  /// Out of the bounds the field is at least the rise.
+  [[nodiscard]] Box3 boundsBelow(double level) const override {
+    return bounds_.grownBy(rise_.reach(level));
+  }
 
  private:
+  /// Half the smallest radius: as smooth as the surface, and short beside the shape.
+  static double riseWidth(const std::vector<Metaball>& balls) {
+    double least = kInfinity;
+    for (const Metaball& ball : balls) least = std::min(least, ball.radius);
+    return 0.5 * least;
+  }
+
   [[nodiscard]] Vec3 beyondBounds(const Vec3& p) const noexcept {
     return glm::min(p - bounds_.lo, Vec3(0.0)) + glm::max(p - bounds_.hi, Vec3(0.0));
   }
@@ -149,6 +191,7 @@ class Metaballs final : public Field, public fields::LevelBounded {
   double scale_;  ///< [m]
   double lipschitz_;
   Box3 bounds_;
+  Rise rise_;
   double feature_ = kInfinity;
 };
 

@@ -20,6 +20,20 @@ bool isIdentity(const Pose& pose) {
   return pose.rotation == Mat3(1.0) && pose.translation == Vec3(0.0);
 }
 
+/// True if f(word, mask) is for any of the words that hold `count` bits from `first` on, which are those of `mask`.
+template <typename F>
+bool anyWord(const std::vector<std::uint64_t>& words, std::size_t first, std::size_t count,
+             const F& f) noexcept {
+  for (std::size_t i = first; i < first + count;) {
+    const std::size_t bit = i & 63U;
+    const std::size_t taken = std::min(64 - bit, first + count - i);
+    const std::uint64_t ones = taken == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << taken) - 1;
+    if (f(words[i >> 6U], ones << bit)) return true;
+    i += taken;
+  }
+  return false;
+}
+
 /// A leaf's identity: the same field object at the same place is the same leaf.
 struct Placed {
   const Field* field;
@@ -175,27 +189,13 @@ Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr>
 }
 
 bool Signs::anyInside(LeafId first, std::size_t count) const noexcept {
-  for (std::size_t leaf = first; leaf < first + count;) {
-    const std::size_t bit = leaf & 63U;
-    const std::size_t taken = std::min(64 - bit, first + count - leaf);
-    const std::uint64_t mask = (taken == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << taken) - 1)
-                               << bit;
-    if ((words_[leaf >> 6U] & mask) != 0) return true;
-    leaf += taken;
-  }
-  return false;
+  return anyWord(words_, first, count,
+                 [](std::uint64_t word, std::uint64_t mask) { return (word & mask) != 0; });
 }
 
 bool Signs::allInside(LeafId first, std::size_t count) const noexcept {
-  for (std::size_t leaf = first; leaf < first + count;) {
-    const std::size_t bit = leaf & 63U;
-    const std::size_t taken = std::min(64 - bit, first + count - leaf);
-    const std::uint64_t mask = (taken == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << taken) - 1)
-                               << bit;
-    if ((words_[leaf >> 6U] & mask) != mask) return false;
-    leaf += taken;
-  }
-  return true;
+  return !anyWord(words_, first, count,
+                  [](std::uint64_t word, std::uint64_t mask) { return (word & mask) != mask; });
 }
 
 std::vector<LeafId> Partition::leavesOf(const Field* part) const {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "palpate/contact/sweep.h"
 
@@ -14,8 +13,6 @@ namespace {
 constexpr double kOnSurface = 1e-9;
 /// Sweeps let go of grazes shorter than this share of the feature size.
 constexpr double kGraze = 0.02;
-/// Leaves are one facet where both are on the surface and their normals are parallel to this.
-constexpr double kParallel = 1e-6;
 /// What slides on a wall may be this share of the feature size beyond it, and looks out for other sheets
 /// of that wall in steps of the share below.
 constexpr double kSlideDip = 1e-7;
@@ -244,112 +241,6 @@ double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) noexcept
   const SweepResult result = sweepLeaf(leaf, surface, a, b, start, budget);
   if (result.kind == SweepResult::Kind::kUnsure) evaluations_left_ -= budget;
   return result.kind == SweepResult::Kind::kFree ? 1.0 : result.at;
-}
-
-void CellWalker::gather(LeafId leaf) noexcept {
-  crossing_[0] = leaf;
-  crossing_count_ = 1;
-  if (leaves_.size() == 1) return;
-  refresh(0.0);
-  bool measured = false;
-  Vec3 normal(0.0);
-  for (std::size_t k = 0; k < hot_count_ && crossing_count_ < crossing_.size(); ++k) {
-    const LeafId other = hot_[k];
-    if (other == leaf || isIdle(other)) continue;
-    const double near = 4.0 * (tolerance_[other] / leaves_[other].lipschitz +
-                               tolerance_[leaf] / leaves_[leaf].lipschitz);
-    if (due_[other] - travel_ > near) continue;
-    if (std::fabs(measure(other)) > near * leaves_[other].lipschitz) continue;
-    if (!measured) {
-      normal = side(leaf) * unitOr(leaves_[leaf].field->sample(x_).gradient, Vec3(0.0));
-      measured = true;
-    }
-    const Vec3 theirs = side(other) * unitOr(leaves_[other].field->sample(x_).gradient, Vec3(0.0));
-    // Going against `normal`, the other changes side too where its own side lies the same way.
-    if (glm::dot(normal, theirs) > 1.0 - kParallel) crossing_[crossing_count_++] = other;
-  }
-}
-
-void CellWalker::flip(LeafId leaf, Signs& signs) const noexcept {
-  signs.flip(leaf);
-  for (const LeafId wall : scene_.partition().between(leaf)) {
-    const bool first = signs.inside(leaves_[wall].ends[0]);
-    if (first != signs.inside(leaves_[wall].ends[1])) signs.set(wall, first);
-  }
-}
-
-Facet CellWalker::facetAt(LeafId leaf) noexcept {
-  gather(leaf);
-  Known& known = known_[leaf];
-  if (crossing_count_ == 1 && known.state == state_) return known.facet;
-  beyond_ = signs_;  // same size: copies words, allocates nothing
-  for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], beyond_);
-  Facet facet =
-      scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_, beyond_,
-                              std::span(crossing_.data(), crossing_count_), passed_);
-  if (is_sealed_ && facet.beyond != region_) {
-    facet.kind = Facet::Kind::kClosed;
-    facet.material = std::max(facet.material, 0);
-    facet.opens_at = 0.0;
-  }
-  if (crossing_count_ == 1) known = {facet, state_};
-  return facet;
-}
-
-RegionId CellWalker::regionBeyond() const noexcept {
-  const Partition& partition = scene_.partition();
-  const auto uses_crossed = [&](RegionId region) {
-    for (std::size_t i = 0; i < crossing_count_; ++i) {
-      const auto regions = partition.regionsOf(crossing_[i]);
-      if (std::find(regions.begin(), regions.end(), region) != regions.end()) return true;
-    }
-    return false;
-  };
-  RegionId best = kOutside;
-  for (const RegionId region : holding_) {
-    if (!uses_crossed(region)) {
-      best = region;  // the innermost of those that stay as they are
-      break;
-    }
-  }
-  for (std::size_t i = 0; i < crossing_count_; ++i) {
-    for (const RegionId region : partition.regionsOf(crossing_[i])) {
-      if (region > best && partition.layerHolds(region, beyond_)) best = region;
-    }
-  }
-  return best;
-}
-
-void CellWalker::updateHolding() noexcept {
-  const Partition& partition = scene_.partition();
-  for (std::size_t i = 0; i < crossing_count_; ++i) {
-    for (const RegionId region : partition.regionsOf(crossing_[i])) {
-      const auto at = std::lower_bound(holding_.begin(), holding_.end(), region, std::greater<>());
-      const bool was = at != holding_.end() && *at == region;
-      const bool is = partition.layerHolds(region, signs_);
-      if (is && !was) holding_.insert(at, region);  // room for all regions was reserved
-      if (was && !is) holding_.erase(at);
-    }
-  }
-}
-
-void CellWalker::cross(LeafId leaf, const Facet& facet) noexcept {
-  gather(leaf);
-  for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], signs_);
-  updateHolding();
-  --crossings_left_;
-  ++state_;
-  if (facet.beyond == region_) return;
-  const bool keep = scene_.keepsMemory();
-  const bool by_port = facet.kind == Facet::Kind::kOpen || facet.opens_at > 0.0;
-  if (by_port) {
-    passed_.pass(facet.port, region_, facet.beyond, keep);
-    if (event_count_ < events_.size()) events_[event_count_++] = facet.port;
-  } else {
-    passed_.arrive(facet.beyond, keep);
-  }
-  region_ = facet.beyond;
-  mouth_ = leaf;
 }
 
 }  // namespace palpate

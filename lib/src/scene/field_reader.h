@@ -2,10 +2,12 @@
 /// The `fields` of a scene: named and inline, analytic, combined, and of the registry's kinds.
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "palpate/interior/partition.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate {
@@ -33,6 +35,9 @@ class FieldReader {
   [[nodiscard]] std::vector<NamedField> all() const;
 
  private:
+  /// Fields are numbered with LeafId; names that stand for each other twice over reach this in 16 lines.
+  static constexpr std::size_t kMostLeaves = std::numeric_limits<LeafId>::max();
+
   struct Built {
     FieldSourcePtr source;
     std::size_t leaves = 1;  // of its tree; shared parts count each time, as they are evaluated

@@ -1,6 +1,8 @@
 #include "survey.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <random>
 
 namespace palpate {
@@ -10,10 +12,129 @@ constexpr int kStepsPerLine = 128;
 constexpr std::size_t kMaxLines = 20000;  // in all, so that many layers do not take minutes
 constexpr int kHalvings = 40;  // a step shrinks to 1e-12 of itself: the wall to double precision
 
+/// Whether the straight way from `from` to `to` comes into `box`.
+bool crosses(const Box3& box, const Vec3& from, const Vec3& to) {
+  double enter = 0.0;
+  double leave = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double way = to[axis] - from[axis];
+    if (way == 0.0) {
+      if (from[axis] < box.lo[axis] || from[axis] > box.hi[axis]) return false;
+      continue;
+    }
+    const double a = (box.lo[axis] - from[axis]) / way;
+    const double b = (box.hi[axis] - from[axis]) / way;
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  return enter <= leave;
+}
+
+/// The regions along one straight line. Leaves whose bounds it does not cross are outside all along; of the others
+/// each is asked again only where its Lipschitz bound allows that its sign has changed.
+class Line {
+ public:
+  explicit Line(const Partition& partition)
+      : partition_(partition), signs_(partition.leaves().size()) {}
+
+  void begin(const Vec3& from, const Vec3& to) {
+    from_ = from;
+    along_ = to - from;
+    length_ = glm::length(along_);
+    candidates_.clear();
+    signs_.clear();
+    is_known_ = false;
+    const Vec3 middle = 0.5 * (from + to);
+    // A little wider than the line, for rounding.
+    const Vec3 margin(1e-9 * length_);
+    partition_.tree().visit(middle, 0.5 * length_ * (1.0 + 1e-6), [&](std::uint32_t item) {
+      const Leaf& leaf = partition_.leaves()[item];
+      const Box3 bounds = leaf.field->bounds();
+      if (!crosses({bounds.lo - margin, bounds.hi + margin}, from, to)) return;
+      const Box3 domain = leaf.field->lipschitzDomain();
+      const bool holds = domain.contains(from) && domain.contains(to);
+      candidates_.push_back({static_cast<LeafId>(item), leaf.field.get(), bounds,
+                             holds ? 1.0 / leaf.lipschitz : 0.0, kInfinity, -kInfinity});
+    });
+  }
+
+  /// The region at `p`, a point of the line.
+  RegionId at(const Vec3& p) {
+    const double place = glm::dot(p - from_, along_) / std::max(length_, 1e-300);
+    if (is_known_ && place > fixed_from_ && place < fixed_to_) return region_;
+    bool is_changed = !is_known_;
+    fixed_from_ = -kInfinity;
+    fixed_to_ = kInfinity;
+    for (Candidate& candidate : candidates_) {
+      if (!(place > candidate.fixed_from && place < candidate.fixed_to)) {
+        is_changed |= ask(candidate, p, place);
+      }
+      fixed_from_ = std::max(fixed_from_, candidate.fixed_from);
+      fixed_to_ = std::min(fixed_to_, candidate.fixed_to);
+    }
+    if (is_changed) {
+      region_ = regionHere();
+      is_known_ = true;
+    }
+    return region_;
+  }
+
+ private:
+  struct Candidate {
+    LeafId leaf;
+    const Field* field;
+    Box3 bounds;
+    double per_slope;             ///< 1 / Lipschitz bound; 0 where that does not hold
+    double fixed_from, fixed_to;  ///< [m] along the line: its sign is the same in between
+  };
+
+  /// A wall is halved down to between the same few cells.
+  RegionId regionHere() {
+    for (const Cell& cell : cells_) {
+      if (cell.is_known && cell.signs == signs_) return cell.region;
+    }
+    Cell& oldest = cells_[next_cell_];
+    next_cell_ = (next_cell_ + 1) % cells_.size();
+    oldest = {signs_, partition_.regionOf(signs_), true};
+    return oldest.region;
+  }
+
+  /// True if its sign is another one than before.
+  bool ask(Candidate& candidate, const Vec3& p, double place) {
+    const double value = candidate.field->value(p);
+    const bool inside = value < 0.0 && candidate.bounds.contains(p);
+    // Less a share of the line for the rounding of places along it; nothing where the value is not a number.
+    const double fixed = std::fabs(value) * candidate.per_slope - 1e-9 * length_;
+    candidate.fixed_from = fixed > 0.0 ? place - fixed : kInfinity;
+    candidate.fixed_to = fixed > 0.0 ? place + fixed : -kInfinity;
+    if (inside == signs_.inside(candidate.leaf)) return false;
+    signs_.set(candidate.leaf, inside);
+    return true;
+  }
+
+  struct Cell {
+    Signs signs;
+    RegionId region = kOutside;
+    bool is_known = false;
+  };
+
+  const Partition& partition_;
+  std::array<Cell, 4> cells_;  ///< looked at last
+  std::size_t next_cell_ = 0;
+  Vec3 from_{0.0};
+  Vec3 along_{0.0};
+  double length_ = 0.0;
+  std::vector<Candidate> candidates_;
+  Signs signs_;
+  double fixed_from_ = kInfinity;  ///< [m] along the line: no sign changes in between
+  double fixed_to_ = -kInfinity;
+  bool is_known_ = false;
+  RegionId region_ = kOutside;
+};
+
 class Surveyor {
  public:
-  explicit Surveyor(const Partition& partition)
-      : partition_(partition), signs_(partition.leaves().size()) {
+  explicit Surveyor(const Partition& partition) : line_(partition) {
     const std::size_t n = partition.regionCount();
     out_.regions = n;
     out_.touch.assign(n * n, false);
@@ -23,12 +144,13 @@ class Surveyor {
   }
 
   void walk(const Vec3& from, const Vec3& to) {
+    line_.begin(from, to);
     Vec3 last = from;
-    RegionId region = at(from);
+    RegionId region = line_.at(from);
     Vec3 entered = from;
     for (int i = 1; i <= kStepsPerLine; ++i) {
       const Vec3 here = glm::mix(from, to, static_cast<double>(i) / kStepsPerLine);
-      const RegionId now = at(here);
+      const RegionId now = line_.at(here);
       if (now != region) {
         // Several walls may lie in one step: after the first is found, go on behind it.
         Vec3 a = last;
@@ -38,7 +160,7 @@ class Surveyor {
           RegionId rb = now;
           for (int k = 0; k < kHalvings; ++k) {
             const Vec3 middle = 0.5 * (a + b);
-            const RegionId rm = at(middle);
+            const RegionId rm = line_.at(middle);
             if (rm == ra) {
               a = middle;
             } else {
@@ -62,10 +184,6 @@ class Surveyor {
   Survey take() { return std::move(out_); }
 
  private:
-  RegionId at(const Vec3& p) {
-    partition_.signsAt(p, signs_);
-    return partition_.regionOf(signs_);
-  }
   void meet(RegionId a, RegionId b) {
     out_.touch[a * out_.regions + b] = true;
     out_.touch[b * out_.regions + a] = true;
@@ -74,14 +192,13 @@ class Surveyor {
   void keepSeed(RegionId region, const Vec3& from, const Vec3& to) {
     const Vec3 middle = 0.5 * (from + to);
     const double length = glm::length(to - from);
-    if (length <= run_[region] || at(middle) != region) return;
+    if (length <= run_[region] || line_.at(middle) != region) return;
     run_[region] = length;
     out_.seed[region] = middle;
     out_.has_seed[region] = true;
   }
 
-  const Partition& partition_;
-  Signs signs_;
+  Line line_;
   Survey out_;
   std::vector<double> run_;
 };

@@ -11,26 +11,19 @@
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 #include "support/field_contract.h"
+#include "support/implicit_ellipsoid.h"
 
 namespace palpate::test {
 namespace {
 
-const Vec3 kCenter(0.3e-3, -0.2e-3, 0.1e-3);
+using palpate::testing::implicitEllipsoid;
 
-/// An ellipsoid as a polynomial: its value is no distance, and its exact distance is ellipsoid()'s.
-FieldPtr implicitEllipsoid(const Vec3& radii) {
-  QuadricCoefficients c;
-  c.xx = 1.0 / (radii.x * radii.x);
-  c.yy = 1.0 / (radii.y * radii.y);
-  c.zz = 1.0 / (radii.z * radii.z);
-  c.constant = -1.0;
-  return quadric(kCenter, c);
-}
+const Vec3 kCenter(0.3e-3, -0.2e-3, 0.1e-3);
 
 TEST(FootPoint, OfAnEllipsoidIsItsNearestPoint) {
   const Vec3 radii(9e-3, 6e-3, 7e-3);
   const FieldPtr exact = ellipsoid(kCenter, radii);
-  const FieldPtr implicit = implicitEllipsoid(radii);
+  const FieldPtr implicit = implicitEllipsoid(kCenter, radii);
   Random random(11);
   int near = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -51,7 +44,7 @@ TEST(FootPoint, OfAnEllipsoidIsItsNearestPoint) {
 TEST(FootPoint, HasTheSurfacesCurvatures) {
   // At the end of a semi-axis a the curvatures are a / b^2 and a / c^2.
   const Vec3 radii(9e-3, 6e-3, 7e-3);
-  const FieldPtr field = implicitEllipsoid(radii);
+  const FieldPtr field = implicitEllipsoid(kCenter, radii);
   const auto foot = footPoint(*field, kCenter + Vec3(radii.x + 1e-3, 0.0, 0.0));
   ASSERT_TRUE(foot);
   const double first = radii.x / (radii.y * radii.y);
@@ -83,7 +76,7 @@ TEST(FootPoint, OnAGyroidNoPointOfTheSurfaceIsNearer) {
 
 TEST(FootPoint, WhereTheNearestPointIsNotFoundThereIsNone) {
   const Vec3 radii(10e-3, 10e-3, 4e-3);
-  const FieldPtr flat = implicitEllipsoid(radii);
+  const FieldPtr flat = implicitEllipsoid(kCenter, radii);
   const FieldPtr exact = ellipsoid(kCenter, radii);
   int known = 0, unknown = 0;
   for (double x = -12e-3; x < 12e-3; x += 0.7e-3) {
@@ -104,7 +97,7 @@ TEST(FootPoint, WhereTheNearestPointIsNotFoundThereIsNone) {
 }
 
 TEST(FootPoint, OfAPointOnTheSurfaceIsThatPoint) {
-  const FieldPtr field = implicitEllipsoid(Vec3(9e-3, 6e-3, 7e-3));
+  const FieldPtr field = implicitEllipsoid(kCenter, Vec3(9e-3, 6e-3, 7e-3));
   const Vec3 p = kCenter + Vec3(0.0, 6e-3, 0.0);
   const auto foot = footPoint(*field, p);
   ASSERT_TRUE(foot);

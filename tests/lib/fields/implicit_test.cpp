@@ -236,6 +236,46 @@ TEST(Metaballs, LipschitzBoundDoesNotGrowWithBallsFarApart) {
   EXPECT_LE(metaballs(balls, FallOff::kWyvill, 0.5)->lipschitz(), 2.06);
 }
 
+TEST(Metaballs, AreSmoothWhereTheSurfaceTouchesTheBounds) {
+  // One ball alone touches each face of its bounds.
+  const double radius = 0.04;
+  const double step = 1e-9;
+  for (const FallOff fall_off : {FallOff::kWyvill, FallOff::kGaussian, FallOff::kInverseSquare}) {
+    const FieldPtr field = metaballs({{kCenter, radius, 1.0}}, fall_off, 0.5);
+    const Box3 bounds = field->bounds();
+    Random random(3);
+    for (int i = 0; i < 600; ++i) {
+      // Across a face: at the place that is touched, near it, or anywhere on it; and across an edge's planes.
+      const int axis = i % 3;
+      Vec3 p = i < 200   ? kCenter
+               : i < 400 ? kCenter + random.in({Vec3(-1e-3), Vec3(1e-3)})
+                         : random.in(bounds.grownBy(0.01));
+      p[axis] = i % 2 == 0 ? bounds.hi[axis] : bounds.lo[axis];
+      Vec3 to(0.0);
+      to[axis] = step;
+      const FieldJet below = field->jet(p - to);
+      const FieldJet above = field->jet(p + to);
+      // Twice the step times the curvature, which is below 4 / radius.
+      ASSERT_LT(glm::length(above.gradient - below.gradient), 8.0 * step / radius);
+      ASSERT_NEAR(above.value, below.value, 4.0 * step);
+      if (i >= 400) continue;  // above an edge of the bounds the second derivatives jump
+      for (int column = 0; column < 3; ++column) {
+        // And twice the step times the third derivatives, below 100 / radius^2.
+        ASSERT_LT(glm::length(above.hessian[column] - below.hessian[column]),
+                  200.0 * step / (radius * radius));
+      }
+    }
+    // It still rises, everywhere around.
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 u = random.direction();
+      const double near = field->value(kCenter + 1.01 * bounds.size().x * u);
+      const double far = field->value(kCenter + 2.0 * bounds.size().x * u);
+      ASSERT_GT(near, 0.0);
+      ASSERT_GT(far, near + 0.25 * bounds.size().x);
+    }
+  }
+}
+
 TEST(Metaballs, RefusesWhatCannotReachItsLevel) {
   EXPECT_THROW(static_cast<void>(metaballs({}, FallOff::kWyvill, 0.5)), Error);
   EXPECT_THROW(static_cast<void>(metaballs({{kCenter, 0.04, 0.4}}, FallOff::kWyvill, 0.5)), Error);

@@ -9,6 +9,7 @@
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 #include "support/field_contract.h"
+#include "support/implicit_ellipsoid.h"
 
 namespace palpate::test {
 namespace {
@@ -33,25 +34,15 @@ void wander(const Curved& c, int seed) {
                << c.name << (c.from_within ? " from within" : " from outside"));
   Judge judge(c.field, c.from_within);
   judge.onlyWhere(c.judged);
-  judge.begin(c.free);
   Random random(static_cast<std::uint64_t>(seed));
-  Vec3 p = c.free;
-  const auto on_the_box = [&] {
+  const auto onTheBox = [&] {
     Vec3 q = random.in({c.lo, c.hi});
     const auto axis = static_cast<int>(random.uniform(0.0, 3.0));
     q[axis] = random.uniform(0.0, 1.0) < 0.5 ? c.lo[axis] : c.hi[axis];
     return q;
   };
-  Vec3 goal = on_the_box();
-  Vec3 velocity(0.0);
-  const double step = c.speed * Drive::kTick;
-  for (int i = 0; i < strokeTicks() / c.share; ++i) {
-    if (glm::length(goal - p) < 10.0 * step) goal = on_the_box();
-    velocity = 0.9 * velocity + 0.1 * step * glm::normalize(goal - p);
-    p += velocity;
-    judge.to(p, 1e-6);
-    if (::testing::Test::HasFatalFailure()) return;
-  }
+  judgeSmoothWay(judge, c.free, {c.speed, 0.9, strokeTicks() / c.share}, onTheBox);
+  if (::testing::Test::HasFatalFailure()) return;
   EXPECT_GT(judge.contacts(), judge.ticks() / 5);
   EXPECT_LT(judge.ambiguous(), judge.ticks() / 5);
 }
@@ -63,12 +54,7 @@ TEST(HardCurved, EllipsoidExact) {
 }
 
 TEST(HardCurved, EllipsoidAsAQuadric) {
-  QuadricCoefficients c;
-  c.xx = 1.0 / (0.03 * 0.03);
-  c.yy = 1.0 / (0.02 * 0.02);
-  c.zz = 1.0 / (0.01 * 0.01);
-  c.constant = -1.0;
-  const FieldPtr field = quadric(Vec3(0.0), c);
+  const FieldPtr field = testing::implicitEllipsoid(Vec3(0.0), mm(30, 20, 10));
   wander({"quadric", field, false, mm(40, 0, 0), mm(-26, -17, -8), mm(26, 17, 8), 0.2}, 3);
   wander({"quadric within", field, true, mm(0, 0, 0), mm(-35, -25, -15), mm(35, 25, 15), 0.2}, 4);
 }

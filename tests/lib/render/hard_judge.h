@@ -125,23 +125,41 @@ class Judge {
   double worst_ = 0.0;
 };
 
-/// A smooth walk between random points of a box, every sixth of them the free point, each tick judged.
-inline void judgeWalk(Judge& judge, const Vec3& free, const Box3& box, double speed, int seed,
-                      int ticks) {
-  judge.begin(free);
-  Random random(static_cast<std::uint64_t>(seed));
-  Vec3 p = free;
+/// How a hand wanders.
+struct Pace {
+  double speed;    ///< [m/s]
+  double inertia;  ///< share of a tick's velocity that stays to the next
+  int ticks;
+};
+
+/// A smooth way from `from` to one goal after another, as nextGoal() tells them; each tick judged.
+template <typename NextGoal>
+void judgeSmoothWay(Judge& judge, const Vec3& from, const Pace& pace, NextGoal&& nextGoal) {
+  judge.begin(from);
+  const double step = pace.speed * Drive::kTick;
+  Vec3 p = from;
   Vec3 velocity(0.0);
-  const double step = speed * Drive::kTick;
-  int leg = 0;
-  Vec3 goal = random.in(box);
-  for (int i = 0; i < ticks; ++i) {
-    if (glm::length(goal - p) < 10.0 * step) goal = ++leg % 6 == 0 ? free : random.in(box);
-    velocity = 0.8 * velocity + 0.2 * step * glm::normalize(goal - p);
+  Vec3 goal = nextGoal();
+  for (int i = 0; i < pace.ticks; ++i) {
+    if (glm::length(goal - p) < 10.0 * step) goal = nextGoal();
+    velocity = pace.inertia * velocity + (1.0 - pace.inertia) * step * glm::normalize(goal - p);
     p += velocity;
     judge.to(p, 1e-6);
     if (::testing::Test::HasFatalFailure()) return;
   }
+}
+
+/// Between random points of a box, and after every five of them back to the free point.
+inline void judgeWalk(Judge& judge, const Vec3& free, const Box3& box, double speed, int seed,
+                      int ticks) {
+  Random random(static_cast<std::uint64_t>(seed));
+  int leg = 0;
+  judgeSmoothWay(judge, free, {speed, 0.8, ticks}, [&] {
+    const bool back = leg > 0 && leg % 6 == 0;
+    ++leg;
+    return back ? free : random.in(box);
+  });
+  if (::testing::Test::HasFatalFailure()) return;
   EXPECT_GT(judge.contacts(), judge.ticks() / 10);
   EXPECT_LT(judge.ambiguous(), judge.ticks() / 10);
 }

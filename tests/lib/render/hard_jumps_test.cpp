@@ -10,6 +10,7 @@
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 #include "support/field_contract.h"
+#include "support/implicit_ellipsoid.h"
 #include "support/oracle/closed_forms.h"
 
 namespace palpate::test {
@@ -22,17 +23,12 @@ struct Solid {
 };
 
 std::vector<Solid> solids() {
-  QuadricCoefficients egg;
-  egg.xx = 1.0 / (0.07 * 0.07);
-  egg.yy = 1.0 / (0.06 * 0.06);
-  egg.zz = 1.0 / (0.055 * 0.055);
-  egg.constant = -1.0;
   return {
       {"ball", sphere(Vec3(0.0), 0.06), mm(0, 0, 80)},
       {"box", box(Vec3(0.0), mm(160, 140, 120)), mm(0, 0, 80)},
       {"torus", torus(Vec3(0.0), Vec3(0, 0, 1), 0.1, 0.055), mm(100, 0, 80)},
       {"can", cylinder(Vec3(0.0), Vec3(0, 0, 1), 0.06, 0.12), mm(0, 0, 80)},
-      {"quadric", quadric(Vec3(0.0), egg), mm(0, 0, 80)},
+      {"quadric", testing::implicitEllipsoid(Vec3(0.0), mm(70, 60, 55)), mm(0, 0, 80)},
       {"capsule", capsule(mm(-40, 0, 0), mm(40, 0, 0), 0.055), mm(0, 0, 80)},
       {"two balls", unite({sphere(mm(-30, 0, 0), 0.06), sphere(mm(30, 0, 0), 0.06)}),
        mm(30, 0, 80)},

@@ -257,6 +257,57 @@ TEST(Compile, SmallAndThinNeighboursAreStillFound) {
   for (const Region& region : scene->regions()) EXPECT_TRUE(region.has_seed) << region.name;
 }
 
+/// A half-space that counts how often it is asked.
+class CountedHalfSpace final : public Field {
+ public:
+  CountedHalfSpace(const Vec3& point, const Vec3& normal, std::size_t& asked)
+      : plane_(halfSpace(point, normal)), asked_(asked) {}
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    ++asked_;
+    return plane_->sample(p);
+  }
+  [[nodiscard]] double value(const Vec3& p) const noexcept override {
+    ++asked_;
+    return plane_->value(p);
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return plane_->bounds(); }
+  [[nodiscard]] Metric metric() const noexcept override { return plane_->metric(); }
+  [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
+  [[nodiscard]] double featureSize() const noexcept override { return plane_->featureSize(); }
+
+ private:
+  FieldPtr plane_;
+  std::size_t& asked_;
+};
+
+TEST(Compile, ManyThinSlabsAreLookedThroughWithoutAskingEveryFaceEverywhere) {
+  // A stack of 40 slabs of 0.5 mm, a millimeter apart, in a block; each slab has faces without end.
+  constexpr int kSlabs = 40;
+  std::size_t asked = 0;
+  const auto face = [&](double x, double to) {
+    return std::make_shared<CountedHalfSpace>(Vec3(x, 0.0, 0.0), Vec3(to, 0.0, 0.0), asked);
+  };
+  SceneDescription s;
+  s.layers = {layer("block", box(Vec3(0.02, 0.0, 0.0), Vec3(0.06, 0.03, 0.03)))};
+  for (int i = 0; i < kSlabs; ++i) {
+    const double x = 1e-3 * i;
+    s.layers.push_back(layer("slab" + std::to_string(i),
+                             intersect({face(x, -1.0), face(x + 0.5e-3, 1.0),
+                                        box(Vec3(0.02, 0.0, 0.0), Vec3(0.05, 0.02, 0.02))})));
+  }
+  const ScenePtr scene = compile(s);
+  for (RegionId a = 2; a < kSlabs + 2; ++a) {
+    EXPECT_TRUE(scene->touches(1, a));
+    EXPECT_FALSE(scene->touches(kOutside, a));
+    ASSERT_TRUE(scene->regions()[a].has_seed);
+    EXPECT_EQ(scene->regionAt(scene->regions()[a].seed), a);
+    for (RegionId b = 2; b < a; ++b) EXPECT_FALSE(scene->touches(a, b));
+  }
+  EXPECT_TRUE(scene->touches(kOutside, 1));
+  // Some 8000 lines of 128 steps; all 80 faces at each would be 80 million, and as many at the halvings.
+  EXPECT_LT(asked, 16'000'000U);
+}
+
 TEST(Compile, ALayerThatCoversAnotherLeavesNothingOfIt) {
   SceneDescription s;
   s.layers = {layer("hidden", ball(0, 0.01)), layer("cover", ball(0, 0.02))};

@@ -37,6 +37,8 @@ inline SceneRegistry standInReaders() {
     (void)reader.textOr("sampler", "");
     (void)reader.textOr("parts", "");
     (void)reader.lengthOr("tolerance", 1.0);
+    (void)reader.textOr("file", "");
+    (void)reader.textOr("name", "");
     return field;
   };
   registry.image = [](MapReader& reader) -> std::shared_ptr<void> {

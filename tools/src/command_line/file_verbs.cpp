@@ -25,7 +25,7 @@ void addBaking(CLI::App& app, BakeOptions& o) {
       ->check(CLI::IsMember({"vote", "winding", "flood"}));
   add(app, g, "--shell", "LENGTH", o.shell,
       "not a solid but a wall of this thickness along the triangles");
-  g = "From a NIfTI image";
+  g = "From a NIfTI image, or a grid of densities or labels";
   add(app, g, "--above", "VALUE", o.above, "the surface around all voxels greater than this");
   add(app, g, "--keep", "largest|all", o.keep, "--above: which pieces (default largest)")
       ->check(CLI::IsMember({"largest", "all"}));
@@ -39,10 +39,18 @@ void addBaking(CLI::App& app, BakeOptions& o) {
   add(app, g, "--names", "FILE", o.names, "name table: lines `index name` or `value,name`");
 }
 
+void addLevelSet(CLI::App& app, const char* group, bool& level_set) {
+  addFlag(app, group, "--level-set", level_set,
+          "a grid that does not say its class holds signed distances, negative inside");
+}
+
 void defineBake(CLI::App& app, Invocation& invocation) {
   auto& o = choose<BakeOptions>(invocation);
   app.add_option("input", o.input);
   add(app, "Output", "-o,--output", "FILE.vdb", o.output, "where the grids go (required)");
+  add(app, "Output", "--parts", "FILE.yaml", o.parts,
+      "scene: keep its edges. Grids of its smooth parts only, and here the scene that puts them "
+      "together with the rest");
   addBaking(app, o);
 }
 
@@ -55,6 +63,7 @@ void defineConvert(CLI::App& app, Invocation& invocation) {
   add(app, g, "--to-units", "UNIT", o.to_units,
       "what one unit of the mesh is to be: mm, cm, m, um, in (default: as in the input)");
   addBaking(app, o.bake);
+  addLevelSet(app, "From a grid", o.bake.level_set);
 }
 
 void defineInfo(CLI::App& app, Invocation& invocation) {
@@ -62,6 +71,20 @@ void defineInfo(CLI::App& app, Invocation& invocation) {
   app.add_option("files", o.files);
   add(app, "Options", "--units", "UNIT", o.units,
       "what one unit of a mesh is: mm (default), cm, m, um, in");
+}
+
+void defineCheck(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<CheckOptions>(invocation);
+  app.add_option("files", o.files);
+  const char* g = "Options";
+  add(app, g, "--units", "UNIT", o.units,
+      "what one unit is, of a mesh or of a grid that does not say: mm (a mesh's default), cm, m, "
+      "um, "
+      "in");
+  add(app, g, "--voxel", "LENGTH", o.voxel,
+      "mesh: voxel size of the bake that is tried (default: 1/128 of the longest side)");
+  add(app, g, "--layer", "NAME", o.layer, "grid: only this one of the file");
+  addLevelSet(app, g, o.level_set);
 }
 
 void defineBench(CLI::App& app, Invocation& invocation) {
@@ -95,7 +118,17 @@ Verb bakeVerb() {
       "palpate bake INPUT -o OUT.vdb [OPTIONS]",
       "INPUT is a scene file, a mesh (.stl .obj .ply .gltf .glb) or an image (.nii .nii.gz). Each "
       "layer\n"
-      "becomes a grid `<layer>/surface`. An image needs --above or --labels.",
+      "becomes a grid `<layer>/surface`. An image needs --above or --labels.\n"
+      "\n"
+      "No grid holds an edge: its normal is some ten degrees off there, however small the voxels "
+      "are.\n"
+      "Where a layer has edges, how far its grid is off is told. With --parts, only what a grid "
+      "holds\n"
+      "and is not exact by itself becomes one, `<layer>/surface/<part>`; unions, intersections, "
+      "differences\n"
+      "and placements stay, and so do boxes and the like. FILE.yaml is INPUT with the grids in "
+      "those\n"
+      "places: as exact at its edges as INPUT, for every verb that takes a scene.",
       {},
       defineBake,
       [](const Invocation& i) {
@@ -106,24 +139,28 @@ Verb bakeVerb() {
 }
 
 Verb convertVerb() {
-  return {"convert",
-          "Turn grids into meshes or images, meshes into others, and all into grids",
-          "palpate convert data/scenes/container.yaml -o container.stl --voxel 0.5",
-          "palpate convert INPUT -o OUTPUT [OPTIONS]",
-          "INPUT is a grid (.vdb), a mesh, a scene or an image; the output's name says what it "
-          "becomes.\n"
-          "A mesh winds outwards. An image holds signed distances. Scenes, meshes and images are "
-          "baked\n"
-          "on the way, as `palpate bake` does. A file has no more than one mesh or image, so of "
-          "several\n"
-          "layers or grids one must be named with --layer.",
-          {},
-          defineConvert,
-          [](const Invocation& i) {
-            need(!chosen<ConvertOptions>(i).bake.input.empty(), "INPUT");
-            need(!chosen<ConvertOptions>(i).bake.output.empty(), "-o OUTPUT");
-          },
-          true};
+  return {
+      "convert",
+      "Turn grids into meshes or images, meshes into others, and all into grids",
+      "palpate convert data/scenes/container.yaml -o container.stl --voxel 0.5",
+      "palpate convert INPUT -o OUTPUT [OPTIONS]",
+      "INPUT is a grid (.vdb), a mesh, a scene or an image; the output's name says what it "
+      "becomes.\n"
+      "A mesh winds outwards. An image holds signed distances. Scenes, meshes and images are "
+      "baked\n"
+      "on the way, as `palpate bake` does. A file has no more than one mesh or image, so of "
+      "several\n"
+      "layers or grids one must be named with --layer. A grid becomes another grid by --voxel; by "
+      "--above\n"
+      "or --labels if it holds densities or labels; and by itself if it is turned, stretched or "
+      "of doubles.",
+      {},
+      defineConvert,
+      [](const Invocation& i) {
+        need(!chosen<ConvertOptions>(i).bake.input.empty(), "INPUT");
+        need(!chosen<ConvertOptions>(i).bake.output.empty(), "-o OUTPUT");
+      },
+      true};
 }
 
 Verb infoVerb() {
@@ -135,6 +172,25 @@ Verb infoVerb() {
           {},
           defineInfo,
           [](const Invocation& i) { need(!chosen<InfoOptions>(i).files.empty(), "FILE"); }};
+}
+
+Verb checkVerb() {
+  return {
+      "check",
+      "Say whether meshes and grids can be touched, and what is wrong with them",
+      "palpate check organ.stl --units mm",
+      "palpate check FILE... [OPTIONS]",
+      "A mesh: holes, edges with three triangles or more, triangles turned, doubled, without area "
+      "or\n"
+      "passing through others (exactly), parts inside out, size; and a bake is tried, as only "
+      "that\n"
+      "tells what is solid. A grid (.vdb): class, unit, band, |gradient| (1 for distances), "
+      "voxels that\n"
+      "are no numbers, holes in the band, and an inside that is not marked as such.\n"
+      "Exit code 0 if all can be touched, baking mending what is wrong; 1 if one cannot.",
+      {},
+      defineCheck,
+      [](const Invocation& i) { need(!chosen<CheckOptions>(i).files.empty(), "FILE"); }};
 }
 
 Verb benchVerb() {

@@ -70,8 +70,9 @@ std::string overview() {
   return text +
          "\n  palpate VERB --help   all about one verb\n  palpate --version     the version\n\n"
          "Results go to stdout, everything else to stderr; --json gives one JSON object.\n"
-         "Exit code: 0 done, 1 the operation failed, 2 wrong usage, 3 bad input, 4 device, 130 "
-         "interrupted.\n";
+         "Exit code: 0 done, 1 the answer is no or the operation failed, 2 wrong usage, 3 bad "
+         "input, 4 device, "
+         "130 interrupted.\n";
 }
 
 std::string helpText(const HelpOptions& options) {

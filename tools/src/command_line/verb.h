@@ -43,6 +43,7 @@ struct Verb {
 [[nodiscard]] Verb bakeVerb();
 [[nodiscard]] Verb convertVerb();
 [[nodiscard]] Verb infoVerb();
+[[nodiscard]] Verb checkVerb();
 [[nodiscard]] Verb benchVerb();
 [[nodiscard]] Verb helpVerb();
 

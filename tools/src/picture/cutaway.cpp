@@ -1,6 +1,7 @@
 #include "picture/cutaway.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -20,6 +21,9 @@ constexpr int kMostSteps = 4000;
 constexpr int kFiner = 2;   // rays a pixel, along each side
 constexpr int kTrial = 64;  // [pixels] of the first look
 constexpr double kEdgeShade = 0.45;
+constexpr double kSheetInk = 0.25;  // share of ink in what belongs to no region
+constexpr int kFirstSheet =
+    -2;  // part of a hit on the first sheet; those of the others go down from it
 
 /// The part of a ray within a box, as distances along it.
 std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& origin,
@@ -40,10 +44,16 @@ std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& ori
   return std::pair{enter, leave};
 }
 
-/// What a ray met. Neighbours with different `part` are set apart by a dark edge.
+/// What a ray met. Neighbours with different `part` are set apart by a dark edge, and so are those of the cut face
+/// between which it cuts a sheet.
 struct Hit {
   Color color = rgb(0xFFFFFF);
-  int part = -1;  ///< region and whether it is the cut face; -1: nothing
+  int part = -1;          ///< region and whether it is the cut face; -1: nothing; below: a sheet
+  SheetSides sides = {};  ///< of the cut face
+
+  [[nodiscard]] bool isApartFrom(const Hit& other) const {
+    return part != other.part || sides.crossedTo(other.sides) != 0;
+  }
 };
 
 /// One ray after the other through the scene; owns the scratch.
@@ -58,7 +68,9 @@ class Marcher {
         paint_(paint),
         here_(scene.partition().leaves().size()),
         there_(here_),
-        light_(glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right)) {
+        middle_(here_),
+        light_(glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right)),
+        has_sheets_(!scene.passages().sheets().empty()) {
     for (const Leaf& leaf : scene.partition().leaves()) bounds_.push_back(leaf.field->bounds());
   }
 
@@ -79,7 +91,9 @@ class Marcher {
     const RegionId first = scene_.partition().regionOf(here_);
     if (first != kOutside) {
       const Vec3 p = origin + t * way;
-      if (t == cut) return {scaled(paint_.at(first, p), kFaceShade), 2 * first};
+      if (t == cut) {
+        return {scaled(paint_.at(first, p), kFaceShade), 2 * first, sheetSides(scene_, here_)};
+      }
       // The box cuts an endless layer.
       return {shaded(paint_.at(first, p), glm::dot(-way, light_)), 2 * first + 1};
     }
@@ -88,6 +102,9 @@ class Marcher {
     for (int i = 0; i < kMostSteps && t < part->second; ++i) {
       const double distance = probe(origin + t * way, there_);
       if (scene_.partition().regionOf(there_) != kOutside) return surface(origin, way, t);
+      if (has_sheets_ && here_ != there_) {
+        if (const auto hit = sheet(origin, way, t)) return *hit;
+      }
       std::swap(here_, there_);
       before_ = t;
       t += advance(distance);
@@ -152,6 +169,45 @@ class Marcher {
     return {shaded(base, std::abs(glm::dot(normal, light_))), 2 * region + 1};
   }
 
+  /// The first sheet in the list that lies between here_ and there_ (at `t`), both in the same air.
+  std::optional<Hit> sheet(const Vec3& origin, const Vec3& way, double t) {
+    const std::uint64_t inner = sheetSides(scene_, here_).inner;
+    std::uint64_t changed = inner ^ sheetSides(scene_, there_).inner;
+    for (; changed != 0; changed &= changed - 1) {
+      const auto index = static_cast<std::size_t>(std::countr_zero(changed));
+      const std::uint64_t bit = std::uint64_t{1} << index;
+      double low = std::min(before_, t);
+      double high = t;
+      SheetSides beyond = sheetSides(scene_, there_);
+      for (int i = 0; i < 12; ++i) {
+        const double half = 0.5 * (low + high);
+        probe(origin + half * way, middle_);
+        const SheetSides sides = sheetSides(scene_, middle_);
+        const bool is_before = ((sides.inner ^ inner) & bit) == 0;
+        (is_before ? low : high) = half;
+        if (!is_before) beyond = sides;
+      }
+      if ((beyond.extent & bit) == 0) continue;
+      return Hit{shaded(mixed(kPaper, kWallInk, kSheetInk),
+                        std::abs(glm::dot(sheetNormal(index, origin + high * way, -way), light_))),
+                 kFirstSheet - static_cast<int>(index)};
+    }
+    return {};
+  }
+
+  /// Of the sheet at `p`: of the leaf whose surface is nearest there.
+  [[nodiscard]] Vec3 sheetNormal(std::size_t index, const Vec3& p, const Vec3& fallback) const {
+    double nearest = kInfinity;
+    Vec3 normal = fallback;
+    for (const LeafId leaf : scene_.passages().sheets()[index].leaves) {
+      const FieldSample sample = scene_.partition().leaves()[leaf].field->sample(p);
+      if (std::abs(sample.value) >= nearest) continue;
+      nearest = std::abs(sample.value);
+      normal = unitOr(sample.gradient, fallback);
+    }
+    return normal;
+  }
+
   static Color shaded(const Color& base, double lambert) {
     return scaled(base, kAmbient + (1.0 - kAmbient) * std::clamp(lambert, 0.0, 1.0));
   }
@@ -161,9 +217,10 @@ class Marcher {
   const Box3& box_;
   const Camera& camera_;
   const Paint& paint_;
-  Signs here_, there_;
+  Signs here_, there_, middle_;
   Vec3 light_;
   std::vector<Box3> bounds_;
+  bool has_sheets_;
   double before_ = 0.0;
 };
 
@@ -195,7 +252,7 @@ Camera cameraFor(const Scene& scene, const CutPlane& plane, const Box3& box,
   };
   for (int y = 0; y < kTrial; ++y) {
     for (int x = 0; x < kTrial; ++x) {
-      if (marcher.cast(x + 0.5, y + 0.5).part < 0) continue;
+      if (marcher.cast(x + 0.5, y + 0.5).part == -1) continue;
       include((x + 0.5 - 0.5 * kTrial) * camera.step, (0.5 * kTrial - y - 0.5) * camera.step,
               camera.step);
     }
@@ -237,10 +294,10 @@ Raster drawCutaway(const Scene& scene, const CutPlane& plane, const Box3& box, c
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const Hit& here = hit(x, y);
-      const bool edge = (x + 1 < width && hit(x + 1, y).part != here.part) ||
-                        (y + 1 < height && hit(x, y + 1).part != here.part) ||
-                        (x > 0 && hit(x - 1, y).part != here.part) ||
-                        (y > 0 && hit(x, y - 1).part != here.part);
+      const bool edge = (x + 1 < width && hit(x + 1, y).isApartFrom(here)) ||
+                        (y + 1 < height && hit(x, y + 1).isApartFrom(here)) ||
+                        (x > 0 && hit(x - 1, y).isApartFrom(here)) ||
+                        (y > 0 && hit(x, y - 1).isApartFrom(here));
       const Color color = edge ? mixed(here.color, kWallInk, kEdgeShade) : here.color;
       Color& sum = raster.at(x / kFiner, y / kFiner);
       sum.r += share * color.r;

@@ -11,28 +11,15 @@ namespace {
 
 constexpr int kHalvings = 10;  // of a pixel: to a thousandth of it
 
-constexpr std::size_t kMostSheets = 48;  // more are not drawn
-
 std::uint64_t cellOf(const Scene& scene, const Signs& signs) {
-  std::uint64_t cell = scene.partition().regionOf(signs);
-  const auto sheets = scene.passages().sheets();
-  for (std::size_t i = 0; i < std::min(sheets.size(), kMostSheets); ++i) {
-    if (scene.partition().maskHolds(static_cast<std::size_t>(sheets[i].solid), signs)) {
-      cell |= std::uint64_t{1} << (16U + i);
-    }
-  }
-  return cell;
+  return scene.partition().regionOf(signs) | sheetSides(scene, signs).inner << 16U;
 }
 
-/// True if a sheet lies between two cells of one region.
+/// True if a sheet lies between two cells of one region, the second of which is beyond the line by no more than
+/// rounding.
 bool sheetBetween(const Scene& scene, const Signs& here, const Signs& there) {
-  const Partition& partition = scene.partition();
-  const auto sheets = scene.passages().sheets();
-  return std::any_of(sheets.begin(), sheets.end(), [&](const Sheet& sheet) {
-    const auto solid = static_cast<std::size_t>(sheet.solid);
-    return partition.maskHolds(solid, here) != partition.maskHolds(solid, there) &&
-           (sheet.mask < 0 || partition.maskHolds(static_cast<std::size_t>(sheet.mask), there));
-  });
+  const SheetSides beyond = sheetSides(scene, there);
+  return ((sheetSides(scene, here).inner ^ beyond.inner) & beyond.extent) != 0;
 }
 
 /// Finds the lines by looking at every square of four pixel centres: each side whose ends are in different
@@ -170,6 +157,21 @@ class Tracer {
 };
 
 }  // namespace
+
+SheetSides sheetSides(const Scene& scene, const Signs& signs) {
+  const Partition& partition = scene.partition();
+  const auto sheets = scene.passages().sheets();
+  SheetSides out;
+  for (std::size_t i = 0; i < std::min(sheets.size(), kMostSheets); ++i) {
+    const std::uint64_t bit = std::uint64_t{1} << i;
+    const auto holds = [&](int mask) {
+      return partition.maskHolds(static_cast<std::size_t>(mask), signs);
+    };
+    if (holds(sheets[i].solid)) out.inner |= bit;
+    if (sheets[i].mask < 0 || holds(sheets[i].mask)) out.extent |= bit;
+  }
+  return out;
+}
 
 Boundary classify(const Scene& scene, const Signs& here, const Signs& there) {
   const Partition& partition = scene.partition();

@@ -71,6 +71,21 @@ struct Section {
 
 [[nodiscard]] Section cutSection(const Scene& scene, const View& view, const Progress& progress);
 
+/// More sheets than these are not drawn.
+inline constexpr std::size_t kMostSheets = 48;
+
+/// A bit for each sheet: whether the cell `signs` is on its inner side, and whether it is within its extent.
+struct SheetSides {
+  std::uint64_t inner = 0;
+  std::uint64_t extent = 0;
+
+  /// The sheets that lie between this cell and `other`.
+  [[nodiscard]] std::uint64_t crossedTo(const SheetSides& other) const {
+    return (inner ^ other.inner) & extent & other.extent;
+  }
+};
+[[nodiscard]] SheetSides sheetSides(const Scene& scene, const Signs& signs);
+
 /// What is crossed between two points in neighbouring cells; points are left empty.
 [[nodiscard]] Boundary classify(const Scene& scene, const Signs& here, const Signs& there);
 

@@ -1,4 +1,4 @@
-#include "bake/grid_error.h"
+#include "palpate/vdb/grid_error.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "palpate/vdb/openvdb_access.h"
@@ -95,9 +96,15 @@ class Comparison {
 
 }  // namespace
 
-GridError gridError(const Field& field, const LevelSet& grid, const Field& made, const Box3& box) {
+GridError gridError(const Field& field, const LevelSet& grid, const Field& made, const Box3& box,
+                    std::size_t most_blocks) {
   std::vector<const Leaf*> leaves;
   grid.impl().grid->tree().getNodes(leaves);
+  if (leaves.size() > most_blocks) {
+    for (std::size_t i = 0; i < most_blocks; ++i)
+      leaves[i] = leaves[i * leaves.size() / most_blocks];
+    leaves.resize(most_blocks);
+  }
   const Comparison comparison(field, grid, made, box);
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, leaves.size()), GridError{},
@@ -108,6 +115,12 @@ GridError gridError(const Field& field, const LevelSet& grid, const Field& made,
         return worst;
       },
       worse);
+}
+
+GridError smoothGridError(Sampler sampler, double voxel_size) noexcept {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  return sampler == Sampler::kCubic ? GridError{0.02 * voxel_size, 1.0 * kDegree}
+                                    : GridError{0.1 * voxel_size, 10.0 * kDegree};
 }
 
 }  // namespace palpate::vdb

@@ -4,16 +4,19 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numbers>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
-#include "bake/grid_error.h"
 #include "bake/query_cost.h"
+#include "named_progress.h"
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/fields/transform.h"
+#include "palpate/vdb/grid_error.h"
 
 namespace palpate::vdb {
 namespace {
@@ -23,6 +26,8 @@ using Kind = FieldStructure::Kind;
 constexpr double kDegree = std::numbers::pi / 180.0;
 /// A grid must be that many times as fast as what it stands for: it costs memory and an error.
 constexpr double kWorthIt = 1.5;
+/// Metadata of a part's grid: [m] by how much it may be off its part.
+constexpr const char* kTolerance = "tolerance_m";
 
 std::string text(const char* format, double value) {
   std::array<char, 64> out{};
@@ -32,14 +37,8 @@ std::string text(const char* format, double value) {
 
 std::string millimetres(double metres) { return text("%.3g mm", metres * 1e3); }
 
-/// What a sampler reaches where the surface bends over some four voxels or more; an edge is off by far more.
-struct Usual {
-  double off;   // [voxels]
-  double turn;  // [rad]
-};
-constexpr Usual usual(Sampler sampler) {
-  return sampler == Sampler::kCubic ? Usual{0.02, 1.0 * kDegree} : Usual{0.1, 10.0 * kDegree};
-}
+/// Of a grid that is read again, so many blocks of 8^3 voxels are compared with its part.
+constexpr std::size_t kBlocksToTellBy = 100;
 
 HybridOptions checked(HybridOptions options) {
   if (!(options.tolerance >= 0.0)) {
@@ -81,7 +80,8 @@ class HybridBaker {
         progress_(progress) {}
 
   Hybrid run() {
-    collect(root_, root_->bounds(), "");
+    collect(root_, root_->bounds(), "", false);
+    for (const FieldPtr& field : options_.keep) keepLeavesOf(field);
     Hybrid out;
     for (Part& part : parts_) {
       out.parts.push_back(decide(part));
@@ -89,6 +89,27 @@ class HybridBaker {
     }
     out.field = rebuilt(root_);
     return out;
+  }
+
+  /// Of grids made before.
+  FieldPtr runOn(const std::map<std::string, LevelSet>& grids) {
+    collect(root_, root_->bounds(), "", false);
+    for (const auto& [name, grid] : grids) {
+      const auto part = std::find_if(parts_.begin(), parts_.end(),
+                                     [&, &name = name](const Part& p) { return p.name == name; });
+      if (part == parts_.end()) {
+        throw inputError("bake.other_field",
+                         "the grid " + grid.info().name + " is of a part that the field lacks",
+                         "it was made of another field: bake again");
+      }
+      const LevelSet wide = options_.sampler == Sampler::kCubic && isTooNarrow(grid.info())
+                                ? widened(grid, kCubicHalfWidth, progress_)
+                                : grid;
+      part->made = gridField(wide, options_.sampler);
+      refuseOther(*part, wide);
+      made_.emplace(part->field.get(), part->made);
+    }
+    return rebuilt(root_);
   }
 
   /// One grid of everything.
@@ -110,8 +131,9 @@ class HybridBaker {
   struct Part {
     FieldPtr field;
     std::string name;
-    Box3 needed;    ///< [m] in its frame: where its surface can be one of the whole's
-    FieldPtr made;  ///< the grid that takes its place; null: none does
+    Box3 needed;         ///< [m] in its frame: where its surface can be one of the whole's
+    bool is_placed;      ///< its frame is not the whole's
+    FieldPtr made = {};  ///< the grid that takes its place; null: none does
   };
 
   static FieldPtr cutOff(FieldPtr field, const BakeOptions& bake) {
@@ -121,21 +143,23 @@ class HybridBaker {
     return intersect({palpate::box(bake.box->center(), bake.box->size()), std::move(field)});
   }
 
-  void collect(const FieldPtr& field, const Box3& needed, const std::string& name) {
+  void collect(const FieldPtr& field, const Box3& needed, const std::string& name, bool is_placed) {
     const FieldStructure structure = field->structure();
+    // Out of its bounds it is outside, whatever its parts are there.
+    const Box3 here = needed.intersectedWith(field->bounds());
     switch (structure.kind) {
       case Kind::kUnion:
       case Kind::kIntersection:
         for (std::size_t i = 0; i < structure.operands.size(); ++i) {
-          collect(structure.operands[i], needed,
-                  (name.empty() ? "" : name + ".") + std::to_string(i + 1));
+          collect(structure.operands[i], here,
+                  (name.empty() ? "" : name + ".") + std::to_string(i + 1), is_placed);
         }
         return;
       case Kind::kComplement:
-        collect(structure.operands.front(), needed, name);
+        collect(structure.operands.front(), here, name, is_placed);
         return;
       case Kind::kTransform:
-        collect(structure.operands.front(), inverse(structure.pose).apply(needed), name);
+        collect(structure.operands.front(), inverse(structure.pose).apply(here), name, true);
         return;
       case Kind::kFaces:
       case Kind::kLeaf:
@@ -143,11 +167,32 @@ class HybridBaker {
     }
     const auto [known, is_new] = index_.emplace(field.get(), parts_.size());
     if (is_new) {
-      parts_.push_back({field, name, needed, nullptr});
+      parts_.push_back({field, name, needed, is_placed});
     } else {
       Box3& all = parts_[known->second].needed;
       all = all.unitedWith(needed);
     }
+  }
+
+  void keepLeavesOf(const FieldPtr& field) {
+    kept_.insert(field.get());
+    for (const FieldPtr& operand : field->structure().operands) keepLeavesOf(operand);
+  }
+
+  /// Throws if `grid` was made of another field than `part`.
+  void refuseOther(const Part& part, const LevelSet& grid) const {
+    GridError limit = allowed(grid.info().voxel_size);
+    const auto told = grid.info().metadata.find(kTolerance);
+    if (told != grid.info().metadata.end()) {
+      limit.off = std::max(limit.off, std::strtod(told->second.c_str(), nullptr));
+    }
+    const GridError error = gridError(*part.field, grid, *part.made,
+                                      part.needed.grownBy(grid.info().voxel_size), kBlocksToTellBy);
+    if (error.off <= limit.off && error.turn <= limit.turn) return;
+    throw inputError("bake.other_field",
+                     "the grid " + grid.info().name + " is off its part of the field by " +
+                         errorText(error) + " near " + placeText(error.where),
+                     "it was made of another field: bake again");
   }
 
   HybridPart decide(Part& part) {
@@ -158,6 +203,8 @@ class HybridBaker {
     const Box3 domain = field.bounds().intersectedWith(part.needed);
     if (structure.operands.size() > 1) {
       out.reason = "stays analytic: it has edges, which no grid holds";
+    } else if (kept_.contains(part.field.get())) {
+      out.reason = "stays analytic: that was asked for";
     } else if (hasBand(field)) {
       out.reason = "stays as it is: it is a grid already";
     } else if (domain.isEmpty()) {
@@ -199,7 +246,13 @@ class HybridBaker {
 
   void makeGrid(Part& part, HybridPart& out) {
     BakeOptions bake_options = options_.bake;
-    if (!part.name.empty()) bake_options.name += "/" + part.name;
+    if (!part.name.empty()) {
+      bake_options.name += "/" + part.name;
+      bake_options.metadata["part"] = part.name;
+    }
+    if (part.is_placed) bake_options.metadata["frame"] = "part";
+    if (options_.tolerance > 0.0)
+      bake_options.metadata[kTolerance] = text("%.17g", options_.tolerance);
     const double band = bake_options.half_width * bake_options.voxel_size;
     // Twice the band around what is needed: the cuts are then out of the band there.
     const Box3 needed = part.needed.grownBy(2.0 * band + 2.0 * bake_options.voxel_size);
@@ -222,10 +275,8 @@ class HybridBaker {
         gridError(*part.field, grid, *made, part.needed.grownBy(bake_options.voxel_size));
     out.off = error.off;
     out.turn = error.turn / kDegree;
-    const Usual limit = usual(options_.sampler);
-    const double tolerance =
-        options_.tolerance > 0.0 ? options_.tolerance : limit.off * bake_options.voxel_size;
-    if (error.off > tolerance || error.turn > limit.turn) {
+    const GridError limit = allowed(bake_options.voxel_size);
+    if (error.off > limit.off || error.turn > limit.turn) {
       out.reason = "stays analytic: a grid is off by up to " + errorText(error) + ", worst near " +
                    placeText(error.where);
       return;
@@ -239,11 +290,14 @@ class HybridBaker {
     part.made = std::move(made);
   }
 
+  [[nodiscard]] GridError allowed(double voxel_size) const {
+    GridError limit = smoothGridError(options_.sampler, voxel_size);
+    if (options_.tolerance > 0.0) limit.off = options_.tolerance;
+    return limit;
+  }
+
   [[nodiscard]] Progress named(const Part& part) const {
-    if (!progress_ || part.name.empty()) return progress_;
-    return [this, name = part.name](std::string_view step, double fraction) {
-      return progress_("part " + name + ": " + std::string(step), fraction);
-    };
+    return part.name.empty() ? progress_ : namedProgress(progress_, "part " + part.name);
   }
 
   /// The tree with grids in the place of parts; what did not change is the same object.
@@ -287,7 +341,8 @@ class HybridBaker {
   double grid_ns_ = 0.0;  // 0: not measured yet
   std::vector<Part> parts_;
   std::unordered_map<const Field*, std::size_t> index_;  // into parts_
-  std::unordered_map<const Field*, FieldPtr> made_;      // what each field of the tree came to be
+  std::unordered_set<const Field*> kept_;
+  std::unordered_map<const Field*, FieldPtr> made_;  // what each field of the tree came to be
 };
 
 }  // namespace
@@ -296,6 +351,15 @@ Hybrid bakeHybrid(const FieldPtr& field, const HybridOptions& options, const Pro
   if (!field) throw inputError("bake.null_field", "there is no field to bake");
   HybridBaker baker(field, options, progress);
   return options.parts == Parts::kWhole ? baker.runWhole() : baker.run();
+}
+
+FieldPtr recombined(const FieldPtr& field, const std::map<std::string, LevelSet>& grids,
+                    Sampler sampler) {
+  if (!field) throw inputError("bake.null_field", "there is no field to put grids into");
+  HybridOptions options;
+  options.sampler = sampler;
+  const Progress silent;
+  return HybridBaker(field, options, silent).runOn(grids);
 }
 
 }  // namespace palpate::vdb

@@ -11,10 +11,10 @@ namespace palpate::vdb {
 
 /// The stencil of every cell in a block of 8^3 voxels: one voxel before the block and two behind it.
 struct alignas(64) Brick {
-  static constexpr int kSide = 8;   ///< cells along an axis
-  static constexpr int kRows = 11;  ///< voxels along an axis, from -1 to 9
-  static constexpr int kRow = 12;   ///< floats from one row along z to the next: 48 bytes
-  static constexpr int kSlab = kRows * kRow;
+  static constexpr int kSide = 8;              ///< cells along an axis
+  static constexpr std::ptrdiff_t kRows = 11;  ///< voxels along an axis, from -1 to 9
+  static constexpr std::ptrdiff_t kRow = 12;  ///< floats from one row along z to the next: 48 bytes
+  static constexpr std::ptrdiff_t kSlab = kRows * kRow;
 
   float values[kRows *
                kSlab];     ///< [voxels] spline coefficients, or the grid's values; z runs fastest
@@ -24,13 +24,14 @@ struct alignas(64) Brick {
     return static_cast<std::size_t>((x + 1) * kSlab + (y + 1) * kRow + z + 1);
   }
 };
-static_assert(sizeof(Brick) == 92 * 64);
+static_assert(sizeof(Brick) == std::size_t{92} * 64);
 
 /// All that a sample reads. Plain data; whoever made it owns the memory.
 struct BrickView {
   /// Entries of the tables: a brick's place in units of 64 bytes, or one of these.
   static constexpr std::uint32_t kOutside = 0xFFFFFFFF;  ///< no brick, outside the surface
   static constexpr std::uint32_t kInside = 0xFFFFFFFE;   ///< no brick, inside
+  static constexpr std::uint32_t kBeyond = 0xFFFFFFFD;   ///< in no table: beyond the box
   static constexpr std::uint32_t kUnit = 64;             ///< [bytes]
 
   const std::byte* bricks = nullptr;
@@ -40,11 +41,12 @@ struct BrickView {
   std::uint32_t stride_x = 0;             ///< of the upper table
   std::uint32_t stride_y = 0;
 
-  Vec3 origin{0.0};        ///< [m] centre of the box's first voxel
   double per_voxel = 0.0;  ///< [1/m]
-  double voxel = 0.0;      ///< [m]
-  Vec3 extent{0.0};        ///< [voxels] of the box, whole blocks
-  double plateau = 0.0;    ///< [m] value out of the band, and least value beyond the box
+  Vec3 shift{0.0};  ///< [voxels] p * per_voxel + shift is 0 in the middle of the box's first cell
+  std::uint64_t size[3] = {0, 0, 0};  ///< [voxels] of the box, whole blocks
+  double voxel = 0.0;                 ///< [m]
+  Vec3 origin{0.0};                   ///< [m] centre of the box's first voxel
+  double plateau = 0.0;               ///< [m] value out of the band, and least value beyond the box
 };
 
 /// One look into bricks.
@@ -56,9 +58,8 @@ struct BrickKernels {
   Sample linear = nullptr;
 };
 
-/// Where no brick is: `entry` is kOutside or kInside.
-[[nodiscard]] FieldSample sampleWithoutBrick(const BrickView& view, std::uint32_t entry) noexcept;
-/// Beyond the box of the table; also where p is not a number.
-[[nodiscard]] FieldSample sampleBeyond(const BrickView& view, const Vec3& p) noexcept;
+/// Where no brick is: `entry` is kOutside, kInside or kBeyond, also where p is not a number.
+[[nodiscard]] FieldSample sampleWithoutBrick(const BrickView& view, std::uint32_t entry,
+                                             const Vec3& p) noexcept;
 
 }  // namespace palpate::vdb

@@ -98,6 +98,14 @@ void expandByNegative(const Brick& brick, const Coord& block, CoordBBox& negativ
   }
 }
 
+/// [voxels per voxel]^2 of all cells of the brick.
+double steepestSquareIn(const Brick& brick, bool cubic) noexcept {
+  const int first = cubic ? -1 : 0;
+  const int last = cubic ? 9 : 8;
+  return steepestSquare(brick.values + Brick::at(first, first, first),
+                        static_cast<std::size_t>(last - first + 1), {Brick::kSlab, Brick::kRow, 1});
+}
+
 std::byte* allocateBricks(std::size_t bytes) {
   const bool huge = bytes >= kWorthHugePages;
   const std::size_t alignment = huge ? kHugePage : alignof(Brick);
@@ -144,8 +152,7 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler) {
       Brick& brick = *new (bricks_.get() + n * sizeof(Brick)) Brick;
       gather(accessor, map.bricks[n], part.neighborhood);
       (cubic ? fillCubic : fillLinear)(part.neighborhood, plateau, units_per_voxel, brick);
-      const double square = cubic ? steepestSquareCubic(brick) : steepestSquareLinear(brick);
-      part.steepest_square = std::max(part.steepest_square, square);
+      part.steepest_square = std::max(part.steepest_square, steepestSquareIn(brick, cubic));
       expandByNegative(brick, map.bricks[n], part.negative);
     }
   });
@@ -157,7 +164,7 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler) {
     negative.expand(part.negative);
   }
   // The slope of a distance is 1, though a grid whose surface is flat may measure less. The margin is
-  // for sums of floats.
+  // for what rounding does to the samples.
   lipschitz_ = std::max(1.0, std::sqrt(steepest_square) * (1.0 + 1e-6));
 
   const auto position = [&](const Coord& at) {
@@ -179,7 +186,9 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler) {
   view_.per_voxel = 1.0 / info.voxel_size;
   view_.voxel = info.voxel_size;
   const Coord size = table.box.dim();
-  view_.extent = 8.0 * Vec3(size.x(), size.y(), size.z());
+  view_.shift = -view_.origin * view_.per_voxel - 0.5;
+  for (int axis = 0; axis < 3; ++axis)
+    view_.size[axis] = 8 * static_cast<std::uint64_t>(size[axis]);
   view_.plateau = plateau * info.metres_per_unit;
 }
 

@@ -5,48 +5,55 @@
 // B-spline, its first and its second derivative along one axis,
 //   value = sum wx wy wz c,  d/dx = sum dx wy wz c,  d2/dxdy = sum dx dy wz c,  ...
 // Sums run over y first, then x, each on four lanes along z; then over the lanes.
+//
+// What bounds the time is how many instructions the processor can look ahead, so that the next look
+// starts while this one waits for memory: fewer instructions count more than shorter chains.
 
-/// Where a point lies: its brick and the place in it.
-struct Place {
-  std::uint32_t entry = BrickView::kOutside;
-  int x = 0, y = 0, z = 0;              ///< cell in the block, from 0 to 7
-  double tx = 0.0, ty = 0.0, tz = 0.0;  ///< in the cell, from 0 to 1
-  bool in_box = false;
+/// Where a point lies. Along each axis: the voxel before it, from 0 in the box and anything beyond it,
+/// and how far it is from the middle of the cell that begins there, from -0.5 to 0.5.
+struct Cell {
+  std::uint64_t i, j, k;
+  double ux, uy, uz;
 };
 
-PALPATE_KERNEL Place locate(const BrickView& view, const Vec3& p) noexcept {
-  Place place;
-  const double x = (p.x - view.origin.x) * view.per_voxel;
-  const double y = (p.y - view.origin.y) * view.per_voxel;
-  const double z = (p.z - view.origin.z) * view.per_voxel;
-  // Written so that a NaN is out.
-  place.in_box = x >= 0.0 && x < view.extent.x && y >= 0.0 && y < view.extent.y && z >= 0.0 &&
-                 z < view.extent.z;
-  if (!place.in_box) return place;
-  const auto i = static_cast<int>(x);
-  const auto j = static_cast<int>(y);
-  const auto k = static_cast<int>(z);
-  place.tx = x - i;
-  place.ty = y - j;
-  place.tz = z - k;
-  place.x = i & 7;
-  place.y = j & 7;
-  place.z = k & 7;
-  const auto bx = static_cast<std::uint32_t>(i) >> 3;
-  const auto by = static_cast<std::uint32_t>(j) >> 3;
-  const auto bz = static_cast<std::uint32_t>(k) >> 3;
-  if (view.coarse == nullptr) {
-    place.entry =
-        view.blocks[static_cast<std::size_t>(bx) * view.stride_x + by * view.stride_y + bz];
-    return place;
-  }
-  const std::uint32_t group = view.coarse[static_cast<std::size_t>(bx >> 3) * view.stride_x +
-                                          (by >> 3) * view.stride_y + (bz >> 3)];
-  place.entry = group >= BrickView::kInside
-                    ? group
-                    : view.blocks[static_cast<std::size_t>(group) * 512 +
-                                  ((bx & 7) << 6 | (by & 7) << 3 | (bz & 7))];
-  return place;
+/// 1.5 * 2^52: a double plus this has its nearest integer in the last bits, and the bits of what is not
+/// a number, infinite or negative are, less those of this, beyond every box.
+inline constexpr double kRounder = 0x1.8p52;
+inline constexpr auto kRounderBits = std::bit_cast<std::uint64_t>(kRounder);
+
+PALPATE_KERNEL Cell locate(const BrickView& view, const Vec3& p) noexcept {
+  const double x = fma(p.x, view.per_voxel, view.shift.x);
+  const double y = fma(p.y, view.per_voxel, view.shift.y);
+  const double z = fma(p.z, view.per_voxel, view.shift.z);
+  const double i = x + kRounder;
+  const double j = y + kRounder;
+  const double k = z + kRounder;
+  return {std::bit_cast<std::uint64_t>(i) - kRounderBits,
+          std::bit_cast<std::uint64_t>(j) - kRounderBits,
+          std::bit_cast<std::uint64_t>(k) - kRounderBits,
+          x - (i - kRounder),
+          y - (j - kRounder),
+          z - (k - kRounder)};
+}
+
+/// The brick that holds the cell, or kBeyond, kInside, kOutside.
+PALPATE_KERNEL std::uint32_t entryAt(const BrickView& view, const Cell& cell) noexcept {
+  if (cell.i >= view.size[0]) [[unlikely]]
+    return BrickView::kBeyond;
+  if (cell.j >= view.size[1]) [[unlikely]]
+    return BrickView::kBeyond;
+  if (cell.k >= view.size[2]) [[unlikely]]
+    return BrickView::kBeyond;
+  const std::uint64_t bx = cell.i >> 3;
+  const std::uint64_t by = cell.j >> 3;
+  const std::uint64_t bz = cell.k >> 3;
+  if (view.coarse == nullptr) [[likely]]
+    return view.blocks[bx * view.stride_x + by * view.stride_y + bz];
+  const std::uint32_t group =
+      view.coarse[(bx >> 3) * view.stride_x + (by >> 3) * view.stride_y + (bz >> 3)];
+  if (group >= BrickView::kInside) return group;
+  return view
+      .blocks[static_cast<std::size_t>(group) * 512 + ((bx & 7) << 6 | (by & 7) << 3 | (bz & 7))];
 }
 
 PALPATE_KERNEL const Brick& brickAt(const BrickView& view, std::uint32_t entry) noexcept {
@@ -54,134 +61,205 @@ PALPATE_KERNEL const Brick& brickAt(const BrickView& view, std::uint32_t entry) 
                                          static_cast<std::size_t>(entry) * BrickView::kUnit);
 }
 
-PALPATE_KERNEL bool isKnown(const Brick& brick, const Place& place) noexcept {
-  return (brick.known[place.x * 8 + place.y] >> place.z & 1U) != 0;
+/// The first value of the cell's stencil: one voxel before it along each axis.
+PALPATE_KERNEL const float* firstOf(const Brick& brick, const Cell& cell) noexcept {
+  const auto x = static_cast<std::uint32_t>(cell.i) & 7U;
+  const auto y = static_cast<std::uint32_t>(cell.j) & 7U;
+  const auto z = static_cast<std::uint32_t>(cell.k) & 7U;
+  return brick.values + (x * Brick::kSlab + y * Brick::kRow + z);
 }
 
-/// Weights of the four coefficients along one axis: cubic B-spline, at t behind the second.
+PALPATE_KERNEL bool isKnown(const Brick& brick, const Cell& cell) noexcept {
+  return (brick.known[(cell.i & 7) * 8 + (cell.j & 7)] >> (cell.k & 7) & 1U) != 0;
+}
+
+/// Weights of the four coefficients along one axis, at a from the cell's end and b from its beginning:
+/// a3, w1, w2, b3 make 6 times the value, -a2, d1, -d2, b2 make 2 times the first derivative, and
+/// a, 3b - 2, 3a - 2, b the second.
 struct Weights {
+  Lanes a, b, a2, b2, a3, b3, w1, w2, d1, d2;
+};
+
+PALPATE_KERNEL Weights weightsAt(double u) noexcept {
+  const Lanes at = allOnce(u);
+  Weights w;
+  w.a = 0.5 - at;
+  w.b = 0.5 + at;
+  w.a2 = w.a * w.a;
+  w.b2 = w.b * w.b;
+  w.a3 = w.a2 * w.a;
+  w.b3 = w.b2 * w.b;
+  w.w1 = fma(w.b2, fma(all(3.0), w.b, all(-6.0)), all(4.0));
+  w.w2 = fma(w.a2, fma(all(3.0), w.a, all(-6.0)), all(4.0));
+  w.d1 = w.b * fma(all(3.0), w.b, all(-4.0));
+  w.d2 = w.a * fma(all(3.0), w.a, all(-4.0));
+  return w;
+}
+
+/// The weights of the lanes along z: of the value, of its first and of its second derivative. All with
+/// the 1/6 of the sums along x and y, so that a value's sum is whole.
+struct LaneWeights {
   Lanes value, slope, bend;
 };
 
-PALPATE_KERNEL Weights weightsAt(double at) noexcept {
-  const Lanes t = all(at);
-  constexpr double kSixth = 1.0 / 6.0;
-  const Lanes c0{kSixth, 4.0 * kSixth, kSixth, 0.0};
-  const Lanes c1{-0.5, 0.0, 0.5, 0.0};
-  const Lanes c2{0.5, -1.0, 0.5, 0.0};
-  const Lanes c3{-kSixth, 0.5, -0.5, kSixth};
-  return {fma(fma(fma(c3, t, c2), t, c1), t, c0), fma(fma(3.0 * c3, t, 2.0 * c2), t, c1),
-          fma(6.0 * c3, t, 2.0 * c2)};
+PALPATE_KERNEL LaneWeights laneWeightsAt(double u) noexcept {
+  const Lanes at = allOnce(u);
+  constexpr double kShare = 1.0 / 216.0;
+  constexpr Lanes kCube = kShare * Lanes{-1.0, 3.0, -3.0, 1.0};
+  constexpr Lanes kSquare = kShare * Lanes{1.5, -1.5, -1.5, 1.5};
+  constexpr Lanes kLinear = kShare * Lanes{-0.75, -3.75, 3.75, 0.75};
+  constexpr Lanes kMiddle = kShare * Lanes{0.125, 2.875, 2.875, 0.125};
+  return {fma(fma(fma(kCube, at, kSquare), at, kLinear), at, kMiddle),
+          fma(fma(3.0 * kCube, at, 2.0 * kSquare), at, kLinear),
+          fma(6.0 * kCube, at, 2.0 * kSquare)};
 }
 
-/// w0 r0 + w1 r1 + w2 r2 + w3 r3, as two chains that run at once.
-PALPATE_KERNEL Lanes weighted(Lanes w, Lanes r0, Lanes r1, Lanes r2, Lanes r3) noexcept {
-  return fma(all(w[1]), r1, all(w[0]) * r0) + fma(all(w[3]), r3, all(w[2]) * r2);
-}
-
-/// Sums over y of the four slabs along x, by value, first and second derivative of the y weights.
-struct Slabs {
-  Lanes value[4], slope[4], bend[4];
+struct Rows {
+  Lanes r0, r1, r2, r3;
 };
 
-template <bool kWithBend>
-PALPATE_KERNEL Slabs sumRows(const Brick& brick, const Place& place, const Weights& y) noexcept {
-  Slabs slabs;
-  const float* row = brick.values + (place.x * Brick::kSlab + place.y * Brick::kRow + place.z);
-  for (int n = 0; n < 4; ++n, row += Brick::kSlab) {
-    const Lanes r0 = load(row);
-    const Lanes r1 = load(row + Brick::kRow);
-    const Lanes r2 = load(row + 2 * Brick::kRow);
-    const Lanes r3 = load(row + 3 * Brick::kRow);
-    slabs.value[n] = weighted(y.value, r0, r1, r2, r3);
-    slabs.slope[n] = weighted(y.slope, r0, r1, r2, r3);
-    if constexpr (kWithBend) slabs.bend[n] = weighted(y.bend, r0, r1, r2, r3);
-  }
-  return slabs;
+PALPATE_KERNEL Rows rowsAt(const float* row) noexcept {
+  return {load(row), load(row + Brick::kRow), load(row + 2 * Brick::kRow),
+          load(row + 3 * Brick::kRow)};
 }
 
-PALPATE_KERNEL Lanes sumSlabs(Lanes w, const Lanes (&s)[4]) noexcept {
-  return weighted(w, s[0], s[1], s[2], s[3]);
+/// a r0 + b r1 + c r2 + d r3: in one chain, which takes fewer instructions, or in two that run at once.
+enum class Sum { kShort, kFast };
+
+/// 6 times the value.
+template <Sum kSum>
+PALPATE_KERNEL Lanes valueOf(const Weights& w, const Rows& r) noexcept {
+  const Lanes half = fma(w.w1, r.r1, w.a3 * r.r0);
+  if constexpr (kSum == Sum::kFast) return half + fma(w.b3, r.r3, w.w2 * r.r2);
+  return fma(w.b3, r.r3, fma(w.w2, r.r2, half));
+}
+
+/// 2 times the first derivative.
+template <Sum kSum>
+PALPATE_KERNEL Lanes slopeOf(const Weights& w, const Rows& r) noexcept {
+  const Lanes half = fnma(w.a2, r.r0, w.d1 * r.r1);
+  if constexpr (kSum == Sum::kFast) return half + fnma(w.d2, r.r2, w.b2 * r.r3);
+  return fma(w.b2, r.r3, fnma(w.d2, r.r2, half));
+}
+
+/// The second derivative.
+PALPATE_KERNEL Lanes bendOf(const Weights& w, const Rows& r) noexcept {
+  const Lanes e1 = fma(all(3.0), w.b, all(-2.0));
+  const Lanes e2 = fma(all(3.0), w.a, all(-2.0));
+  return fma(e1, r.r1, w.a * r.r0) + fma(w.b, r.r3, e2 * r.r2);
+}
+
+/// A slab of the stencil, summed over y.
+struct Slab {
+  Lanes value, slope, bend;
+};
+
+template <Sum kSum, bool kWithBend>
+PALPATE_KERNEL Slab sumSlab(const float* first, const Weights& y) noexcept {
+  const Rows rows = rowsAt(first);
+  Lanes bend{};
+  if constexpr (kWithBend) bend = bendOf(y, rows);
+  return {valueOf<kSum>(y, rows), slopeOf<kSum>(y, rows), bend};
+}
+
+/// The four slabs along x.
+struct Slabs {
+  Rows value, slope, bend;
+};
+
+template <Sum kSum, bool kWithBend>
+PALPATE_KERNEL Slabs sumSlabs(const float* first, const Weights& y) noexcept {
+  const Slab s0 = sumSlab<kSum, kWithBend>(first, y);
+  const Slab s1 = sumSlab<kSum, kWithBend>(first + Brick::kSlab, y);
+  const Slab s2 = sumSlab<kSum, kWithBend>(first + 2 * Brick::kSlab, y);
+  const Slab s3 = sumSlab<kSum, kWithBend>(first + 3 * Brick::kSlab, y);
+  return {{s0.value, s1.value, s2.value, s3.value},
+          {s0.slope, s1.slope, s2.slope, s3.slope},
+          {s0.bend, s1.bend, s2.bend, s3.bend}};
 }
 
 PALPATE_ENTRY FieldSample sampleCubic(const BrickView& view, const Vec3& p) noexcept {
-  const Place place = locate(view, p);
-  if (!place.in_box) [[unlikely]]
-    return sampleBeyond(view, p);
-  if (place.entry >= BrickView::kInside) [[unlikely]]
-    return sampleWithoutBrick(view, place.entry);
-  const Brick& brick = brickAt(view, place.entry);
-  const Weights x = weightsAt(place.tx);
-  const Weights y = weightsAt(place.ty);
-  const Weights z = weightsAt(place.tz);
-  const Slabs slabs = sumRows<false>(brick, place, y);
-  const Lanes value = sumSlabs(x.value, slabs.value);
-  const Lanes all_sums = sums(value * z.value, sumSlabs(x.slope, slabs.value) * z.value,
-                              sumSlabs(x.value, slabs.slope) * z.value, value * z.slope);
-  const double distance = all_sums[0] * view.voxel;
-  if (!isKnown(brick, place)) [[unlikely]]
-    return {distance, Vec3(0.0), false};
-  return {distance, Vec3(all_sums[1], all_sums[2], all_sums[3]), true};
+  const Cell cell = locate(view, p);
+  const std::uint32_t entry = entryAt(view, cell);
+  if (entry >= BrickView::kBeyond) [[unlikely]]
+    return sampleWithoutBrick(view, entry, p);
+  const Brick& brick = brickAt(view, entry);
+  const Weights x = weightsAt(cell.ux);
+  const Weights y = weightsAt(cell.uy);
+  const LaneWeights z = laneWeightsAt(cell.uz);
+  const Slabs slabs = sumSlabs<Sum::kShort, false>(firstOf(brick, cell), y);
+  const Lanes s = valueOf<Sum::kShort>(x, slabs.value);
+  const Lanes sx = slopeOf<Sum::kShort>(x, slabs.value);
+  const Lanes sy = valueOf<Sum::kShort>(x, slabs.slope);
+  const Lanes all_sums =
+      sums(s * z.value, sx * z.value, sy * z.value, s * z.slope) * Lanes{view.voxel, 3.0, 3.0, 1.0};
+  if (!isKnown(brick, cell)) [[unlikely]]
+    return {all_sums[0], Vec3(0.0), false};
+  return {all_sums[0], Vec3(all_sums[1], all_sums[2], all_sums[3]), true};
 }
 
 PALPATE_ENTRY FieldJet jetCubic(const BrickView& view, const Vec3& p) noexcept {
-  const Place place = locate(view, p);
-  if (!place.in_box || place.entry >= BrickView::kInside) [[unlikely]] {
-    const FieldSample sample =
-        place.in_box ? sampleWithoutBrick(view, place.entry) : sampleBeyond(view, p);
+  const Cell cell = locate(view, p);
+  const std::uint32_t entry = entryAt(view, cell);
+  if (entry >= BrickView::kBeyond) [[unlikely]] {
+    const FieldSample sample = sampleWithoutBrick(view, entry, p);
     return {sample.value, sample.gradient, Mat3(0.0), false};
   }
-  const Brick& brick = brickAt(view, place.entry);
-  const Weights x = weightsAt(place.tx);
-  const Weights y = weightsAt(place.ty);
-  const Weights z = weightsAt(place.tz);
-  const Slabs slabs = sumRows<true>(brick, place, y);
-  const Lanes s = sumSlabs(x.value, slabs.value);
-  const Lanes sx = sumSlabs(x.slope, slabs.value);
-  const Lanes sy = sumSlabs(x.value, slabs.slope);
-  const Lanes first = sums(s * z.value, sx * z.value, sy * z.value, s * z.slope);
-  const double distance = first[0] * view.voxel;
-  if (!isKnown(brick, place)) [[unlikely]]
-    return {distance, Vec3(0.0), Mat3(0.0), false};
-  const Lanes second = sums(sumSlabs(x.bend, slabs.value) * z.value,
-                            sumSlabs(x.value, slabs.bend) * z.value, s * z.bend, sy * z.slope);
-  const Lanes mixed =
-      sums(sumSlabs(x.slope, slabs.slope) * z.value, sx * z.slope, all(0.0), all(0.0));
+  const Brick& brick = brickAt(view, entry);
+  const Weights x = weightsAt(cell.ux);
+  const Weights y = weightsAt(cell.uy);
+  const LaneWeights z = laneWeightsAt(cell.uz);
+  const Slabs slabs = sumSlabs<Sum::kFast, true>(firstOf(brick, cell), y);
+  const Lanes s = valueOf<Sum::kFast>(x, slabs.value);
+  const Lanes sx = slopeOf<Sum::kFast>(x, slabs.value);
+  const Lanes sy = valueOf<Sum::kFast>(x, slabs.slope);
+  const Lanes first =
+      sums(s * z.value, sx * z.value, sy * z.value, s * z.slope) * Lanes{view.voxel, 3.0, 3.0, 1.0};
+  if (!isKnown(brick, cell)) [[unlikely]]
+    return {first[0], Vec3(0.0), Mat3(0.0), false};
   const double scale = view.per_voxel;
-  const double xy = mixed[0] * scale;
-  const double xz = mixed[1] * scale;
-  const double yz = second[3] * scale;
-  return {distance, Vec3(first[1], first[2], first[3]),
-          Mat3(second[0] * scale, xy, xz, xy, second[1] * scale, yz, xz, yz, second[2] * scale),
-          true};
+  const Lanes second =
+      sums(bendOf(x, slabs.value) * z.value, valueOf<Sum::kFast>(x, slabs.bend) * z.value,
+           s * z.bend, sy * z.slope) *
+      (scale * Lanes{6.0, 6.0, 1.0, 3.0});
+  const Lanes mixed =
+      sums(slopeOf<Sum::kFast>(x, slabs.slope) * z.value, sx * z.slope, all(0.0), all(0.0)) *
+      (scale * Lanes{9.0, 3.0, 0.0, 0.0});
+  const double xy = mixed[0];
+  const double xz = mixed[1];
+  const double yz = second[3];
+  return {first[0], Vec3(first[1], first[2], first[3]),
+          Mat3(second[0], xy, xz, xy, second[1], yz, xz, yz, second[2]), true};
 }
 
 /// Trilinear, out of bricks that hold the grid's own values.
 PALPATE_ENTRY FieldSample sampleLinear(const BrickView& view, const Vec3& p) noexcept {
-  const Place place = locate(view, p);
-  if (!place.in_box) [[unlikely]]
-    return sampleBeyond(view, p);
-  if (place.entry >= BrickView::kInside) [[unlikely]]
-    return sampleWithoutBrick(view, place.entry);
-  const Brick& brick = brickAt(view, place.entry);
-  const float* const near = brick.values + Brick::at(place.x, place.y, place.z);
+  const Cell cell = locate(view, p);
+  const std::uint32_t entry = entryAt(view, cell);
+  if (entry >= BrickView::kBeyond) [[unlikely]]
+    return sampleWithoutBrick(view, entry, p);
+  const Brick& brick = brickAt(view, entry);
+  const float* const near = firstOf(brick, cell) + Brick::at(0, 0, 0);
+  const double tx = cell.ux + 0.5;
+  const double ty = cell.uy + 0.5;
+  const double tz = cell.uz + 0.5;
   const float* const far = near + Brick::kSlab;
   // Lanes: the four edges along z. Along z, then y, then x; each step keeps the differences.
   const Lanes low{near[0], near[Brick::kRow], far[0], far[Brick::kRow]};
   const Lanes high{near[1], near[Brick::kRow + 1], far[1], far[Brick::kRow + 1]};
   const Lanes dz = high - low;
-  const Lanes v = fma(all(place.tz), dz, low);
+  const Lanes v = fma(all(tz), dz, low);
   const double near_y = v[1] - v[0];
   const double far_y = v[3] - v[2];
-  const double near_v = v[0] + place.ty * near_y;
-  const double far_v = v[2] + place.ty * far_y;
+  const double near_v = v[0] + ty * near_y;
+  const double far_v = v[2] + ty * far_y;
   const double dx = far_v - near_v;
-  const double distance = (near_v + place.tx * dx) * view.voxel;
-  if (!isKnown(brick, place)) [[unlikely]]
+  const double distance = (near_v + tx * dx) * view.voxel;
+  if (!isKnown(brick, cell)) [[unlikely]]
     return {distance, Vec3(0.0), false};
-  const double near_z = dz[0] + place.ty * (dz[1] - dz[0]);
-  const double far_z = dz[2] + place.ty * (dz[3] - dz[2]);
-  return {distance,
-          Vec3(dx, near_y + place.tx * (far_y - near_y), near_z + place.tx * (far_z - near_z)),
-          true};
+  const double near_z = dz[0] + ty * (dz[1] - dz[0]);
+  const double far_z = dz[2] + ty * (dz[3] - dz[2]);
+  return {distance, Vec3(dx, near_y + tx * (far_y - near_y), near_z + tx * (far_z - near_z)), true};
 }
+
+inline BrickKernels kernels() noexcept { return {&sampleCubic, &jetCubic, &sampleLinear}; }

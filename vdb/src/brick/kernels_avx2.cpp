@@ -1,24 +1,13 @@
-// The kernels for x86-64 processors with AVX2 and FMA (2013 and later).
+// The kernels for processors with AVX2 and FMA (2013 and later).
 
-#include "brick/instruction_set.h"
+#define PALPATE_TARGET "avx2,fma"
+#include "brick/kernels_x86.h"
 
 #if defined(__x86_64__)
 
-#include <immintrin.h>
-
 namespace palpate::vdb {
-namespace {
 
-#define PALPATE_KERNEL [[gnu::always_inline, gnu::target("avx2,fma")]] inline
-#define PALPATE_KERNEL_FMA
-#define PALPATE_ENTRY [[gnu::target("avx2,fma")]]
-#include "brick/simd.h"
-// simd.h comes first
-#include "brick/kernels.h"
-
-}  // namespace
-
-BrickKernels avx2Kernels() noexcept { return {&sampleCubic, &jetCubic, &sampleLinear}; }
+BrickKernels avx2Kernels() noexcept { return kernels(); }
 
 }  // namespace palpate::vdb
 

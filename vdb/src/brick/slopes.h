@@ -1,13 +1,21 @@
 #pragma once
-/// How steep the function in a brick can be.
+/// How steep an interpolant can be.
 
-#include "brick/brick_view.h"
+#include <array>
+#include <cstddef>
 
 namespace palpate::vdb {
 
-/// A bound of |gradient|^2 in all cells of the brick: of the cubic spline with these coefficients, or
-/// of the trilinear interpolant of these values.
-[[nodiscard]] double steepestSquareCubic(const Brick& brick) noexcept;
-[[nodiscard]] double steepestSquareLinear(const Brick& brick) noexcept;
+/// A bound of |gradient|^2, in values a step, of the cubic B-spline or the trilinear interpolant with the
+/// `side`^3 coefficients at `first` and `strides` on, in all cells whose stencils lie among them.
+///
+/// Along an axis the slope of either is a mean of the differences between neighbors. These can be shared out
+/// among the coefficients, each of which takes a mean of the one before and the one after it, so that the means weigh
+/// as much in the slope as the coefficients in the value: for the cubic spline with weights w0..w3 and those
+/// of its slope q0..q2, coefficient 1 takes the share (q0 - w0) / w1 of the first difference, which is from 0 to 1, and
+/// 2 likewise. The three components of the gradient then have the same weights, those of the
+/// value, and none is longer than the longest of the vectors that they are means of.
+[[nodiscard]] double steepestSquare(const float* first, std::size_t side,
+                                    const std::array<std::size_t, 3>& strides) noexcept;
 
 }  // namespace palpate::vdb

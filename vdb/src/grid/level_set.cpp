@@ -82,7 +82,7 @@ LevelSet makeLevelSet(openvdb::FloatGrid::Ptr grid, const std::string& length_un
                      "grid '" + grid->getName() +
                          "' is rotated, mirrored or has voxels that are not cubes; palpate reads "
                          "level sets with cubic, axis-aligned voxels",
-                     "resample it to an axis-aligned grid with cubic voxels first");
+                     "palpate convert FILE.vdb -o OTHER.vdb --voxel SIZE makes such a grid of it");
   }
   if (!(grid->background() > 0.0F) || !std::isfinite(grid->background())) {
     throw inputError("vdb.background",

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "brick/slopes.h"
+
 namespace palpate::vdb {
 namespace {
 
@@ -21,10 +23,9 @@ constexpr std::size_t kSide = 10;  ///< a leaf and one voxel more on every side
 constexpr std::size_t kStepX = kSide * kSide;
 constexpr std::size_t kStepY = kSide;
 
-/// The values that interpolation takes, around one leaf, and their steps along the axes.
+/// The values that interpolation takes, around one leaf.
 struct Block {
   std::array<float, kSide * kSide * kSide> values;
-  std::array<std::array<float, kSide * kSide * kSide>, 3> steps;
 };
 
 void gather(const Leaf& leaf, const Accessor& accessor, float plateau, Block& block,
@@ -46,37 +47,10 @@ void gather(const Leaf& leaf, const Accessor& accessor, float plateau, Block& bl
   }
 }
 
-/// Each component of the interpolant's gradient is a mean of four steps of its cell.
-float steepestSquare(Block& block) {
-  constexpr std::array<std::size_t, 3> kSteps{kStepX, kStepY, 1};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t n = 0; n + kSteps[axis] < block.values.size(); ++n) {
-      block.steps[axis][n] = std::abs(block.values[n + kSteps[axis]] - block.values[n]);
-    }
-  }
-  const auto largest = [](const std::array<float, kSide * kSide * kSide>& steps, std::size_t at,
-                          std::size_t u, std::size_t v) {
-    return std::max(std::max(steps[at], steps[at + u]), std::max(steps[at + v], steps[at + u + v]));
-  };
-  float most = 0.0F;
-  for (std::size_t x = 0; x + 1 < kSide; ++x) {
-    for (std::size_t y = 0; y + 1 < kSide; ++y) {
-      for (std::size_t z = 0; z + 1 < kSide; ++z) {
-        const std::size_t at = x * kStepX + y * kStepY + z;
-        const float dx = largest(block.steps[0], at, kStepY, 1);
-        const float dy = largest(block.steps[1], at, kStepX, 1);
-        const float dz = largest(block.steps[2], at, kStepX, kStepY);
-        most = std::max(most, dx * dx + dy * dy + dz * dz);
-      }
-    }
-  }
-  return most;
-}
-
 struct Part {
   Survey survey;
   Block block;
-  float steepest_square = 0.0F;
+  double steepest_square = 0.0;
 };
 
 }  // namespace
@@ -87,18 +61,18 @@ Survey surveyGrid(const openvdb::FloatGrid& grid, float plateau) {
   leaves.foreach ([&](const Leaf& leaf, std::size_t) {
     Part& part = parts.local();
     gather(leaf, Accessor(grid.tree()), plateau, part.block, part.survey);
-    part.steepest_square = std::max(part.steepest_square, steepestSquare(part.block));
+    part.steepest_square = std::max(
+        part.steepest_square, steepestSquare(part.block.values.data(), kSide, {kStepX, kStepY, 1}));
   });
   Survey all;
-  float steepest_square = 0.0F;
+  double steepest_square = 0.0;
   for (const Part& part : parts) {
     all.inside.expand(part.survey.inside);
     all.known.expand(part.survey.known);
     steepest_square = std::max(steepest_square, part.steepest_square);
   }
-  // Squares and sums of floats: a few units in the last place.
-  all.steepest =
-      std::sqrt(static_cast<double>(steepest_square)) * (1.0 + 1e-6) / grid.voxelSize().x();
+  // The margin is for what rounding does to the samples.
+  all.steepest = std::sqrt(steepest_square) * (1.0 + 1e-6) / grid.voxelSize().x();
   auto tiles = grid.tree().cbeginValueAll();
   tiles.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
   for (; tiles; ++tiles) {

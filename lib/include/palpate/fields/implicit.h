@@ -54,7 +54,8 @@ struct Metaball {
 };
 
 /// The points where the sum of strength * fall-off is above `iso` (0 < iso). Out of bounds() the
-/// distance to that box is added to the field, so that it has a gradient everywhere. The Lipschitz
+/// field rises by up to the distance d to that box, d - w atan(d / w) where w is half the smallest radius, so that
+/// it has a gradient everywhere, and its first two derivatives are continuous where the surface touches the box. The Lipschitz
 /// bound holds everywhere. Of many balls only those that reach the point are asked; a Gaussian ends
 /// where all of them together are below rounding. Throws if the balls cannot reach `iso`.
 [[nodiscard]] FieldPtr metaballs(std::vector<Metaball> balls, FallOff fall_off, double iso);

@@ -3,6 +3,7 @@
 /// is thin, or is cheap as it is stays analytic. No grid holds an edge (it is off by 11 to 14 degrees there,
 /// however small the voxels are); a minimum or maximum taken at the query does.
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct HybridOptions {
   /// tenth for the others. Independent of it, a normal that is off by more than 1 degree (others:
   /// 10) tells an edge. Not for kWhole.
   double tolerance = 0.0;
+  /// Fields whose leaves stay analytic whatever else holds, such as those that ports are on. Not for kWhole.
+  std::vector<FieldPtr> keep = {};
 };
 
 /// What became of one part of the field: a leaf of its CSG, or a solid with faces.
@@ -55,5 +58,12 @@ struct Hybrid {
 /// `field` is null or `tolerance` negative.
 [[nodiscard]] Hybrid bakeHybrid(const FieldPtr& field, const HybridOptions& options,
                                 const Progress& progress = {});
+
+/// What bakeHybrid() made of `field` once, out of its grids: each takes the place of the part that the
+/// map names it by; all else stays analytic.
+/// @throws Error (kInput) if there is no such part, or a grid is off its part by more than smoothGridError()
+/// says and the tolerance it was made with: it was made of another field. A hundred blocks of it are looked at.
+[[nodiscard]] FieldPtr recombined(const FieldPtr& field,
+                                  const std::map<std::string, LevelSet>& grids, Sampler sampler);
 
 }  // namespace palpate::vdb

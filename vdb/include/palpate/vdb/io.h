@@ -22,9 +22,16 @@ struct VdbGridSummary {
 };
 [[nodiscard]] std::vector<VdbGridSummary> listVdb(const std::string& path);
 
+/// What a grid without a class (OpenVDB's "unknown") is taken for.
+enum class UnknownClass {
+  kRefuse,
+  kLevelSet  ///< signed distances, negative inside: for those who know
+};
+
 /// Reads a float level set; `name` may be empty if the file holds exactly one. A file without a length
 /// unit in its metadata needs `unit_if_missing`. @throws Error (kInput) with the reason and remedy.
 [[nodiscard]] LevelSet readVdb(const std::string& path, const std::string& name,
-                               const std::string& unit_if_missing);
+                               const std::string& unit_if_missing,
+                               UnknownClass unknown_class = UnknownClass::kRefuse);
 
 }  // namespace palpate::vdb

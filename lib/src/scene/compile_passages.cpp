@@ -1,0 +1,129 @@
+// SceneCompiler's ports and sheets.
+
+#include <algorithm>
+#include <functional>
+
+#include "scene_compiler.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kPatientSurveyLines = 4096;
+
+}  // namespace
+
+PortId SceneCompiler::portNamed(const std::string& name, const PortDescription& asker) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < description_.ports.size(); ++i) {
+    if (description_.ports[i].name == name) return static_cast<PortId>(i);
+    names.push_back(description_.ports[i].name);
+  }
+  const std::string near = suggest(name, names);
+  throw errorAt(asker.place, "scene.unknown_port", "there is no port " + quoted(name),
+                near.empty() ? "" : "did you mean " + quoted(near) + "?");
+}
+
+std::vector<LeafId> SceneCompiler::facetLeaves(const PortDescription& given, const Port& port) {
+  std::vector<LeafId> leaves = scene_->partition_.leavesOf(given.on->get().get());
+  const auto bounds = [&](const std::vector<RegionId>& sides) {
+    return std::any_of(sides.begin(), sides.end(), [&](RegionId region) {
+      const auto own = scene_->partition_.leavesOfRegion(region);
+      return std::any_of(leaves.begin(), leaves.end(), [&](LeafId leaf) {
+        return std::find(own.begin(), own.end(), leaf) != own.end();
+      });
+    });
+  };
+  if (leaves.empty() || !(bounds(port.from) || bounds(port.to))) {
+    throw errorAt(
+        given.place, "scene.port_face",
+        "port " + quoted(given.name) + " is on " + quoted(given.on_name) +
+            ", which is no part of " + quoted(given.from) + " or " + quoted(given.to),
+        given.on_note.empty()
+            ? "name a field that the layer's `inside` is made from, or use `where:` for an "
+              "opening of any shape"
+            : given.on_note + ", or use `where:` for an opening of any shape");
+  }
+  return leaves;
+}
+
+std::vector<Port> SceneCompiler::makePorts() {
+  std::vector<Port> ports;
+  for (std::size_t i = 0; i < description_.ports.size(); ++i) {
+    const PortDescription& given = description_.ports[i];
+    Port port;
+    port.name = given.name;
+    port.from = matching(given.from, given.place);
+    port.to = matching(given.to, given.place);
+    port.mask = mask_of_[i];
+    port.direction = given.direction;
+    port.opens_at = given.opens_at;
+    port.back = given.back.value_or(given.opens_at);
+    if (given.on) port.on = facetLeaves(given, port);
+    for (const std::string& before : given.after) port.after.push_back(portNamed(before, given));
+    requireTouching(given, port);
+    ports.push_back(std::move(port));
+  }
+  refuseCycles(ports);
+  return ports;
+}
+
+std::vector<Sheet> SceneCompiler::makeSheets() {
+  std::vector<Sheet> sheets;
+  for (std::size_t i = 0; i < description_.sheets.size(); ++i) {
+    const SheetDescription& given = description_.sheets[i];
+    Sheet sheet;
+    sheet.name = given.name;
+    sheet.leaves = scene_->partition_.leavesOf(given.on->get().get());
+    sheet.solid = sheet_solid_of_[i];
+    sheet.mask = sheet_mask_of_[i];
+    sheet.material = wall({false, given.material}, given.place).material;
+    Box3 box = given.on->get()->bounds();
+    if (given.where) box = box.intersectedWith(given.where->get()->bounds());
+    if (box.isBounded()) scene_->sheet_bounds_ = scene_->sheet_bounds_.unitedWith(box);
+    sheets.push_back(std::move(sheet));
+  }
+  return sheets;
+}
+
+void SceneCompiler::requireTouching(const PortDescription& given, const Port& port) {
+  const auto touching = [&] {
+    for (const RegionId a : port.from) {
+      for (const RegionId b : port.to) {
+        if (a != b && survey_.touches(a, b)) return true;
+      }
+    }
+    return false;
+  };
+  if (touching()) return;
+  if (!patient_) {
+    // Small contacts escape the quick look; before calling the author wrong, look hard, once.
+    patient_ = true;
+    survey_ = survey(scene_->partition_, boxes_, kPatientSurveyLines);
+    if (touching()) return;
+  }
+  throw errorAt(given.place, "scene.regions_do_not_touch",
+                "port " + quoted(given.name) + " joins " + quoted(given.from) + " and " +
+                    quoted(given.to) + ", which do not touch",
+                "a port opens the wall between two neighbours; `palpate explain` lists them");
+}
+
+void SceneCompiler::refuse(const PortDescription& given) {
+  throw errorAt(given.place, "scene.port_cycle",
+                "port " + quoted(given.name) + " can only be passed after itself",
+                "break the circle of `after:`");
+}
+
+void SceneCompiler::refuseCycles(const std::vector<Port>& ports) {
+  enum class Visit { kNew, kOpen, kDone };
+  std::vector<Visit> marks(ports.size(), Visit::kNew);
+  const std::function<void(std::size_t)> visit = [&](std::size_t i) {
+    if (marks[i] == Visit::kDone) return;
+    if (marks[i] == Visit::kOpen) refuse(description_.ports[i]);
+    marks[i] = Visit::kOpen;
+    for (const PortId before : ports[i].after) visit(before);
+    marks[i] = Visit::kDone;
+  };
+  for (std::size_t i = 0; i < ports.size(); ++i) visit(i);
+}
+
+}  // namespace palpate

@@ -1,0 +1,150 @@
+// FieldReader's kinds that are made from other fields.
+
+#include <algorithm>
+#include <functional>
+#include <numbers>
+#include <utility>
+
+#include "palpate/fields/blend.h"
+#include "palpate/fields/csg.h"
+#include "palpate/fields/modify.h"
+#include "palpate/fields/transform.h"
+#include "scene/field_at_place.h"
+#include "scene/field_reader.h"
+#include "scene/messages.h"
+#include "scene/shape_reader.h"
+#include "scene/values.h"
+
+namespace palpate {
+namespace {
+
+// `make` over operands: done at once if they are all there, else when the result is asked for.
+FieldSourcePtr deferred(std::vector<FieldSourcePtr> operands, SourcePlace place,
+                        std::function<FieldPtr(std::vector<FieldPtr>)> make) {
+  std::string summary;
+  bool ready = true;
+  for (const FieldSourcePtr& operand : operands) {
+    ready = ready && operand->isMade();
+    const std::string& part = operand->summary();
+    if (!part.empty()) summary += (summary.empty() ? "" : ", ") + part;
+  }
+  auto maker = [operands = std::move(operands), place = std::move(place),
+                make = std::move(make)](const Progress& progress) {
+    std::vector<FieldPtr> fields;
+    fields.reserve(operands.size());
+    for (const FieldSourcePtr& operand : operands) fields.push_back(operand->get(progress));
+    return madeAt(place, [&] { return make(std::move(fields)); });
+  };
+  if (ready && summary.empty()) return std::make_shared<FieldSource>(maker({}));
+  return std::make_shared<FieldSource>(std::move(summary), std::move(maker));
+}
+
+}  // namespace
+
+FieldReader::Built FieldReader::buildOperation(const Node::Entry& kind) {
+  if (kind.key == "union") return combine(kind, kind.value, unite);
+  if (kind.key == "intersection") return combine(kind, kind.value, intersect);
+  if (kind.key == "difference") return combine(kind, kind.value, subtract);
+  if (kind.key == "complement") {
+    return modify(kind, kind.value, [](FieldPtr field) { return complement(std::move(field)); });
+  }
+  if (kind.key == "transform") return buildTransform(kind);
+
+  MapReader reader(loader_, kind.value, inQuotes(kind.key));
+  if (kind.key == "shell") {
+    const Node& field = reader.require("field");
+    const double thickness = positiveLength(reader, "thickness");
+    reader.finish();
+    // Its outer faces are those of the field itself, so they keep their names.
+    Built built = modify(kind, field, [=](FieldPtr f) { return shell(std::move(f), thickness); });
+    built.leaves = std::min(2 * built.leaves, kMostLeaves + 1);
+    return built;
+  }
+  // What goes into the others cannot be named by a port any more.
+  const Node::Entry* const around = blend_;
+  if (blend_ == nullptr) blend_ = &kind;
+  Built built = buildBlend(kind, reader);
+  blend_ = around;
+  return built;
+}
+
+FieldReader::Built FieldReader::buildBlend(const Node::Entry& kind, MapReader& reader) {
+  if (kind.key == "scale") {
+    const Node& field = reader.require("field");
+    const double factor = reader.requireNumber("factor");
+    reader.finish();
+    if (!(factor > 0.0)) {
+      throw reader.errorAt("factor", "scene.range", "'factor' must be more than 0",
+                           "2 doubles the size; what mirrors is not a solid to feel");
+    }
+    return modify(kind, field, [=](FieldPtr f) { return scale(std::move(f), factor); });
+  }
+  if (kind.key == "offset") {
+    const Node& field = reader.require("field");
+    const double distance = reader.requireLength("distance");
+    reader.finish();
+    return modify(kind, field, [=](FieldPtr f) { return offset(std::move(f), distance); });
+  }
+  const Node& fields = reader.require("fields");
+  const double radius = positiveLength(reader, "radius");
+  reader.finish();
+  const auto blended = [&](FieldPtr (*blend)(std::vector<FieldPtr>, double)) {
+    return combine(kind, fields, [=](std::vector<FieldPtr> operands) {
+      return blend(std::move(operands), radius);
+    });
+  };
+  if (kind.key == "smooth_union") return blended(smoothUnite);
+  if (kind.key == "smooth_intersection") return blended(smoothIntersect);
+  return blended(smoothSubtract);
+}
+
+FieldReader::Built FieldReader::combine(const Node::Entry& kind, const Node& operands,
+                                        Combine operation) {
+  Built built{nullptr, 0, 0};
+  std::vector<FieldSourcePtr> sources;
+  const std::string what = inQuotes(&operands == &kind.value ? kind.key : "fields");
+  for (const Node& operand : readList(loader_.document(), operands, what, 1, 0)) {
+    const Built part = build(operand);
+    sources.push_back(part.source);
+    built.leaves = std::min(built.leaves + part.leaves, kMostLeaves + 1);
+    built.height = std::max(built.height, part.height);
+  }
+  ++built.height;
+  built.source =
+      deferred(std::move(sources), loader_.document().place(kind.key_mark), std::move(operation));
+  return built;
+}
+
+FieldReader::Built FieldReader::modify(const Node::Entry& kind, const Node& operand,
+                                       const std::function<FieldPtr(FieldPtr)>& operation) {
+  Built built = build(operand);
+  ++built.height;
+  built.source =
+      deferred({built.source}, loader_.document().place(kind.key_mark),
+               [=](const std::vector<FieldPtr>& fields) { return operation(fields[0]); });
+  return built;
+}
+
+FieldReader::Built FieldReader::buildTransform(const Node::Entry& kind) {
+  MapReader reader(loader_, kind.value, "'transform'");
+  const Node& field = reader.require("field");
+  Pose pose;
+  const Node* rotate = reader.optional("rotate");
+  if (rotate != nullptr) {
+    MapReader rotation(loader_, *rotate, "'rotate'");
+    const Vec3 axis = rotation.requireDirection("axis");
+    const double degrees = rotation.requireNumber("degrees");
+    rotation.finish();
+    pose.rotation = rotationAbout(axis, degrees * std::numbers::pi / 180.0);
+  }
+  const bool translates = reader.optional("translate") != nullptr;
+  if (translates) pose.translation = reader.requirePoint("translate");
+  reader.finish();
+  if (rotate == nullptr && !translates) {
+    throw loader_.document().error(kind.key_mark, "scene.missing_key", "'transform' moves nothing",
+                                   "add translate, rotate or both");
+  }
+  return modify(kind, field, [=](FieldPtr f) { return place(std::move(f), pose); });
+}
+
+}  // namespace palpate

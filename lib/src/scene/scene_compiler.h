@@ -1,0 +1,65 @@
+#pragma once
+/// How a description becomes a Scene; a step for each kind of thing.
+
+#include <string>
+#include <vector>
+
+#include "label_share.h"
+#include "palpate/scene/scene.h"
+#include "palpate/scene/scene_file.h"
+#include "survey.h"
+
+namespace palpate {
+
+/// `text` in single quotes.
+[[nodiscard]] inline std::string quoted(const std::string& text) { return "'" + text + "'"; }
+
+/// Makes one Scene.
+class SceneCompiler {
+ public:
+  SceneCompiler(const SceneDescription& description, const Progress& progress);
+  ScenePtr build();
+
+ private:
+  /// Of the regions.
+  [[nodiscard]] std::size_t count() const { return layers_.size() + 1; }
+
+  // compile.cpp
+  Partition makePartition(const Progress& progress);
+  void regions();
+  int material(const std::string& name, const SourcePlace& place);
+  Wall wall(const WallDescription& given, const SourcePlace& place);
+  void materials();
+  std::vector<RegionId> matching(const std::string& glob, const SourcePlace& place);
+  Error unknownRegion(const std::string& name, const SourcePlace& place);
+  std::vector<Wall> makeWalls();
+
+  // compile_passages.cpp
+  std::vector<Port> makePorts();
+  std::vector<Sheet> makeSheets();
+  std::vector<LeafId> facetLeaves(const PortDescription& given, const Port& port);
+  PortId portNamed(const std::string& name, const PortDescription& asker);
+  void requireTouching(const PortDescription& given, const Port& port);
+  static void refuse(const PortDescription& given);
+  void refuseCycles(const std::vector<Port>& ports);
+
+  // compile_reach.cpp
+  void lookAround();
+  RegionId start();
+  /// Follows absent walls and ports from the start; a port counts once those before it can be passed.
+  void markReachable();
+  bool spread(RegionId a, RegionId b, std::vector<bool>& passable);
+
+  const SceneDescription& description_;
+  std::vector<LeafBetween> between_;  // filled with the layers
+  std::vector<FieldPtr> layers_;
+  std::vector<int> mask_of_;  // by port: index of a mask of the partition; -1: none
+  std::vector<int> sheet_mask_of_;
+  std::vector<int> sheet_solid_of_;
+  std::shared_ptr<Scene> scene_;
+  std::vector<Box3> boxes_;
+  Survey survey_;
+  bool patient_ = false;
+};
+
+}  // namespace palpate

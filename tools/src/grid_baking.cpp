@@ -1,0 +1,166 @@
+#include "grid_baking.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "input_kind.h"
+#include "palpate/vdb/bake.h"
+#include "palpate/vdb/grid_image.h"
+#include "palpate/vdb/io.h"
+#include "palpate/vdb/scan_surface.h"
+#include "text.h"
+#include "vdb_grid_name.h"
+
+namespace palpate::tools {
+namespace {
+
+Error usageError(std::string message, std::string hint = {}) {
+  return Error(ErrorKind::kUsage, {"usage.bake", std::move(message), std::move(hint)});
+}
+
+std::string askedName(const BakeOptions& options) {
+  if (options.layers.size() > 1) {
+    throw usageError("one file is made from one grid; --layer was given twice");
+  }
+  return gridName(options.input, options.layers.empty() ? "" : options.layers.front());
+}
+
+/// What is known of the grid without its voxels; nothing if there is none.
+std::optional<vdb::VdbGridSummary> summaryOf(const BakeOptions& options, const std::string& name) {
+  for (vdb::VdbGridSummary& grid : vdb::listVdb(options.input)) {
+    if (name.empty() || grid.name == name) return std::move(grid);
+  }
+  return {};
+}
+
+/// "liver" for "liver/surface"; the file's name for a grid without one.
+std::string layerOf(const std::string& grid, const BakeOptions& options) {
+  constexpr std::string_view kEnd = "/surface";
+  if (grid.empty()) return stemOf(options.input);
+  return grid.ends_with(kEnd) ? grid.substr(0, grid.size() - kEnd.size()) : grid;
+}
+
+vdb::BakeOptions bakeOptions(const BakeOptions& options, const std::string& grid,
+                             const std::string& unit, double voxel) {
+  vdb::BakeOptions bake;
+  bake.voxel_size = voxel;
+  bake.half_width = options.half_width;
+  const std::string layer = layerOf(grid, options);
+  bake.name = layer + "/surface";
+  bake.length_unit = unit;
+  bake.metadata = {{"layer", layer}, {"source", options.input}};
+  return bake;
+}
+
+double voxelOr(const BakeOptions& options, const std::string& unit, double fallback) {
+  if (options.voxel.empty()) return fallback;
+  const double voxel = parseLength(options.voxel, lengthUnit(unit), "--voxel");
+  if (!(voxel > 0.0)) throw usageError("--voxel must be greater than 0");
+  return voxel;
+}
+
+/// A level set whose voxels are no cubes along the axes: the surface where its interpolated distances pass
+/// zero, in new voxels.
+vdb::LevelSet straightened(const BakeOptions& options, Console& console) {
+  const auto grid = summaryOf(options, askedName(options));
+  const std::string name = grid ? grid->name : "";
+  const std::string unit = unitOfGrid(options);
+  vdb::Image image = readDistances(options);
+  for (float& value : image.values) value = -value;
+  const double spacing = std::min(
+      {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])});
+  const double voxel = voxelOr(options, unit, spacing);
+  console.note(options.input + ": its surface is put into cubic voxels of " +
+               formatNumber(voxel / lengthUnit(unit).metres, 3) + " " + unit + " along the axes");
+  vdb::ThresholdOptions threshold;
+  threshold.largest_component = false;
+  return vdb::surfaceFromThreshold(image, threshold, bakeOptions(options, name, unit, voxel),
+                                   console.progress());
+}
+
+}  // namespace
+
+std::string unitOfGrid(const BakeOptions& options) {
+  const auto grid = summaryOf(options, askedName(options));
+  return grid && !grid->info.length_unit.empty() ? grid->info.length_unit : options.units;
+}
+
+vdb::LevelSet readLevelSet(const BakeOptions& options) {
+  return vdb::readVdb(
+      options.input, askedName(options), options.units,
+      options.level_set ? vdb::UnknownClass::kLevelSet : vdb::UnknownClass::kRefuse);
+}
+
+bool isMendable(const Error& error, const BakeOptions& options) {
+  if (error.problem().code == "vdb.transform") return true;
+  if (error.problem().code != "vdb.type") return false;
+  const auto grid = summaryOf(options, askedName(options));
+  return grid && grid->type == "DoubleGrid";
+}
+
+vdb::Image readDistances(const BakeOptions& options) {
+  const std::string name = askedName(options);
+  const auto grid = summaryOf(options, name);
+  const std::string grid_class = grid ? grid->grid_class : "";
+  if (grid_class != "level set" && !(options.level_set && grid_class == "unknown")) {
+    throw inputError("vdb.class",
+                     "grid '" + name + "' is of class '" + grid_class +
+                         "', so nothing says that its values are signed distances",
+                     "if they are: --level-set; --above DENSITY or --labels VALUE put a surface "
+                     "around its voxels",
+                     options.input);
+  }
+  return vdb::readVdbImage(options.input, name, options.units);
+}
+
+BakedGrid rebakeGrid(const BakeOptions& options, Console& console) {
+  const auto start = std::chrono::steady_clock::now();
+  BakedGrid baked;
+  vdb::LevelSet old;
+  try {
+    old = readLevelSet(options);
+  } catch (const Error& error) {
+    if (!isMendable(error, options)) throw;
+    baked.grid = straightened(options, console);
+  }
+  if (old) {
+    const vdb::LevelSetInfo& info = old.info();
+    if (options.voxel.empty()) {
+      throw usageError(
+          "this is a .vdb file already",
+          "--voxel puts its surface into other voxels; meshes (.stl .obj .ply .glb) and "
+          ".nii.gz can be written too");
+    }
+    const double voxel = voxelOr(options, info.length_unit, 0.0);
+    // The new band, and what a cubic sample at its rim depends on.
+    const double band = options.half_width * voxel / info.voxel_size + vdb::kCubicHalfWidth;
+    const FieldPtr field = vdb::gridField(vdb::widened(old, band, console.progress()));
+    baked.grid = vdb::bake(*field, bakeOptions(options, info.name, info.length_unit, voxel),
+                           console.progress());
+  }
+  baked.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return baked;
+}
+
+std::vector<BakedGrid> inTheSameFrame(const BakeOptions& options, std::vector<BakedGrid> grids) {
+  const auto old = summaryOf(options, askedName(options));
+  std::string frame = "world";
+  if (old && old->info.metadata.contains("frame")) frame = old->info.metadata.at("frame");
+  for (BakedGrid& one : grids) {
+    one.grid = one.grid.named(one.grid.info().name, {{"frame", frame}});
+  }
+  return grids;
+}
+
+vdb::Image readVoxels(const BakeOptions& options, std::string& length_unit) {
+  if (inputKind(options.input) == InputKind::kImage) {
+    length_unit = "mm";
+    return vdb::readNifti(options.input);
+  }
+  const std::string name = askedName(options);
+  length_unit = unitOfGrid(options);
+  return vdb::readVdbImage(options.input, name, options.units);
+}
+
+}  // namespace palpate::tools

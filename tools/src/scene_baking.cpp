@@ -1,0 +1,83 @@
+#include "scene_baking.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "palpate/scene/scene_file.h"
+
+namespace palpate::tools {
+namespace {
+
+constexpr double kDefaultVoxelsPerSide = 128.0;
+
+}  // namespace
+
+Error bakeUsageError(std::string message, std::string hint) {
+  return Error(ErrorKind::kUsage, {"usage.bake", std::move(message), std::move(hint)});
+}
+
+void checkSceneOptions(const BakeOptions& options, const SceneDescription& description) {
+  const std::pair<bool, const char*> misplaced[] = {
+      {!options.units.empty(), "--units applies to meshes; a scene names its unit"},
+      {!options.sign.empty(), "--sign applies to meshes"},
+      {!options.shell.empty(), "--shell applies to meshes"},
+      {options.above.has_value(), "--above applies to images"},
+      {!options.labels.empty(), "--labels applies to images"}};
+  for (const auto& [given, message] : misplaced) {
+    if (given) throw bakeUsageError(message);
+  }
+  std::vector<std::string_view> names;
+  for (const auto& layer : description.layers) names.push_back(layer.name);
+  for (const std::string& wanted : options.layers) {
+    if (std::find(names.begin(), names.end(), wanted) != names.end()) continue;
+    const std::string close = suggest(wanted, names);
+    throw inputError(
+        "scene.unknown_layer", "there is no layer '" + wanted + "'",
+        close.empty() ? "palpate info names the layers" : "did you mean '" + close + "'?",
+        options.input);
+  }
+}
+
+bool isAskedFor(const BakeOptions& options, const std::string& layer) {
+  return options.layers.empty() ||
+         std::find(options.layers.begin(), options.layers.end(), layer) != options.layers.end();
+}
+
+double askedVoxel(const BakeOptions& options, const LengthUnit& unit) {
+  if (options.voxel.empty()) return 0.0;
+  const double voxel = parseLength(options.voxel, unit, "--voxel");
+  if (!(voxel > 0.0)) throw bakeUsageError("--voxel must be greater than 0");
+  return voxel;
+}
+
+double defaultVoxel(const LengthUnit& unit, const Box3& bounds, const std::string& what,
+                    Console& console) {
+  const Vec3 size = bounds.size();
+  const double voxel = std::max({size.x, size.y, size.z}) / kDefaultVoxelsPerSide;
+  console.note(what + ": voxels of " + formatNumber(voxel / unit.metres, 3) + " " + unit.name +
+               ", 1/128 of the longest side; --voxel says otherwise");
+  return voxel;
+}
+
+vdb::BakeOptions gridOptions(const BakeOptions& options, const std::string& layer, double voxel,
+                             const std::string& unit, const std::string& source) {
+  vdb::BakeOptions bake;
+  bake.voxel_size = voxel;
+  bake.half_width = options.half_width;
+  bake.name = layer + "/surface";
+  bake.length_unit = unit;
+  bake.metadata = {{"layer", layer}, {"source", source}};
+  return bake;
+}
+
+void requireBounds(const Field& field, const std::string& layer, const std::string& file) {
+  if (field.bounds().isBounded()) return;
+  throw inputError("bake.unbounded", "layer '" + layer + "' reaches to infinity",
+                   "bake the others with --layer, or cut it in the scene: inside: "
+                   "{intersection: [it, a box]}",
+                   file);
+}
+
+}  // namespace palpate::tools

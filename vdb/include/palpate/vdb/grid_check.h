@@ -1,0 +1,59 @@
+#pragma once
+/// What is wrong with the grids of a .vdb file.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/core/error.h"
+#include "palpate/core/progress.h"
+#include "palpate/vdb/io.h"
+
+namespace palpate::vdb {
+
+/// |gradient| by central differences at the active voxels whose six neighbors are active; 1 everywhere
+/// where values are distances, less at edges and medial axes.
+struct GradientStatistics {
+  std::uint64_t voxels = 0;  ///< looked at
+  double mean = 0.0;
+  double deviation = 0.0;  ///< RMS of the difference to 1
+  double worst = 1.0;      ///< the one that is farthest from 1
+  Vec3 worst_place{0.0};   ///< [m]
+};
+
+/// Voxels with something wrong, and one of them.
+struct VoxelDefect {
+  std::uint64_t voxels = 0;
+  Vec3 place{0.0};  ///< [m]
+};
+
+struct GridCheck {
+  VdbGridSummary grid;
+  std::optional<Problem> refused;  ///< why readVdb() does not take it
+  /// Whether what follows was looked at: floats that are, or may be, signed distances.
+  bool has_distances = false;
+  VoxelDefect not_finite;
+  GradientStatistics gradient;
+  std::uint64_t inside_voxels = 0;  ///< active and negative
+  /// Where inside and outside meet without a band in between: next to a negative voxel is a positive
+  /// one, and one of the two is not active. So ends a band whose inside holds the outside's background,
+  /// and one that was cut off.
+  VoxelDefect sign_breaks;
+  /// Active voxels more than a voxel and a half within the band, with a neighbor that is not active.
+  VoxelDefect band_holes;
+  double volume = 0.0;  ///< [m^3] of what is negative, voxels on the surface by their share
+};
+
+/// [m^3] of what is negative, voxels on the surface by their share.
+[[nodiscard]] double solidVolume(const LevelSet& grid);
+
+/// Every grid of the file; or only `name`, if it is not empty. Lengths of a grid without a unit are in
+/// `unit_if_missing`, or taken as [m] if that is empty too.
+/// @throws Error (kInput): a file that cannot be read, or has no such grid; kCancelled.
+[[nodiscard]] std::vector<GridCheck> checkVdb(const std::string& path, const std::string& name = {},
+                                              const std::string& unit_if_missing = {},
+                                              UnknownClass unknown_class = UnknownClass::kRefuse,
+                                              const Progress& progress = {});
+
+}  // namespace palpate::vdb

@@ -1,0 +1,69 @@
+#pragma once
+/// A .vdb file that is open for reading: what is in it, with one kind of error for what is damaged.
+
+#include <exception>
+#include <fstream>
+#include <ios>
+#include <new>
+#include <string>
+
+#include "grid/vdb_archive.h"
+#include "palpate/core/error.h"
+#include "palpate/vdb/io.h"
+
+namespace palpate::vdb {
+
+/// Runs `read`, and says in one way what a damaged file makes OpenVDB throw.
+template <typename Read>
+auto readingFrom(const std::string& path, const Read& read) {
+  const char* const hint = "the file may be damaged or cut short; copy or write it again";
+  const std::string what = "not a .vdb file that can be read: ";
+  try {
+    return read();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::ios_base::failure&) {
+    throw inputError("vdb.unreadable", what + "it ends early", hint, path);
+  } catch (const std::bad_alloc&) {
+    throw inputError("vdb.unreadable", what + "it asks for more memory than there is", hint, path);
+  } catch (const std::exception& error) {
+    throw inputError("vdb.unreadable", what + error.what(), hint, path);
+  }
+}
+
+class VdbFile {
+ public:
+  /// @throws Error (kInput, vdb.missing or vdb.unreadable).
+  explicit VdbFile(std::string path);
+
+  [[nodiscard]] const std::vector<VdbArchive::Entry>& entries() const noexcept {
+    return archive_.entries();
+  }
+  /// By name, or the only one if that is empty. @throws Error (kInput, vdb.no_grid, vdb.which_grid).
+  [[nodiscard]] const VdbArchive::Entry& choose(const std::string& name) const;
+  /// With all its voxels. @throws Error (kInput, vdb.unreadable).
+  [[nodiscard]] openvdb::GridBase::Ptr read(const VdbArchive::Entry& entry);
+  /// As listVdb() tells it; reads no voxels. @throws Error (kInput, vdb.unreadable).
+  [[nodiscard]] VdbGridSummary summaryOf(const VdbArchive::Entry& entry);
+
+ private:
+  std::string path_;
+  std::ifstream stream_;
+  VdbArchive archive_;
+};
+
+/// "FloatGrid", ...
+[[nodiscard]] std::string typeOf(const openvdb::GridBase& grid);
+/// "level set", "fog volume", "staggered", "unknown".
+[[nodiscard]] std::string classOf(const openvdb::GridBase& grid);
+/// The file's own, or else `unit_if_missing`. @throws Error (kInput, vdb.no_unit) if there is neither.
+[[nodiscard]] std::string unitOf(const openvdb::GridBase& grid, const std::string& unit_if_missing,
+                                 const std::string& path);
+
+/// What readVdb() makes of a grid, or why it does not. May change the grid's metadata.
+/// @throws Error (kInput, vdb.*).
+[[nodiscard]] LevelSet acceptLevelSet(const openvdb::GridBase::Ptr& grid,
+                                      const std::string& unit_if_missing,
+                                      UnknownClass unknown_class, const std::string& path);
+
+}  // namespace palpate::vdb

@@ -1,0 +1,19 @@
+#pragma once
+/// Progress of work that is one of several.
+
+#include <string>
+#include <utility>
+
+#include "palpate/core/progress.h"
+
+namespace palpate::vdb {
+
+/// `progress`, told each step as "what: step".
+[[nodiscard]] inline Progress namedProgress(const Progress& progress, std::string what) {
+  if (!progress) return {};
+  return [progress, what = std::move(what)](std::string_view step, double fraction) {
+    return progress(what + ": " + std::string(step), fraction);
+  };
+}
+
+}  // namespace palpate::vdb
