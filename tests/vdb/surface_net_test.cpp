@@ -8,6 +8,7 @@
 #include <random>
 
 #include "scan/net_field.h"
+#include "scan/smooth_mask.h"
 
 namespace palpate::vdb {
 namespace {
@@ -26,6 +27,12 @@ Image noiseImage(int n, double share, unsigned seed, const Mat3& axes) {
 Mask maskOfOnes(const Image& image, int margin) {
   return maskOf(
       image, [](float value) { return value > 0.5F; }, margin);
+}
+
+Lattice latticeOfLabels(const Mask& mask) {
+  Band band = bandOf(mask, Vec3(1.0));
+  smoothBand(band, mask, Mat3(1.0), {});
+  return latticeOf(band, mask);
 }
 
 /// Axes that are neither orthogonal nor right-handed.

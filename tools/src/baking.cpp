@@ -189,13 +189,14 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
     }));
     return grids;
   }
-  for (const auto& [layer, values] : layers) {
-    vdb::LabelOptions labels;
-    labels.values = values;
-    labels.voxel_size = asked;
-    grids.push_back(timed([&, &layer = layer] {
-      return vdb::surfaceFromLabels(
-          image, labels, gridOptions(options, layer, voxel, unit, options.input, memoryOf(grids)),
+  std::vector<std::vector<int>> values;
+  for (const auto& layer : layers) values.push_back(layer.second);
+  vdb::LabelSurfaces surfaces(image, values);
+  for (std::size_t n = 0; n < layers.size(); ++n) {
+    grids.push_back(timed([&] {
+      return surfaces.surface(
+          n, asked,
+          gridOptions(options, layers[n].first, voxel, unit, options.input, memoryOf(grids)),
           console.progress());
     }));
   }

@@ -198,16 +198,18 @@ std::vector<int> readMatch(MapReader& reader, const SceneImage& image) {
 SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& reader,
                                         const std::string& layer) {
   const LayerImage from(reader, layer, common->options.max_memory);
-  LabelOptions labels;
-  labels.values = readMatch(reader, *from.image);
-  labels.voxel_size = readPositiveOrNone(reader, "voxel");
-  std::string summary = labels.values.size() == 1 ? "label" : "labels";
-  for (const int value : labels.values) summary += " " + std::to_string(value);
+  const std::vector<int> values = readMatch(reader, *from.image);
+  const double voxel_size = readPositiveOrNone(reader, "voxel");
+  std::string summary = values.size() == 1 ? "label" : "labels";
+  for (const int value : values) summary += " " + std::to_string(value);
   summary += " of " + fileName(from.image->file->path());
-  return {lazyField(common, layer, std::move(summary), from.place, from.sampler,
-                    [file = from.image->file, labels, bake = from.bake](const Progress& progress) {
-                      return surfaceFromLabels(file->image(), labels, bake, progress);
-                    }),
+  const std::size_t index = from.image->layers.size();
+  from.image->layers.push_back(values);
+  return {lazyField(
+              common, layer, std::move(summary), from.place, from.sampler,
+              [image = from.image, index, voxel_size, bake = from.bake](const Progress& progress) {
+                return image->surfaces().surface(index, voxel_size, bake, progress);
+              }),
           from.name};
 }
 

@@ -17,6 +17,14 @@ const Image& ImageFile::image() {
   return *image_;
 }
 
+LabelSurfaces& SceneImage::surfaces() {
+  if (!surfaces_ || layers_then_ != layers.size()) {
+    surfaces_ = std::make_unique<LabelSurfaces>(file->image(), layers);
+    layers_then_ = layers.size();
+  }
+  return *surfaces_;
+}
+
 Error atKey(const MapReader& reader, std::string_view key, const Error& error) {
   const Problem& problem = error.problem();
   std::string where = problem.file;

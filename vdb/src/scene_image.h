@@ -11,6 +11,7 @@
 
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/image.h"
+#include "palpate/vdb/scan_surface.h"
 
 namespace palpate::vdb {
 
@@ -44,6 +45,15 @@ struct SceneImage {
   std::shared_ptr<ImageFile> file;
   NameTable names;
   std::string names_path;  ///< empty if there is no table
+  /// The labels of each layer that comes from this image, as the scene is read; they share walls.
+  std::vector<std::vector<int>> layers;
+
+  /// Made when it is first asked for: by then all layers are known.
+  [[nodiscard]] LabelSurfaces& surfaces();
+
+ private:
+  std::unique_ptr<LabelSurfaces> surfaces_;
+  std::size_t layers_then_ = 0;
 };
 
 /// Makes SceneImages; a file that two entries name is shared.

@@ -8,6 +8,7 @@ namespace {
 
 constexpr float kLargest = 1e30F;  // stands for infinite intensities; differences stay finite
 constexpr float kSmallest = 1e-30F;
+constexpr float kLeastLattice = 1e-3F;
 
 /// Copies the nearest box value into the frame, positive.
 void mirrorIntoFrame(const Mask& mask, std::vector<float>& values) {
@@ -35,49 +36,6 @@ void mirrorIntoFrame(const Mask& mask, std::vector<float>& values) {
   }
 }
 
-/// exp(-d^2 / (2 sigma^2)) for d = 0 .. 4, scaled to a sum of 1: beyond 3.2 sigma there is 0.1 %.
-struct Kernel {
-  std::array<float, 5> weight{};
-  Kernel() {
-    constexpr double kSigma = 1.25;  // [voxels]
-    const auto bell = [](int d) { return std::exp(-0.5 * d * d / (kSigma * kSigma)); };
-    double sum = bell(0);
-    for (int d = 1; d < 5; ++d) sum += 2.0 * bell(d);
-    for (int d = 0; d < 5; ++d)
-      weight[static_cast<std::size_t>(d)] = static_cast<float>(bell(d) / sum);
-  }
-};
-
-/// Blurs the rows of the box along one axis; beyond its ends the last value goes on.
-void blurAlong(std::size_t axis, const Mask& mask, std::vector<float>& values) {
-  static const Kernel kernel;
-  const auto strides = mask.strides();
-  const std::size_t u = (axis + 1) % 3;
-  const std::size_t v = (axis + 2) % 3;
-  const int length = mask.box[axis];
-  const std::ptrdiff_t step = strides[axis];
-  std::vector<float> row(static_cast<std::size_t>(length) + 8);
-  for (int b = 0; b < mask.box[v]; ++b) {
-    for (int a = 0; a < mask.box[u]; ++a) {
-      float* const line = values.data() + mask.at(0, 0, 0) + a * strides[u] + b * strides[v];
-      bool constant = true;
-      for (int i = 0; i < length; ++i) {
-        row[static_cast<std::size_t>(i) + 4] = line[i * step];
-        constant = constant && line[i * step] == line[0];
-      }
-      if (constant) continue;
-      std::fill_n(row.begin(), 4, line[0]);
-      std::fill_n(row.end() - 4, 4, line[(length - 1) * step]);
-      for (int i = 0; i < length; ++i) {
-        const float* const c = row.data() + i + 4;
-        line[i * step] = kernel.weight[0] * c[0] + kernel.weight[1] * (c[-1] + c[1]) +
-                         kernel.weight[2] * (c[-2] + c[2]) + kernel.weight[3] * (c[-3] + c[3]) +
-                         kernel.weight[4] * (c[-4] + c[4]);
-      }
-    }
-  }
-}
-
 }  // namespace
 
 Lattice latticeOfThreshold(const Image& image, double above, const Mask& mask) {
@@ -98,23 +56,48 @@ Lattice latticeOfThreshold(const Image& image, double above, const Mask& mask) {
   return lattice;
 }
 
-Lattice latticeOfLabels(const Mask& mask) {
-  // A voxel centre that the blur puts on the wrong side goes as far to the right one, and so much
-  // more: a sheet of one voxel keeps its thickness, and the steps of a voxelised slope are still
-  // smoothed.
-  constexpr float kHold = 0.02F;
-  Lattice lattice{mask.first, mask.box, std::vector<float>(mask.inside.begin(), mask.inside.end())};
-  std::vector<float>& blurred = lattice.values;
-  for (std::size_t axis = 0; axis < 3; ++axis) blurAlong(axis, mask, blurred);
-  std::vector<float> twice = blurred;
-  for (std::size_t axis = 0; axis < 3; ++axis) blurAlong(axis, mask, twice);
-  for (std::size_t n = 0; n < blurred.size(); ++n) {
-    const float side = mask.inside[n] != 0 ? -1.0F : 1.0F;
-    const float depth = side * (0.5F - (2.0F * blurred[n] - twice[n]));
-    blurred[n] = side * (depth < kHold ? 2.0F * kHold - depth : depth);
+Lattice latticeOf(const Band& band, const Mask& mask) {
+  constexpr float kFar = 100.0F;
+  Lattice lattice{mask.first, mask.box, std::vector<float>(mask.inside.size())};
+  for (std::size_t n = 0; n < mask.inside.size(); ++n) {
+    lattice.values[n] = mask.inside[n] != 0 ? -kFar : kFar;
+  }
+  for (const BandBlock& block : band.blocks) {
+    for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+      if (std::isnan(block.value[n])) continue;
+      const auto place = static_cast<int>(n);
+      const auto at = static_cast<std::size_t>(mask.at(block.first[0] + (place >> 6),
+                                                       block.first[1] + (place >> 3 & 7),
+                                                       block.first[2] + (place & 7)));
+      const float size = std::max(std::fabs(block.value[n]), kLeastLattice);
+      lattice.values[at] = mask.inside[at] != 0 ? -size : size;
+    }
   }
   mirrorIntoFrame(mask, lattice.values);
   return lattice;
+}
+
+Band bandOfLattice(const Lattice& lattice, const Mask& mask, const Vec3& spacing) {
+  Band band = bandOf(mask, spacing);
+  band.bounds = {};
+  float largest = 0.0F;
+  for (BandBlock& block : band.blocks) {
+    for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+      if (std::isnan(block.value[n])) continue;
+      const auto place = static_cast<int>(n);
+      block.value[n] = lattice.values[static_cast<std::size_t>(
+          mask.at(block.first[0] + (place >> 6), block.first[1] + (place >> 3 & 7),
+                  block.first[2] + (place & 7)))];
+      const float size = std::fabs(block.value[n]);
+      if (size < kLargest) largest = std::max(largest, size);
+    }
+  }
+  for (BandBlock& block : band.blocks) {
+    for (float& value : block.value) {
+      if (std::fabs(value) > largest) value = std::copysign(largest, value);
+    }
+  }
+  return band;
 }
 
 }  // namespace palpate::vdb

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "scan/mask.h"
+#include "scan/band.h"
 
 namespace palpate::vdb {
 
@@ -21,12 +21,11 @@ struct Lattice {
 /// between two voxels; where it is not (a piece removed, a cavity filled) their sign is turned.
 [[nodiscard]] Lattice latticeOfThreshold(const Image& image, double above, const Mask& mask);
 
-/// The mask blurred by 2 G - G G, G a Gaussian of 1.25 voxels, at level 1/2, held to the mask's
-/// side at each voxel centre so that nothing thin is lost. G alone shrinks a ball of radius R by
-/// sigma^2 / R; the second term takes that back to first order. Needs kLabelMargin voxels around
-/// the inside.
-[[nodiscard]] Lattice latticeOfLabels(const Mask& mask);
+/// The values of a band; further off only the sign counts.
+[[nodiscard]] Lattice latticeOf(const Band& band, const Mask& mask);
 
-inline constexpr int kLabelMargin = 5;  ///< [voxels] reach of the truncated Gaussian, and one more
+/// The values of a lattice in the band of its mask, for the spline through them. Infinite ones become as
+/// large as the largest that is not.
+[[nodiscard]] Band bandOfLattice(const Lattice& lattice, const Mask& mask, const Vec3& spacing);
 
 }  // namespace palpate::vdb

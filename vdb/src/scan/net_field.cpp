@@ -7,6 +7,9 @@
 namespace palpate::vdb {
 namespace {
 
+/// [cell diagonals] A spline's closest point further from the net's is another place's.
+constexpr double kSamePlace = 0.6;
+
 /// Closest point of the triangle a, a + ab, a + ac to p, relative to a (C. Ericson, "Real-Time
 /// Collision Detection", 2005, 5.1.5: by the Voronoi region that p lies in).
 Vec3 closestOffset(const Vec3& ap, const Vec3& ab, const Vec3& ac) noexcept {
@@ -119,10 +122,12 @@ class NetField::Spreader {
   std::vector<std::size_t> next_;
 };
 
-NetField::NetField(const Mesh& net, const Lattice& lattice, const Image& image, double reach)
+NetField::NetField(const Mesh& net, const Lattice& lattice, const Image& image, double reach,
+                   const LatticeSpline* spline)
     : net_(net),
       lattice_(lattice),
       image_(image),
+      spline_(spline),
       diagonal_(
           glm::length(glm::abs(image.axes[0]) + glm::abs(image.axes[1]) + glm::abs(image.axes[2]))),
       to_index_(glm::inverse(image.axes)),
@@ -316,6 +321,15 @@ FieldSample NetField::sample(const Vec3& p) const noexcept {
   // surface.
   const bool inside = distance > diagonal_ ? latticeInside(p) : best.side < 0.0;
   const double sign = inside ? -1.0 : 1.0;
+  if (spline_ != nullptr) {
+    const auto foot = spline_->foot(p, p - best.to_p);
+    // The net lies by a fraction of a voxel off the spline; more is another place.
+    if (foot && glm::length(foot->point - (p - best.to_p)) < kSamePlace * diagonal_) {
+      const bool clear = distance > 0.5 * diagonal_;
+      const double value = clear ? sign * std::abs(foot->distance) : foot->distance;
+      return {value, (clear && inside != (foot->distance < 0.0) ? -1.0 : 1.0) * foot->normal, true};
+    }
+  }
   return {sign * distance, unitOr(sign * best.to_p, Vec3(1.0, 0.0, 0.0)), true};
 }
 

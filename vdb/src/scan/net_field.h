@@ -7,6 +7,7 @@
 
 #include "palpate/fields/field.h"
 #include "scan/lattice.h"
+#include "scan/lattice_spline.h"
 #include "scan/surface_net.h"
 
 namespace palpate::vdb {
@@ -24,15 +25,18 @@ namespace palpate::vdb {
 /// lattice's.
 class NetField final : public Field {
  public:
-  /// All must outlive the field. `reach` in [m].
-  NetField(const Mesh& net, const Lattice& lattice, const Image& image, double reach);
+  /// All must outlive the field. `reach` in [m]. With a spline the distance is to its surface, from where the
+  /// net's closest point leads to; the net's own where that leads nowhere.
+  NetField(const Mesh& net, const Lattice& lattice, const Image& image, double reach,
+           const LatticeSpline* spline = nullptr);
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override;
   [[nodiscard]] double value(const Vec3& p) const noexcept override { return sample(p).value; }
   [[nodiscard]] Box3 bounds() const noexcept override { return bounds_; }
   [[nodiscard]] Metric metric() const noexcept override { return Metric::kExact; }
   [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
-  [[nodiscard]] double featureSize() const noexcept override { return diagonal_; }
+  /// Parts thinner than the voxels are no reason to refuse a scan; who bakes it counts them.
+  [[nodiscard]] double featureSize() const noexcept override { return reach_; }
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
@@ -60,6 +64,7 @@ class NetField final : public Field {
   const Mesh& net_;
   const Lattice& lattice_;
   const Image& image_;
+  const LatticeSpline* spline_;
   double diagonal_;  ///< [m] of a lattice cell
   Mat3 to_index_;
   double reach_;  ///< [m] at least diagonal_, from where on the lattice gives the sign

@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <limits>
 
+#include "scan/label_partition.h"
 #include "scan/lattice.h"
+#include "scan/lattice_spline.h"
 #include "scan/mask.h"
 #include "scan/net_field.h"
 #include "scan/surface_net.h"
@@ -31,8 +33,9 @@ double smallestSpacing(const Image& image) {
   return smallest;
 }
 
-LevelSet bakeLattice(const Lattice& lattice, const Image& image, double voxel_size,
-                     BakeOptions bake, const Progress& progress) {
+/// `band` holds the lattice's values around the surface.
+LevelSet bakeLattice(const Lattice& lattice, const Band& band, const Mask& mask, const Image& image,
+                     double voxel_size, BakeOptions bake, const Progress& progress) {
   report(progress, "surface", kLatticeDone);
   const Mesh mesh = surfaceNet(lattice, image);
   if (voxel_size > 0.0) {
@@ -43,7 +46,9 @@ LevelSet bakeLattice(const Lattice& lattice, const Image& image, double voxel_si
   bake.metadata["source"] = image.source;
   bake.metadata["frame"] = "RAS";
   report(progress, "distances", kSurfaceDone);
-  const NetField field(mesh, lattice, image, (bake.half_width + 0.1) * bake.voxel_size);
+  const LatticeSpline spline(band, mask, image.axes,
+                             image.toWorld(Vec3(mask.first[0], mask.first[1], mask.first[2])));
+  const NetField field(mesh, lattice, image, (bake.half_width + 0.1) * bake.voxel_size, &spline);
   Progress rest;
   if (progress) {
     rest = [&](std::string_view, double fraction) {
@@ -58,8 +63,12 @@ LevelSet bakeLattice(const Lattice& lattice, const Image& image, double voxel_si
 LevelSet surfaceFromThreshold(const Image& image, const ThresholdOptions& options,
                               const BakeOptions& bake, const Progress& progress) {
   report(progress, "threshold", 0.0);
+  if (!std::isfinite(options.above)) {
+    throw inputError("scan.threshold", "the threshold is " + shortNumber(options.above),
+                     "give a finite intensity", image.source);
+  }
   const auto is_above = [&](float value) { return static_cast<double>(value) > options.above; };
-  Mask mask = maskOf(image, is_above, 1);
+  Mask mask = maskOf(image, is_above, kBandMargin);
   if (mask.inside.empty()) {
     double largest = -std::numeric_limits<double>::infinity();
     for (const float value : image.values) largest = std::fmax(largest, static_cast<double>(value));
@@ -75,31 +84,60 @@ LevelSet surfaceFromThreshold(const Image& image, const ThresholdOptions& option
   with_source.metadata["threshold"] = "above " + shortNumber(options.above) +
                                       (options.largest_component ? ", largest piece" : "") +
                                       (options.fill ? ", filled" : "");
-  return bakeLattice(latticeOfThreshold(image, options.above, mask), image, options.voxel_size,
-                     std::move(with_source), progress);
+  const Lattice lattice = latticeOfThreshold(image, options.above, mask);
+  const Vec3 lengths(glm::length(image.axes[0]), glm::length(image.axes[1]),
+                     glm::length(image.axes[2]));
+  const Band band = bandOfLattice(lattice, mask, lengths / smallestSpacing(image));
+  return bakeLattice(lattice, band, mask, image, options.voxel_size, std::move(with_source),
+                     progress);
 }
 
-LevelSet surfaceFromLabels(const Image& image, const LabelOptions& options, const BakeOptions& bake,
-                           const Progress& progress) {
+struct LabelSurfaces::Impl {
+  Impl(const Image& of, std::vector<std::vector<int>> labels)
+      : image(of), layers(std::move(labels)), partition(of, layers) {}
+  const Image& image;
+  std::vector<std::vector<int>> layers;
+  LabelPartition partition;
+};
+
+LabelSurfaces::LabelSurfaces(const Image& image, std::vector<std::vector<int>> layers)
+    : impl_(std::make_unique<Impl>(image, std::move(layers))) {}
+
+LabelSurfaces::~LabelSurfaces() = default;
+
+LevelSet LabelSurfaces::surface(std::size_t layer, double voxel_size, const BakeOptions& bake,
+                                const Progress& progress) {
   report(progress, "labels", 0.0);
-  const auto is_label = [&](float value) {
-    return std::any_of(options.values.begin(), options.values.end(),
-                       [&](int label) { return static_cast<float>(label) == value; });
-  };
-  const Mask mask = maskOf(image, is_label, kLabelMargin);
+  const Image& image = impl_->image;
+  Progress smoothing;
+  double last = 0.0;
+  if (progress) {
+    // Neighbors are smoothed too, one after the other.
+    smoothing = [&](std::string_view what, double fraction) {
+      last = std::max(last, kLatticeDone * fraction);
+      return progress(what, last);
+    };
+  }
+  const MaskedBand found = impl_->partition.layer(layer, smoothing);
   std::string list;
-  for (const int label : options.values) list += (list.empty() ? "" : ", ") + std::to_string(label);
-  if (mask.inside.empty()) {
+  for (const int label : impl_->layers[layer]) {
+    list += (list.empty() ? "" : ", ") + std::to_string(label);
+  }
+  if (found.mask.inside.empty()) {
     throw inputError(
         "scan.empty",
         list.empty() ? "no label is asked for" : "no voxel of the image has the label " + list,
         "name labels that the image holds", image.source);
   }
-  report(progress, "labels", kMaskDone);
   BakeOptions with_source = bake;
   with_source.metadata["labels"] = list;
-  return bakeLattice(latticeOfLabels(mask), image, options.voxel_size, std::move(with_source),
-                     progress);
+  return bakeLattice(latticeOf(found.band, found.mask), found.band, found.mask, image, voxel_size,
+                     std::move(with_source), progress);
+}
+
+LevelSet surfaceFromLabels(const Image& image, const LabelOptions& options, const BakeOptions& bake,
+                           const Progress& progress) {
+  return LabelSurfaces(image, {options.values}).surface(0, options.voxel_size, bake, progress);
 }
 
 }  // namespace palpate::vdb

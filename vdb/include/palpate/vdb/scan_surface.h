@@ -1,15 +1,16 @@
 #pragma once
 /// Surfaces out of scans: thresholds and labels -> level sets.
 ///
-/// Voxels are chosen first, by the rules below; then a closed surface is put between those chosen
-/// and the others, in index space; it is carried to the world by the image's affine (oblique,
-/// sheared and left-handed ones too) and baked to cubic voxels. A shape that is cut off by the
-/// image's border ends there in flat walls, half a voxel beyond the outermost voxel centres.
-/// Enclosed cavities are outside, unless they are filled.
+/// Voxels are chosen first, by the rules below; then a smooth function between those chosen and the
+/// others is found in index space, carried to the world by the image's affine (oblique, sheared and
+/// left-handed ones too), and the distance to its zero set baked to cubic voxels: the closest point on a
+/// C2 spline. A shape that is cut off by the image's border ends there in flat walls, half a voxel beyond
+/// the outermost voxel centres. Enclosed cavities are outside, unless they are filled.
 ///
 /// Set-up only, on any thread; several may use one image. Metadata written besides `bake.metadata`:
 /// "source" (the image's file), "frame" ("RAS"), and "threshold" or "labels".
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,8 +29,9 @@ struct ThresholdOptions {
   double voxel_size = 0.0;  ///< [m] 0: bake.voxel_size; 0 as well: the image's smallest spacing
 };
 
-/// Between two voxels the wall lies where the intensity, taken as linear, passes `above`.
-/// @throws Error (kInput) if nothing lies above the threshold.
+/// The wall is the iso-surface of the image, interpolated by a C2 tri-cubic spline, at `above`: where the
+/// image is smooth, to a small share of a voxel.
+/// @throws Error (kInput) if `above` is not finite, or nothing lies above it.
 [[nodiscard]] LevelSet surfaceFromThreshold(const Image& image, const ThresholdOptions& options,
                                             const BakeOptions& bake, const Progress& progress = {});
 
@@ -38,13 +40,35 @@ struct LabelOptions {
   double voxel_size = 0.0;  ///< [m] 0: bake.voxel_size; 0 as well: the image's smallest spacing
 };
 
-/// The steps of the voxels are smoothed (a Gaussian of 1.25 voxels, with its shrinking of round
-/// shapes taken back to first order) as far as no voxel centre changes sides by more than a
-/// fraction of a voxel; a sheet one voxel thick stays. Two labels that touch get the same wall from
-/// either side.
+/// The surface is one that bends as little, and as evenly, as the voxels allow: voxel centres stay on
+/// their side of it (or on it). A voxelised ball, torus or tilted plane gets normals within half a
+/// degree (RMS) and a mean offset within 0.02 voxel. Parts one or two voxels thin are held open. Two labels
+/// that touch get the same wall from either side; where three meet, LabelSurfaces makes them fit.
 /// @throws Error (kInput) if no voxel has one of the labels.
 [[nodiscard]] LevelSet surfaceFromLabels(const Image& image, const LabelOptions& options,
                                          const BakeOptions& bake, const Progress& progress = {});
+
+/// Surfaces of several layers of one label image, with one wall between neighbors: where two layers
+/// meet, the grid of one is minus that of the other (to rounding, where both have the same voxels),
+/// so that between them is neither gap nor overlap.
+/// Where three or more meet (what is in no layer counts) their walls meet in an edge, which grids
+/// round off within about a voxel. Layers that have a label in common do not limit each other.
+class LabelSurfaces {
+ public:
+  /// `image` must outlive it. `layers`: the labels of each.
+  LabelSurfaces(const Image& image, std::vector<std::vector<int>> layers);
+  ~LabelSurfaces();
+  LabelSurfaces(const LabelSurfaces&) = delete;
+  LabelSurfaces& operator=(const LabelSurfaces&) = delete;
+
+  /// As surfaceFromLabels(). What is smoothed for one layer is kept for its neighbors.
+  [[nodiscard]] LevelSet surface(std::size_t layer, double voxel_size, const BakeOptions& bake,
+                                 const Progress& progress = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// `match` entries (a value, a name, or a glob over names; case-sensitive) -> label values, sorted,
 /// each once. A value needs no name. A glob leaves out label 0, the background. `source` is the

@@ -1,0 +1,324 @@
+#include "scan/band.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate::vdb {
+namespace {
+
+/// A voxel centre may lie on the surface; in a part one voxel thin, and beside it, it must not, lest the part
+/// vanish or swell.
+constexpr double kHold = 0.3;
+constexpr double kBeside = 1.8;  ///< voxels that share a corner
+/// Steps by which the surface may be nearer than the nearest voxel of the other side: a smooth one by about
+/// one; and no less, or curved ones would be bent.
+constexpr double kSlack = 1.3;
+/// Where the surface is between two voxels, at first.
+constexpr double kHalf = 0.5;
+
+struct Offset {
+  std::array<int, 3> step{};
+  std::ptrdiff_t place = 0;
+  double steps = 0.0;     ///< its length in voxels
+  double distance = 0.0;  ///< in steps of the smallest spacing
+};
+
+class Finder {
+ public:
+  Finder(const Mask& mask, const Vec3& spacing) : mask_(mask), spacing_(spacing) {
+    band_.first = mask.first;
+    band_.box = mask.box;
+    for (std::size_t a = 0; a < 3; ++a) band_.table_size[a] = (mask.box[a] + 7) / 8;
+    makeOffsets();
+  }
+
+  Band run() {
+    makeBlocks();
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, band_.blocks.size()),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t b = range.begin(); b != range.end(); ++b) {
+                          fill(band_.blocks[b], band_.bounds[b]);
+                        }
+                      });
+    dropEmpty();
+    linkBlocks();
+    return std::move(band_);
+  }
+
+ private:
+  [[nodiscard]] bool inside(std::ptrdiff_t n) const noexcept {
+    return mask_.inside[static_cast<std::size_t>(n)] != 0;
+  }
+
+  void makeOffsets() {
+    const auto strides = mask_.strides();
+    constexpr int kR = Band::kReach;
+    for (int i = -kR; i <= kR; ++i) {
+      for (int j = -kR; j <= kR; ++j) {
+        for (int k = -kR; k <= kR; ++k) {
+          const int square = i * i + j * j + k * k;
+          if (square == 0 || square > kR * kR) continue;
+          offsets_.push_back({{i, j, k},
+                              i * strides[0] + j * strides[1] + k * strides[2],
+                              std::sqrt(square),
+                              glm::length(Vec3(i, j, k) * spacing_)});
+        }
+      }
+    }
+    // Ties are broken by the length in voxels, so that an offset and its opposite, which the other side
+    // sees, mean the same.
+    std::stable_sort(offsets_.begin(), offsets_.end(), [](const Offset& a, const Offset& b) {
+      return a.distance != b.distance ? a.distance < b.distance : a.steps < b.steps;
+    });
+  }
+
+  template <typename Visit>
+  void forTable(const Visit& visit) const {
+    const auto [nx, ny, nz] = band_.table_size;
+    for (int z = 0; z < nz; ++z) {
+      for (int y = 0; y < ny; ++y) {
+        for (int x = 0; x < nx; ++x) visit(x, y, z);
+      }
+    }
+  }
+  [[nodiscard]] std::size_t tableAt(int x, int y, int z) const noexcept {
+    return static_cast<std::size_t>(x + band_.table_size[0] * (y + band_.table_size[1] * z));
+  }
+
+  /// Blocks with a voxel beside the surface, and those around them.
+  void makeBlocks() {
+    std::vector<std::uint8_t> near(tableAt(0, 0, band_.table_size[2]));
+    const auto [sx, sy, sz] = mask_.strides();
+    const auto [nx, ny, nz] = mask_.box;
+    for (int k = 0; k < nz; ++k) {
+      for (int j = 0; j < ny; ++j) {
+        std::ptrdiff_t n = mask_.at(0, j, k);
+        for (int i = 0; i < nx; ++i, ++n) {
+          // Of each pair the inside one is enough: the other is in the same block or the next.
+          if (!inside(n) || (inside(n - sx) && inside(n + sx) && inside(n - sy) && inside(n + sy) &&
+                             inside(n - sz) && inside(n + sz))) {
+            continue;
+          }
+          near[tableAt(i >> 3, j >> 3, k >> 3)] = 1;
+        }
+      }
+    }
+    const auto [tx, ty, tz] = band_.table_size;
+    band_.table.assign(near.size(), -1);
+    forTable([&](int x, int y, int z) {
+      bool any = false;
+      for (int n = 0; n < 27 && !any; ++n) {
+        const int a = x + n / 9 - 1;
+        const int b = y + n / 3 % 3 - 1;
+        const int c = z + n % 3 - 1;
+        any =
+            a >= 0 && b >= 0 && c >= 0 && a < tx && b < ty && c < tz && near[tableAt(a, b, c)] != 0;
+      }
+      if (!any) return;
+      band_.blocks.emplace_back();
+      band_.blocks.back().first = {8 * x, 8 * y, 8 * z};
+    });
+    band_.bounds.resize(band_.blocks.size());
+  }
+
+  void fill(BandBlock& block, BandBounds& bounds) const noexcept {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    block.value.fill(kNone);
+    bounds.lower.fill(kNone);
+    bounds.upper.fill(kNone);
+    const auto [nx, ny, nz] = mask_.box;
+    const auto [x, y, z] = block.first;
+    for (int i = x; i < std::min(x + 8, nx); ++i) {
+      for (int j = y; j < std::min(y + 8, ny); ++j) {
+        for (int k = z; k < std::min(z + 8, nz); ++k) {
+          if (fillVoxel(block, bounds, {i, j, k}))
+            block.rows |= std::uint64_t{1} << (8 * (i & 7) + (j & 7));
+        }
+      }
+    }
+  }
+
+  bool fillVoxel(BandBlock& block, BandBounds& bounds,
+                 const std::array<int, 3>& at) const noexcept {
+    const std::ptrdiff_t n = mask_.at(at[0], at[1], at[2]);
+    const bool is_inside = inside(n);
+    const Offset* const other = nearestOther(at, n, is_inside);
+    double size = kInfinity;
+    double lower = 0.0;
+    double upper = kInfinity;
+    if (other != nullptr) {
+      size = other->distance * (1.0 - kHalf / other->steps);
+      lower = std::max(0.0, other->distance * (1.0 - kSlack / other->steps));
+      upper = other->distance;
+    }
+    if (is_inside) size = std::min(size, borderDistance(at));
+    if (!(size < kInfinity)) return false;
+    if (other != nullptr && other->steps < kBeside &&
+        (isThin(at, is_inside) || facesThin(at, is_inside))) {
+      lower = std::max(lower, kHold);
+    }
+    size = std::clamp(size, lower, upper);
+    const std::size_t place = Band::placeOf(at[0], at[1], at[2]);
+    block.value[place] = static_cast<float>(is_inside ? -size : size);
+    bounds.lower[place] = static_cast<float>(is_inside ? -upper : lower);
+    bounds.upper[place] = static_cast<float>(is_inside ? -lower : upper);
+    return true;
+  }
+
+  [[nodiscard]] const Offset* nearestOther(const std::array<int, 3>& at, std::ptrdiff_t n,
+                                           bool is_inside) const noexcept {
+    bool safe = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      safe = safe && at[a] >= Band::kReach && at[a] + Band::kReach < mask_.box[a];
+    }
+    for (const Offset& offset : offsets_) {
+      if (safe) {
+        if (inside(n + offset.place) != is_inside) return &offset;
+        continue;
+      }
+      // What lies beyond the image is unknown, and no outside.
+      const auto& step = offset.step;
+      if (isIn({at[0] + step[0], at[1] + step[1], at[2] + step[2]}) &&
+          inside(n + offset.place) != is_inside) {
+        return &offset;
+      }
+    }
+    return nullptr;
+  }
+
+  /// To the image's border, if that is within reach. An inside voxel near the box's border is near the
+  /// image's: masks have a margin.
+  [[nodiscard]] double borderDistance(const std::array<int, 3>& at) const noexcept {
+    double nearest = kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const int steps = std::min(at[a], mask_.box[a] - 1 - at[a]);
+      if (steps < Band::kReach) nearest = std::min(nearest, (steps + kHalf) * spacing_[axis]);
+    }
+    return nearest;
+  }
+
+  /// Whether the cube of 2^3 voxels from `low` on is on one side; what lies beyond the image goes with it.
+  [[nodiscard]] bool isCube(const std::array<int, 3>& low, bool side) const noexcept {
+    for (int corner = 0; corner < 8; ++corner) {
+      const std::array<int, 3> at = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
+                                     low[2] + (corner >> 2)};
+      if (isIn(at) && inside(mask_.at(at[0], at[1], at[2])) != side) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool isIn(const std::array<int, 3>& at) const noexcept {
+    bool in = true;
+    for (std::size_t a = 0; a < 3; ++a) in = in && at[a] >= 0 && at[a] < mask_.box[a];
+    return in;
+  }
+
+  /// Whether no such cube holds it or one of the 26 voxels around it. A lone voxel on a body is none, nor the
+  /// tip of a ball.
+  [[nodiscard]] bool isThin(const std::array<int, 3>& at, bool side) const noexcept {
+    // Nearest cubes first: nearly always one of them is whole.
+    for (const int reach : {1, 2}) {
+      for (int n = 0; n < 64; ++n) {
+        const std::array<int, 3> step = {n & 3, n >> 2 & 3, n >> 4};
+        std::array<int, 3> low{};
+        bool near = true;
+        for (std::size_t a = 0; a < 3; ++a) {
+          low[a] = at[a] + step[a] - 2;
+          near = near && (step[a] == 1 || step[a] == 2);
+        }
+        if (near != (reach == 1)) continue;
+        if (isCube(low, side) && holdsSide(low, at, side)) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Whether a thin part of the other side begins across one of its faces: held off both ways, it keeps its
+  /// volume.
+  [[nodiscard]] bool facesThin(const std::array<int, 3>& at, bool side) const noexcept {
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (const int step : {-1, 1}) {
+        std::array<int, 3> next = at;
+        next[a] += step;
+        if (isIn(next) && inside(mask_.at(next[0], next[1], next[2])) != side &&
+            isThin(next, !side)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /// Whether a cube holds a voxel of that side next to `at`: not only what lies beyond the image.
+  [[nodiscard]] bool holdsSide(const std::array<int, 3>& low, const std::array<int, 3>& at,
+                               bool side) const noexcept {
+    for (int corner = 0; corner < 8; ++corner) {
+      const std::array<int, 3> voxel = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
+                                        low[2] + (corner >> 2)};
+      bool next = isIn(voxel);
+      for (std::size_t a = 0; a < 3; ++a) next = next && std::abs(voxel[a] - at[a]) <= 1;
+      if (next && inside(mask_.at(voxel[0], voxel[1], voxel[2])) == side) return true;
+    }
+    return false;
+  }
+
+  void dropEmpty() {
+    std::size_t kept = 0;
+    for (std::size_t b = 0; b < band_.blocks.size(); ++b) {
+      if (band_.blocks[b].rows == 0) continue;
+      if (kept != b) {
+        band_.blocks[kept] = band_.blocks[b];
+        band_.bounds[kept] = band_.bounds[b];
+      }
+      ++kept;
+    }
+    band_.blocks.resize(kept);
+    band_.bounds.resize(kept);
+    for (std::size_t b = 0; b < band_.blocks.size(); ++b) {
+      const auto [x, y, z] = band_.blocks[b].first;
+      band_.table[tableAt(x >> 3, y >> 3, z >> 3)] = static_cast<std::int32_t>(b);
+    }
+  }
+
+  void linkBlocks() {
+    for (BandBlock& block : band_.blocks) {
+      for (int n = 0; n < 27; ++n) {
+        const std::array<int, 3> step = {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
+        std::array<int, 3> at{};
+        bool in = true;
+        for (std::size_t a = 0; a < 3; ++a) {
+          at[a] = block.first[a] / 8 + step[a];
+          in = in && at[a] >= 0 && at[a] < band_.table_size[a];
+        }
+        block.near[static_cast<std::size_t>(n)] =
+            in ? band_.table[tableAt(at[0], at[1], at[2])] : -1;
+      }
+    }
+  }
+
+  const Mask& mask_;
+  Vec3 spacing_;
+  std::vector<Offset> offsets_;
+  Band band_;
+};
+
+}  // namespace
+
+float Band::valueAt(int i, int j, int k) const noexcept {
+  const std::array<int, 3> at = {i - first[0], j - first[1], k - first[2]};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (at[a] < 0 || at[a] >= box[a]) return std::numeric_limits<float>::quiet_NaN();
+  }
+  const std::int32_t block = blockAt(at[0], at[1], at[2]);
+  if (block < 0) return std::numeric_limits<float>::quiet_NaN();
+  return blocks[static_cast<std::size_t>(block)].value[placeOf(at[0], at[1], at[2])];
+}
+
+Band bandOf(const Mask& mask, const Vec3& spacing) { return Finder(mask, spacing).run(); }
+
+}  // namespace palpate::vdb

@@ -1,0 +1,60 @@
+#pragma once
+/// The voxels around the surface of a mask, in blocks, and what is known of the distance there.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "palpate/core/math.h"
+#include "scan/mask.h"
+
+namespace palpate::vdb {
+
+/// 8^3 voxels in OpenVDB's order: place 64 i + 8 j + k.
+struct BandBlock {
+  static constexpr int kSide = 8;
+  static constexpr std::size_t kVoxels = 512;
+  using Values = std::array<float, kVoxels>;
+
+  std::array<int, 3> first{};           ///< box index of its first voxel, a multiple of 8
+  std::uint64_t rows = 0;               ///< bit 8 i + j: the row has a voxel of the band
+  std::array<std::int32_t, 27> near{};  ///< blocks around it, 9 di + 3 dj + dk from -1 on; -1: none
+  alignas(32) Values value;             ///< NaN: not in the band
+};
+
+/// What the values of a block may be.
+struct BandBounds {
+  alignas(32) BandBlock::Values lower;
+  alignas(32) BandBlock::Values upper;
+};
+
+/// All lengths are in steps of the smallest spacing. The band holds the voxels with another one on the
+/// other side within kReach voxels, and inside voxels that near to the image's border.
+struct Band {
+  static constexpr int kReach = 5;
+
+  std::array<int, 3> first{};       ///< as in Mask
+  std::array<int, 3> box{};         ///< as in Mask
+  std::array<int, 3> table_size{};  ///< blocks along each axis
+  std::vector<std::int32_t> table;  ///< place of each block in `blocks`, or -1; first axis fastest
+  std::vector<BandBlock> blocks;
+  std::vector<BandBounds> bounds;  ///< one for each block
+
+  /// The block of voxel (i, j, k), or -1.
+  [[nodiscard]] std::int32_t blockAt(int i, int j, int k) const noexcept {
+    return table[static_cast<std::size_t>((i >> 3) +
+                                          table_size[0] * ((j >> 3) + table_size[1] * (k >> 3)))];
+  }
+  /// The value at an index of the image; NaN: not in the band.
+  [[nodiscard]] float valueAt(int i, int j, int k) const noexcept;
+  [[nodiscard]] static std::size_t placeOf(int i, int j, int k) noexcept {
+    return static_cast<std::size_t>(((i & 7) << 6) | ((j & 7) << 3) | (k & 7));
+  }
+};
+
+/// From the voxel centers alone: a voxel whose nearest one on the other side is d away has a surface at
+/// most d away, and not much nearer than the step before it. Parts one voxel thin are held open.
+/// `spacing` of the voxels along each axis, in steps of the smallest.
+[[nodiscard]] Band bandOf(const Mask& mask, const Vec3& spacing);
+
+}  // namespace palpate::vdb

@@ -1,0 +1,145 @@
+#include "scan/lattice_spline.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brick/brick_field.h"
+#include "palpate/vdb/openvdb_access.h"
+
+namespace palpate::vdb {
+namespace {
+
+using openvdb::Coord;
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+constexpr int kNewtonSteps = 12;
+/// Layers beyond the border that a spline at the surface depends on.
+constexpr int kMirrored = 4;
+
+/// Places along one axis where a voxel is seen: itself, and its images beyond the borders.
+struct Images {
+  std::array<int, 3> at{};
+  int count = 1;
+
+  Images(int i, int n) : at{i} {
+    if (i < kMirrored) at[static_cast<std::size_t>(count++)] = -1 - i;
+    if (n - 1 - i < kMirrored) at[static_cast<std::size_t>(count++)] = 2 * n - 1 - i;
+  }
+};
+
+void mirror(const Band& band, openvdb::FloatGrid& grid) {
+  auto accessor = grid.getAccessor();
+  for (const BandBlock& block : band.blocks) {
+    bool by_border = false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      by_border = by_border || block.first[a] < kMirrored ||
+                  block.first[a] + BandBlock::kSide > band.box[a] - kMirrored;
+    }
+    if (!by_border) continue;
+    for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+      const float value = block.value[n];
+      if (std::isnan(value)) continue;
+      const auto place = static_cast<int>(n);
+      const Images x(block.first[0] + (place >> 6), band.box[0]);
+      const Images y(block.first[1] + (place >> 3 & 7), band.box[1]);
+      const Images z(block.first[2] + (place & 7), band.box[2]);
+      for (int i = 0; i < x.count; ++i) {
+        for (int j = 0; j < y.count; ++j) {
+          for (int k = 0; k < z.count; ++k) {
+            if (i + j + k == 0) continue;
+            accessor.setValueOn(
+                Coord(x.at[static_cast<std::size_t>(i)], y.at[static_cast<std::size_t>(j)],
+                      z.at[static_cast<std::size_t>(k)]),
+                std::fabs(value));
+          }
+        }
+      }
+    }
+  }
+}
+
+/// The band as a level set of voxels 1 m wide, so that positions are box indices.
+LevelSet gridOf(const Band& band, const Mask& mask) {
+  float largest = 1.0F;
+  for (const BandBlock& block : band.blocks) {
+    for (const float value : block.value) {
+      if (!std::isnan(value)) largest = std::max(largest, std::fabs(value));
+    }
+  }
+  const float background = 2.0F * largest;
+  initializeOpenVdb();
+  auto grid = openvdb::FloatGrid::create(background);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(1.0));
+  for (const BandBlock& block : band.blocks) {
+    const auto [x, y, z] = block.first;
+    auto leaf = std::make_unique<Leaf>(Coord(x, y, z), background, false);
+    for (openvdb::Index n = 0; n < BandBlock::kVoxels; ++n) {
+      const float value = block.value[n];
+      if (!std::isnan(value)) {
+        leaf->setValueOn(n, value);
+        continue;
+      }
+      const Coord at = leaf->offsetToGlobalCoord(n);
+      const bool in_box = at.x() < band.box[0] && at.y() < band.box[1] && at.z() < band.box[2];
+      if (in_box && mask.inside[static_cast<std::size_t>(mask.at(at.x(), at.y(), at.z()))] != 0) {
+        leaf->setValueOff(n, -background);
+      }
+    }
+    grid->tree().addLeaf(leaf.release());
+  }
+  mirror(band, *grid);
+  return makeLevelSet(grid, "m");
+}
+
+}  // namespace
+
+LatticeSpline::LatticeSpline(const Band& band, const Mask& mask, const Mat3& axes,
+                             const Vec3& origin)
+    : spline_(std::make_unique<BrickField>(gridOf(band, mask), Sampler::kCubic)),
+      axes_(axes),
+      to_index_(glm::inverse(axes)),
+      origin_(origin),
+      shortest_(std::min({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])})) {}
+
+LatticeSpline::~LatticeSpline() = default;
+
+std::optional<LatticeSpline::Foot> LatticeSpline::foot(const Vec3& p,
+                                                       const Vec3& start) const noexcept {
+  const Mat3 back = glm::transpose(to_index_);
+  const double enough = 1e-6 * shortest_;
+  const double longest = 0.5 * shortest_;
+  Vec3 q = start;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    const FieldJet jet = spline_->jet(to_index_ * (q - origin_));
+    if (!jet.in_band) return std::nullopt;
+    const Vec3 gradient = back * jet.gradient;
+    const Mat3 hessian = back * jet.hessian * to_index_;
+    const double square = glm::dot(gradient, gradient);
+    if (!(square > 0.0)) return std::nullopt;
+    const Vec3 apart = p - q;
+    const double m = glm::dot(apart, gradient) / square;
+    // Beyond the centre of curvature the matrix turns singular; there the point on the tangent plane leads.
+    const Mat3 bent = Mat3(1.0) + m * hessian;
+    Vec3 move = apart - (m + jet.value / square) * gradient;
+    if (const double size = glm::determinant(bent); size > 1e-3) {
+      const Mat3 inverse = glm::inverse(bent);
+      const Vec3 rest = inverse * (apart - m * gradient);
+      const Vec3 along = inverse * gradient;
+      const double slope = glm::dot(gradient, along);
+      if (slope > 1e-3 * square) {
+        move = rest - along * ((jet.value + glm::dot(gradient, rest)) / slope);
+      }
+    }
+    const double length = glm::length(move);
+    if (!std::isfinite(length)) return std::nullopt;
+    if (length < enough) {
+      const double side = glm::dot(apart, gradient);
+      const double distance = glm::length(p - q - move);
+      return Foot{q + move, gradient / std::sqrt(square), side < 0.0 ? -distance : distance};
+    }
+    q += move * std::min(1.0, longest / length);
+  }
+  return std::nullopt;
+}
+
+}  // namespace palpate::vdb
