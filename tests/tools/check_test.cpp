@@ -180,7 +180,7 @@ TEST(Check, GridsOfOthers) {
   for (const auto& c : cases) {
     const Checked out = checked(folder, c.arguments);
     EXPECT_EQ(out.exit_code, c.exit_code) << c.arguments[0] << "\n" << out.text;
-    const Json grid = out.file["grids"][0];
+    const Json& grid = out.file["grids"][0];
     const std::vector<std::string> found = codes(grid);
     const std::string first = !found.empty() ? found.front()
                               : grid["refused"].is_object()
@@ -189,7 +189,7 @@ TEST(Check, GridsOfOthers) {
     EXPECT_EQ(first, c.finding) << c.arguments[0] << "\n" << out.text;
   }
   const Checked ball = checked(folder, {"ball.vdb"});
-  const Json grid = ball.file["grids"][0];
+  const Json& grid = ball.file["grids"][0];
   EXPECT_TRUE(grid["widened"]);
   EXPECT_NE(ball.text.find("widens its band to 6 voxels"), std::string::npos) << ball.text;
   EXPECT_NEAR(grid["gradient"]["mean"], 1.0, 0.005);

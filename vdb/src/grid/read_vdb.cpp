@@ -135,9 +135,8 @@ LevelSet readVdb(const std::string& path, const std::string& name,
   // What the head of the grid tells is told before its voxels are read.
   requireLevelSet(*entry.grid, unknown_class, path);
   static_cast<void>(unitOf(*entry.grid, unit_if_missing, path));
-  return readingFrom(path, [&] {
-    return acceptLevelSet(file.read(entry), unit_if_missing, unknown_class, path);
-  });
+  return readingFrom(
+      path, [&] { return acceptLevelSet(file.read(entry), unit_if_missing, unknown_class, path); });
 }
 
 }  // namespace palpate::vdb

@@ -88,7 +88,7 @@ std::optional<Vec3> sideMeets(const Vec3& p, const Vec3& q, const Corners& t, in
 std::size_t putSharedFirst(std::array<std::uint32_t, 3>& one, std::array<std::uint32_t, 3>& other) {
   std::size_t shared = 0;
   for (std::size_t n = 0; n < 3; ++n) {
-    const auto at =
+    auto* const at =
         std::find(other.begin() + static_cast<std::ptrdiff_t>(shared), other.end(), one[n]);
     if (at == other.end()) continue;
     std::swap(other[shared], *at);
