@@ -74,7 +74,7 @@ int exactSideOfPlane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
     rows[2][n] = difference(c[axis], d[axis]);
   }
   const auto& [p, q, r] = rows;
-  Sum<3 * 2 * 16 * 2> volume;
+  Sum<192> volume;  // three products of 2 and 16 terms, each of two
   volume.addProduct(p[0], minorOf(q[1], q[2], r[1], r[2]), 1.0);
   volume.addProduct(p[1], minorOf(q[2], q[0], r[2], r[0]), 1.0);
   volume.addProduct(p[2], minorOf(q[0], q[1], r[0], r[1]), 1.0);
