@@ -182,17 +182,17 @@ TEST(ConvertFiles, AMaskBecomesAGrid) {
 class ConvertGrids : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new TempFolder;
+    home = new TempFolder;
     const std::string command = "/usr/bin/python3 '" PALPATE_SOURCE_DIR
                                 "/tests/vdb/vdb_interop.py' '" +
                                 folder().path() + "'";
     ASSERT_EQ(std::system(command.c_str()), 0);
   }
   static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
+    delete home;
+    home = nullptr;
   }
-  static const TempFolder& folder() { return *folder_; }
+  static const TempFolder& folder() { return *home; }
 
   /// `share` of the volume, `far` [mm] at its ends.
   static void expectBall(const std::string& name, double share, double far = 0.1) {
@@ -227,9 +227,9 @@ class ConvertGrids : public ::testing::Test {
   }
 
  private:
-  static TempFolder* folder_;
+  static TempFolder* home;
 };
-TempFolder* ConvertGrids::folder_ = nullptr;
+TempFolder* ConvertGrids::home = nullptr;
 
 TEST_F(ConvertGrids, TurnedMirroredAndStretchedGridsAreStraightened) {
   expectGrid("turned", {}, 0.015);

@@ -248,17 +248,17 @@ TEST(ExactSide, OfPointsAlmostInAPlaneAndInALine) {
   for (int round = 0; round < 20000; ++round) {
     // 36 bits: products of three differences fit in 127, and not in a long double.
     std::array<std::array<Int, 3>, 4> p{};
-    for (int n = 0; n < 3; ++n) {
-      for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t n = 0; n < 3; ++n) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
         p[n][axis] = static_cast<Int>(random() >> 28) - (Int{1} << 35);
     }
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       p[3][axis] = p[0][axis] + p[1][axis] - p[2][axis] +
                    (round % 2 == 0 ? static_cast<Int>(random() % 3) - 1 : 0);
     }
     std::array<std::array<Wide, 3>, 3> row{};
-    for (int n = 0; n < 3; ++n) {
-      for (int axis = 0; axis < 3; ++axis) row[n][axis] = Wide{p[n][axis]} - p[3][axis];
+    for (std::size_t n = 0; n < 3; ++n) {
+      for (std::size_t axis = 0; axis < 3; ++axis) row[n][axis] = Wide{p[n][axis]} - p[3][axis];
     }
     const auto& [a, b, c] = row;
     const Wide volume = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +

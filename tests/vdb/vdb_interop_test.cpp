@@ -38,17 +38,16 @@ constexpr double kVolume = 4.0 / 3.0 * std::numbers::pi * kRadius * kRadius * kR
 class VdbOfOthers : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new TempFolder;
-    const std::string command = "/usr/bin/python3 '" PALPATE_SOURCE_DIR
-                                "/tests/vdb/vdb_interop.py' '" +
-                                folder_->path() + "'";
+    home = new TempFolder;
+    const std::string command =
+        "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/vdb/vdb_interop.py' '" + home->path() + "'";
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
   }
   static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
+    delete home;
+    home = nullptr;
   }
-  static std::string path(const std::string& name) { return folder_->path(name + ".vdb"); }
+  static std::string path(const std::string& name) { return home->path(name + ".vdb"); }
   static Problem refusal(const std::string& name) {
     return errorOf([&] { static_cast<void>(readVdb(path(name), "", "")); }).problem();
   }
@@ -59,9 +58,9 @@ class VdbOfOthers : public ::testing::Test {
   }
 
  private:
-  static TempFolder* folder_;
+  static TempFolder* home;
 };
-TempFolder* VdbOfOthers::folder_ = nullptr;
+TempFolder* VdbOfOthers::home = nullptr;
 
 void expectBall(const LevelSet& set, double tolerance) {
   const FieldPtr field = gridField(set);
