@@ -84,10 +84,10 @@ TEST(BakeMesh, FacesInTheVoxelsAreHarmless) {
 /// if p projects into it, else by its sides.
 double distanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = glm::normalize(glm::cross(b - a, c - a));
-  const auto isLeft = [&](const Vec3& from, const Vec3& to) {
+  const auto is_left = [&](const Vec3& from, const Vec3& to) {
     return glm::dot(glm::cross(to - from, p - from), normal) >= 0.0;
   };
-  if (isLeft(a, b) && isLeft(b, c) && isLeft(c, a)) return std::abs(glm::dot(p - a, normal));
+  if (is_left(a, b) && is_left(b, c) && is_left(c, a)) return std::abs(glm::dot(p - a, normal));
   double best = kInfinity;
   const std::vector<std::pair<Vec3, Vec3>> sides{{a, b}, {b, c}, {c, a}};
   for (const auto& [from, to] : sides) {
@@ -144,12 +144,12 @@ TEST(BakeMesh, LargeMeshMatchesBruteForceHereAndThere) {
 
 TEST(BakeMesh, ThreadsDoNotMatter) {
   const Mesh mesh = together(ballMesh(Vec3(0.0), 8e-3, 3), ballMesh(Vec3(6e-3), 8e-3, 3));
-  const auto bakeWith = [&](std::size_t threads) {
+  const auto bake_with = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return bakeMesh(mesh, voxels(0.3e-3, 3.0));
   };
-  const LevelSet one = bakeWith(1);
-  const LevelSet four = bakeWith(4);
+  const LevelSet one = bake_with(1);
+  const LevelSet four = bake_with(4);
   ASSERT_TRUE(one.impl().grid->tree().hasSameTopology(four.impl().grid->tree()));
   auto other = four.impl().grid->getConstAccessor();
   for (auto voxel = one.impl().grid->cbeginValueAll(); voxel; ++voxel) {
@@ -171,7 +171,7 @@ void expectSquares(void (*find_squares)(const LeafQuery&) noexcept, const Mesh& 
   for (int n = 0; n < 512; ++n) {
     const Vec3 p = Vec3(n / 64, n / 8 % 8, n % 8) - 3.5;
     const double wanted = std::abs(signedDistance(p, mesh));
-    const double found = std::sqrt(squares[n]);
+    const double found = std::sqrt(squares[static_cast<std::size_t>(n)]);
     // "Off by some 1e-6 of a voxel times the distance"; out of the band no more is known than that.
     if (wanted < half_width) {
       ++near;

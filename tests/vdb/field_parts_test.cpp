@@ -159,7 +159,7 @@ TEST(FieldParts, KeepWhatNothingIsKnownOf) {
   const FieldParts parts(*field);
   ASSERT_EQ(parts.whole().nodes.size(), 1002U);
   FieldPart part;
-  const ValueRange range = parts.narrow(parts.whole(), Vec3(0.05, 0.0, 1.0), 5e-3, 0.01, part);
+  const ValueRange range = parts.narrow(parts.whole(), Vec3(6e-3, 0.0, 1.0), 1e-3, 0.01, part);
   EXPECT_EQ(range.lo, -kInfinity);
   ASSERT_EQ(part.nodes.size(), 3U);  // the union, the unknown one, and the ball at 1 m
   EXPECT_EQ(part.nodes.front().size, 3U);

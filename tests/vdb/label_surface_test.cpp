@@ -37,7 +37,7 @@ Shape ballShape(const Vec3& center, double radius) {
             const Vec3 n = direction(random);
             return std::pair(center + radius * n, n);
           },
-          Box3{center - Vec3(radius + 9), center + Vec3(radius + 9)}};
+          Box3{Vec3(-radius - 9), Vec3(radius + 9)}};
 }
 
 Shape torusShape(const Vec3& center, const Vec3& axis, double ring, double tube) {
@@ -54,7 +54,7 @@ Shape torusShape(const Vec3& center, const Vec3& axis, double ring, double tube)
             const Vec3 n = std::cos(t) * u + std::sin(t) * axis;
             return std::pair(center + ring * u + tube * n, n);
           },
-          Box3{center - Vec3(ring + tube + 9), center + Vec3(ring + tube + 9)}};
+          Box3{Vec3(-ring - tube - 9), Vec3(ring + tube + 9)}};
 }
 
 /// The half-space under a plane; measured in the middle of a cube of 84 mm.
@@ -65,7 +65,7 @@ Shape planeShape(const Vec3& center, const Vec3& normal) {
             const Vec3 d(place(random), place(random), place(random));
             return std::pair(center + d - glm::dot(d, normal) * normal, normal);
           },
-          Box3{center - Vec3(42), center + Vec3(42)}};
+          Box3{Vec3(-42), Vec3(42)}};
 }
 
 /// Voxels of the shape have label 1. `axes` in mm; the image covers the shape's box.

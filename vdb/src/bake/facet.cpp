@@ -7,42 +7,58 @@
 namespace palpate::vdb {
 namespace {
 
-/// [voxels] With corners no farther out, sides no longer and a height over length no less, floats tell a
-/// facet to some 3e-6 voxel.
+/// [voxels] Corners no farther out and sides no longer than that are good enough in floats.
 constexpr float kNear = 16.0F;
 constexpr float kShort = 6.0F;
-constexpr float kStout = 0.2F;
+/// Height over length of what floats tell the plane of well enough.
+constexpr float kStout = 0.01F;
 
-Vec3 anyAcross(const Vec3& v) noexcept {
-  const Vec3 axis = std::abs(v.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
-  return unitOr(glm::cross(v, axis), axis);
+template <typename Vector>
+Vector normalizedOr(const Vector& v, const Vector& otherwise) noexcept {
+  using Scalar = typename Vector::value_type;
+  const Scalar length = std::sqrt(glm::dot(v, v));
+  return length > Scalar(0) ? v * (Scalar(1) / length) : otherwise;
 }
 
-/// Of any triangle.
-Facet makeAnyFacet(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
-  std::array<Vec3, 3> corners{a, b, c};
-  const std::array<double, 3> squares{glm::dot(b - a, b - a), glm::dot(c - b, c - b),
-                                      glm::dot(a - c, a - c)};
-  const auto longest = std::max_element(squares.begin(), squares.end()) - squares.begin();
-  std::rotate(corners.begin(), corners.begin() + longest, corners.end());
-  const Vec3 first = unitOr(corners[1] - corners[0], Vec3(1.0, 0.0, 0.0));
-  const Vec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double area = glm::length(cross);
-  const bool is_flat = !(area > 1e-9 * squares[static_cast<std::size_t>(longest)]);
-  Vec3 normal = anyAcross(first);
+template <typename Vector>
+Vector anyAcross(const Vector& v) noexcept {
+  const Vector axis = std::abs(v.x) < 0.6F ? Vector(1, 0, 0) : Vector(0, 1, 0);
+  return normalizedOr(glm::cross(v, axis), axis);
+}
+
+/// Its frame. False, and nothing, for a triangle lower than `least` times its longest side, unless `any`.
+template <typename Vector>
+bool makeFacetOf(std::array<Vector, 3> corners, typename Vector::value_type least, bool any,
+                 Facet& facet) noexcept {
+  using Scalar = typename Vector::value_type;
+  const auto square = [](const Vector& v) { return glm::dot(v, v); };
+  const std::array<Scalar, 3> squares{square(corners[1] - corners[0]),
+                                      square(corners[2] - corners[1]),
+                                      square(corners[0] - corners[2])};
+  const Scalar longest = std::max({squares[0], squares[1], squares[2]});
+  if (longest == squares[1]) {
+    corners = {corners[1], corners[2], corners[0]};
+  } else if (longest == squares[2]) {
+    corners = {corners[2], corners[0], corners[1]};
+  }
+  const Vector cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const Scalar area = std::sqrt(square(cross));
+  const bool is_flat = !(area > least * longest);
+  if (is_flat && !any) return false;
+  const Vector first = normalizedOr(corners[1] - corners[0], Vector(1, 0, 0));
+  Vector normal = anyAcross(first);
   if (!is_flat) {
     // Rounding tilts the normal of a sliver: made square to the longest side again.
-    normal = cross / area;
-    normal = unitOr(normal - glm::dot(normal, first) * first, normal);
+    normal = cross * (Scalar(1) / area);
+    normal = normalizedOr(normal - glm::dot(normal, first) * first, normal);
   }
-  Facet facet{};
   for (std::size_t n = 0; n < 3; ++n) {
-    const Vec3& from = corners[n];
-    const Vec3 side = corners[(n + 1) % 3] - from;
-    Vec3 along = n == 0 || is_flat ? first : unitOr(side, first);
-    if (is_flat && glm::dot(side, first) < 0.0) along = -first;
-    const Vec3 out = glm::cross(along, normal);
-    const double begin = glm::dot(along, from);
+    const Vector& from = corners[n];
+    const Vector side = corners[(n + 1) % 3] - from;
+    Vector along = n == 0 || is_flat ? first : normalizedOr(side, first);
+    if (is_flat && glm::dot(side, first) < Scalar(0)) along = -first;
+    const Vector out = glm::cross(along, normal);
+    const Scalar begin = glm::dot(along, from);
     for (int i = 0; i < 3; ++i) {
       facet.out[n][i] = static_cast<float>(out[i]);
       facet.along[n][i] = static_cast<float>(along[i]);
@@ -53,46 +69,24 @@ Facet makeAnyFacet(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   }
   for (int i = 0; i < 3; ++i) facet.normal[i] = static_cast<float>(normal[i]);
   facet.normal[3] = static_cast<float>(-glm::dot(normal, corners[0]));
-  return facet;
+  return true;
 }
 
 }  // namespace
 
 Facet makeFacet(const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
-  const std::array<glm::vec3, 3> corners{glm::vec3(a), glm::vec3(b), glm::vec3(c)};
-  std::array<glm::vec3, 3> sides{};
-  std::array<float, 3> squares{};
-  float farthest = 0.0F;
-  for (std::size_t n = 0; n < 3; ++n) {
-    sides[n] = corners[(n + 1) % 3] - corners[n];
-    squares[n] = glm::dot(sides[n], sides[n]);
-    farthest = std::max(farthest, glm::dot(corners[n], corners[n]));
-  }
-  const float longest = std::max({squares[0], squares[1], squares[2]});
-  const glm::vec3 cross = glm::cross(sides[0], sides[1]);
-  const float area = std::sqrt(glm::dot(cross, cross));
-  if (!(farthest < kNear * kNear && longest < kShort * kShort && area > kStout * longest)) {
-    return makeAnyFacet(a, b, c);
-  }
   Facet facet{};
-  const glm::vec3 normal = cross * (1.0F / area);
-  // The longest side comes first.
-  auto n = static_cast<std::size_t>(std::find(squares.begin(), squares.end(), longest) -
-                                    squares.begin());
-  for (std::size_t to = 0; to < 3; ++to, n = n == 2 ? 0 : n + 1) {
-    const float length = std::sqrt(squares[n]);
-    const glm::vec3 along = sides[n] * (1.0F / length);
-    const glm::vec3 out = glm::cross(along, normal);
-    for (int i = 0; i < 3; ++i) {
-      facet.out[to][i] = out[i];
-      facet.along[to][i] = along[i];
-    }
-    facet.out[to][3] = -glm::dot(out, corners[n]);
-    facet.begin[to] = glm::dot(along, corners[n]);
-    facet.end[to] = facet.begin[to] + length;
+  const glm::vec3 p(a);
+  const glm::vec3 q(b);
+  const glm::vec3 r(c);
+  const auto within = [](const glm::vec3& v, float most) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) < most;
+  };
+  if (within(p, kNear) && within(q - p, kShort) && within(r - p, kShort) && within(r - q, kShort) &&
+      makeFacetOf<glm::vec3>({p, q, r}, kStout, false, facet)) {
+    return facet;
   }
-  for (int i = 0; i < 3; ++i) facet.normal[i] = normal[i];
-  facet.normal[3] = -glm::dot(normal, corners[0]);
+  makeFacetOf<Vec3>({a, b, c}, 1e-9, true, facet);
   return facet;
 }
 

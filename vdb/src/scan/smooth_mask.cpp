@@ -23,6 +23,7 @@ using Values = BandBlock::Values;
 // and longer waves than a scan's voxels tell of are left alone.
 constexpr int kFirstSteps = 80;
 constexpr int kSecondSteps = 140;
+constexpr double kMostStretch = 4.0;
 /// The largest eigenvalue of the energy's matrix is 144/42 of its diagonal.
 constexpr float kStep = 1.0F / 3.5F;
 /// Steps of diffusion: the first ones also mix odd and even voxels. Together a Gaussian of 5.7 voxels.
@@ -73,10 +74,13 @@ class Smoothing {
       work_[b].force.fill(0.0F);
       findSteps(b);
     });
-    relax(kFirstSteps, 0.0, 0.4);
+    // Thick slices make long steps in voxels; what smooths them travels as far as the steps are many.
+    const double longest = std::max({spacing_.x, spacing_.y, spacing_.z});
+    const double more = std::min(longest, kMostStretch);
+    relax(static_cast<int>(more * kFirstSteps), 0.0, 0.4);
     makeDistances();
     takeOutForces();
-    relax(kSecondSteps, 0.5, 1.0);
+    relax(static_cast<int>(more * kSecondSteps), 0.5, 1.0);
   }
 
  private:
