@@ -241,7 +241,7 @@ layers:
 )");
   const auto bake = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"bake", "two.yaml", "-o",      "t.vdb",        "--voxel",
-                                       "0.5",  "--json",   "--force", "--max-memory", "25MB"};
+                                       "0.5",  "--json",   "--force", "--max-memory", "16MB"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runPalpate(arguments, folder.path());
   };

@@ -23,6 +23,7 @@ void checkSceneOptions(const BakeOptions& options, const SceneDescription& descr
       {!options.units.empty(), "--units applies to meshes; a scene names its unit"},
       {!options.sign.empty(), "--sign applies to meshes"},
       {!options.shell.empty(), "--shell applies to meshes"},
+      {options.smooth.has_value(), "--smooth applies to meshes"},
       {options.above.has_value(), "--above applies to images"},
       {!options.labels.empty(), "--labels applies to images"}};
   for (const auto& [given, message] : misplaced) {

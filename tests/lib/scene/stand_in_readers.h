@@ -21,12 +21,16 @@ inline SceneRegistry standInReaders() {
     (void)reader.textOr("units", "");
     (void)reader.numberOr("half_width", 6.0);
     (void)reader.textOr("sampler", "");
+    (void)reader.textOr("sign", "");
+    (void)reader.lengthOr("shell", 1.0);
+    (void)reader.numberOr("smooth", 30.0);
     return later("mesh " + file, reader.lengthOr("voxel", 1.0));
   };
   registry.fields["grid"] = [later](MapReader& reader) {
     const std::string file = reader.loader().resolvePath(reader.requireText("file"));
     (void)reader.textOr("name", "");
     (void)reader.textOr("units", "");
+    (void)reader.textOr("class", "");
     (void)reader.textOr("sampler", "");
     return later("grid " + file, 1.0);
   };

@@ -42,17 +42,18 @@ struct LabelOptions {
 
 /// The surface is one that bends as little, and as evenly, as the voxels allow: voxel centres stay on
 /// their side of it (or on it). A voxelised ball, torus or tilted plane gets normals within half a
-/// degree (RMS) and a mean offset within 0.02 voxel. Parts one or two voxels thin are held open. Two labels
-/// that touch get the same wall from either side; where three meet, LabelSurfaces makes them fit.
+/// degree (RMS) and a mean offset within 0.03 voxel, in cubic voxels; slices several times thicker than
+/// their voxels are wide leave degrees. Parts one or two voxels thin are held open, though their
+/// walls may move by a tenth of a voxel. LabelSurfaces makes the walls of several labels fit.
 /// @throws Error (kInput) if no voxel has one of the labels.
 [[nodiscard]] LevelSet surfaceFromLabels(const Image& image, const LabelOptions& options,
                                          const BakeOptions& bake, const Progress& progress = {});
 
 /// Surfaces of several layers of one label image, with one wall between neighbors: where two layers
-/// meet, the grid of one is minus that of the other (to rounding, where both have the same voxels),
-/// so that between them is neither gap nor overlap.
+/// meet, both take the distance to the same wall, each in its own grid, so that away from others they fit
+/// within a tenth of a voxel or two.
 /// Where three or more meet (what is in no layer counts) their walls meet in an edge, which grids
-/// round off within about a voxel. Layers that have a label in common do not limit each other.
+/// round off within about a voxel: gaps of up to 0.6 voxel. Layers that have a label in common do not limit each other.
 class LabelSurfaces {
  public:
   /// `image` must outlive it. `layers`: the labels of each.
