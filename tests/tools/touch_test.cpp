@@ -1,6 +1,5 @@
 // palpate touch: what is felt, what is reported and what is written.
 
-
 #include <cmath>
 
 #include "tools/helpers.h"

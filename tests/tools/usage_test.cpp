@@ -5,8 +5,8 @@
 namespace palpate::testing {
 namespace {
 
-const std::vector<std::string> kVerbs = {"touch",   "bake",   "info", "check", "query",
-                                         "explain", "render", "bench"};
+const std::vector<std::string> kVerbs = {"touch", "bake",    "info",   "check",
+                                         "query", "explain", "render", "bench"};
 
 TEST(Usage, HelpListsEveryVerbWithAnExample) {
   const CommandResult result = runPalpate({"--help"});

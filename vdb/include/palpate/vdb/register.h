@@ -20,7 +20,7 @@ struct GridRecord {
 struct RegisterOptions {
   std::function<void(const GridRecord&)> on_grid = {};  ///< told of each grid when it is ready
   std::function<void(const std::string&)> on_note =
-      {};  ///< told what was assumed or decided, once each
+      {};                        ///< told what was assumed or decided, once each
   std::uint64_t max_memory = 0;  ///< [bytes] of each grid that is made, as BakeOptions has it
 };
 
