@@ -149,7 +149,9 @@ FieldPtr distanceTo(const FieldPtr& function, const Box3& bounds) {
     return FieldSample{distance, normal, true};
   };
   FunctionField::Claims claims{bounds};
-  claims.lipschitz = 4.0;  // where it finds another point than the closest, it is too large
+  // Where it finds another point than the closest it jumps, and is too large. A bake drops what is beyond
+  // this bound, so it is generous.
+  claims.lipschitz = 16.0;
   return std::make_shared<FunctionField>(sample, claims);
 }
 
