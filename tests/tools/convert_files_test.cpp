@@ -38,14 +38,6 @@ MeshFile meshFile(const std::string& path) {
   return {n[0], n[1], n[2], {n[3], n[4], n[5]}, {n[6], n[7], n[8]}};
 }
 
-Json converted(const TempFolder& folder, std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "convert");
-  arguments.emplace_back("--json");
-  const CommandResult result = runPalpate(arguments, folder.path());
-  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
-  return parseOnly(result);
-}
-
 std::vector<std::string> gridsOf(const TempFolder& folder, const std::string& name) {
   const CommandResult result = runPalpate({"info", name, "--json"}, folder.path());
   EXPECT_EQ(result.exit_code, 0) << result.err;

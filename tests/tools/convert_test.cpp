@@ -17,14 +17,6 @@ layers:
 )";
 const double kVolume = 4.0 / 3.0 * std::numbers::pi * std::pow(0.015, 3.0);  // [m^3]
 
-Json converted(const TempFolder& folder, std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "convert");
-  arguments.emplace_back("--json");
-  const CommandResult result = runPalpate(arguments, folder.path());
-  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
-  return parseOnly(result);
-}
-
 /// What `info` says of a file.
 Json described(const TempFolder& folder, const std::string& name, const std::string& units = "mm") {
   const CommandResult result =

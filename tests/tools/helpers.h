@@ -26,6 +26,15 @@ inline Json parseOnly(const CommandResult& result) {
   return json.is_object() ? json : Json::object();
 }
 
+/// What `palpate convert ARGUMENTS... --json` tells; it must end well.
+inline Json converted(const TempFolder& folder, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "convert");
+  arguments.emplace_back("--json");
+  const CommandResult result = runPalpate(arguments, folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+  return parseOnly(result);
+}
+
 /// Runs `palpate ARGUMENTS...` in `folder` and sends it `signal` as soon as it talks; it must end as
 /// interrupted.
 inline CommandResult runInterrupted(const std::vector<std::string>& arguments,
