@@ -1,6 +1,7 @@
 #include "palpate/interior/port_machine.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate {
 
@@ -79,23 +80,38 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
       walls_(std::move(walls)),
       ports_(std::move(ports)),
       sheets_(std::move(sheets)),
-      ports_of_(regions) {
-  for (std::size_t region = 0; region < regions; ++region) {
-    for (std::size_t port = 0; port < ports_.size(); ++port) {
-      for (std::size_t other = 0; other < regions; ++other) {
-        if (other != region &&
-            ports_[port].leads(static_cast<RegionId>(region), static_cast<RegionId>(other))) {
-          ports_of_[region].push_back(static_cast<PortId>(port));
-          break;
+      ports_of_(regions),
+      ways_of_(regions) {
+  for (std::size_t port = 0; port < ports_.size(); ++port) {
+    const Port& way = ports_[port];
+    const auto add = [&](const std::vector<RegionId>& from, const std::vector<RegionId>& to) {
+      for (const RegionId a : from) {
+        for (const RegionId b : to) {
+          if (a != b && way.leads(a, b)) ways_of_[a].push_back({b, static_cast<PortId>(port)});
         }
       }
-    }
+    };
+    add(way.from, way.to);
+    add(way.to, way.from);
+  }
+  for (std::size_t region = 0; region < regions; ++region) {
+    std::vector<Way>& ways = ways_of_[region];
+    const auto key = [](const Way& way) { return std::pair(way.to, way.port); };
+    std::sort(ways.begin(), ways.end(),
+              [&](const Way& a, const Way& b) { return key(a) < key(b); });
+    ways.erase(std::unique(ways.begin(), ways.end(),
+                           [&](const Way& a, const Way& b) { return key(a) == key(b); }),
+               ways.end());
+    std::vector<PortId>& own = ports_of_[region];
+    for (const Way& way : ways) own.push_back(way.port);
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
   }
 }
 
 Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond, const Signs& here,
                       const Signs& there, std::span<const LeafId> crossed,
-                      const PassedPorts& passed) const noexcept {
+                      const PassedPorts& passed, const HolesHere& holes) const noexcept {
   Facet facet;
   facet.beyond = beyond;
   if (facet.beyond == from) {
@@ -118,9 +134,12 @@ Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond
   }
   facet.kind = Facet::Kind::kClosed;
   facet.material = between.material;
-  for (const PortId id : ports_of_[from]) {
+  const std::vector<Way>& ways = ways_of_[from];
+  for (auto way = std::lower_bound(ways.begin(), ways.end(), beyond,
+                                   [](const Way&a, RegionId to) { return a.to < to; });
+       way != ways.end() && way->to == beyond; ++way) {
+    const PortId id = way->port;
     const Port& port = ports_[id];
-    if (!port.leads(from, facet.beyond)) continue;
     if (!port.on.empty() && !meets(port.on, crossed)) continue;
     // The mask's own leaves are not among those crossed, so the far cell tells its state as well.
     if (port.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(port.mask), there))
@@ -129,16 +148,22 @@ Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond
                      [&](PortId before) { return passed.contains(before); })) {
       continue;
     }
-    const double force = port.leadsInward(from, facet.beyond) ? port.opens_at : port.back;
+    double force = port.leadsInward(from, facet.beyond) ? port.opens_at : port.back;
+    const Hole* hole =
+        holes.punctures == nullptr ? nullptr : holes.punctures->holeAt(id, holes.point);
+    const bool in_hole = hole != nullptr && hole->reopens_at < force;
+    if (in_hole) force = hole->reopens_at;
     if (force <= 0.0) {
       facet.kind = Facet::Kind::kOpen;
       facet.port = id;
       facet.opens_at = 0.0;
+      facet.in_hole = in_hole;
       return facet;
     }
     if (facet.opens_at == 0.0 || force < facet.opens_at) {
       facet.opens_at = force;
       facet.port = id;
+      facet.in_hole = in_hole;
     }
   }
   return facet;

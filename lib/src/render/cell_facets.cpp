@@ -49,18 +49,20 @@ void CellWalker::flip(LeafId leaf, Signs& signs) const noexcept {
 Facet CellWalker::facetAt(LeafId leaf) noexcept {
   gather(leaf);
   Known& known = known_[leaf];
-  if (crossing_count_ == 1 && known.state == state_) return known.facet;
+  const bool in_hole = punctures_.anyAt(x_);
+  if (crossing_count_ == 1 && !in_hole && known.state == state_) return known.facet;
   beyond_ = signs_;  // same size: copies words, allocates nothing
   for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], beyond_);
   Facet facet =
       scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_, beyond_,
-                              std::span(crossing_.data(), crossing_count_), passed_);
+                              std::span(crossing_.data(), crossing_count_), passed_,
+                              in_hole ? HolesHere{&punctures_, x_} : HolesHere{});
   if (is_sealed_ && facet.beyond != region_) {
     facet.kind = Facet::Kind::kClosed;
     facet.material = std::max(facet.material, 0);
     facet.opens_at = 0.0;
   }
-  if (crossing_count_ == 1) known = {facet, state_};
+  if (crossing_count_ == 1 && !in_hole) known = {facet, state_};
   return facet;
 }
 
@@ -101,8 +103,9 @@ void CellWalker::updateHolding() noexcept {
   }
 }
 
-void CellWalker::cross(LeafId leaf, const Facet& facet) noexcept {
+void CellWalker::cross(LeafId leaf, const Facet& facet, double force) noexcept {
   gather(leaf);
+  const double came_from = side(leaf);
   for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], signs_);
   updateHolding();
   --crossings_left_;
@@ -112,7 +115,17 @@ void CellWalker::cross(LeafId leaf, const Facet& facet) noexcept {
   const bool by_port = facet.kind == Facet::Kind::kOpen || facet.opens_at > 0.0;
   if (by_port) {
     passed_.pass(facet.port, region_, facet.beyond, keep);
-    if (event_count_ < events_.size()) events_[event_count_++] = facet.port;
+    if (facet.opens_at > 0.0) punctures_.puncture(facet.port, scene_.ports()[facet.port], x_);
+    if (event_count_ < events_.size()) {
+      using How = PortCrossing::How;
+      const How forced = facet.opens_at > 0.0 ? How::kPuncture : How::kOpen;
+      const Vec3 gradient = leaves_[leaf].field->sample(x_).gradient;
+      crossings_[event_count_] = {facet.port,   region_,
+                                  facet.beyond, facet.in_hole ? How::kHole : forced,
+                                  x_,           unitOr(came_from * gradient, Vec3(0.0)),
+                                  force};
+      events_[event_count_++] = facet.port;
+    }
   } else {
     passed_.arrive(facet.beyond, keep);
   }

@@ -71,6 +71,7 @@ void CellWalker::place(const Vec3& p) noexcept {
 
 void CellWalker::beginTick() noexcept {
   event_count_ = 0;
+  punctures_.visit(x_);
   crossings_left_ = kCrossingsPerTick;
   evaluations_left_ = kEvaluationsPerTick;
   // The odometer starts again now and then, so that its rounding stays below every tolerance.

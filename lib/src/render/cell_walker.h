@@ -27,9 +27,10 @@ class CellWalker {
 
   /// Puts the point at `p` [m] as if it had always been there: signs and region are taken from `p`.
   void place(const Vec3& p) noexcept;
-  /// Forgets ports passed.
+  /// Forgets ports passed and holes made.
   void forget() noexcept {
     passed_.clear();
+    punctures_.clear();
     audited_ = 0;
     ++state_;
   }
@@ -80,12 +81,18 @@ class CellWalker {
 
   /// What the facet of `leaf` at the point is, seen from here.
   [[nodiscard]] Facet facetAt(LeafId leaf) noexcept;
-  /// Goes through the facet of `leaf` where the point stands, whatever it is; a port is recorded.
-  void cross(LeafId leaf, const Facet& facet) noexcept;
+  /// Goes through the facet of `leaf` where the point stands, whatever it is; a port is recorded, and the
+  /// hole if the facet gave way to a `force` [N].
+  void cross(LeafId leaf, const Facet& facet, double force = 0.0) noexcept;
+  [[nodiscard]] const Punctures& punctures() const noexcept { return punctures_; }
 
   [[nodiscard]] std::uint8_t eventCount() const noexcept { return event_count_; }
   [[nodiscard]] const std::array<PortId, TickResult::kMaxEvents>& events() const noexcept {
     return events_;
+  }
+  /// The crossings of ports in this tick, in path order: what events() names.
+  [[nodiscard]] std::span<const PortCrossing> crossings() const noexcept {
+    return {crossings_.data(), event_count_};
   }
   /// The leaf whose facet the region was last entered through; -1 if it was not entered.
   [[nodiscard]] int mouth() const noexcept { return mouth_; }
@@ -140,10 +147,12 @@ class CellWalker {
   RegionId region_ = kOutside;
   bool is_sealed_ = false;
   PassedPorts passed_;
+  Punctures punctures_;
   int mouth_ = -1;
   LeafId blocked_by_ = 0;
   std::uint8_t event_count_ = 0;
   std::array<PortId, TickResult::kMaxEvents> events_{};
+  std::array<PortCrossing, TickResult::kMaxEvents> crossings_{};
   int crossings_left_ = 0;
   int evaluations_left_ = 0;
 

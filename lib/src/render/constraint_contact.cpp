@@ -192,8 +192,9 @@ bool ConstraintRenderer::puncture() noexcept {
     const Facet& facet = c.facet[c.index[i]];
     if (facet.opens_at <= 0.0) continue;
     const double elastic = wallMaterial(facet).stiffness * c.held[i].multiplier;
-    if (elastic >= facet.opens_at) {
-      walker_.cross(c.leaf[c.index[i]], facet);
+    if (elastic >= facet.opens_at &&
+        c.held[i].multiplier >= walker_.punctures().restOf(facet.port)) {
+      walker_.cross(c.leaf[c.index[i]], facet, elastic);
       return true;
     }
   }

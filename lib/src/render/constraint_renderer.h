@@ -18,6 +18,9 @@ class ConstraintRenderer final : public HapticRenderer {
  private:
   [[nodiscard]] TickResult step(const HipState& hip) noexcept override;
   void forget() noexcept override;
+  [[nodiscard]] std::span<const PortCrossing> details() const noexcept override {
+    return walker_.crossings();
+  }
 
   /// The closed walls at the proxy: what the local problem is made of, and which of them hold it.
   struct Contact {

@@ -21,9 +21,9 @@ TickResult HapticRenderer::update(const HipState& hip) noexcept {
     last_.force = guard_.apply(last_.force, hip.dt);
     return last_;
   }
+  last_.event_count = 0;
   TickResult held = last_;
   held.force = guard_.apply(Vec3(0.0), hip.dt);
-  held.event_count = 0;
   return held;
 }
 

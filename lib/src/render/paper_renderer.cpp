@@ -149,9 +149,10 @@ bool PaperRenderer::pass(std::size_t layer, bool inward, const std::vector<PortI
   for (const PortId id : ports) {
     const Port& port = scene_->ports()[id];
     if (!port.leads(a, b)) continue;
+    // The middle of the tick's motion stands for the crossing point: a tick is short.
+    const Vec3 middle = 0.5 * (from + to);
     if (port.mask >= 0) {
-      // The middle of the tick's motion stands for the crossing point: a tick is short.
-      scene_->partition().signsAt(0.5 * (from + to), scratch_);
+      scene_->partition().signsAt(middle, scratch_);
       if (!scene_->partition().maskHolds(static_cast<std::size_t>(port.mask), scratch_)) continue;
     }
     if (!std::all_of(port.after.begin(), port.after.end(),
@@ -159,7 +160,11 @@ bool PaperRenderer::pass(std::size_t layer, bool inward, const std::vector<PortI
       continue;
     }
     passed_.pass(id, a, b, scene_->keepsMemory());
-    if (out.event_count < TickResult::kMaxEvents) out.events[out.event_count++] = id;
+    if (out.event_count < TickResult::kMaxEvents) {
+      crossings_[out.event_count] = {
+          .port = id, .from = a, .to = b, .point = middle, .normal = unitOr(from - to, Vec3(0.0))};
+      out.events[out.event_count++] = id;
+    }
     return true;
   }
   return false;

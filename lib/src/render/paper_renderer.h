@@ -25,6 +25,9 @@ class PaperRenderer final : public HapticRenderer {
  private:
   [[nodiscard]] TickResult step(const HipState& hip) noexcept override;
   void forget() noexcept override;
+  [[nodiscard]] std::span<const PortCrossing> details() const noexcept override {
+    return crossings_;
+  }
 
   /// Table I's view of one layer.
   struct Table {
@@ -50,6 +53,7 @@ class PaperRenderer final : public HapticRenderer {
   std::vector<Table> tables_;  ///< by layer, outermost first
   Signs scratch_;
   PassedPorts passed_;
+  std::array<PortCrossing, TickResult::kMaxEvents> crossings_{};
   bool started_ = false;
   Vec3 last_{0.0, 0.0, 0.0};  ///< [m] the HIP of the last tick
   bool in_contact_ = false;

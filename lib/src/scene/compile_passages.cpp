@@ -58,6 +58,9 @@ std::vector<Port> SceneCompiler::makePorts() {
     port.direction = given.direction;
     port.opens_at = given.opens_at;
     port.back = given.back.value_or(given.opens_at);
+    port.hole_radius = given.hole_radius;
+    port.reopens_at = given.reopens_at;
+    port.rearm = given.rearm;
     if (given.on) port.on = facetLeaves(given, port);
     for (const std::string& before : given.after) port.after.push_back(portNamed(before, given));
     requireTouching(given, port);

@@ -44,11 +44,47 @@ void RegionReader::readPorts(const Node& ports) {
     (void)reader.optional("after");  // when all ports are known
     port.opens_at = readForce(reader, "opens_at", 0.0);
     if (reader.optional("back") != nullptr) port.back = readForce(reader, "back", 0.0);
+    readPuncture(reader, port);
     reader.finish();
     scene_.ports.push_back(std::move(port));
   }
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (const Node* after = nodes[i].find("after")) readAfter(*after, scene_.ports[i]);
+  }
+}
+
+void RegionReader::requireOpeningForce(const MapReader& reader, std::string_view key,
+                                       const PortDescription& port) {
+  if (std::max(port.opens_at, port.back.value_or(0.0)) > 0.0) return;
+  throw reader.errorAt(
+      key, "scene.no_opening_force",
+      inQuotes(key) + " is about a port that opens by force, and this one is always open",
+      "give it the force: opens_at: 2 N");
+}
+
+/// What opening it by force leaves behind.
+void RegionReader::readPuncture(MapReader& reader, PortDescription& port) const {
+  if (const Node* hole = reader.optional("hole")) {
+    requireOpeningForce(reader, "hole", port);
+    MapReader inner(loader_, *hole, "'hole'");
+    port.hole_radius = inner.requireLength("radius");
+    if (port.hole_radius <= 0.0) {
+      throw inner.errorAt("radius", "scene.range", "'radius' must be more than 0");
+    }
+    port.reopens_at = readForce(inner, "reopens_at", 0.0);
+    if (port.reopens_at > std::max(port.opens_at, port.back.value_or(0.0))) {
+      throw inner.errorAt("reopens_at", "scene.range",
+                          "'reopens_at' is more than what opens the port where it has no hole",
+                          "make it less than opens_at and back");
+    }
+    inner.finish();
+  }
+  if (reader.optional("rearm") != nullptr) {
+    requireOpeningForce(reader, "rearm", port);
+    port.rearm = reader.lengthOr("rearm", 0.0);
+    if (port.rearm < 0.0) {
+      throw reader.errorAt("rearm", "scene.range", "'rearm' must be 0 or more");
+    }
   }
 }
 

@@ -32,6 +32,9 @@ class RegionReader {
   [[nodiscard]] WallDescription readWall(const Node& node) const;
   [[nodiscard]] Between readBetween(MapReader& reader) const;
   void requireRegion(const Node& node, bool globs) const;
+  static void requireOpeningForce(const MapReader& reader, std::string_view key,
+                                  const PortDescription& port);
+  void readPuncture(MapReader& reader, PortDescription& port) const;
   void readAfter(const Node& after, PortDescription& port) const;
   [[nodiscard]] double readForce(MapReader& reader, std::string_view key, double fallback) const;
 

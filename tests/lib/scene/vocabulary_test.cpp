@@ -74,6 +74,9 @@ const std::vector<Probe>& probes() {
       {"wall", layers + "walls:\n  - {between: [a, outside], wall: absent, @}\n"},
       {"sheet", "sheets:\n  - {name: s, on: " + ball + ", @}\n"},
       {"port", layers + "ports:\n  - {name: p, between: [a, outside], @}\n"},
+      {"hole", layers +
+                   "ports:\n  - {name: p, between: [a, outside], opens_at: 1 N, hole: {radius: "
+                   "1, @}}\n"},
   };
   return probes;
 }

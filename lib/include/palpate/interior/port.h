@@ -25,6 +25,12 @@ struct Port {
   std::vector<PortId> after;  ///< ports that must have been passed before
   double opens_at = 0.0;      ///< [N] elastic normal force at which it opens; 0: always open
   double back = 0.0;          ///< [N] the same for coming back
+  double hole_radius = 0.0;   ///< [m] of the hole that opening it by force leaves; 0: none is left
+  double reopens_at =
+      0.0;  ///< [N] in such a hole instead of opens_at and back, where these are more
+  /// [m] Opened by force, it does so again only when the proxy has been this far from there, or the hand
+  /// is this far beyond the wall; 0: at once.
+  double rearm = 0.0;
 
   /// True if going from `a` to `b` is the way in: from the first region named to the second.
   [[nodiscard]] bool leadsInward(RegionId a, RegionId b) const noexcept;

@@ -10,6 +10,7 @@
 
 #include "palpate/interior/partition.h"
 #include "palpate/interior/port.h"
+#include "palpate/interior/punctures.h"
 
 namespace palpate {
 
@@ -57,6 +58,12 @@ class PassedPorts {
   std::size_t size_ = 0;
 };
 
+/// The holes that may make a facet easier to pass, and where it is asked about.
+struct HolesHere {
+  const Punctures* punctures = nullptr;  ///< null: none
+  Vec3 point{0.0, 0.0, 0.0};             ///< [m, world]
+};
+
 /// What a facet is for the proxy on its near side.
 struct Facet {
   enum class Kind : std::uint8_t {
@@ -70,6 +77,7 @@ struct Facet {
   PortId port = 0;             ///< kOpen: the port; kClosed with opens_at: the port that would open
   int material = -1;           ///< kClosed: of the wall, as felt from the near side
   double opens_at = 0.0;       ///< [N] kClosed: elastic normal force that opens it; 0: none does
+  bool in_hole = false;        ///< the port's force is that of a hole made before
 
   [[nodiscard]] bool isClosed() const noexcept { return kind == Kind::kClosed; }
 };
@@ -96,7 +104,7 @@ class Passages {
   /// sign from `here`, a cell of region `from`, to `there`, a cell of region `beyond`.
   [[nodiscard]] Facet facet(const Partition& partition, RegionId from, RegionId beyond,
                             const Signs& here, const Signs& there, std::span<const LeafId> crossed,
-                            const PassedPorts& passed) const noexcept;
+                            const PassedPorts& passed, const HolesHere& holes = {}) const noexcept;
 
   /// The same where only the far cell is known: the near one differs from it in the leaves `crossed`, and
   /// the region beyond is looked up. Copies signs: for set-up and pictures.
@@ -109,6 +117,12 @@ class Passages {
   std::vector<Port> ports_;
   std::vector<Sheet> sheets_;
   std::vector<std::vector<PortId>> ports_of_;
+  /// By region: what its ports lead to, in the order of regions, then in the author's.
+  struct Way {
+    RegionId to = kOutside;
+    PortId port = 0;
+  };
+  std::vector<std::vector<Way>> ways_of_;
 };
 
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "palpate/contact/force_guard.h"
 #include "palpate/scene/scene.h"
@@ -17,6 +18,24 @@ struct HipState {
   Vec3 position{0.0, 0.0, 0.0};  ///< [m, world] the haptic interface point P
   Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s, world] by whatever estimator the caller names
   double dt = 1e-3;              ///< [s] since the last tick; used by slew limit and ramp only
+};
+
+/// How the proxy went through a port.
+struct PortCrossing {
+  enum class How : std::uint8_t {
+    kOpen,      ///< the port stood open
+    kPuncture,  ///< its wall gave way to the force; a port that makes holes has a new one here
+    kHole,      ///< by a hole made before, at its reopening force
+  };
+  PortId port = 0;
+  RegionId from = kOutside;
+  RegionId to = kOutside;
+  How how = How::kOpen;
+  Vec3 point{0.0, 0.0, 0.0};  ///< [m, world] where the surface was crossed
+  Vec3 normal{0.0, 0.0,
+              0.0};    ///< [-, world] of the surface there, back to where the proxy came from; zero
+                       ///< where the surface has none
+  double force = 0.0;  ///< [N] elastic normal force that it gave way to; 0 where it stood open
 };
 
 /// What one tick came to.
@@ -63,7 +82,12 @@ class HapticRenderer {
   /// was. The force is finite and within the limits.
   [[nodiscard]] TickResult update(const HipState& hip) noexcept;
 
-  /// Back to the start region; the next update() is a first tick.
+  /// Each crossing of TickResult::events of the last update(), in path order. Valid until the next one.
+  [[nodiscard]] std::span<const PortCrossing> crossings() const noexcept {
+    return details().first(last_.event_count);
+  }
+
+  /// Back to the start region, with no port passed and no hole made; the next update() is a first tick.
   void reset() noexcept;
 
  protected:
@@ -76,6 +100,8 @@ class HapticRenderer {
   /// The algorithm's own tick: `hip` is finite, the force is not limited yet.
   [[nodiscard]] virtual TickResult step(const HipState& hip) noexcept = 0;
   virtual void forget() noexcept = 0;
+  /// At least as many crossings as the last step() told events.
+  [[nodiscard]] virtual std::span<const PortCrossing> details() const noexcept = 0;
 
   ForceGuard guard_;
   RegionId start_;

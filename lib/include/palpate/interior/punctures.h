@@ -1,0 +1,59 @@
+#pragma once
+/// What punctures leave behind: the holes made, and the ports that must rest before they open by force
+/// again (DESIGN.md section 2, "State").
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "palpate/interior/port.h"
+
+namespace palpate {
+
+/// Where a wall was opened by force, and what it takes to go through there again.
+struct Hole {
+  PortId port = 0;
+  Vec3 point{0.0, 0.0, 0.0};  ///< [m, world]
+  double radius = 0.0;        ///< [m] Port::hole_radius
+  double reopens_at = 0.0;    ///< [N] Port::reopens_at
+};
+
+/// A bounded memory: a value of fixed size, to be copied to rewind. When full, the oldest entry is
+/// forgotten. Real-time safe.
+class Punctures {
+ public:
+  static constexpr std::size_t kMaxHoles = 32;
+  static constexpr std::size_t kMaxResting = 8;
+
+  /// `port` was opened by force at `point` [m]: leaves a hole, if the port makes such and none of its
+  /// holes is there, and begins its rest, if it has a re-arm distance.
+  void puncture(PortId id, const Port& port, const Vec3& point) noexcept;
+  /// The proxy is at `p` [m]: ends the rest of the ports that it is far enough from.
+  void visit(const Vec3& p) noexcept;
+  void clear() noexcept { *this = {}; }
+
+  [[nodiscard]] std::span<const Hole> holes() const noexcept {
+    return {holes_.data(), hole_count_};
+  }
+  /// Whether any hole reaches `p` [m].
+  [[nodiscard]] bool anyAt(const Vec3& p) const noexcept;
+  /// The hole of `port` that `p` [m] lies in; null if there is none.
+  [[nodiscard]] const Hole* holeAt(PortId port, const Vec3& p) const noexcept;
+  /// [m] While it rests, a port opens only to a hand that is this far beyond its wall; 0 if it does not
+  /// rest.
+  [[nodiscard]] double restOf(PortId port) const noexcept;
+
+ private:
+  struct Resting {
+    PortId port = 0;
+    Vec3 point{0.0, 0.0, 0.0};
+    double rearm = 0.0;  ///< [m]
+  };
+  std::array<Hole, kMaxHoles> holes_{};
+  std::array<Resting, kMaxResting> resting_{};
+  std::uint8_t hole_count_ = 0;
+  std::uint8_t next_hole_ = 0;  ///< when full: the oldest
+  std::uint8_t resting_count_ = 0;
+};
+
+}  // namespace palpate
