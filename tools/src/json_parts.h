@@ -15,16 +15,26 @@ namespace palpate::tools {
   return {{"lo", vectorJson(box.lo)}, {"hi", vectorJson(box.hi)}};
 }
 
+/// The number, or {"least": .., "most": ..} of one that differs from place to place.
+[[nodiscard]] inline Json parameterJson(const Parameter& parameter) {
+  const MaterialMap::Range range = parameter.range();
+  if (parameter.isConstant()) return range.least;
+  return {{"least", range.least}, {"most", range.most}};
+}
+
 [[nodiscard]] inline Json materialJson(const Material& m) {
-  return {
-      {"name", m.name},
-      {"stiffness_N_per_m", m.stiffness},
-      {"damping_Ns_per_m", m.damping},
-      {"friction", {{"static", m.friction.static_ratio}, {"kinetic", m.friction.kinetic_ratio}}},
-      {"texture", {{"amplitude_m", m.texture.amplitude}, {"wavelength_m", m.texture.wavelength}}},
-      {"shading_m", m.shading},
-      {"viscosity_Ns_per_m", m.viscosity},
-      {"flow_m_per_s", vectorJson(m.flow)}};
+  return {{"name", m.name},
+          {"stiffness_N_per_m", parameterJson(m.stiffness)},
+          {"damping_Ns_per_m", parameterJson(m.damping)},
+          {"friction",
+           {{"static", parameterJson(m.friction.static_ratio)},
+            {"kinetic", parameterJson(m.friction.kinetic_ratio)}}},
+          {"texture",
+           {{"amplitude_m", parameterJson(m.texture.amplitude)},
+            {"wavelength_m", m.texture.wavelength}}},
+          {"shading_m", m.shading},
+          {"viscosity_Ns_per_m", parameterJson(m.viscosity)},
+          {"flow_m_per_s", vectorJson(m.flow)}};
 }
 
 }  // namespace palpate::tools

@@ -142,6 +142,12 @@ std::string formatNumber(double value, int digits) {
   return buffer;
 }
 
+std::string formatParameter(const Parameter& parameter) {
+  const MaterialMap::Range range = parameter.range();
+  if (parameter.isConstant()) return formatNumber(range.least);
+  return formatNumber(range.least) + " to " + formatNumber(range.most);
+}
+
 std::string formatVector(const Vec3& v, int digits) {
   return "(" + formatNumber(v.x, digits) + ", " + formatNumber(v.y, digits) + ", " +
          formatNumber(v.z, digits) + ")";

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "palpate/core/math.h"
+#include "palpate/materials/parameter.h"
 
 namespace palpate::tools {
 
@@ -35,6 +36,7 @@ struct LengthUnit {
 
 // To text.
 [[nodiscard]] std::string formatNumber(double value, int digits = 4);   ///< "%.{digits}g", "inf"
+[[nodiscard]] std::string formatParameter(const Parameter& parameter);  ///< "200", "200 to 900"
 [[nodiscard]] std::string formatVector(const Vec3& v, int digits = 4);  ///< "(x, y, z)"
 [[nodiscard]] std::string formatDirection(const Vec3& v);               ///< two decimals
 [[nodiscard]] std::string formatBytes(std::uint64_t bytes);  ///< "12.3 MB" (powers of ten)

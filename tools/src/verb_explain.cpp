@@ -15,7 +15,7 @@ const Material* materialOf(const Scene& scene, int index) {
 std::string wallText(const Scene& scene, const Wall& wall) {
   if (wall.absent) return "absent";
   const Material* m = materialOf(scene, wall.material);
-  return m == nullptr ? "-" : m->name + " (" + formatNumber(m->stiffness) + " N/m)";
+  return m == nullptr ? "-" : m->name + " (" + formatParameter(m->stiffness) + " N/m)";
 }
 
 Json wallJson(const Scene& scene, const Wall& wall) {
@@ -28,7 +28,7 @@ struct Transition {
   RegionId from = 0;
   RegionId to = 0;
   const Port* port = nullptr;  ///< null: no wall is there
-  double force = 0.0;          ///< [N] at which it opens
+  Parameter force;             ///< [N] at which it opens
 };
 
 std::vector<Transition> transitions(const Scene& scene) {
@@ -40,7 +40,7 @@ std::vector<Transition> transitions(const Scene& scene) {
       const auto to = static_cast<RegionId>(b);
       if (!scene.touches(from, to)) continue;
       if (scene.passages().wall(from, to).absent) {
-        all.push_back({from, to, nullptr, 0.0});
+        all.push_back({from, to, nullptr, {}});
         continue;
       }
       for (const PortId id : scene.passages().portsOf(from)) {
@@ -74,7 +74,7 @@ std::vector<std::string> conditions(const Transition& t, const Scene& scene,
   }
   if (t.port->mask >= 0) all.emplace_back("within its extent");
   for (const PortId before : t.port->after) all.push_back("after " + scene.ports()[before].name);
-  if (t.force > 0.0) all.push_back("pressed with " + formatNumber(t.force) + " N");
+  if (t.force != 0.0) all.push_back("pressed with " + formatParameter(t.force) + " N");
   return all;
 }
 
@@ -148,12 +148,13 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
     const Region& r = regions[i];
     const Material* content = materialOf(scene, r.content);
     const std::string source = i == kOutside ? "-" : r.source.empty() ? "formula" : r.source;
-    region_table.add(
-        {r.name, source,
-         content == nullptr ? "-"
-                            : content->name + " (" + formatNumber(content->viscosity) + " N.s/m)",
-         i == kOutside ? "-" : wallText(scene, {r.wall_absent, r.wall}), r.reachable ? "yes" : "NO",
-         r.has_seed ? formatVector(r.seed / unit, 3) : "-"});
+    region_table.add({r.name, source,
+                      content == nullptr
+                          ? "-"
+                          : content->name + " (" + formatParameter(content->viscosity) + " N.s/m)",
+                      i == kOutside ? "-" : wallText(scene, {r.wall_absent, r.wall}),
+                      r.reachable ? "yes" : "NO",
+                      r.has_seed ? formatVector(r.seed / unit, 3) : "-"});
     Json json = {{"name", r.name},
                  {"source", source},
                  {"content", content == nullptr ? Json() : materialJson(*content)},
@@ -211,8 +212,8 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
     json["direction"] = directionName(port.direction);
     json["after"] = Json::array();
     for (const PortId before : port.after) json["after"].push_back(scene.ports()[before].name);
-    json["opens_at_N"] = port.opens_at;
-    json["back_N"] = port.back;
+    json["opens_at_N"] = parameterJson(port.opens_at);
+    json["back_N"] = parameterJson(port.back);
     report.json["ports"].push_back(std::move(json));
   }
 
@@ -226,7 +227,7 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
     report.json["transitions"].push_back({{"from", regions[t.from].name},
                                           {"port", t.port == nullptr ? Json() : Json(t.port->name)},
                                           {"to", regions[t.to].name},
-                                          {"opens_at_N", t.force},
+                                          {"opens_at_N", parameterJson(t.force)},
                                           {"conditions", when}});
   }
   report.text += "\nTransitions\n" +

@@ -92,11 +92,11 @@ Report queryScene(const QueryOptions& options, Console& console) {
     report.text += "at " + formatVector(p / unit.metres, 6) + " " + unit.name + ": " + region.name;
     if (region.content >= 0) {
       const Material& m = scene->materials()[static_cast<std::size_t>(region.content)];
-      report.text += ", content " + m.name + " (" + formatNumber(m.viscosity) + " N.s/m)";
+      report.text += ", content " + m.name + " (" + formatNumber(m.viscosity.at(p)) + " N.s/m)";
     }
     if (region.wall >= 0) {
       const Material& m = scene->materials()[static_cast<std::size_t>(region.wall)];
-      report.text += ", wall " + m.name + " (" + formatNumber(m.stiffness) + " N/m)";
+      report.text += ", wall " + m.name + " (" + formatNumber(m.stiffness.at(p)) + " N/m)";
     }
     report.text += "\n";
     Table table({"field", "value [" + unit.name + "]", "gradient", "value is"});

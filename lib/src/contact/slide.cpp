@@ -113,7 +113,9 @@ bool mayBeSaddle(std::span<const HeldWall> walls) noexcept {
   return norm >= 1.0;
 }
 
-SlideStep slideStep(const Vec3& pull, std::span<const HeldWall> walls) noexcept {
+namespace {
+
+SlideStep unlimitedStep(const Vec3& pull, std::span<const HeldWall> walls) noexcept {
   SlideStep out;
   if (walls.empty() || walls.size() > 2) return out;
   const Mat3 bend = bending(walls);
@@ -126,8 +128,19 @@ SlideStep slideStep(const Vec3& pull, std::span<const HeldWall> walls) noexcept 
     out.is_saddle = eigenvalue < -1e-9;
     out.downhill = along;
   }
+  return out;
+}
+
+}  // namespace
+
+SlideStep slideStep(const Vec3& pull, std::span<const HeldWall> walls) noexcept {
+  SlideStep out = unlimitedStep(pull, walls);
   out.step = limited(out.step, walls);
   return out;
+}
+
+Vec3 gradientByHand(const Vec3& gradient, std::span<const HeldWall> walls) noexcept {
+  return unlimitedStep(tangentialPart(gradient, walls), walls).step;
 }
 
 namespace {

@@ -7,11 +7,12 @@
 namespace palpate {
 
 double textureHeight(const Texture& texture, const Vec3& p, double depth) noexcept {
-  if (texture.amplitude <= 0.0) return 0.0;
+  const double amplitude = texture.amplitude.at(p);
+  if (amplitude <= 0.0) return 0.0;
   const Vec3 phase = p * (2.0 * std::numbers::pi / texture.wavelength);
   const double wave = (std::sin(phase.x) + std::sin(phase.y) + std::sin(phase.z)) / 3.0;
   const double most = std::max(0.0, 0.5 * depth);
-  return std::clamp(texture.amplitude * wave, -most, most);
+  return std::clamp(amplitude * wave, -most, most);
 }
 
 Vec3 shadedNormal(const Field& field, double side, const Vec3& p, const Vec3& normal,

@@ -111,7 +111,8 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
 
 Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond, const Signs& here,
                       const Signs& there, std::span<const LeafId> crossed,
-                      const PassedPorts& passed, const HolesHere& holes) const noexcept {
+                      const PassedPorts& passed, const Vec3& at,
+                      const Punctures* holes) const noexcept {
   Facet facet;
   facet.beyond = beyond;
   if (facet.beyond == from) {
@@ -148,19 +149,24 @@ Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond
                      [&](PortId before) { return passed.contains(before); })) {
       continue;
     }
-    double force = port.leadsInward(from, facet.beyond) ? port.opens_at : port.back;
-    const Hole* hole =
-        holes.punctures == nullptr ? nullptr : holes.punctures->holeAt(id, holes.point);
+    const Parameter& given = port.leadsInward(from, facet.beyond) ? port.opens_at : port.back;
+    double force = given.at(at);
+    const Hole* hole = holes == nullptr ? nullptr : holes->holeAt(id, at);
     const bool in_hole = hole != nullptr && hole->reopens_at < force;
     if (in_hole) force = hole->reopens_at;
-    if (force <= 0.0) {
+    // Where a map is 0 is no border of any cell: a port that has one is a wall until it is touched.
+    if (force <= 0.0 && (in_hole || given.isConstant())) {
       facet.kind = Facet::Kind::kOpen;
       facet.port = id;
+      facet.opens = false;
+      facet.varies = false;
       facet.opens_at = 0.0;
       facet.in_hole = in_hole;
       return facet;
     }
-    if (facet.opens_at == 0.0 || force < facet.opens_at) {
+    facet.varies = facet.varies || !given.isConstant();
+    if (!facet.opens || force < facet.opens_at) {
+      facet.opens = true;
       facet.opens_at = force;
       facet.port = id;
       facet.in_hole = in_hole;
@@ -170,10 +176,11 @@ Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond
 }
 
 Facet Passages::facet(const Partition& partition, RegionId from, const Signs& there,
-                      std::span<const LeafId> crossed, const PassedPorts& passed) const {
+                      std::span<const LeafId> crossed, const PassedPorts& passed,
+                      const Vec3& at) const {
   Signs here = there;
   for (const LeafId leaf : crossed) here.flip(leaf);
-  return facet(partition, from, partition.regionOf(there), here, there, crossed, passed);
+  return facet(partition, from, partition.regionOf(there), here, there, crossed, passed, at);
 }
 
 }  // namespace palpate

@@ -50,19 +50,21 @@ Facet CellWalker::facetAt(LeafId leaf) noexcept {
   gather(leaf);
   Known& known = known_[leaf];
   const bool in_hole = punctures_.anyAt(x_);
-  if (crossing_count_ == 1 && !in_hole && known.state == state_) return known.facet;
+  if (crossing_count_ == 1 && !in_hole && known.state == state_ &&
+      (!known.facet.varies || known.stay == stay_)) {
+    return known.facet;
+  }
   beyond_ = signs_;  // same size: copies words, allocates nothing
   for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], beyond_);
-  Facet facet =
-      scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_, beyond_,
-                              std::span(crossing_.data(), crossing_count_), passed_,
-                              in_hole ? HolesHere{&punctures_, x_} : HolesHere{});
+  Facet facet = scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_,
+                                        beyond_, std::span(crossing_.data(), crossing_count_),
+                                        passed_, x_, in_hole ? &punctures_ : nullptr);
   if (is_sealed_ && facet.beyond != region_) {
     facet.kind = Facet::Kind::kClosed;
     facet.material = std::max(facet.material, 0);
-    facet.opens_at = 0.0;
+    facet.opens = false;
   }
-  if (crossing_count_ == 1 && !in_hole) known = {facet, state_};
+  if (crossing_count_ == 1 && !in_hole) known = {facet, state_, stay_};
   return facet;
 }
 
@@ -112,13 +114,13 @@ void CellWalker::cross(LeafId leaf, const Facet& facet, double force) noexcept {
   ++state_;
   if (facet.beyond == region_) return;
   const bool keep = scene_.keepsMemory();
-  const bool by_port = facet.kind == Facet::Kind::kOpen || facet.opens_at > 0.0;
+  const bool by_port = facet.kind == Facet::Kind::kOpen || facet.opens;
   if (by_port) {
     passed_.pass(facet.port, region_, facet.beyond, keep);
-    if (facet.opens_at > 0.0) punctures_.puncture(facet.port, scene_.ports()[facet.port], x_);
+    if (facet.opens) punctures_.puncture(facet.port, scene_.ports()[facet.port], x_);
     if (event_count_ < events_.size()) {
       using How = PortCrossing::How;
-      const How forced = facet.opens_at > 0.0 ? How::kPuncture : How::kOpen;
+      const How forced = facet.opens ? How::kPuncture : How::kOpen;
       const Vec3 gradient = leaves_[leaf].field->sample(x_).gradient;
       crossings_[event_count_] = {facet.port,   region_,
                                   facet.beyond, facet.in_hole ? How::kHole : forced,

@@ -182,10 +182,12 @@ class CellWalker {
 
   std::uint64_t stay_ = 1 + kStaysOfSlide;  ///< counts the places where the point was
 
-  /// A facet looked up in the present state, valid while nothing was crossed.
+  /// A facet looked up in the present state, valid while nothing was crossed; one that varies from place to
+  /// place, as long as the point stays where it was.
   struct Known {
     Facet facet;
     std::uint32_t state = 0;
+    std::uint64_t stay = 0;
   };
   std::vector<Known> known_;  ///< by leaf, where no other leaf coincides
   std::uint32_t state_ = 1;   ///< counts crossings and placements

@@ -167,17 +167,23 @@ void ConstraintRenderer::aimProbes() noexcept {
 /// by kinetic_ratio of it.
 void ConstraintRenderer::holdByFriction() noexcept {
   Contact& c = contact_;
-  Friction friction;
+  const Vec3& x = walker_.position();
+  double static_ratio = 0.0;
+  double kinetic_ratio = 0.0;
   for (std::size_t i = 0; i < c.count; ++i) {
     const Friction& own = wallMaterial(c.facet[c.index[i]]).friction;
-    friction.static_ratio = std::max(friction.static_ratio, own.static_ratio);
-    friction.kinetic_ratio = std::max(friction.kinetic_ratio, own.kinetic_ratio);
+    static_ratio = std::max(static_ratio, own.static_ratio.at(x));
+    kinetic_ratio = std::max(kinetic_ratio, own.kinetic_ratio.at(x));
   }
-  if (friction.static_ratio <= 0.0 || walker_.isSealed()) return;
+  if (static_ratio <= 0.0 || walker_.isSealed()) {
+    sticking_ = false;
+    return;
+  }
+  kinetic_ratio = std::min(kinetic_ratio, static_ratio);
   const double pull = glm::length(c.pull);
   const double load = c.load();
-  const double kinetic = friction.kinetic_ratio * load;
-  if (sticking_ && pull > friction.static_ratio * load) sticking_ = false;
+  const double kinetic = kinetic_ratio * load;
+  if (sticking_ && pull > static_ratio * load) sticking_ = false;
   // What slides sticks again when the hand no longer pulls it on, which shows when a tick begins: at the
   // end of its own slide it is always where the cone just holds it, and a hand that moves on would
   // feel a saw.
@@ -190,8 +196,9 @@ bool ConstraintRenderer::puncture() noexcept {
   const Contact& c = contact_;
   for (std::size_t i = 0; i < c.count; ++i) {
     const Facet& facet = c.facet[c.index[i]];
-    if (facet.opens_at <= 0.0) continue;
-    const double elastic = wallMaterial(facet).stiffness * c.held[i].multiplier;
+    if (!facet.opens) continue;
+    const double elastic =
+        wallMaterial(facet).stiffness.at(walker_.position()) * c.held[i].multiplier;
     if (elastic >= facet.opens_at &&
         c.held[i].multiplier >= walker_.punctures().restOf(facet.port)) {
       walker_.cross(c.leaf[c.index[i]], facet, elastic);

@@ -58,6 +58,22 @@ Vec3 ConstraintRenderer::shaded(const HeldWall& held, const Facet& facet,
   return shadedNormal(*solid, side, walker_.position(), held.normal, radius);
 }
 
+/// What a stiffness that varies adds (materials/material.h): the energy of the springs as they are, by the
+/// place of the proxy, is handed on to the hand. `slopes` [N/m^2] are the gradients of the walls' stiffness.
+Vec3 ConstraintRenderer::stiffnessForce(const std::array<Vec3, 3>& slopes, const Vec3& load,
+                                        double total) const noexcept {
+  const Contact& c = contact_;
+  // Held by friction, the proxy stays where it is, whatever the hand does.
+  if (sticking_) return Vec3(0.0);
+  Vec3 rise(0.0);  // [N]
+  for (std::size_t i = 0; i < c.count; ++i) {
+    const HeldWall& held = c.held[i];
+    const double lag = glm::dot(c.lag, c.lag) / total;
+    rise += 0.5 * held.multiplier * (glm::dot(held.normal, load) + lag) * slopes[i];
+  }
+  return -gradientByHand(rise, c.walls());
+}
+
 Vec3 ConstraintRenderer::force(const HipState& hip) const noexcept {
   const Contact& c = contact_;
   Vec3 force(0.0);
@@ -66,22 +82,28 @@ Vec3 ConstraintRenderer::force(const HipState& hip) const noexcept {
     double stiffness = 0.0;
     double damping = 0.0;
     Vec3 outward(0.0);
+    std::array<Vec3, 3> slopes{};
+    bool varies = false;
     for (std::size_t i = 0; i < c.count; ++i) {
       const Material& wall = wallMaterial(c.facet[c.index[i]]);
       const HeldWall& held = c.held[i];
       const double multiplier = held.multiplier;
       const Vec3& x = walker_.position();
+      const MaterialMap::Sample own = wall.stiffness.sample(x);
       const Vec3 n =
           wall.shading > 0.0 ? shaded(held, c.facet[c.index[i]], wall.shading) : held.normal;
-      force += wall.stiffness * (multiplier + textureHeight(wall.texture, x, multiplier)) * n;
+      force += own.value * (multiplier + textureHeight(wall.texture, x, multiplier)) * n;
       outward += multiplier * held.normal;
       total += multiplier;
-      stiffness += wall.stiffness * multiplier;
-      damping += wall.damping * multiplier;
+      stiffness += own.value * multiplier;
+      damping += wall.damping.at(x) * multiplier;
+      slopes[i] = own.gradient;
+      varies = varies || own.gradient != Vec3(0.0);
     }
     stiffness /= total;
     damping /= total;
     force -= stiffness * c.lag + damping * hip.velocity;
+    if (varies) force += stiffnessForce(slopes, outward, total);
     // A wall never pulls the hand towards itself.
     const Vec3 n = unitOr(outward, Vec3(0.0));
     const double along = glm::dot(force, n);
@@ -90,9 +112,8 @@ Vec3 ConstraintRenderer::force(const HipState& hip) const noexcept {
   const int content = scene_->regions()[walker_.region()].content;
   if (content >= 0) {
     const Material& medium = scene_->materials()[static_cast<std::size_t>(content)];
-    if (medium.viscosity > 0.0) {
-      force -= content_share_ * medium.viscosity * (hip.velocity - medium.flow);
-    }
+    const double viscosity = medium.viscosity.at(walker_.position());
+    if (viscosity > 0.0) force -= content_share_ * viscosity * (hip.velocity - medium.flow);
   }
   return force;
 }

@@ -77,6 +77,8 @@ class ConstraintRenderer final : public HapticRenderer {
   [[nodiscard]] bool isOnWalls() const noexcept;
   [[nodiscard]] Vec3 shaded(const HeldWall& held, const Facet& facet, double radius) const noexcept;
   [[nodiscard]] Vec3 force(const HipState& hip) const noexcept;
+  [[nodiscard]] Vec3 stiffnessForce(const std::array<Vec3, 3>& slopes, const Vec3& load,
+                                    double total) const noexcept;
   [[nodiscard]] double contentShare() noexcept;
   void fadeContent(const Vec3& hip) noexcept;
   [[nodiscard]] const Material& wallMaterial(const Facet& facet) const noexcept {

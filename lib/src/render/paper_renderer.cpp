@@ -26,7 +26,7 @@ PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
       scene_(std::move(scene)),
       scratch_(scene_->partition().leaves().size()) {
   for (const Port& port : scene_->ports()) {
-    if (port.opens_at > 0.0 || port.back > 0.0) {
+    if (port.opens_at != 0.0 || port.back != 0.0) {
       throw inputError(
           "render.paper_opening_force",
           "the paper's renderer has no opening forces, and port '" + port.name + "' has one",
@@ -219,7 +219,7 @@ void PaperRenderer::feel(const HipState& hip, TickResult& out) noexcept {
   const int content = scene_->regions()[here].content;
   if (content >= 0) {
     const Material& medium = scene_->materials()[static_cast<std::size_t>(content)];
-    out.force = -medium.viscosity * (hip.velocity - medium.flow);
+    out.force = -medium.viscosity.at(hip.position) * (hip.velocity - medium.flow);
   }
 }
 
@@ -251,8 +251,9 @@ void PaperRenderer::touch(std::size_t layer, double side, const HipState& hip,
   out.contact = true;
   if (wall.material < 0) return;
   const Material& material = scene_->materials()[static_cast<std::size_t>(wall.material)];
-  const Vec3 force = material.stiffness * (contact_.surface_point - contact_.interaction_point) -
-                     material.damping * hip.velocity;
+  const Vec3& x = contact_.surface_point;
+  const Vec3 force = material.stiffness.at(x) * (x - contact_.interaction_point) -
+                     material.damping.at(x) * hip.velocity;
   if (isFinite(force)) out.force = force;
 }
 

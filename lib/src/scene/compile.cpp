@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "scene_compiler.h"
@@ -9,16 +10,42 @@ namespace {
 /// Where a layer names no wall (documented in tools/docs/scene.md).
 constexpr double kDefaultStiffness = 1000.0;  // [N/m]
 
+/// Wherever the hand may come, a parameter must be a number, and not below 0.
+void checkParameter(const Parameter& parameter, const std::string& name, const std::string& of) {
+  const MaterialMap::Range range = parameter.range();
+  if (range.least >= 0.0 && range.least <= range.most && std::isfinite(range.most)) return;
+  throw inputError("scene.parameter", "the " + name + " of " + of + " is not 0 or more everywhere",
+                   "all its values must be finite numbers from 0 on");
+}
+
 void checkTexture(const Material& material) {
   const Texture& texture = material.texture;
-  if (texture.amplitude == 0.0) return;
-  if (texture.amplitude > 0.0 &&
-      texture.amplitude <= Texture::highestAmplitude(texture.wavelength)) {
+  const MaterialMap::Range amplitude = texture.amplitude.range();
+  if (amplitude.least == 0.0 && amplitude.most == 0.0) return;
+  if (amplitude.least >= 0.0 && amplitude.least <= amplitude.most &&
+      amplitude.most <= Texture::highestAmplitude(texture.wavelength)) {
     return;
   }
   throw inputError("scene.texture",
                    "the texture of material " + quoted(material.name) + " is too high",
                    "its amplitude must be from 0 to its wavelength / 2 pi");
+}
+
+void checkMaterial(const Material& material) {
+  const std::string of = "material " + quoted(material.name);
+  checkParameter(material.stiffness, "stiffness", of);
+  checkParameter(material.damping, "damping", of);
+  checkParameter(material.viscosity, "viscosity", of);
+  checkParameter(material.friction.static_ratio, "static friction", of);
+  checkParameter(material.friction.kinetic_ratio, "kinetic friction", of);
+  // Kinetic below static everywhere implies both; what is left, the loop clamps.
+  const MaterialMap::Range held = material.friction.static_ratio.range();
+  const MaterialMap::Range slides = material.friction.kinetic_ratio.range();
+  if (slides.least > held.least || slides.most > held.most) {
+    throw inputError("scene.parameter", "the kinetic friction of " + of + " exceeds the static",
+                     "what slides is held less than what sticks");
+  }
+  checkTexture(material);
 }
 
 std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress,
@@ -132,16 +159,22 @@ Wall SceneCompiler::wall(const WallDescription& given, const SourcePlace& place)
     return wall;
   }
   wall.material = material(given.material, place);
-  if (scene_->materials_[static_cast<std::size_t>(wall.material)].stiffness <= 0.0) {
-    throw errorAt(place, "scene.wall_without_stiffness",
-                  "material " + quoted(given.material) + " has no stiffness and cannot be a wall",
-                  "give it one (stiffness: 1000 N/m), or write `wall: absent`");
+  const Parameter& stiffness =
+      scene_->materials_[static_cast<std::size_t>(wall.material)].stiffness;
+  if (stiffness.range().least <= 0.0) {
+    throw errorAt(
+        place, "scene.wall_without_stiffness",
+        stiffness.range().most > 0.0
+            ? "material " + quoted(given.material) +
+                  " has places without stiffness and cannot be a wall"
+            : "material " + quoted(given.material) + " has no stiffness and cannot be a wall",
+        "give it one (stiffness: 1000 N/m), or write `wall: absent`");
   }
   return wall;
 }
 
 void SceneCompiler::materials() {
-  for (const Material& m : description_.materials) checkTexture(m);
+  for (const Material& m : description_.materials) checkMaterial(m);
   scene_->materials_ = description_.materials;
   Material standard;
   standard.name = "default wall";

@@ -1,6 +1,7 @@
 // SceneCompiler's ports and sheets.
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "scene_compiler.h"
@@ -58,6 +59,14 @@ std::vector<Port> SceneCompiler::makePorts() {
     port.direction = given.direction;
     port.opens_at = given.opens_at;
     port.back = given.back.value_or(given.opens_at);
+    for (const Parameter& force : {port.opens_at, port.back}) {
+      const MaterialMap::Range range = force.range();
+      if (range.least >= 0.0 && range.least <= range.most && std::isfinite(range.most)) continue;
+      throw errorAt(
+          given.place, "scene.parameter",
+          "port " + quoted(given.name) + " opens at a force that is not 0 N or more everywhere",
+          "all values of opens_at and back must be finite numbers from 0 on");
+    }
     port.hole_radius = given.hole_radius;
     port.reopens_at = given.reopens_at;
     port.rearm = given.rearm;

@@ -15,38 +15,36 @@ double notNegative(MapReader& reader, std::string_view key, Dimension dimension)
 
 Friction readFriction(const SceneLoader& loader, const Node& node) {
   MapReader reader(loader, node, "'friction'");
-  Friction friction;
-  friction.static_ratio = reader.requireNumber("static");
-  friction.kinetic_ratio = reader.numberOr("kinetic", friction.static_ratio);
+  const double held = reader.requireNumber("static");
+  const double slides = reader.numberOr("kinetic", held);
   reader.finish();
-  if (friction.static_ratio < 0.0) {
+  if (held < 0.0) {
     throw reader.errorAt("static", "scene.range", "'static' must be 0 or more");
   }
-  if (friction.kinetic_ratio < 0.0) {
+  if (slides < 0.0) {
     throw reader.errorAt("kinetic", "scene.range", "'kinetic' must be 0 or more");
   }
-  if (friction.kinetic_ratio > friction.static_ratio) {
+  if (slides > held) {
     throw reader.errorAt("kinetic", "scene.range", "'kinetic' must not be more than 'static'",
                          "what slides is held less than what sticks");
   }
-  return friction;
+  return {held, slides};
 }
 
 Texture readTexture(const SceneLoader& loader, const Node& node) {
   MapReader reader(loader, node, "'texture'");
-  Texture texture;
-  texture.amplitude = positiveLength(reader, "amplitude");
-  texture.wavelength = positiveLength(reader, "wavelength");
+  const double amplitude = positiveLength(reader, "amplitude");
+  const double wavelength = positiveLength(reader, "wavelength");
   reader.finish();
-  const double highest = Texture::highestAmplitude(texture.wavelength);
-  if (texture.amplitude > highest) {
+  const double highest = Texture::highestAmplitude(wavelength);
+  if (amplitude > highest) {
     throw reader.errorAt(
         "amplitude", "scene.range",
         "'amplitude' must not be more than 'wavelength' / 2 pi, here " + inUnitOf(loader, highest),
         "steeper bumps push harder than the wall's own stiffness; make them lower "
         "or longer");
   }
-  return texture;
+  return {amplitude, wavelength};
 }
 
 Material readMaterial(const SceneLoader& loader, const Node::Entry& entry) {

@@ -8,6 +8,14 @@
 #include "scene/values.h"
 
 namespace palpate {
+namespace {
+
+/// [N] at which the port opens, either way, anywhere.
+double mostForceOf(const PortDescription& port) {
+  return std::max(port.opens_at.range().most, port.back.value_or(0.0).range().most);
+}
+
+}  // namespace
 
 double RegionReader::readForce(MapReader& reader, std::string_view key, double fallback) const {
   const double force = reader.quantityOr(key, Dimension::kForce, fallback);
@@ -55,7 +63,7 @@ void RegionReader::readPorts(const Node& ports) {
 
 void RegionReader::requireOpeningForce(const MapReader& reader, std::string_view key,
                                        const PortDescription& port) {
-  if (std::max(port.opens_at, port.back.value_or(0.0)) > 0.0) return;
+  if (mostForceOf(port) > 0.0) return;
   throw reader.errorAt(
       key, "scene.no_opening_force",
       inQuotes(key) + " is about a port that opens by force, and this one is always open",
@@ -72,7 +80,7 @@ void RegionReader::readPuncture(MapReader& reader, PortDescription& port) const 
       throw inner.errorAt("radius", "scene.range", "'radius' must be more than 0");
     }
     port.reopens_at = readForce(inner, "reopens_at", 0.0);
-    if (port.reopens_at > std::max(port.opens_at, port.back.value_or(0.0))) {
+    if (port.reopens_at > mostForceOf(port)) {
       throw inner.errorAt("reopens_at", "scene.range",
                           "'reopens_at' is more than what opens the port where it has no hole",
                           "make it less than opens_at and back");

@@ -63,7 +63,7 @@ const Material& RegionReader::material(const Node& node, const std::string& what
 WallDescription RegionReader::readWall(const Node& node) const {
   if (node.kind == Node::Kind::kScalar && node.text == kAbsent) return {true, {}};
   const Material& wall = material(node, std::string(kWallKey));
-  if (!(wall.stiffness > 0.0)) {
+  if (!(wall.stiffness.range().most > 0.0)) {
     throw loader_.document().error(node.mark, "scene.range",
                                    "the material " + inQuotes(wall.name) + " cannot be a wall",
                                    "give it a stiffness, such as 1000 N/m, or write wall: absent");

@@ -126,7 +126,7 @@ class Facets : public testing::Test {
     partition_.signsAt(here, signs);
     const RegionId region = partition_.regionOf(signs);
     for (const LeafId leaf : crossed) signs.flip(leaf);
-    return passages_.facet(partition_, region, signs, crossed, passed);
+    return passages_.facet(partition_, region, signs, crossed, passed, here);
   }
 
   static Port port(Ids from, Ids to) {

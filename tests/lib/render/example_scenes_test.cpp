@@ -46,7 +46,8 @@ TEST(ExampleScenes, EveryThingOnTheTableIsFelt) {
     EXPECT_EQ(hand.region(), "outside");
     // It pushes up, by no more than its spring at this depth, or twice that where two walls meet.
     const Region& region = scene->regions()[scene->regionNamed(thing.layer)];
-    const double stiffness = scene->materials()[static_cast<std::size_t>(region.wall)].stiffness;
+    const Material& wall = scene->materials()[static_cast<std::size_t>(region.wall)];
+    const double stiffness = wall.stiffness.at(pressed.proxy);
     EXPECT_GT(pressed.force.z, 0.02 * stiffness * 0.001);
     EXPECT_LT(glm::length(pressed.force), 2.0 * stiffness * 0.001);
     // The proxy is on the surface: within a hundredth of a micrometre, or its share of the feature.

@@ -148,10 +148,11 @@ TEST(HardHand, InDeepHollowsThePaperSwingsAndTheConstraintRendererRests) {
   hand.mass = 0.02;
   hand.damping = 1.6;  // still above K T / 2
   Material wall;
-  wall.stiffness = 3000.0;
+  const double stiffness = 3000.0;  // [N/m]
+  wall.stiffness = stiffness;
   const FieldPtr hollow = sphere(Vec3(0.0), radius);
   for (const double share : {0.5, 1.0, 2.0, 4.0}) {
-    const Vec3 to(radius * (1.0 + share) + wall.stiffness * radius * share / hand.stiffness, 1e-3,
+    const Vec3 to(radius * (1.0 + share) + stiffness * radius * share / hand.stiffness, 1e-3,
                   0.5e-3);
     const auto swing = [&](RendererKind kind) {
       Drive drive(sceneOfSolid(hollow, true, wall), kind);
@@ -161,7 +162,7 @@ TEST(HardHand, InDeepHollowsThePaperSwingsAndTheConstraintRendererRests) {
     const double perfect =
         glm::length(press(hand, Vec3(0.0), to, 0.0,
                           oracleOf(
-                              wall.stiffness,
+                              stiffness,
                               [=](const Vec3& p) {
                                 return testing::sphereMinima(p, Vec3(0.0), radius, Held::kInside);
                               },

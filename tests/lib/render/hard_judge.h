@@ -22,7 +22,7 @@ inline ScenePtr sceneOfSolid(FieldPtr field, bool from_within = false, Material 
   LayerDescription layer;
   layer.name = "solid";
   layer.inside = std::make_shared<FieldSource>(std::move(field));
-  if (wall.stiffness > 0.0) {
+  if (wall.stiffness != 0.0) {
     wall.name = "wall";
     layer.wall.material = wall.name;
     description.materials.push_back(wall);

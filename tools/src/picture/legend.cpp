@@ -11,12 +11,12 @@ std::string feelOf(const Sheet& s, const Region& region) {
   if (region.wall_absent) text = "no wall";
   if (region.wall >= 0) {
     text = "wall " +
-           formatNumber(s.scene.materials()[static_cast<std::size_t>(region.wall)].stiffness) +
+           formatParameter(s.scene.materials()[static_cast<std::size_t>(region.wall)].stiffness) +
            " N/m";
   }
   if (region.content >= 0) {
     const Material& m = s.scene.materials()[static_cast<std::size_t>(region.content)];
-    if (m.viscosity > 0.0) text += ", drag " + formatNumber(m.viscosity) + " N.s/m";
+    if (m.viscosity != 0.0) text += ", drag " + formatParameter(m.viscosity) + " N.s/m";
   }
   return text;
 }

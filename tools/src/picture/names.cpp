@@ -60,7 +60,7 @@ void ports(Sheet& s, LabelPlacer& placer) {
     const auto anchor = portAnchor(s, static_cast<PortId>(i));
     if (!anchor) continue;
     std::string text = port.name;
-    if (port.opens_at > 0.0) text += " (" + formatNumber(port.opens_at) + " N)";
+    if (port.opens_at != 0.0) text += " (" + formatParameter(port.opens_at) + " N)";
     callout(s, placer, *anchor, text, kPortInk);
   }
 }

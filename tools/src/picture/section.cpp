@@ -198,11 +198,10 @@ Boundary classify(const Scene& scene, const Signs& here, const Signs& there) {
   for (std::size_t i = 0; i < scene.ports().size(); ++i) {
     all.pass(static_cast<PortId>(i), line.a, line.b, true);
   }
-  const Facet inward = scene.passages().facet(partition, line.a, *second, crossed, all);
-  const Facet outward = scene.passages().facet(partition, line.b, *first, crossed, all);
-  const auto passable = [](const Facet& f) {
-    return f.kind == Facet::Kind::kOpen || f.opens_at > 0.0;
-  };
+  const Vec3 anywhere(0.0);  // an opening force that varies is one all the same
+  const Facet inward = scene.passages().facet(partition, line.a, *second, crossed, all, anywhere);
+  const Facet outward = scene.passages().facet(partition, line.b, *first, crossed, all, anywhere);
+  const auto passable = [](const Facet& f) { return f.kind == Facet::Kind::kOpen || f.opens; };
   if (inward.kind == Facet::Kind::kAbsent || outward.kind == Facet::Kind::kAbsent) {
     line.kind = Boundary::Kind::kAbsent;
   } else if (passable(inward) || passable(outward)) {

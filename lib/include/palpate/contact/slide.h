@@ -37,6 +37,11 @@ struct SlideStep {
 /// min |x - P|^2 on S = 0.
 [[nodiscard]] SlideStep slideStep(const Vec3& pull, std::span<const HeldWall> walls) noexcept;
 
+/// The chain rule through a proxy at rest: the gradient by the hand's position of what has `gradient` by the
+/// proxy's. The proxy follows the hand by (I - sum lambda_i H_i / |grad S_i|)^-1 along the walls, and not at
+/// all across them; near the hand's focal points the inverse is held to 50.
+[[nodiscard]] Vec3 gradientByHand(const Vec3& gradient, std::span<const HeldWall> walls) noexcept;
+
 /// Cheap test before slideStep() at rest: false if no direction along the walls can have a negative
 /// curvature (the walls bend too little for the depth).
 [[nodiscard]] bool mayBeSaddle(std::span<const HeldWall> walls) noexcept;

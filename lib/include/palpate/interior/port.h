@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "palpate/interior/partition.h"
+#include "palpate/materials/parameter.h"
 
 namespace palpate {
 
@@ -23,9 +24,11 @@ struct Port {
   int mask = -1;               ///< open only within this mask of the partition; -1: everywhere
   PortDirection direction = PortDirection::kBoth;
   std::vector<PortId> after;  ///< ports that must have been passed before
-  double opens_at = 0.0;      ///< [N] elastic normal force at which it opens; 0: always open
-  double back = 0.0;          ///< [N] the same for coming back
-  double hole_radius = 0.0;   ///< [m] of the hole that opening it by force leaves; 0: none is left
+  Parameter
+      opens_at;  ///< [N] elastic normal force at which it opens; 0: always open. A map holds at the
+                 ///< point touched; where it is 0, the lightest touch opens
+  Parameter back;            ///< [N] the same for coming back
+  double hole_radius = 0.0;  ///< [m] of the hole that opening it by force leaves; 0: none is left
   double reopens_at =
       0.0;  ///< [N] in such a hole instead of opens_at and back, where these are more
   /// [m] Opened by force, it does so again only when the proxy has been this far from there, or the hand

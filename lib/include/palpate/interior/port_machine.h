@@ -58,12 +58,6 @@ class PassedPorts {
   std::size_t size_ = 0;
 };
 
-/// The holes that may make a facet easier to pass, and where it is asked about.
-struct HolesHere {
-  const Punctures* punctures = nullptr;  ///< null: none
-  Vec3 point{0.0, 0.0, 0.0};             ///< [m, world]
-};
-
 /// What a facet is for the proxy on its near side.
 struct Facet {
   enum class Kind : std::uint8_t {
@@ -74,9 +68,11 @@ struct Facet {
   };
   Kind kind = Kind::kInternal;
   RegionId beyond = kOutside;  ///< the region on the far side
-  PortId port = 0;             ///< kOpen: the port; kClosed with opens_at: the port that would open
+  PortId port = 0;             ///< kOpen: the port; kClosed and opens: the port that would open
   int material = -1;           ///< kClosed: of the wall, as felt from the near side
-  double opens_at = 0.0;       ///< [N] kClosed: elastic normal force that opens it; 0: none does
+  bool opens = false;          ///< kClosed: a port opens it when it is pressed with opens_at
+  bool varies = false;         ///< elsewhere on the same facet opens_at and port may be others
+  double opens_at = 0.0;       ///< [N] elastic normal force that opens it
   bool in_hole = false;        ///< the port's force is that of a hole made before
 
   [[nodiscard]] bool isClosed() const noexcept { return kind == Kind::kClosed; }
@@ -100,16 +96,19 @@ class Passages {
     return ports_of_[region];
   }
 
-  /// The facet that is crossed when the leaves `crossed` (one, or several that coincide there) change
-  /// sign from `here`, a cell of region `from`, to `there`, a cell of region `beyond`.
+  /// The facet at `at` [m] that is crossed when the leaves `crossed` (one, or several that coincide there)
+  /// change sign from `here`, a cell of region `from`, to `there`, a cell of region `beyond`. `holes` may make
+  /// it easier to pass; null: there are none.
   [[nodiscard]] Facet facet(const Partition& partition, RegionId from, RegionId beyond,
                             const Signs& here, const Signs& there, std::span<const LeafId> crossed,
-                            const PassedPorts& passed, const HolesHere& holes = {}) const noexcept;
+                            const PassedPorts& passed, const Vec3& at,
+                            const Punctures* holes = nullptr) const noexcept;
 
   /// The same where only the far cell is known: the near one differs from it in the leaves `crossed`, and
   /// the region beyond is looked up. Copies signs: for set-up and pictures.
   [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& there,
-                            std::span<const LeafId> crossed, const PassedPorts& passed) const;
+                            std::span<const LeafId> crossed, const PassedPorts& passed,
+                            const Vec3& at) const;
 
  private:
   std::size_t regions_ = 0;

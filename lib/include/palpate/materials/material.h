@@ -5,20 +5,21 @@
 #include <string>
 
 #include "palpate/core/math.h"
+#include "palpate/materials/parameter.h"
 
 namespace palpate {
 
 /// Friction cone of a wall, as ratios of tangential to normal force.
 struct Friction {
-  double static_ratio = 0.0;   ///< [-] 0 or more
-  double kinetic_ratio = 0.0;  ///< [-] 0 to static_ratio
+  Parameter static_ratio;   ///< [-] 0 or more
+  Parameter kinetic_ratio;  ///< [-] 0 or more; counts as static_ratio where a map exceeds that
 };
 
 /// Bumps felt on a wall: the surface is taken to stand amplitude * (sin kx + sin ky + sin kz) / 3 higher,
 /// k = 2 pi / wavelength, at the proxy. Never more than half of the depth pressed, so that a light touch
 /// never loses contact, and the force it adds never exceeds stiffness * amplitude.
 struct Texture {
-  double amplitude = 0.0;   ///< [m] 0: smooth; at most highestAmplitude(wavelength)
+  Parameter amplitude;      ///< [m] 0: smooth; at most highestAmplitude(wavelength)
   double wavelength = 0.0;  ///< [m] positive if there is an amplitude
 
   /// [m] wavelength / 2 pi. Higher bumps would change the force along the wall, by at most
@@ -30,17 +31,22 @@ struct Texture {
 };
 
 /// One named material of a scene. A wall uses stiffness, damping, friction, texture and shading; a
-/// content uses viscosity and flow. A material may serve as both.
+/// content uses viscosity and flow. A material may serve as both. What is a Parameter may differ from place
+/// to place: it is asked for at the proxy. Where a wall's stiffness K does, the spring of
+/// length d has the energy K d^2 / 2, and the force the term -d^2 / 2 grad K that goes with it, by the chain
+/// rule from the proxy to the hand; without it a way there and back would gain energy. While friction holds
+/// the proxy where it is, K does not change and there is no such term. (The paper's renderer, which keeps to
+/// the source's force law, never has it.)
 struct Material {
   std::string name = {};
-  double stiffness = 0.0;  ///< [N/m] 0: cannot be a wall
-  double damping = 0.0;    ///< [N s/m] against the probe's velocity while a wall is touched
+  Parameter stiffness;  ///< [N/m] 0 or more; a wall needs more than 0 everywhere
+  Parameter damping;    ///< [N s/m] against the probe's velocity while a wall is touched
   Friction friction = {};
   Texture texture = {};
   double shading =
-      0.0;  ///< [m] the force follows the normal averaged over this radius, so that the
-            ///< facets of a coarse mesh feel round; 0: off
-  double viscosity = 0.0;    ///< [N s/m] Bv of the drag -Bv V while inside
+      0.0;              ///< [m] the force follows the normal averaged over this radius, so that the
+                        ///< facets of a coarse mesh feel round; 0: off
+  Parameter viscosity;  ///< [N s/m] Bv of the drag -Bv V while inside
   Vec3 flow{0.0, 0.0, 0.0};  ///< [m/s] velocity of the medium: drag is -Bv (V - flow)
 };
 

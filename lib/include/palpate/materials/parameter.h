@@ -46,6 +46,10 @@ class Parameter {
       : constant_(map ? map->value(Vec3(0.0)) : 0.0), map_(std::move(map)) {}
 
   [[nodiscard]] bool isConstant() const noexcept { return map_ == nullptr; }
+  /// The same everywhere: an equal constant, or the very same map.
+  friend bool operator==(const Parameter& a, const Parameter& b) noexcept {
+    return a.map_ == b.map_ && (a.map_ != nullptr || a.constant_ == b.constant_);
+  }
   [[nodiscard]] double at(const Vec3& p) const noexcept {
     return map_ ? map_->value(p) : constant_;
   }

@@ -1,0 +1,182 @@
+// A wall whose stiffness differs from place to place gives back what it was given, and no more.
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "lib/render/drive.h"
+#include "palpate/contact/slide.h"
+#include "palpate/fields/primitives.h"
+#include "support/test_maps.h"
+
+namespace palpate::test {
+namespace {
+
+using testing::FunctionMap;
+
+/// 600 N/m, and 300 N/m up and down over some centimetres, along all axes.
+MaterialMapPtr hills() {
+  return std::make_shared<FunctionMap>(
+      [](const Vec3& p) {
+        const Vec3 k(150.0, 170.0, 190.0);  // [1/m]
+        const Vec3 phase = k * p + Vec3(0.3, 1.1, 0.7);
+        MaterialMap::Sample out{600.0, Vec3(0.0)};
+        for (int i = 0; i < 3; ++i) {
+          out.value += 100.0 * std::sin(phase[i]);
+          out.gradient[i] = 100.0 * k[i] * std::cos(phase[i]);
+        }
+        return out;
+      },
+      MaterialMap::Range{300.0, 900.0});
+}
+
+struct Shape {
+  std::string name;
+  std::vector<FieldPtr> layers;
+  std::string start;
+  std::function<Vec3(double)> path;  ///< closed: [0, 1] -> [m], in the air at both ends
+};
+
+ScenePtr sceneOf(const Shape& shape, const Parameter& stiffness, const Friction& friction) {
+  SceneDescription description;
+  Material wall;
+  wall.name = "wall";
+  wall.stiffness = stiffness;
+  wall.friction = friction;
+  description.materials = {wall};
+  for (const FieldPtr& field : shape.layers) {
+    LayerDescription layer;
+    layer.name = "body" + std::to_string(description.layers.size());
+    layer.inside = std::make_shared<FieldSource>(field);
+    layer.wall.material = "wall";
+    description.layers.push_back(layer);
+  }
+  description.start_region = shape.start;
+  return compile(description);
+}
+
+struct Loop {
+  double corrected = 0.0;  ///< [J] work on the hand over the closed way, of the force felt
+  double plain = 0.0;      ///< [J] the same of the spring alone, stiffness * (proxy - hip)
+  double stored = 0.0;     ///< [J] most that the spring held on the way
+};
+
+/// Work by the trapezium rule: its own error falls with the square of the step.
+Loop goRound(const Shape& shape, const MaterialMapPtr& map, const Friction& friction, int ticks) {
+  Drive hand(sceneOf(shape, map, friction));
+  Loop loop;
+  Vec3 last_hip(0.0);
+  Vec3 last_force(0.0);
+  Vec3 last_spring(0.0);
+  for (int i = 0; i <= ticks; ++i) {
+    const Vec3 hip = shape.path(static_cast<double>(i) / ticks);
+    const TickResult out = hand.to(hip);
+    const Vec3 gap = out.proxy - hip;
+    const Vec3 spring = map->value(out.proxy) * gap;
+    if (i > 0) {
+      loop.corrected += 0.5 * glm::dot(out.force + last_force, hip - last_hip);
+      loop.plain += 0.5 * glm::dot(spring + last_spring, hip - last_hip);
+    }
+    loop.stored = std::max(loop.stored, 0.5 * map->value(out.proxy) * glm::dot(gap, gap));
+    last_hip = hip;
+    last_force = out.force;
+    last_spring = spring;
+  }
+  return loop;
+}
+
+std::vector<Shape> shapes() {
+  const double turn = 2.0 * std::numbers::pi;
+  const FieldPtr ball = sphere(Vec3(0.0), 0.02);
+  return {
+      {"plane",
+       {halfSpace(Vec3(0.0), Vec3(0, 0, 1))},
+       "outside",
+       [=](double t) {
+         return Vec3(0.02 * std::cos(turn * t), 0.015 * std::sin(turn * t),
+                     -1e-3 + 2e-3 * std::cos(turn * t));
+       }},
+      {"ball from outside",
+       {ball},
+       "outside",
+       [=](double t) {
+         const double a = 2.0 * turn * t;
+         const double r = 0.018 + 0.003 * std::cos(turn * t);
+         return r * Vec3(std::cos(a) * std::cos(0.4), std::sin(a) * std::cos(0.4), std::sin(0.4));
+       }},
+      {"ball from within",
+       {ball},
+       "body0",
+       [=](double t) {
+         const double a = turn * t;
+         const double r = 0.022 - 0.003 * std::cos(turn * t);
+         return r * Vec3(std::cos(a) * std::cos(0.4 * std::sin(a)),
+                         std::sin(a) * std::cos(0.4 * std::sin(a)), std::sin(0.4 * std::sin(a)));
+       }},
+      {"groove",  // two walls of one stiffness hold the proxy in an edge, between the walls alone
+       {halfSpace(Vec3(0.0), glm::normalize(Vec3(0.8, 0, 1))),
+        halfSpace(Vec3(0.0), glm::normalize(Vec3(-0.9, 0, 1)))},
+       "outside",
+       [=](double t) {
+         return Vec3(0.002 * std::cos(3.0 * turn * t), 0.02 * std::sin(turn * t),
+                     -1e-3 + 3e-3 * std::cos(turn * t));
+       }},
+  };
+}
+
+TEST(VaryingStiffness, AClosedWayCostsAndGivesNothing) {
+  const MaterialMapPtr map = hills();
+  for (const Shape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const Loop coarse = goRound(shape, map, {}, 4000);
+    const Loop fine = goRound(shape, map, {}, 16000);
+    EXPECT_GT(fine.stored, 2e-4);
+    // Without the term the way gives or takes energy, and a finer trace changes nothing of it.
+    EXPECT_GT(std::fabs(fine.plain), 0.02 * fine.stored);
+    EXPECT_NEAR(coarse.plain, fine.plain, 0.02 * std::fabs(fine.plain));
+    // With it only what the sum over ticks leaves: less than 1e-5 of what was stored, and 4 x 4 times less
+    // for steps 4 times shorter where nothing but the rule's error is left.
+    EXPECT_LT(std::fabs(fine.corrected), 1e-5 * fine.stored);
+    EXPECT_LT(std::fabs(fine.corrected), 1e-3 * std::fabs(fine.plain));
+  }
+}
+
+TEST(VaryingStiffness, FrictionOnlyTakes) {
+  const MaterialMapPtr map = hills();
+  for (const Shape& shape : shapes()) {
+    SCOPED_TRACE(shape.name);
+    const Loop with = goRound(shape, map, {0.05, 0.04}, 16000);
+    EXPECT_LT(with.corrected, -1e-3 * with.stored);
+  }
+}
+
+TEST(VaryingStiffness, TheTermIsHalfTheSquareOfTheDepthTimesTheSlope) {
+  // A plane, 2 mm deep, 2e4 N/m per m: 0.04 N towards the softer side.
+  Shape plane = shapes()[0];
+  Drive hand(sceneOf(plane, testing::linearMap(1000.0, {2e4, 0, 0}, {100.0, 1900.0}), {}));
+  (void)hand.to({0.01, 0, 0.001});
+  const TickResult out = hand.walk({0.01, 0, -2e-3});
+  EXPECT_TRUE(isNear(out.force, {-0.04, 0.0, 2.4}, 1e-9));
+}
+
+TEST(VaryingStiffness, GradientByHandFollowsTheClosestPoint) {
+  // Of f = v . x, x the closest point of a ball of radius R to the hand at R - d from its middle, along the
+  // surface: v R / (R - d) outside it, R / (R + d) from within.
+  const FieldPtr ball = sphere(Vec3(0.0), 0.02);
+  const Vec3 x(0.02, 0, 0);
+  const Vec3 v(3.0, 1.0, -2.0);
+  for (const double side : {1.0, -1.0}) {
+    HeldWall wall;
+    wall.field = ball.get();
+    wall.side = side;
+    wall.jet = ball->jet(x);
+    wall.normal = side * wall.jet.gradient;
+    wall.multiplier = 0.004;
+    const double factor = 0.02 / (0.02 - side * 0.004);
+    EXPECT_TRUE(isNear(gradientByHand(v, std::span(&wall, 1)), factor * Vec3(0, 1, -2), 1e-12));
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
