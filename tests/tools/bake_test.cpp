@@ -186,6 +186,25 @@ TEST(Bake, AnImageByThresholdOrByLabel) {
   EXPECT_NE(slip.err.find("kidney"), std::string::npos) << slip.err;
 }
 
+// A plate of one voxel of 1 mm, beside a ball: voxels of 1 mm hold it, voxels of 5 mm, at 0 and 5 mm, pass it by.
+TEST(Bake, WhatTheVoxelsCannotHoldOfALabelIsTold) {
+  const TempFolder folder;
+  vdb::test::NiftiFile file = balls(true);
+  for (std::size_t j = 3; j < 21; ++j) {
+    for (std::size_t i = 3; i < 21; ++i) file.values[i + 24 * (j + 24 * 2)] = 3;
+  }
+  const std::string labels = writeImage(folder, "labels.nii", file);
+  const CommandResult fine =
+      runPalpate({"bake", labels, "-o", folder.path("f.vdb"), "--labels", "3"});
+  ASSERT_EQ(fine.exit_code, 0) << fine.err;
+  EXPECT_EQ(fine.err.find("lost"), std::string::npos) << fine.err;
+  const CommandResult coarse =
+      runPalpate({"bake", labels, "-o", folder.path("c.vdb"), "--labels", "3", "--voxel", "5"});
+  ASSERT_EQ(coarse.exit_code, 0) << coarse.err;
+  EXPECT_NE(coarse.err.find(" voxels of the scan lost"), std::string::npos) << coarse.err;
+  EXPECT_NE(coarse.err.find(" 2) mm"), std::string::npos) << coarse.err;
+}
+
 TEST(Bake, NothingIsOverwrittenUnlessForced) {
   const TempFolder folder;
   (void)folder.file("c.yaml", kContainer);

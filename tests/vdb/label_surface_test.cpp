@@ -159,8 +159,13 @@ TEST(LabelSurface, ThickSlicesAndAnyOrientation) {
     const Errors turned = measured(shape, oblique, "1 mm, oblique");
     EXPECT_LT(turned.normal, 0.6) << shape.name;
     EXPECT_LT(std::abs(turned.bias), 0.03) << shape.name;
-    (void)measured(shape, awkward, "0.8 x 1.1 x 1.6 mm");
-    (void)measured(shape, thick, "1 x 1 x 3 mm");
+    const Errors stretched = measured(shape, awkward, "0.8 x 1.1 x 1.6 mm");
+    EXPECT_LT(stretched.normal, 1.1) << shape.name;
+    EXPECT_LT(std::abs(stretched.bias), 0.05) << shape.name;
+    // Outlines of slices 3 mm apart are all that is known; at a ball's poles there are none.
+    const Errors sliced = measured(shape, thick, "1 x 1 x 3 mm");
+    EXPECT_LT(sliced.normal, 5.5) << shape.name;
+    EXPECT_LT(sliced.rms, 0.25) << shape.name;
   }
 }
 
@@ -250,25 +255,41 @@ TEST(LabelSurface, NeighborsShareOneWallWithoutGapOrOverlap) {
       gap = std::max(gap, f[0]);
       overlap = std::max(overlap, -f[1]);
       // The third is further than a few voxels: a wall of two.
-      if (f[2] > 3.0 && std::abs(f[0]) < 1.0) apart = std::max(apart, std::abs(f[0] + f[1]));
+      if (f[2] > 3.0 && std::abs(f[0]) < 0.2) apart = std::max(apart, std::abs(f[0] + f[1]));
     }
     std::printf("three parts of a ball: gap %.4f, overlap %.4f voxel; where two meet %.1e\n", gap,
                 overlap, apart);
-    // Each layer's grid has its own distances to the shared wall; what they differ by is what is held
-    // here, and should be nothing. Along the line where three walls meet grids round their edge off.
-    EXPECT_LT(apart, 0.2);
-    EXPECT_LT(gap, 0.4);
-    EXPECT_LT(overlap, 0.25);
+    // Each layer's grid has its own distances to the shared wall. Along the line where three walls meet grids
+    // round their edge off.
+    EXPECT_LT(apart, 0.15);
+    EXPECT_LT(gap, 0.35);
+    EXPECT_LT(overlap, 0.15);
   }
 }
 
-/// Enclosed volume [voxels of the grid]: a Heaviside one voxel wide over the distances.
+/// Enclosed volume [voxels of the grid] as the spline has it: in 3^3 parts of every voxel by the surface, a
+/// Heaviside as wide as a part over the distances.
 double volumeOf(const LevelSet& grid) {
   const Image image = gridImage(grid);
-  const auto h = static_cast<float>(grid.info().voxel_size);
+  const FieldPtr field = gridField(grid);
+  const auto h = static_cast<float>(grid.info().voxel_size / grid.info().metres_per_unit);
   double sum = 0.0;
-  for (const float value : image.values) {
-    sum += static_cast<double>(std::clamp(0.5F - value / h, 0.0F, 1.0F));
+  std::size_t n = 0;
+  for (int k = 0; k < image.size[2]; ++k) {
+    for (int j = 0; j < image.size[1]; ++j) {
+      for (int i = 0; i < image.size[0]; ++i, ++n) {
+        const float value = image.values[n] / h;
+        if (std::abs(value) > 1.8F) {
+          sum += value < 0.0F ? 1.0 : 0.0;
+          continue;
+        }
+        for (int part = 0; part < 27; ++part) {
+          const Vec3 off = (Vec3(part / 9, part / 3 % 3, part % 3) - 1.0) / 3.0;
+          const double there = field->value(image.toWorld(Vec3(i, j, k) + off));
+          sum += std::clamp(0.5 - 3.0 * there / grid.info().voxel_size, 0.0, 1.0) / 27.0;
+        }
+      }
+    }
   }
   return sum;
 }
@@ -329,10 +350,9 @@ void checkScan(const std::string& file) {
         "%zu won\n",
         labels[n], counted, enclosed, 100 * (enclosed / counted - 1), (enclosed - counted) / area,
         lost, won);
-    // Bounds of what was reached, not of what is wanted: no centre won, and walls within 0.05 voxel
-    // on average. Thin and small labels are off by up to 0.14, and so is skin between two of them.
+    // No center won, and walls within a twentieth of a voxel on average; the smallest gland is off by 0.053.
     EXPECT_LT(won, 10U) << labels[n];
-    EXPECT_LT(std::abs(enclosed - counted), std::max(0.01 * counted, 0.15 * area)) << labels[n];
+    EXPECT_LT(std::abs(enclosed - counted), std::max(0.01 * counted, 0.055 * area)) << labels[n];
   }
   std::printf("  %llu active voxels\n", static_cast<unsigned long long>(active));
 
@@ -371,7 +391,64 @@ void checkScan(const std::string& file) {
       "  %zu faces between two labels alone: fields differ by %.2e voxel; everywhere: gap %.3f, "
       "overlap %.3f\n",
       walls, apart, gap, overlap);
-  EXPECT_LT(apart, 0.05);
+  EXPECT_LT(apart, 0.02);
+}
+
+/// A slab of label 1 across the image, `thickness` voxels of 1 mm, from z = 12 mm on.
+Image slab(int thickness) {
+  Image image;
+  image.source = "slab.nii";
+  image.size = {28, 28, 28};
+  image.axes = Mat3(kMm);
+  image.values.assign(std::size_t{28} * 28 * 28, 0.0F);
+  for (int k = 12; k < 12 + thickness; ++k) {
+    for (int j = 4; j < 24; ++j) {
+      for (int i = 4; i < 24; ++i) {
+        image.values[static_cast<std::size_t>(i + 28 * (j + 28 * k))] = 1.0F;
+      }
+    }
+  }
+  return image;
+}
+
+// Thin parts are kept where the grid's voxels can hold them, with their volume; where they cannot, the grid says
+// how many voxels it lost, and where.
+TEST(LabelSurface, ThinPartsAreKeptOrTold) {
+  for (const int thickness : {1, 2}) {
+    const Image image = slab(thickness);
+    const LevelSet kept = surfaceFromLabels(image, {.values = {1}}, {});
+    const ScanLoss none = scanLoss(kept.info());
+    EXPECT_EQ(none.filled, 0U) << thickness;
+    // What is rounded off at the rim is no voxel's center.
+    EXPECT_LE(none.lost, 4U) << thickness;
+    const FieldPtr field = gridField(kept);
+    for (int i = 8; i < 20; ++i) {
+      EXPECT_LT(field->value(Vec3(i, 14, 12) * kMm), -0.1 * kMm) << thickness;
+    }
+    EXPECT_NEAR(volumeOf(kept), 400.0 * thickness, 0.08 * 400.0 * thickness) << thickness;
+  }
+
+  // Voxels of 5 mm have their centers at 10 and 15 mm: the slab at 12 mm is between them, the block above is not.
+  const Image both = [] {
+    Image image = slab(1);
+    for (int k = 20; k < 27; ++k) {
+      for (int j = 4; j < 24; ++j) {
+        for (int i = 4; i < 24; ++i) {
+          image.values[static_cast<std::size_t>(i + 28 * (j + 28 * k))] = 1.0F;
+        }
+      }
+    }
+    return image;
+  }();
+  const LevelSet lossy = surfaceFromLabels(both, {.values = {1}, .voxel_size = 5 * kMm}, {});
+  const ScanLoss loss = scanLoss(lossy.info());
+  EXPECT_GT(loss.lost, 200U);
+  EXPECT_NEAR(loss.place.z, 12 * kMm, 1e-9);
+  EXPECT_EQ(lossy.info().metadata.at("lost_voxels"), std::to_string(loss.lost));
+  const std::string note = scanLossNote(lossy.info());
+  EXPECT_NE(note.find(std::to_string(loss.lost) + " voxels of the scan lost"), std::string::npos)
+      << note;
+  EXPECT_NE(note.find(" 12) mm"), std::string::npos) << note;
 }
 
 TEST(LabelSurface, VertebraKeepsVolumesAndWalls) {

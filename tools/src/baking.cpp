@@ -149,6 +149,12 @@ std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOpti
   return layers;
 }
 
+/// What the grid could not hold of the scan.
+void tellLoss(const BakeOptions& options, const vdb::LevelSet& grid, Console& console) {
+  const std::string note = vdb::scanLossNote(grid.info());
+  if (!note.empty()) console.note(options.input + ": " + grid.info().name + ": " + note);
+}
+
 std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   const bool is_grid = inputKind(options.input) == InputKind::kGrid;
   refuse(!options.units.empty() && !is_grid, "--units",
@@ -187,6 +193,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
           gridOptions(options, onlyLayerName(options), voxel, unit, options.input),
           console.progress());
     }));
+    tellLoss(options, grids.back().grid, console);
     return grids;
   }
   std::vector<std::vector<int>> values;
@@ -199,6 +206,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
           gridOptions(options, layers[n].first, voxel, unit, options.input, memoryOf(grids)),
           console.progress());
     }));
+    tellLoss(options, grids.back().grid, console);
   }
   return grids;
 }

@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "scan/opposite.h"
+#include "scan/slices.h"
 
 namespace palpate::vdb {
 namespace {
@@ -14,22 +18,27 @@ namespace {
 /// vanish or swell.
 constexpr double kHold = 0.3;
 constexpr double kBeside = 1.8;  ///< voxels that share a corner
-/// Steps by which the surface may be nearer than the nearest voxel of the other side: a smooth one by about
-/// one; and no less, or curved ones would be bent.
+/// Voxels by which the surface may be nearer than the nearest voxel of the other side: a smooth one by about
+/// one; and no less, or curved ones would be bent. Of voxels that are no cubes, those as long as their diagonal.
 constexpr double kSlack = 1.3;
 /// Where the surface is between two voxels, at first.
 constexpr double kHalf = 0.5;
 
 struct Offset {
   std::array<int, 3> step{};
-  std::ptrdiff_t place = 0;
   double steps = 0.0;     ///< its length in voxels
   double distance = 0.0;  ///< in steps of the smallest spacing
 };
 
 class Finder {
  public:
-  Finder(const Mask& mask, const Vec3& spacing) : mask_(mask), spacing_(spacing) {
+  Finder(const Mask& mask, const Vec3& spacing)
+      : mask_(mask),
+        spacing_(spacing),
+        slack_(kSlack * glm::length(spacing) / std::sqrt(3.0)),
+        opposite_(spacing),
+        slices_(SliceDistances::of(mask, spacing)),
+        is_cubic_(glm::length(spacing - Vec3(1.0)) < 1e-5) {
     band_.first = mask.first;
     band_.box = mask.box;
     for (std::size_t a = 0; a < 3; ++a) band_.table_size[a] = (mask.box[a] + 7) / 8;
@@ -55,17 +64,13 @@ class Finder {
   }
 
   void makeOffsets() {
-    const auto strides = mask_.strides();
     constexpr int kR = Band::kReach;
     for (int i = -kR; i <= kR; ++i) {
       for (int j = -kR; j <= kR; ++j) {
         for (int k = -kR; k <= kR; ++k) {
           const int square = i * i + j * j + k * k;
           if (square == 0 || square > kR * kR) continue;
-          offsets_.push_back({{i, j, k},
-                              i * strides[0] + j * strides[1] + k * strides[2],
-                              std::sqrt(square),
-                              glm::length(Vec3(i, j, k) * spacing_)});
+          offsets_.push_back({{i, j, k}, std::sqrt(square), glm::length(Vec3(i, j, k) * spacing_)});
         }
       }
     }
@@ -86,7 +91,8 @@ class Finder {
     }
   }
   [[nodiscard]] std::size_t tableAt(int x, int y, int z) const noexcept {
-    return static_cast<std::size_t>(x + band_.table_size[0] * (y + band_.table_size[1] * z));
+    const int place = x + band_.table_size[0] * (y + band_.table_size[1] * z);
+    return static_cast<std::size_t>(place);
   }
 
   /// Blocks with a voxel beside the surface, and those around them.
@@ -130,35 +136,67 @@ class Finder {
     block.value.fill(kNone);
     bounds.lower.fill(kNone);
     bounds.upper.fill(kNone);
+    Opposite::Found found;
+    const bool has_surface = opposite_.find(mask_, block.first, found);
+    if (!has_surface && !isByBorder(block.first)) return;
     const auto [nx, ny, nz] = mask_.box;
     const auto [x, y, z] = block.first;
     for (int i = x; i < std::min(x + 8, nx); ++i) {
       for (int j = y; j < std::min(y + 8, ny); ++j) {
         for (int k = z; k < std::min(z + 8, nz); ++k) {
-          if (fillVoxel(block, bounds, {i, j, k}))
+          Other other;
+          if (has_surface) other = otherOf(found, {i, j, k});
+          if (fillVoxel(block, bounds, {i, j, k}, other))
             block.rows |= std::uint64_t{1} << (8 * (i & 7) + (j & 7));
         }
       }
     }
   }
 
-  bool fillVoxel(BandBlock& block, BandBounds& bounds,
-                 const std::array<int, 3>& at) const noexcept {
+  /// The nearest voxel on the other side, if it is within reach.
+  struct Other {
+    double steps = kInfinity;     ///< away, in voxels
+    double distance = kInfinity;  ///< in steps of the smallest spacing
+  };
+
+  [[nodiscard]] Other otherOf(const Opposite::Found& found,
+                              const std::array<int, 3>& at) const noexcept {
+    const int n = ((at[2] & 7) * 8 + (at[1] & 7)) * 8 + (at[0] & 7);
+    const auto place = static_cast<std::size_t>(n);
+    if (found.square[place] >= Opposite::kNone) return {};
+    const auto voxels = static_cast<double>(found.voxels[place]);
+    if (voxels <= Band::kReach * Band::kReach) {
+      return {std::sqrt(voxels), std::sqrt(static_cast<double>(found.square[place]))};
+    }
+    // Where spacings differ, one that is further away may be fewer voxels away.
+    return is_cubic_ ? Other{} : otherWithinReach(at);
+  }
+
+  [[nodiscard]] bool isByBorder(const std::array<int, 3>& first) const noexcept {
+    bool by = false;
+    for (std::size_t a = 0; a < 3; ++a) {
+      by = by || first[a] < Band::kReach ||
+           first[a] + BandBlock::kSide + Band::kReach > mask_.box[a];
+    }
+    return by;
+  }
+
+  bool fillVoxel(BandBlock& block, BandBounds& bounds, const std::array<int, 3>& at,
+                 const Other& other) const noexcept {
     const std::ptrdiff_t n = mask_.at(at[0], at[1], at[2]);
     const bool is_inside = inside(n);
-    const Offset* const other = nearestOther(at, n, is_inside);
     double size = kInfinity;
     double lower = 0.0;
     double upper = kInfinity;
-    if (other != nullptr) {
-      size = other->distance * (1.0 - kHalf / other->steps);
-      lower = std::max(0.0, other->distance * (1.0 - kSlack / other->steps));
-      upper = other->distance;
+    if (other.steps < kInfinity) {
+      size = other.distance * (1.0 - kHalf / other.steps);
+      if (slices_) size = slices_->distanceAt(at).value_or(size);
+      lower = std::max(0.0, other.distance - slack_);
+      upper = other.distance;
     }
     if (is_inside) size = std::min(size, borderDistance(at));
     if (!(size < kInfinity)) return false;
-    if (other != nullptr && other->steps < kBeside &&
-        (isThin(at, is_inside) || facesThin(at, is_inside))) {
+    if (other.steps < kBeside && (isThin(at, is_inside) || facesThin(at, is_inside))) {
       lower = std::max(lower, kHold);
     }
     size = std::clamp(size, lower, upper);
@@ -169,25 +207,17 @@ class Finder {
     return true;
   }
 
-  [[nodiscard]] const Offset* nearestOther(const std::array<int, 3>& at, std::ptrdiff_t n,
-                                           bool is_inside) const noexcept {
-    bool safe = true;
-    for (std::size_t a = 0; a < 3; ++a) {
-      safe = safe && at[a] >= Band::kReach && at[a] + Band::kReach < mask_.box[a];
-    }
+  [[nodiscard]] Other otherWithinReach(const std::array<int, 3>& at) const noexcept {
+    const bool side = inside(mask_.at(at[0], at[1], at[2]));
     for (const Offset& offset : offsets_) {
-      if (safe) {
-        if (inside(n + offset.place) != is_inside) return &offset;
-        continue;
-      }
+      const std::array<int, 3> there = {at[0] + offset.step[0], at[1] + offset.step[1],
+                                        at[2] + offset.step[2]};
       // What lies beyond the image is unknown, and no outside.
-      const auto& step = offset.step;
-      if (isIn({at[0] + step[0], at[1] + step[1], at[2] + step[2]}) &&
-          inside(n + offset.place) != is_inside) {
-        return &offset;
+      if (isIn(there) && inside(mask_.at(there[0], there[1], there[2])) != side) {
+        return {offset.steps, offset.distance};
       }
     }
-    return nullptr;
+    return {};
   }
 
   /// To the image's border, if that is within reach. An inside voxel near the box's border is near the
@@ -303,6 +333,10 @@ class Finder {
 
   const Mask& mask_;
   Vec3 spacing_;
+  double slack_;  ///< in steps of the smallest spacing
+  Opposite opposite_;
+  std::optional<SliceDistances> slices_;
+  bool is_cubic_;
   std::vector<Offset> offsets_;
   Band band_;
 };

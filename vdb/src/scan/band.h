@@ -16,10 +16,10 @@ struct BandBlock {
   static constexpr std::size_t kVoxels = 512;
   using Values = std::array<float, kVoxels>;
 
+  alignas(32) Values value;             ///< NaN: not in the band
   std::array<int, 3> first{};           ///< box index of its first voxel, a multiple of 8
   std::uint64_t rows = 0;               ///< bit 8 i + j: the row has a voxel of the band
   std::array<std::int32_t, 27> near{};  ///< blocks around it, 9 di + 3 dj + dk from -1 on; -1: none
-  alignas(32) Values value;             ///< NaN: not in the band
 };
 
 /// What the values of a block may be.
@@ -48,7 +48,8 @@ struct Band {
   /// The value at an index of the image; NaN: not in the band.
   [[nodiscard]] float valueAt(int i, int j, int k) const noexcept;
   [[nodiscard]] static std::size_t placeOf(int i, int j, int k) noexcept {
-    return static_cast<std::size_t>(((i & 7) << 6) | ((j & 7) << 3) | (k & 7));
+    const int place = ((i & 7) << 6) | ((j & 7) << 3) | (k & 7);
+    return static_cast<std::size_t>(place);
   }
 };
 

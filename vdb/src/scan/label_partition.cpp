@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scan/smooth_mask.h"
+#include "scan/volume.h"
 
 namespace palpate::vdb {
 namespace {
@@ -63,6 +64,7 @@ std::shared_ptr<const MaskedBand> LabelPartition::smoothed(const std::vector<int
   const double smallest = std::min({lengths.x, lengths.y, lengths.z});
   result->band = bandOf(result->mask, lengths / smallest);
   smoothBand(result->band, result->mask, image_.axes / smallest, progress);
+  keepVolume(result->band, result->mask);
   result->band.bounds = {};
   return result;
 }

@@ -103,6 +103,12 @@ LatticeSpline::LatticeSpline(const Band& band, const Mask& mask, const Mat3& axe
 
 LatticeSpline::~LatticeSpline() = default;
 
+std::optional<double> LatticeSpline::valueAt(const Vec3& index) const noexcept {
+  const FieldSample sample = spline_->sample(index);
+  if (!sample.in_band) return std::nullopt;
+  return sample.value;
+}
+
 std::optional<LatticeSpline::Foot> LatticeSpline::foot(const Vec3& p,
                                                        const Vec3& start) const noexcept {
   const Mat3 back = glm::transpose(to_index_);

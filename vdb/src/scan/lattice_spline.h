@@ -22,6 +22,9 @@ class LatticeSpline {
   LatticeSpline(const LatticeSpline&) = delete;
   LatticeSpline& operator=(const LatticeSpline&) = delete;
 
+  /// At a voxel's place in the band's box; nothing where the band does not reach around it.
+  [[nodiscard]] std::optional<double> valueAt(const Vec3& index) const noexcept;
+
   struct Foot {
     Vec3 point{0.0, 0.0, 0.0};   ///< on the surface
     Vec3 normal{0.0, 0.0, 0.0};  ///< [-] unit, outward, there

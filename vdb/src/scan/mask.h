@@ -13,8 +13,7 @@ namespace palpate::vdb {
 /// Inside or outside for each voxel of a box of an image, in a frame of outside voxels one thick,
 /// so that every voxel of the box has its neighbours.
 ///
-/// Connectedness is that of the surface drawn around the mask (surface_net.h): two inside voxels
-/// hang together across a face, two outside voxels across a face or an edge.
+/// Two inside voxels hang together across a face, two outside voxels across a face or an edge.
 struct Mask {
   std::array<int, 3> first{};        ///< image index of the box's first voxel
   std::array<int, 3> box{};          ///< voxels of the box along i, j, k

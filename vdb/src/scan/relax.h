@@ -29,24 +29,38 @@ struct RelaxWeights {
   float plane[3];  ///< of the mixed one across each axis
 };
 
-/// Half the derivative of the sum of weighted squares of all second differences whose voxels count; for the
-/// rows (8 x + y) of eight voxels that `rows` has a bit for. NaN in, NaN out or not: not to be used.
-void hessianForce(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
-                  float* out) noexcept;
+/// What one step of relaxation does with each voxel: away from the force, within its bounds, and then on with
+/// its momentum. 512 floats each, in OpenVDB's order.
+struct RelaxStep {
+  const float* bias;   ///< force that is taken out
+  const float* share;  ///< of the force, by which the voxel moves
+  const float* lower;
+  const float* upper;
+  float* value;  ///< in: before; out: after
+  float* ahead;  ///< out: the value and its momentum
+  float momentum;
+};
 
-/// One step of diffusion to the neighbors `stride` away along each axis: voxels that do not count take
-/// nothing.
-void diffuse(const Patch& patch, std::uint64_t rows, int stride, const float* share,
-             float* out) noexcept;
+/// The loops, for one kind of processor. The force is half the derivative of the sum of weighted squares of all
+/// second differences whose voxels count. All do rows (8 x + y) of eight voxels that `rows` has a bit for;
+/// voxels that do not count are NaN, in and out. All kinds give the same bits.
+struct RelaxKernels {
+  void (*force)(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights, float* out);
+  void (*relax)(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
+                const RelaxStep& step);
+  /// One step of diffusion to the neighbors `stride` away along each axis: voxels that do not count take
+  /// nothing.
+  void (*diffuse)(const Patch& patch, std::uint64_t rows, int stride, const float* share,
+                  float* out);
+};
 
-/// The forms of both; the first two take the one that the processor has. All give the same bits.
-void hessianForcePlain(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
-                       float* out) noexcept;
-void hessianForceAvx2(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
-                      float* out) noexcept;
-void diffusePlain(const Patch& patch, std::uint64_t rows, int stride, const float* share,
-                  float* out) noexcept;
-void diffuseAvx2(const Patch& patch, std::uint64_t rows, int stride, const float* share,
-                 float* out) noexcept;
+/// Those that the processor has.
+[[nodiscard]] const RelaxKernels& relaxKernels() noexcept;
+
+/// What that chooses from.
+extern const RelaxKernels kBaseRelaxKernels;
+#if defined(__x86_64__)
+extern const RelaxKernels kAvx2RelaxKernels;
+#endif
 
 }  // namespace palpate::vdb

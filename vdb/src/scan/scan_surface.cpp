@@ -9,17 +9,15 @@
 #include "scan/lattice.h"
 #include "scan/lattice_spline.h"
 #include "scan/mask.h"
-#include "scan/net_field.h"
-#include "scan/surface_net.h"
+#include "scan/redistance.h"
+#include "scan/scan_loss.h"
 
 namespace palpate::vdb {
 namespace {
 
-// Shares of the time, measured on the skin of a head at 1 mm with two cores; the rest is bake()'s.
-constexpr double kMaskDone = 0.15;
-constexpr double kLatticeDone = 0.18;
-constexpr double kSurfaceDone = 0.25;
-constexpr double kNearestDone = 0.5;
+// Shares of the time, measured on the skin of a head at 1 mm with two cores; the rest is the distances'.
+constexpr double kMaskDone = 0.3;
+constexpr double kBandDone = 0.5;
 
 std::string shortNumber(double value) {
   char text[32];
@@ -33,11 +31,9 @@ double smallestSpacing(const Image& image) {
   return smallest;
 }
 
-/// `band` holds the lattice's values around the surface.
-LevelSet bakeLattice(const Lattice& lattice, const Band& band, const Mask& mask, const Image& image,
-                     double voxel_size, BakeOptions bake, const Progress& progress) {
-  report(progress, "surface", kLatticeDone);
-  const Mesh mesh = surfaceNet(lattice, image);
+/// The surface of a band of values, which has the mask's sign everywhere.
+LevelSet bakeBand(const Band& band, const Mask& mask, const Image& image, double voxel_size,
+                  BakeOptions bake, const Progress& progress) {
   if (voxel_size > 0.0) {
     bake.voxel_size = voxel_size;
   } else if (!(bake.voxel_size > 0.0)) {
@@ -45,17 +41,24 @@ LevelSet bakeLattice(const Lattice& lattice, const Band& band, const Mask& mask,
   }
   bake.metadata["source"] = image.source;
   bake.metadata["frame"] = "RAS";
-  report(progress, "distances", kSurfaceDone);
   const LatticeSpline spline(band, mask, image.axes,
                              image.toWorld(Vec3(mask.first[0], mask.first[1], mask.first[2])));
-  const NetField field(mesh, lattice, image, (bake.half_width + 0.1) * bake.voxel_size, &spline);
   Progress rest;
   if (progress) {
-    rest = [&](std::string_view, double fraction) {
-      return progress("bake", kNearestDone + (1.0 - kNearestDone) * std::max(fraction, 0.0));
+    rest = [&](std::string_view what, double fraction) {
+      return progress(what, kBandDone + (1.0 - kBandDone) * std::max(fraction, 0.0));
     };
   }
-  return palpate::vdb::bake(field, bake, rest);
+  const std::optional<Box3> box = bake.box;
+  bake.box.reset();
+  if (!box) return bakeSpline(spline, band, mask, image, bake, rest);
+  // What a box cuts off has flat faces: those of the baked field.
+  BakeOptions wide = bake;
+  wide.half_width += kCubicHalfWidth;
+  const LevelSet whole = bakeSpline(spline, band, mask, image, wide, rest);
+  bake.box = box;
+  bake.metadata.merge(metadataOf(scanLoss(whole.info())));
+  return palpate::vdb::bake(*gridField(whole), bake, {});
 }
 
 }  // namespace
@@ -84,12 +87,10 @@ LevelSet surfaceFromThreshold(const Image& image, const ThresholdOptions& option
   with_source.metadata["threshold"] = "above " + shortNumber(options.above) +
                                       (options.largest_component ? ", largest piece" : "") +
                                       (options.fill ? ", filled" : "");
-  const Lattice lattice = latticeOfThreshold(image, options.above, mask);
   const Vec3 lengths(glm::length(image.axes[0]), glm::length(image.axes[1]),
                      glm::length(image.axes[2]));
-  const Band band = bandOfLattice(lattice, mask, lengths / smallestSpacing(image));
-  return bakeLattice(lattice, band, mask, image, options.voxel_size, std::move(with_source),
-                     progress);
+  const Band band = bandOfThreshold(image, options.above, mask, lengths / smallestSpacing(image));
+  return bakeBand(band, mask, image, options.voxel_size, std::move(with_source), progress);
 }
 
 struct LabelSurfaces::Impl {
@@ -114,7 +115,7 @@ LevelSet LabelSurfaces::surface(std::size_t layer, double voxel_size, const Bake
   if (progress) {
     // Neighbors are smoothed too, one after the other.
     smoothing = [&](std::string_view what, double fraction) {
-      last = std::max(last, kLatticeDone * fraction);
+      last = std::max(last, kBandDone * fraction);
       return progress(what, last);
     };
   }
@@ -131,8 +132,7 @@ LevelSet LabelSurfaces::surface(std::size_t layer, double voxel_size, const Bake
   }
   BakeOptions with_source = bake;
   with_source.metadata["labels"] = list;
-  return bakeLattice(latticeOf(found.band, found.mask), found.band, found.mask, image, voxel_size,
-                     std::move(with_source), progress);
+  return bakeBand(found.band, found.mask, image, voxel_size, std::move(with_source), progress);
 }
 
 LevelSet surfaceFromLabels(const Image& image, const LabelOptions& options, const BakeOptions& bake,

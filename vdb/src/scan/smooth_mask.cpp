@@ -187,32 +187,23 @@ class Smoothing {
       const double t_next = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * t * t));
       const auto momentum = static_cast<float>((t - 1.0) / t_next);
       t = t_next;
-      forBlocks([&](std::size_t b) { relaxBlock(b, momentum); });
-      forBlocks([&](std::size_t b) { work_[b].ahead = work_[b].next; });
+      // The two take turns.
+      Values Work::*const from_here = step % 2 == 0 ? &Work::ahead : &Work::next;
+      Values Work::*const to_there = step % 2 == 0 ? &Work::next : &Work::ahead;
+      forBlocks([&](std::size_t b) {
+        Patch patch;
+        gather(
+            b, [&](std::size_t n) -> const Values& { return work_[n].*from_here; }, patch);
+        BandBlock& block = band_.blocks[b];
+        const BandBounds& bounds = band_.bounds[b];
+        Work& work = work_[b];
+        kernels_.relax(
+            patch, block.rows, weights_,
+            {work.force.data(), work.step.data(), bounds.lower.data(), bounds.upper.data(),
+             block.value.data(), (work.*to_there).data(), momentum});
+      });
     }
     forBlocks([&](std::size_t b) { work_[b].ahead = band_.blocks[b].value; });
-  }
-
-  void relaxBlock(std::size_t b, float momentum) noexcept {
-    Patch patch;
-    gather(
-        b, [&](std::size_t n) -> const Values& { return work_[n].ahead; }, patch);
-    alignas(32) Values force;
-    BandBlock& block = band_.blocks[b];
-    const BandBounds& bounds = band_.bounds[b];
-    Work& work = work_[b];
-    hessianForce(patch, block.rows, weights_, force.data());
-    for (std::uint64_t rows = block.rows; rows != 0; rows &= rows - 1) {
-      const auto first = static_cast<std::size_t>(8 * __builtin_ctzll(rows));
-      for (std::size_t n = first; n < first + 8; ++n) {
-        // NaN stays NaN through all of this.
-        float value = work.ahead[n] - (force[n] - work.force[n]) * work.step[n];
-        value = value < bounds.lower[n] ? bounds.lower[n] : value;
-        value = value > bounds.upper[n] ? bounds.upper[n] : value;
-        work.next[n] = value + momentum * (value - block.value[n]);
-        block.value[n] = value;
-      }
-    }
   }
 
   /// Each voxel its distance to the surface that the values have now, within its bounds. Those by the surface
@@ -291,9 +282,8 @@ class Smoothing {
       const int i = (n >> 6) + step / 9 - 1;
       const int j = (n >> 3 & 7) + step / 3 % 3 - 1;
       const int k = (n & 7) + step % 3 - 1;
-      const auto side = [](int x) { return x < 0 ? 0 : x > 7 ? 2 : 1; };
-      const std::int32_t b =
-          block.near[static_cast<std::size_t>(9 * side(i) + 3 * side(j) + side(k))];
+      const auto side = [](int x) -> std::size_t { return x < 0 ? 0 : x > 7 ? 2 : 1; };
+      const std::int32_t b = block.near[9 * side(i) + 3 * side(j) + side(k)];
       if (b < 0) continue;
       Work& work = work_[static_cast<std::size_t>(b)];
       const std::size_t place = Band::placeOf(i, j, k);
@@ -338,7 +328,7 @@ class Smoothing {
       Work& work = work_[b];
       work.force.fill(0.0F);
       work.next.fill(kNone);
-      hessianForce(patch, block.rows, weights_, work.force.data());
+      kernels_.force(patch, block.rows, weights_, work.force.data());
       for (int n = 0; n < 512; ++n) {
         const auto place = static_cast<std::size_t>(n);
         const float* const c = patch.values + Patch::at(n >> 6, n >> 3 & 7, n & 7);
@@ -366,7 +356,7 @@ class Smoothing {
             patch);
         Values& to = step % 2 == 0 ? work_[b].ahead : work_[b].next;
         to.fill(kNone);
-        diffuse(patch, band_.blocks[b].rows, stride, share, to.data());
+        kernels_.diffuse(patch, band_.blocks[b].rows, stride, share, to.data());
       });
     }
     static_assert((kDiffuseNear + kDiffuseFar) % 2 == 0);
@@ -384,6 +374,7 @@ class Smoothing {
   Vec3 spacing_;
   const Progress& progress_;
   RelaxWeights weights_{};
+  const RelaxKernels& kernels_ = relaxKernels();
   std::vector<Work> work_;
 };
 

@@ -10,6 +10,7 @@
 /// Set-up only, on any thread; several may use one image. Metadata written besides `bake.metadata`:
 /// "source" (the image's file), "frame" ("RAS"), and "threshold" or "labels".
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,8 +44,8 @@ struct LabelOptions {
 /// The surface is one that bends as little, and as evenly, as the voxels allow: voxel centres stay on
 /// their side of it (or on it). A voxelised ball, torus or tilted plane gets normals within half a
 /// degree (RMS) and a mean offset within 0.03 voxel, in cubic voxels; slices several times thicker than
-/// their voxels are wide leave degrees. Parts one or two voxels thin are held open, though their
-/// walls may move by a tenth of a voxel. LabelSurfaces makes the walls of several labels fit.
+/// their voxels are wide leave degrees. It encloses the volume of the voxels. Parts one or two voxels
+/// thin are held open. LabelSurfaces makes the walls of several labels fit.
 /// @throws Error (kInput) if no voxel has one of the labels.
 [[nodiscard]] LevelSet surfaceFromLabels(const Image& image, const LabelOptions& options,
                                          const BakeOptions& bake, const Progress& progress = {});
@@ -53,7 +54,8 @@ struct LabelOptions {
 /// meet, both take the distance to the same wall, each in its own grid, so that away from others they fit
 /// within a tenth of a voxel or two.
 /// Where three or more meet (what is in no layer counts) their walls meet in an edge, which grids
-/// round off within about a voxel: gaps of up to 0.6 voxel. Layers that have a label in common do not limit each other.
+/// round off within about a voxel: gaps of up to half a voxel. Layers that have a label in common do not
+/// limit each other.
 class LabelSurfaces {
  public:
   /// `image` must outlive it. `layers`: the labels of each.
@@ -70,6 +72,19 @@ class LabelSurfaces {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Voxels of a scan whose centers a surface has on the wrong side by more than a fifth of the grid's voxel: where a
+/// part, or a gap, is too thin for the grid. None is silent: each surface above carries this in its metadata
+/// ("lost_voxels", "filled_voxels", "lost_at" in [m]; absent where nothing is lost).
+struct ScanLoss {
+  std::uint64_t lost = 0;     ///< inside voxels that are outside now
+  std::uint64_t filled = 0;   ///< outside ones that are inside now
+  Vec3 place{0.0, 0.0, 0.0};  ///< [m] of the one that is furthest on the wrong side
+};
+[[nodiscard]] ScanLoss scanLoss(const LevelSetInfo& info);
+
+/// The same as a sentence for people, in mm; empty if nothing is lost.
+[[nodiscard]] std::string scanLossNote(const LevelSetInfo& info);
 
 /// `match` entries (a value, a name, or a glob over names; case-sensitive) -> label values, sorted,
 /// each once. A value needs no name. A glob leaves out label 0, the background. `source` is the

@@ -1,0 +1,41 @@
+#pragma once
+/// For each voxel of a block, how far the nearest voxel on the other side of a mask is.
+
+#include <array>
+#include <vector>
+
+#include "palpate/core/math.h"
+#include "scan/mask.h"
+
+namespace palpate::vdb {
+
+/// Distance transforms along one axis after the other (P. Felzenszwalb and D. Huttenlocher, 2012), of voxels at
+/// most kReach steps away along each axis. What lies beyond the image is on no side.
+class Opposite {
+ public:
+  static constexpr int kReach = 5;
+  static constexpr int kSide = 8;
+
+  /// `spacing` of the voxels along each axis, in steps of the smallest.
+  explicit Opposite(const Vec3& spacing);
+
+  /// For voxels (8 z + y) 8 + x of a block.
+  struct Found {
+    alignas(32) std::array<float, 512> square;  ///< [steps^2] to the nearest; kNone: there is none
+    alignas(32)
+        std::array<float, 512> voxels;  ///< [voxels^2] the same way; the shortest where several are
+  };
+  static constexpr float kNone = 1e9F;
+
+  /// For the block whose first voxel is box voxel `first`. False if all that it reaches is on one side: nothing
+  /// is found then.
+  bool find(const Mask& mask, const std::array<int, 3>& first, Found& found) const noexcept;
+
+ private:
+  std::array<std::array<float, kReach + 1>, 3>
+      squares_{};  ///< [steps^2] of so many voxels along each axis
+  /// Steps to the nearest of eleven voxels that has a bit; 255: none has.
+  std::vector<std::uint8_t> nearest_;
+};
+
+}  // namespace palpate::vdb

@@ -1,0 +1,114 @@
+#include "scan/scan_loss.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+#include <vector>
+
+namespace palpate::vdb {
+namespace {
+
+/// [grid voxels] Centers may lie on the surface, and edges are rounded off; more than this is lost.
+constexpr double kLost = 0.2;
+
+constexpr const char* kLostKey = "lost_voxels";
+constexpr const char* kFilledKey = "filled_voxels";
+constexpr const char* kPlaceKey = "lost_at";  // [m]
+
+struct Found {
+  ScanLoss loss;
+  double depth = 0.0;  ///< [m] of loss.place on the wrong side
+};
+
+std::uint64_t countAt(const LevelSetInfo& info, const char* key) {
+  const auto at = info.metadata.find(key);
+  return at == info.metadata.end() ? 0 : std::strtoull(at->second.c_str(), nullptr, 10);
+}
+
+}  // namespace
+
+ScanLoss findLoss(const LevelSet& grid, const Band& band, const Mask& mask, const Image& image) {
+  const FieldPtr field = gridField(grid, Sampler::kAccessor);
+  const double enough = kLost * grid.info().voxel_size;
+  std::vector<Found> found(band.blocks.size());
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, found.size()),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t b = range.begin(); b != range.end(); ++b) {
+          const BandBlock& block = band.blocks[b];
+          for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+            if (std::isnan(block.value[n])) continue;
+            const auto place = static_cast<int>(n);
+            const int i = block.first[0] + (place >> 6);
+            const int j = block.first[1] + (place >> 3 & 7);
+            const int k = block.first[2] + (place & 7);
+            const bool inside = mask.inside[static_cast<std::size_t>(mask.at(i, j, k))] != 0;
+            const Vec3 p =
+                image.toWorld(Vec3(mask.first[0] + i, mask.first[1] + j, mask.first[2] + k));
+            const double depth = field->value(p) * (inside ? 1.0 : -1.0);
+            if (!(depth > enough)) continue;
+            Found& here = found[b];
+            ++(inside ? here.loss.lost : here.loss.filled);
+            if (depth <= here.depth) continue;
+            here.depth = depth;
+            here.loss.place = p;
+          }
+        }
+      });
+  Found all;
+  for (const Found& one : found) {
+    all.loss.lost += one.loss.lost;
+    all.loss.filled += one.loss.filled;
+    if (one.depth <= all.depth) continue;
+    all.depth = one.depth;
+    all.loss.place = one.loss.place;
+  }
+  return all.loss;
+}
+
+std::map<std::string, std::string> metadataOf(const ScanLoss& loss) {
+  std::map<std::string, std::string> result;
+  if (loss.lost > 0) result[kLostKey] = std::to_string(loss.lost);
+  if (loss.filled > 0) result[kFilledKey] = std::to_string(loss.filled);
+  if (result.empty()) return result;
+  char text[100];
+  std::snprintf(text, sizeof text, "%.6g %.6g %.6g", loss.place.x, loss.place.y, loss.place.z);
+  result[kPlaceKey] = text;
+  return result;
+}
+
+ScanLoss scanLoss(const LevelSetInfo& info) {
+  ScanLoss loss;
+  loss.lost = countAt(info, kLostKey);
+  loss.filled = countAt(info, kFilledKey);
+  if (const auto at = info.metadata.find(kPlaceKey); at != info.metadata.end()) {
+    std::istringstream text(at->second);
+    text >> loss.place.x >> loss.place.y >> loss.place.z;
+  }
+  return loss;
+}
+
+std::string scanLossNote(const LevelSetInfo& info) {
+  const ScanLoss loss = scanLoss(info);
+  if (loss.lost + loss.filled == 0) return {};
+  const auto voxels = [](std::uint64_t count) {
+    return std::to_string(count) + (count == 1 ? " voxel" : " voxels");
+  };
+  std::string what;
+  if (loss.lost > 0) what = voxels(loss.lost) + " of the scan lost";
+  if (loss.filled > 0) {
+    what += (what.empty() ? "" : ", ") + voxels(loss.filled) + " of the scan around it filled";
+  }
+  char text[200];
+  std::snprintf(text, sizeof text,
+                ", where parts or gaps are thinner than voxels of %.4g mm hold; most at "
+                "(%.4g, %.4g, %.4g) mm; smaller voxels keep them",
+                1e3 * info.voxel_size, 1e3 * loss.place.x, 1e3 * loss.place.y, 1e3 * loss.place.z);
+  return what + text;
+}
+
+}  // namespace palpate::vdb

@@ -1,0 +1,136 @@
+#include "scan/volume.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "scan/lattice_spline.h"
+
+namespace palpate::vdb {
+namespace {
+
+constexpr int kRounds = 5;
+constexpr float kMostShift = 0.3F;  ///< [steps] by which all may move
+constexpr double kLeastRise =
+    0.2;  ///< [steps] between neighbors on two sides; grazing surfaces have less
+constexpr double kLeastValue = 1e-6;  ///< [steps]
+
+/// What the surface encloses more than the voxels do, and how much more if it moves by a step; in voxels.
+struct Excess {
+  double volume = 0.0;
+  double slope = 0.0;
+};
+
+class Volume {
+ public:
+  Volume(Band& band, const Mask& mask)
+      : band_(band), mask_(mask), sums_(band.blocks.size()), bends_(band.blocks.size()) {}
+
+  void run() {
+    std::vector<BandBlock::Values> first;
+    first.reserve(band_.blocks.size());
+    for (const BandBlock& block : band_.blocks) first.push_back(block.value);
+    findBends();
+    float shift = 0.0F;
+    for (int round = 0; round < kRounds; ++round) {
+      const Excess excess = find();
+      if (!(excess.slope > 0.0)) return;
+      shift = std::clamp(shift - static_cast<float>(excess.volume / excess.slope), -kMostShift,
+                         kMostShift);
+      forBlocks([&](std::size_t b) {
+        BandBlock& block = band_.blocks[b];
+        const BandBounds& bounds = band_.bounds[b];
+        for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+          if (std::isnan(block.value[n])) continue;
+          block.value[n] = std::clamp(first[b][n] - shift, bounds.lower[n], bounds.upper[n]);
+        }
+      });
+    }
+  }
+
+ private:
+  template <typename Body>
+  void forBlocks(const Body& body) const {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, band_.blocks.size()),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t b = range.begin(); b != range.end(); ++b) body(b);
+                      });
+  }
+
+  /// Sums of blocks first, so that the order does not depend on the threads.
+  Excess find() {
+    forBlocks([&](std::size_t b) {
+      Excess& sum = sums_[b];
+      sum = {};
+      std::size_t crossing = 0;
+      forCrossings(band_.blocks[b], [&](const Vec3&, const Vec3&, double inside, double outside) {
+        const double rise = outside - inside;
+        const double share = (-inside - bends_[b][crossing++]) / rise;
+        sum.volume += (std::clamp(share, 0.0, 1.0) - 0.5) / 3.0;
+        sum.slope += 1.0 / (3.0 * std::max(rise, kLeastRise));
+      });
+    });
+    return std::accumulate(sums_.begin(), sums_.end(), Excess{}, [](Excess a, const Excess& b) {
+      return Excess{a.volume + b.volume, a.slope + b.slope};
+    });
+  }
+
+  /// By what the spline differs, where it passes zero, from the straight line between two voxels. A shift of all
+  /// leaves that as it is.
+  void findBends() {
+    const LatticeSpline spline(band_, mask_, Mat3(1.0), Vec3(0.0));
+    forBlocks([&](std::size_t b) {
+      forCrossings(band_.blocks[b],
+                   [&](const Vec3& at, const Vec3& step, double inside, double outside) {
+                     const Vec3 zero = at + step * (inside / (inside - outside));
+                     bends_[b].push_back(static_cast<float>(spline.valueAt(zero).value_or(0.0)));
+                   });
+    });
+  }
+
+  /// visit(voxel, step to its neighbor outside, both values) for each inside voxel of a block that has one; not
+  /// beyond the image's border.
+  template <typename Visit>
+  void forCrossings(const BandBlock& block, const Visit& visit) const {
+    const auto strides = mask_.strides();
+    for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+      if (std::isnan(block.value[n])) continue;
+      const auto place = static_cast<int>(n);
+      const std::array<int, 3> at = {block.first[0] + (place >> 6),
+                                     block.first[1] + (place >> 3 & 7),
+                                     block.first[2] + (place & 7)};
+      const std::ptrdiff_t here = mask_.at(at[0], at[1], at[2]);
+      if (mask_.inside[static_cast<std::size_t>(here)] == 0) continue;
+      const double inside = std::min(static_cast<double>(block.value[n]), -kLeastValue);
+      for (std::size_t a = 0; a < 3; ++a) {
+        for (const int side : {-1, 1}) {
+          if (mask_.inside[static_cast<std::size_t>(here + side * strides[a])] != 0) continue;
+          std::array<int, 3> step{};
+          step[a] = side;
+          const float outside =
+              band_.valueAt(band_.first[0] + at[0] + step[0], band_.first[1] + at[1] + step[1],
+                            band_.first[2] + at[2] + step[2]);
+          if (std::isnan(outside)) continue;
+          visit(Vec3(at[0], at[1], at[2]), Vec3(step[0], step[1], step[2]), inside,
+                std::max(static_cast<double>(outside), kLeastValue));
+        }
+      }
+    }
+  }
+
+  Band& band_;
+  const Mask& mask_;
+  std::vector<Excess> sums_;
+  std::vector<std::vector<float>>
+      bends_;  ///< [steps] for each block, in the order of forCrossings()
+};
+
+}  // namespace
+
+void keepVolume(Band& band, const Mask& mask) { Volume(band, mask).run(); }
+
+}  // namespace palpate::vdb
