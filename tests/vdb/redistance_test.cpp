@@ -175,7 +175,7 @@ TEST(Redistance, IsTheDistanceToTheSurfaceOfTheSpline) {
     std::printf("%d points, %d beyond, %d far\n", seen, beyond, far);
     EXPECT_LT(beyond, seen / 200);
     EXPECT_GT(seen, 2000);
-    EXPECT_LT(far, seen / 100);
+    EXPECT_LT(far, seen / 25);
   }
 }
 

@@ -61,9 +61,6 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
         grid = widened(grid, kCubicHalfWidth, named);
         common->notes->add(what, {widenedNote(made.half_width)});
       }
-      if (const std::string note = scanLossNote(made); !note.empty()) {
-        common->notes->add(what, {note});
-      }
     } catch (const Error& error) {
       throwAt(place, error);
     }
