@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <numbers>
 
 #include "tools/helpers.h"
@@ -259,6 +260,69 @@ TEST_F(ConvertGrids, TurnedGridsBecomeMeshesAndTurnedImages) {
     EXPECT_NEAR(n[6], first, 1e-6);
     EXPECT_NEAR(n[7], name == "turned" ? -0.25 : 0.0, 1e-6);
     EXPECT_NEAR(n[16], name == "stretched" ? 0.7 : 0.5, 1e-6);
+  }
+}
+
+TEST_F(ConvertGrids, AnInsideThatIsNotMarkedIsMarked) {
+  // Not a second wall where the band ends inside.
+  const CommandResult made =
+      runPalpate({"convert", "hollow.vdb", "-o", "hollow.stl"}, folder().path());
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.err.find("its inside was not marked"), std::string::npos) << made.err;
+  expectBall("hollow.stl", 0.015);
+  (void)converted(folder(), {"hollow_turned.vdb", "-o", "hollow_turned.ply"});
+  expectBall("hollow_turned.ply", 0.015);
+  for (const std::string name : {"hollow", "hollow_turned"}) {
+    (void)converted(folder(), {name + ".vdb", "-o", name + ".nii.gz"});
+    const std::vector<double> n = told("image", folder().path(name + ".nii.gz"));
+    EXPECT_NEAR(n[2], ballVolume(6.0), 0.02 * ballVolume(6.0)) << name;
+    EXPECT_LT(n[0], -1.4) << name;  // the middle is 3 voxels inside
+  }
+  // A ball with a hollow of 2.5 mm: the wall between is inside, the hollow is not.
+  (void)converted(folder(), {"nested.vdb", "-o", "nested.stl"});
+  EXPECT_NEAR(meshFile(folder().path("nested.stl")).volume, ballVolume(6.0) - ballVolume(2.5),
+              0.02 * ballVolume(6.0));
+  expectGrid("hollow", {"--voxel", "0.4"}, 0.015);
+  const CommandResult whole = runPalpate({"convert", "ball.vdb", "-o", "w.stl"}, folder().path());
+  EXPECT_EQ(whole.err.find("inside"), std::string::npos) << whole.err;
+}
+
+/// A line for each active voxel of a grid: place and value, told by python3-openvdb.
+std::string bandOf(const std::string& path) {
+  const std::string line =
+      "/usr/bin/python3 -c \"import pyopenvdb, sys; g = pyopenvdb.readAll(sys.argv[1])[0][0]; "
+      "print(*[(i.min, i.max, i.value) for i in g.iterOnValues()], sep='\\n'); "
+      "print('middle', g.getConstAccessor().getValue((2, 4, 6)))\" '" +
+      path + "'";
+  FILE* pipe = popen(line.c_str(), "r");
+  std::string text;
+  char part[4096];
+  while (pipe != nullptr && std::fgets(part, sizeof part, pipe) != nullptr) text += part;
+  EXPECT_EQ(pclose(pipe), 0) << line;
+  return text;
+}
+
+TEST_F(ConvertGrids, MarkingTheInsideKeepsTheBandToTheLastBit) {
+  (void)converted(folder(), {"hollow.vdb", "-o", "marked.vdb"});
+  std::string before = bandOf(folder().path("hollow.vdb"));
+  const std::string after = bandOf(folder().path("marked.vdb"));
+  const std::size_t at = before.find("middle 1.5");
+  ASSERT_NE(at, std::string::npos);
+  before.replace(at, 10, "middle -1.5");
+  EXPECT_EQ(after, before);
+  const CommandResult check = runPalpate({"check", "marked.vdb", "--json"}, folder().path());
+  EXPECT_EQ(check.exit_code, 0) << check.out;
+}
+
+TEST_F(ConvertGrids, ABandWithHolesIsRefusedNamingThePlace) {
+  for (const std::string output : {"t.stl", "t.nii.gz", "t.vdb"}) {
+    const CommandResult torn =
+        runPalpate({"convert", "torn.vdb", "-o", output, "--json"}, folder().path());
+    EXPECT_EQ(torn.exit_code, 3) << torn.out;
+    const Json error = Json::parse(torn.out, nullptr, false);
+    EXPECT_EQ(error["error"]["code"], "vdb.torn") << torn.out;
+    EXPECT_NE(torn.out.find("one at ("), std::string::npos) << torn.out;
+    EXPECT_FALSE(std::filesystem::exists(folder().path(output)));
   }
 }
 

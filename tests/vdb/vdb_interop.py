@@ -112,6 +112,28 @@ for item in source.iterOnValues():
     accessor.setValueOn(item.min, item.value)
 write("hollow", hollow)
 
+# The same with a shell's two walls, and on a lattice that is turned.
+nested = hollow.deepCopy()
+accessor = nested.getAccessor()
+for item in pyopenvdb.createLevelSetSphere(2.5, tuple(CENTER), 0.5, 3.0).iterOnValues():
+    if not accessor.isValueOn(item.min):
+        accessor.setValueOn(item.min, -item.value)
+write("nested", nested)
+askew = distances(turned, "ball")
+band = pyopenvdb.FloatGrid(askew.background)
+band.name = "ball"
+band.gridClass = pyopenvdb.GridClass.LEVEL_SET
+band.transform = askew.transform
+band["length_unit"] = "mm"
+accessor = band.getAccessor()
+for item in askew.iterOnValues():
+    if abs(item.value) < askew.background:
+        for x in range(item.min[0], item.max[0] + 1):
+            for y in range(item.min[1], item.max[1] + 1):
+                for z in range(item.min[2], item.max[2] + 1):
+                    accessor.setValueOn((x, y, z), item.value)
+write("hollow_turned", band)
+
 # A patch of the band is gone.
 torn = ball()
 accessor = torn.getAccessor()

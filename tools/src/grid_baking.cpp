@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 #include "input_kind.h"
 #include "palpate/vdb/bake.h"
@@ -68,7 +69,7 @@ vdb::LevelSet straightened(const BakeOptions& options, Console& console) {
   const auto grid = summaryOf(options, askedName(options));
   const std::string name = grid ? grid->name : "";
   const std::string unit = unitOfGrid(options);
-  vdb::Image image = readDistances(options);
+  vdb::Image image = readDistances(options, console);
   for (float& value : image.values) value = -value;
   const double spacing = std::min(
       {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])});
@@ -81,6 +82,12 @@ vdb::LevelSet straightened(const BakeOptions& options, Console& console) {
                                    console.progress());
 }
 
+void tellMarked(const BakeOptions& options, std::uint64_t voxels, Console& console) {
+  if (voxels == 0) return;
+  console.note(options.input + ": its inside was not marked; " + formatCount(voxels) +
+               " voxels beyond the band are now, and the band is as it was");
+}
+
 }  // namespace
 
 std::string unitOfGrid(const BakeOptions& options) {
@@ -88,10 +95,13 @@ std::string unitOfGrid(const BakeOptions& options) {
   return grid && !grid->info.length_unit.empty() ? grid->info.length_unit : options.units;
 }
 
-vdb::LevelSet readLevelSet(const BakeOptions& options) {
-  return vdb::readVdb(
-      options.input, askedName(options), options.units,
-      options.level_set ? vdb::UnknownClass::kLevelSet : vdb::UnknownClass::kRefuse);
+vdb::MarkedInside readLevelSet(const BakeOptions& options, Console& console) {
+  vdb::MarkedInside read = vdb::withInsideMarked(
+      vdb::readVdb(options.input, askedName(options), options.units,
+                   options.level_set ? vdb::UnknownClass::kLevelSet : vdb::UnknownClass::kRefuse),
+      options.input);
+  tellMarked(options, read.voxels, console);
+  return read;
 }
 
 bool isMendable(const Error& error, const BakeOptions& options) {
@@ -101,7 +111,7 @@ bool isMendable(const Error& error, const BakeOptions& options) {
   return grid && grid->type == "DoubleGrid";
 }
 
-vdb::Image readDistances(const BakeOptions& options) {
+vdb::Image readDistances(const BakeOptions& options, Console& console) {
   const std::string name = askedName(options);
   const auto grid = summaryOf(options, name);
   const std::string grid_class = grid ? grid->grid_class : "";
@@ -113,21 +123,25 @@ vdb::Image readDistances(const BakeOptions& options) {
                      "around its voxels",
                      options.input);
   }
-  return vdb::readVdbImage(options.input, name, options.units);
+  vdb::DistanceImage read = vdb::readVdbDistances(options.input, name, options.units);
+  tellMarked(options, read.marked_inside, console);
+  return std::move(read.image);
 }
 
 BakedGrid rebakeGrid(const BakeOptions& options, Console& console) {
   const auto start = std::chrono::steady_clock::now();
   BakedGrid baked;
-  vdb::LevelSet old;
+  vdb::MarkedInside read;
   try {
-    old = readLevelSet(options);
+    read = readLevelSet(options, console);
   } catch (const Error& error) {
     if (!isMendable(error, options)) throw;
     baked.grid = straightened(options, console);
   }
-  if (old) {
-    const vdb::LevelSetInfo& info = old.info();
+  if (read.voxels > 0 && options.voxel.empty()) {
+    baked.grid = read.grid;
+  } else if (read.grid) {
+    const vdb::LevelSetInfo& info = read.grid.info();
     if (options.voxel.empty()) {
       throw usageError(
           "this is a .vdb file already",
@@ -137,7 +151,7 @@ BakedGrid rebakeGrid(const BakeOptions& options, Console& console) {
     const double voxel = voxelOr(options, info.length_unit, 0.0);
     // The new band, and what a cubic sample at its rim depends on.
     const double band = options.half_width * voxel / info.voxel_size + vdb::kCubicHalfWidth;
-    const FieldPtr field = vdb::gridField(vdb::widened(old, band, console.progress()));
+    const FieldPtr field = vdb::gridField(vdb::widened(read.grid, band, console.progress()));
     baked.grid = vdb::bake(*field, bakeOptions(options, info.name, info.length_unit, voxel),
                            console.progress());
   }

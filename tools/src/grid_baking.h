@@ -2,12 +2,14 @@
 /// Grids made of grids.
 
 #include "baking.h"
+#include "palpate/vdb/grid_check.h"
 #include "palpate/vdb/image.h"
 
 namespace palpate::tools {
 
-/// The level set of a .vdb file that the options name. @throws Error as vdb::readVdb() does.
-[[nodiscard]] vdb::LevelSet readLevelSet(const BakeOptions& options);
+/// The level set of a .vdb file that the options name, its inside marked where it was not, which is told.
+/// @throws Error as vdb::readVdb() and vdb::withInsideMarked() do.
+[[nodiscard]] vdb::MarkedInside readLevelSet(const BakeOptions& options, Console& console);
 
 /// The grid's own length unit, or --units; may be empty.
 [[nodiscard]] std::string unitOfGrid(const BakeOptions& options);
@@ -15,11 +17,12 @@ namespace palpate::tools {
 /// Whether what readLevelSet() threw is about the grid's transform or number type only.
 [[nodiscard]] bool isMendable(const Error& error, const BakeOptions& options);
 
-/// A level set that readLevelSet() may refuse for those, as it is; values in its own length unit.
-[[nodiscard]] vdb::Image readDistances(const BakeOptions& options);
+/// A level set that readLevelSet() may refuse for those, its inside marked; values in its own length unit.
+[[nodiscard]] vdb::Image readDistances(const BakeOptions& options, Console& console);
 
 /// What readLevelSet() refuses for its transform or its number type, as a grid of cubic voxels along the
-/// axes; else the same surface with voxels of --voxel.
+/// axes; else the same surface with voxels of --voxel; or the grid as it is but for its inside, where that was not
+/// marked.
 /// @throws Error: kUsage without --voxel where there is nothing to mend.
 [[nodiscard]] BakedGrid rebakeGrid(const BakeOptions& options, Console& console);
 

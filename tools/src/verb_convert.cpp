@@ -23,20 +23,27 @@ bool isImageName(const std::string& path) {
   return hasExtension(path, ".nii") || hasExtension(path, ".nii.gz");
 }
 
-/// Whether a grid is not to be taken as it is.
-bool asksForMore(const BakeOptions& bake) {
-  return bake.above || !bake.labels.empty() || !bake.voxel.empty();
+/// Whether the input is a grid of distances that nothing is asked to be done about.
+bool isTakenAsItIs(const BakeOptions& bake) {
+  return inputKind(bake.input) == InputKind::kGrid && !bake.above && bake.labels.empty() &&
+         bake.voxel.empty();
+}
+
+/// Its level set; none if its voxels are no cubes along the axes, or no floats.
+vdb::LevelSet takenAsItIs(const BakeOptions& bake, Console& console) {
+  try {
+    return readLevelSet(bake, console).grid;
+  } catch (const Error& error) {
+    if (!isMendable(error, bake)) throw;
+    return {};
+  }
 }
 
 /// The one grid that a mesh or image file is made from.
 vdb::LevelSet onlyGrid(const ConvertOptions& options, Console& console) {
   const BakeOptions& bake = options.bake;
-  if (inputKind(bake.input) == InputKind::kGrid && !asksForMore(bake)) {
-    try {
-      return readLevelSet(bake);
-    } catch (const Error& error) {
-      if (!isMendable(error, bake)) throw;
-    }
+  if (isTakenAsItIs(bake)) {
+    if (vdb::LevelSet grid = takenAsItIs(bake, console)) return grid;
   }
   const std::vector<BakedGrid> baked = bakeInput(bake, console);
   if (baked.size() == 1) return baked.front().grid;
@@ -92,26 +99,17 @@ Written asMesh(const ConvertOptions& options, Console& console) {
   return out;
 }
 
-/// A grid that is turned or stretched becomes an image that is as well, with the same voxels.
-bool staysAsItIs(const BakeOptions& bake) {
-  if (inputKind(bake.input) != InputKind::kGrid || asksForMore(bake)) return false;
-  try {
-    static_cast<void>(readLevelSet(bake));
-    return false;
-  } catch (const Error& error) {
-    if (!isMendable(error, bake)) throw;
-    return true;
-  }
-}
-
 Written asImage(const ConvertOptions& options, Console& console) {
   vdb::Image image;
   double metres = 1.0;
-  if (staysAsItIs(options.bake)) {
-    image = readDistances(options.bake);
+  const bool as_it_is = isTakenAsItIs(options.bake);
+  vdb::LevelSet grid =
+      as_it_is ? takenAsItIs(options.bake, console) : onlyGrid(options, console);
+  if (!grid) {
+    // A grid that is turned or stretched becomes an image that is as well, with the same voxels.
+    image = readDistances(options.bake, console);
     metres = lengthUnit(unitOfGrid(options.bake)).metres;
   } else {
-    const vdb::LevelSet grid = onlyGrid(options, console);
     image = vdb::gridImage(grid);
     metres = grid.info().metres_per_unit;
   }

@@ -32,7 +32,7 @@ void findVoxels(const vdb::GridCheck& check, const LengthUnit& unit, GridVerdict
   add("grid.not_finite", check.not_finite, "with no number");
   add("grid.sign_break", check.sign_breaks,
       "where inside and outside meet without a band in between: the inside is not marked as such "
-      "(OpenVDB's signedFloodFill does that), or the grid was cut off");
+      "(palpate convert FILE.vdb -o OTHER.vdb marks it), or the grid was cut off");
   add("grid.band_hole", check.band_holes, "at a hole in the band");
 }
 

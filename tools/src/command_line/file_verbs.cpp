@@ -158,7 +158,10 @@ Verb convertVerb() {
       "layers or grids one must be named with --layer. A grid becomes another grid by --voxel; by "
       "--above\n"
       "or --labels if it holds densities or labels; and by itself if it is turned, stretched or "
-      "of doubles.",
+      "of\n"
+      "doubles, or if its inside is not marked: that is mended whatever becomes of the grid, and "
+      "refused\n"
+      "where the band has holes.",
       {},
       defineConvert,
       [](const Invocation& i) {

@@ -38,9 +38,8 @@ class FieldBaker {
     for (const Cell& cell : cells_) origins.push_back(cell.origin);
     fillTree(grid->tree(), origins, std::move(leaves), inside_);
     report(progress_, "bake", 1.0);
-    LevelSet made = finishGrid(grid, plan_, options_);
-    refuseLostPlates(field_, made, plan_, options_);
-    return made;
+    const LevelSet made = finishGrid(grid, plan_, options_);
+    return withLostParts(made, refuseLostPlates(field_, made, plan_, options_));
   }
 
  private:

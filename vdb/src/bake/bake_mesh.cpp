@@ -130,11 +130,9 @@ class MeshBaker {
     if (columns_) fillInside();
     report(progress_, "bake mesh", 1.0);
     const LevelSet result = finishGrid(grid_, plan_, options_);
-    if (columns_) {
-      refuseLostPlates({solid_, bins, faces_itself_, whole ? *whole : solid_, *columns_}, result,
-                       plan_, options_);
-    }
-    return result;
+    if (!columns_) return result;
+    const BakedMesh baked{solid_, bins, faces_itself_, whole ? *whole : solid_, *columns_};
+    return withLostParts(result, refuseLostPlates(baked, result, plan_, options_));
   }
 
  private:

@@ -120,6 +120,10 @@ LevelSet finishGrid(openvdb::FloatGrid::Ptr grid, const BakePlan& plan,
   return makeLevelSet(std::move(grid), options.length_unit, metadata);
 }
 
+LevelSet withLostParts(const LevelSet& grid, const std::string& lost) {
+  return lost.empty() ? grid : grid.named(grid.info().name, {{"lost_parts", lost}});
+}
+
 void requireMemory(double area, double margin, const BakePlan& plan) {
   using Tree = openvdb::FloatTree;
   using Leaf = Tree::LeafNodeType;

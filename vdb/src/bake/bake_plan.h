@@ -40,6 +40,9 @@ struct BakePlan {
 [[nodiscard]] LevelSet finishGrid(openvdb::FloatGrid::Ptr grid, const BakePlan& plan,
                                   const BakeOptions& options);
 
+/// The same grid, saying so if it has lost something.
+[[nodiscard]] LevelSet withLostParts(const LevelSet& grid, const std::string& lost);
+
 /// The memory of a band around a surface of `area` [voxels^2].
 /// @throws Error (kOperation), naming a voxel size that fits, if it is more than `margin` times what
 /// the plan allows.

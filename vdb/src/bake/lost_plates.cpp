@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/field_parts.h"
+#include "bake/lost_wires.h"
 #include "palpate/vdb/openvdb_access.h"
 
 namespace palpate::vdb {
@@ -44,7 +45,7 @@ class Search {
   /// From now on, what this grid holds is not lost.
   void lookInto(const LevelSet& grid) { grid_ = gridField(grid, Sampler::kAccessor); }
 
-  [[nodiscard]] LostPlates in(const Leaf& leaf) const {
+  [[nodiscard]] LostPlaces in(const Leaf& leaf) const {
     // What decides at all points that are looked at from here; of fields that are no distances, these may
     // be anywhere.
     constexpr double kReach = 0.5 * 1.7320508075688774 * 7.0 + kBySurface + kHeld + kGoesOn + 0.1;
@@ -53,7 +54,7 @@ class Search {
     FieldPart part;
     const double radius = has_distances_ ? kReach * plan_.voxel : kInfinity;
     static_cast<void>(parts_.narrow(parts_.whole(), center, radius, kInfinity, part));
-    LostPlates lost;
+    LostPlaces lost;
     const double held = kHeld * plan_.voxel;
     if (parts_.isUnionOf(part, [&](const Field& field) { return !mayBeThin(field, held); })) {
       return lost;
@@ -71,7 +72,7 @@ class Search {
 
  private:
   /// From a point by the surface: down to it, and on through the shape.
-  void look(const FieldPart& part, const Vec3& p, LostPlates& lost) const noexcept {
+  void look(const FieldPart& part, const Vec3& p, LostPlaces& lost) const noexcept {
     const FieldSample here = parts_.sample(part, p);
     const double slope = glm::length(here.gradient);
     if (!here.in_band || !(slope > 0.0)) return;
@@ -97,9 +98,15 @@ class Search {
     }
     const Vec3 middle = foot + 0.5 * inside * in;
     if (!(inside > 0.0) || (grid_ && grid_->value(middle) < 0.0)) return;
-    if (!goesOn(part, middle, in)) return;
     if (box_ && !box_->contains(middle)) return;
-    lost.add(middle, inside);
+    if (goesOn(part, middle, in)) {
+      lost.add({middle, inside, LostShape::kPlate});
+    } else if (lost.empty()) {
+      const Thin solid(*this, inside);
+      if (const auto shape = ThinPart(solid).lostAt(middle / plan_.voxel, in)) {
+        lost.add({middle, inside, *shape});
+      }
+    }
   }
 
   [[nodiscard]] bool goesOn(const FieldPart& part, const Vec3& middle,
@@ -113,6 +120,49 @@ class Search {
            is_inside(middle + far * v) && is_inside(middle - far * v);
   }
 
+  /// The field as ThinPart asks for it; all in voxels.
+  class Thin {
+   public:
+    Thin(const Search& search, double thickness)
+        : search_(search),
+          least_step_(std::clamp(0.25 * thickness / search.plan_.voxel, 0.01, 0.1)) {}
+
+    [[nodiscard]] double wayOut(const Vec3& from, const Vec3& along) const noexcept {
+      constexpr double kFar = 2.0 * kGoesOn;
+      double inside = 0.0;
+      double outside = 0.0;
+      while (outside == 0.0) {
+        const double here = valueAt(from + inside * along);
+        const double step = search_.has_distances_ ? std::max(least_step_, -here) : least_step_;
+        const double next = inside + step;
+        if (valueAt(from + next * along) < 0.0) {
+          if (next >= kFar) return kInfinity;
+          inside = next;
+        } else {
+          outside = next;
+        }
+      }
+      for (int i = 0; i < 12; ++i) {
+        const double middle = 0.5 * (inside + outside);
+        (valueAt(from + middle * along) < 0.0 ? inside : outside) = middle;
+      }
+      return inside;
+    }
+    [[nodiscard]] bool isInside(const Vec3& p) const noexcept { return valueAt(p) < 0.0; }
+    [[nodiscard]] bool isHeld(const Vec3& p) const noexcept {
+      return search_.grid_ && search_.grid_->value(p * search_.plan_.voxel) < 0.0;
+    }
+
+   private:
+    [[nodiscard]] double valueAt(const Vec3& p) const noexcept {
+      const FieldParts& parts = search_.parts_;
+      return parts.value(parts.whole(), p * search_.plan_.voxel) / search_.plan_.voxel;
+    }
+
+    const Search& search_;
+    double least_step_;
+  };
+
   FieldParts parts_;
   bool has_distances_;
   FieldPtr grid_;  ///< null: taken as if it held nothing
@@ -122,37 +172,14 @@ class Search {
 
 }  // namespace
 
-void LostPlates::add(const Vec3& place, double thickness) { add({1, place, thickness}); }
-
-void LostPlates::add(const LostPlates& others) {
-  if (others.places == 0) return;
-  if (places == 0) {
-    *this = others;
-    return;
-  }
-  places += others.places;
-  thinnest = std::min(thinnest, others.thinnest);
-}
-
-void LostPlates::refuse(const BakePlan& plan, const BakeOptions& options) const {
-  if (places == 0) return;
-  throw inputError("bake.too_thin",
-                   "'" + options.name + "' is " + inMillimetres(thinnest) + " thin near " +
-                       placeText(where / plan.voxel, plan.voxel) +
-                       " and would have holes in a grid of " + inMillimetres(plan.voxel) +
-                       " voxels",
-                   "a voxel of " + inMillimetres(thinnest / kHeld) +
-                       " holds it; or keep this part analytic, or make it a sheet");
-}
-
-void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& plan,
-                      const BakeOptions& options) {
-  if (!mayBeThin(field, kHeld * plan.voxel)) return;
+std::string refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& plan,
+                             const BakeOptions& options) {
+  if (!mayBeThin(field, kHeld * plan.voxel)) return {};
   std::vector<const Leaf*> leaves;
   grid.impl().grid->tree().getNodes(leaves);
   Search search(field, plan, options.box);
   const auto search_all = [&] {
-    std::vector<LostPlates> found(leaves.size());
+    std::vector<LostPlaces> found(leaves.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -162,18 +189,19 @@ void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& 
     return found;
   };
   // A field of the grid is worth its making only where something is thin.
-  std::vector<LostPlates> found = search_all();
+  std::vector<LostPlaces> found = search_all();
   std::vector<const Leaf*> thin;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
-    if (found[i].places > 0) thin.push_back(leaves[i]);
+    if (!found[i].empty()) thin.push_back(leaves[i]);
   }
-  if (thin.empty()) return;
+  if (thin.empty()) return {};
   leaves = std::move(thin);
   search.lookInto(grid);
   found = search_all();
-  LostPlates all;
-  for (const LostPlates& lost : found) all.add(lost);
+  LostPlaces all;
+  for (const LostPlaces& lost : found) all.add(lost);
   all.refuse(plan, options);
+  return all.crumbs(plan);
 }
 
 }  // namespace palpate::vdb

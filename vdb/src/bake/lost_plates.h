@@ -1,5 +1,5 @@
 #pragma once
-// Thin parts that a grid of them has lost.
+/// Thin parts that a grid of them has lost.
 
 #include <cstdint>
 #include <string>
@@ -20,12 +20,43 @@ inline constexpr double kHeld = 1.75;
 /// [voxels] How far the shape must go on to all sides.
 inline constexpr double kGoesOn = 2.0;
 
+enum class LostShape {
+  kPlate,
+  kWire,  ///< narrower than four voxels across, and goes on for two to both sides
+  kCrumb  ///< ends on all sides, and no place of it is in the grid
+};
+
+/// A place where something is lost.
+struct LostPlace {
+  Vec3 where;        ///< [m]
+  double thickness;  ///< [m]
+  LostShape shape;
+};
+
+/// Places found, and what is said about them.
+class LostPlaces {
+ public:
+  [[nodiscard]] bool empty() const noexcept { return places_.empty(); }
+  void add(const LostPlace& place) { places_.push_back(place); }
+  void add(const LostPlaces& others);
+  /// @throws Error (kInput) if there are plates or wires: the first of them, and a voxel that holds all.
+  void refuse(const BakePlan& plan, const BakeOptions& options) const;
+  /// "2 separate parts ...", how many crumbs there are and where the thickest is; empty without any.
+  [[nodiscard]] std::string crumbs(const BakePlan& plan) const;
+
+ private:
+  std::vector<LostPlace> places_;
+};
+
 /// A plate thinner than about a voxel has no voxel inside where it passes between them: holes, which a hand
-/// falls through. Looks for such places from every voxel by the surface; a place counts where the
-/// shape goes on for two voxels to all sides, so that the last voxel of a sharp edge or a tip does not.
-/// @throws Error (kInput) naming one, the thickness there and a voxel size that holds it.
-void refuseLostPlates(const Field& field, const LevelSet& grid, const BakePlan& plan,
-                      const BakeOptions& options);
+/// falls through; a wire is broken there, and a crumb gone. Looks for such places from every voxel by the surface; a
+/// plate counts where it goes on for two voxels to all sides, so that the last voxel of a sharp edge does not, a wire
+/// where it does so to both (lost_wires.h).
+/// Crumbs, which scans are full of, are no reason to refuse.
+/// @throws Error (kInput) naming a plate or wire, the thickness there and a voxel size that holds it.
+/// @return LostPlaces::crumbs()
+[[nodiscard]] std::string refuseLostPlates(const Field& field, const LevelSet& grid,
+                                           const BakePlan& plan, const BakeOptions& options);
 
 /// A mesh that became a grid.
 struct BakedMesh {
@@ -38,19 +69,7 @@ struct BakedMesh {
 };
 
 /// The same of a mesh, in leaves with walls that face away from each other; the others hold no plate.
-void refuseLostPlates(const BakedMesh& mesh, const LevelSet& grid, const BakePlan& plan,
-                      const BakeOptions& options);
-
-/// Places found, and what is said about them.
-struct LostPlates {
-  std::size_t places = 0;
-  Vec3 where{0.0};        ///< [m] the first
-  double thinnest = 0.0;  ///< [m]
-
-  void add(const Vec3& place, double thickness);
-  void add(const LostPlates& others);
-  /// @throws Error (kInput) if there are any.
-  void refuse(const BakePlan& plan, const BakeOptions& options) const;
-};
+[[nodiscard]] std::string refuseLostPlates(const BakedMesh& mesh, const LevelSet& grid,
+                                           const BakePlan& plan, const BakeOptions& options);
 
 }  // namespace palpate::vdb

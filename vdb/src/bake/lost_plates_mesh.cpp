@@ -6,14 +6,12 @@
 #include <span>
 #include <utility>
 
-#include "bake/lost_plates.h"
-#include "bake/solid_inside.h"
-#include "palpate/vdb/openvdb_access.h"
+#include "bake/grid_values.h"
+#include "bake/lost_wires.h"
+#include "bake/mesh_solid.h"
 
 namespace palpate::vdb {
 namespace {
-
-using Leaf = openvdb::FloatTree::LeafNodeType;
 
 /// [voxels] Depths that are looked at first: where the grid is negative at all of them it has no hole. Its values
 /// in a plate are least in the middle, so that a hole shows at the next of them too.
@@ -23,14 +21,19 @@ constexpr double kHair = 1e-4;
 
 /// Cosine between the way down and the wall opposite: others are the two sides of an edge.
 constexpr double kOpposite = 0.7;
+/// The same of a wire, which may have three sides.
+constexpr double kOppositeOfWire = 0.4;
+/// [voxels] Places nearer to one that is no wire are none either.
+constexpr double kSamePlace = 0.5;
 
 struct Place {
   Vec3 middle;  ///< [voxels]
   Vec3 in;      ///< across the plate
   double thickness;
+  bool may_be_plate;
 };
 
-Vec3 closestOn(const std::array<Vec3, 3>& t, const Vec3& p) noexcept {
+Vec3 closestOn(const Corners& t, const Vec3& p) noexcept {
   const Vec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
   const double square = glm::dot(normal, normal);
   bool over = square > 0.0;
@@ -52,35 +55,17 @@ Vec3 closestOn(const std::array<Vec3, 3>& t, const Vec3& p) noexcept {
   return over ? p - glm::dot(p - t[0], normal) / square * normal : best;
 }
 
-/// How far along a ray a triangle is met, from either side; sides belong to it.
-std::optional<double> meets(const std::array<Vec3, 3>& t, const Vec3& from,
-                            const Vec3& along) noexcept {
-  const Vec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
-  const double steep = glm::dot(normal, along);
-  if (steep == 0.0) return {};
-  const double way = glm::dot(normal, t[0] - from) / steep;
-  const Vec3 at = from + way * along;
-  for (std::size_t n = 0; n < 3; ++n) {
-    const Vec3 side = t[(n + 1) % 3] - t[n];
-    const double slack = 1e-9 * glm::dot(normal, normal);
-    if (glm::dot(glm::cross(side, at - t[n]), normal) < -slack) return {};
-  }
-  return way;
-}
-
 /// Looks at the grid of one thread.
 class Search {
  public:
   Search(const BakedMesh& mesh, const LevelSet& grid, const BakePlan& plan)
-      : mesh_(mesh),
-        values_(grid.impl().grid->tree()),
-        voxels_per_unit_(plan.metres_per_unit / plan.voxel) {}
+      : mesh_(mesh), values_(grid, plan) {}
 
   void in(std::size_t number, std::vector<Place>& places) const {
-    const Leaf* const leaf = values_.probeConstLeaf(mesh_.bins.origin(number));
+    const GridValues::Leaf* const leaf = values_.leafAt(mesh_.bins.origin(number));
     if (leaf == nullptr) return;
     for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
-      if (std::fabs(*voxel * voxels_per_unit_) >= kBySurface) continue;
+      if (std::fabs(values_.inVoxels(*voxel)) >= kBySurface) continue;
       const openvdb::Coord at = voxel.getCoord();
       const Vec3 p(at.x(), at.y(), at.z());
       if (!isHeldBy(at)) look(p, *voxel < 0.0F, mesh_.bins.triangles(number), places);
@@ -88,41 +73,19 @@ class Search {
   }
 
  private:
-  [[nodiscard]] double voxelAt(const openvdb::Coord& at) const {
-    return values_.getValue(at) * voxels_per_unit_;
-  }
-
-  /// [voxels] trilinear
-  [[nodiscard]] double valueAt(const Vec3& p) const {
-    const Vec3 low = glm::floor(p);
-    const openvdb::Coord at(static_cast<int>(low.x), static_cast<int>(low.y),
-                            static_cast<int>(low.z));
-    const auto along_z = [&](int x, int y) {
-      const openvdb::Coord begin = at.offsetBy(x, y, 0);
-      return glm::mix(voxelAt(begin), voxelAt(begin.offsetBy(0, 0, 1)), p.z - low.z);
-    };
-    return glm::mix(glm::mix(along_z(0, 0), along_z(0, 1), p.y - low.y),
-                    glm::mix(along_z(1, 0), along_z(1, 1), p.y - low.y), p.x - low.x);
-  }
-
   /// Whether the grid alone goes down from a voxel as into a thick part.
   [[nodiscard]] bool isHeldBy(const openvdb::Coord& at) const {
     const auto slope = [&](int x, int y, int z) {
-      return 0.5 * (voxelAt(at.offsetBy(x, y, z)) - voxelAt(at.offsetBy(-x, -y, -z)));
+      return 0.5 * (values_.at(at.offsetBy(x, y, z)) - values_.at(at.offsetBy(-x, -y, -z)));
     };
     const Vec3 p(at.x(), at.y(), at.z());
     const Vec3 gradient(slope(1, 0, 0), slope(0, 1, 0), slope(0, 0, 1));
     const double length = glm::length(gradient);
     if (!(length > 0.7)) return false;
     const Vec3 in = -gradient / length;
-    const Vec3 foot = p + voxelAt(at) * in;
+    const Vec3 foot = p + values_.at(at) * in;
     return std::all_of(kFirstDepths.begin(), kFirstDepths.end(),
-                       [&](double depth) { return valueAt(foot + depth * in) < 0.0; });
-  }
-
-  [[nodiscard]] std::array<Vec3, 3> cornersOf(std::uint32_t triangle) const {
-    const auto& [a, b, c] = mesh_.walls.triangles[triangle];
-    return {mesh_.walls.vertices[a], mesh_.walls.vertices[b], mesh_.walls.vertices[c]};
+                       [&](double depth) { return values_.at(foot + depth * in) < 0.0; });
   }
 
   void look(const Vec3& p, bool is_inside, std::span<const std::uint32_t> triangles,
@@ -131,7 +94,7 @@ class Search {
     Vec3 foot = p;
     std::uint32_t nearest = triangles.front();
     for (const std::uint32_t triangle : triangles) {
-      const Vec3 at = closestOn(cornersOf(triangle), p);
+      const Vec3 at = closestOn(cornersOf(mesh_.walls, triangle), p);
       const double here = glm::dot(p - at, p - at);
       if (here >= least) continue;
       least = here;
@@ -143,7 +106,7 @@ class Search {
       goDown(foot, (is_inside ? p - foot : foot - p) / distance, triangles, places);
       return;
     }
-    const std::array<Vec3, 3> t = cornersOf(nearest);
+    const Corners t = cornersOf(mesh_.walls, nearest);
     const Vec3 normal = unitOr(glm::cross(t[1] - t[0], t[2] - t[0]), Vec3(0.0, 0.0, 1.0));
     goDown(foot, normal, triangles, places);
     goDown(foot, -normal, triangles, places);
@@ -155,25 +118,25 @@ class Search {
     double thickness = kHeld;
     double opposite = 0.0;
     for (const std::uint32_t triangle : triangles) {
-      const std::array<Vec3, 3> t = cornersOf(triangle);
-      const auto way = meets(t, foot, in);
+      const Corners t = cornersOf(mesh_.walls, triangle);
+      const auto way = wayTo(t, foot, in);
       if (!way || *way <= kHair || *way >= thickness) continue;
       thickness = *way;
       opposite = std::fabs(glm::dot(unitOr(glm::cross(t[1] - t[0], t[2] - t[0]), in), in));
     }
-    if (opposite < kOpposite) return;
+    if (opposite < kOppositeOfWire) return;
     const Vec3 middle = foot + 0.5 * thickness * in;
-    if (valueAt(middle) >= 0.0) places.push_back({middle, in, thickness});
+    if (values_.at(middle) >= 0.0) {
+      places.push_back({middle, in, thickness, opposite >= kOpposite});
+    }
   }
 
   const BakedMesh& mesh_;
-  openvdb::FloatGrid::ConstAccessor values_;
-  double voxels_per_unit_;
+  GridValues values_;
 };
 
-/// Whether a place is in the solid, which goes on from there.
-bool isPlate(const Place& place, const SolidInside& inside, WallCount& count) {
-  if (!inside.at(place.middle, count)) return false;
+/// Whether the solid goes on to all sides of a place in it.
+bool isPlate(const Place& place, const MeshSolid& solid) {
   const Vec3 across = std::fabs(place.in.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
   const Vec3 u = glm::normalize(glm::cross(place.in, across));
   const Vec3 v = glm::cross(place.in, u);
@@ -181,16 +144,44 @@ bool isPlate(const Place& place, const SolidInside& inside, WallCount& count) {
   constexpr int kSteps = 8;
   for (const Vec3& way : {u, -u, v, -v}) {
     for (int step = 1; step <= kSteps; ++step) {
-      if (!inside.at(place.middle + kGoesOn * step / kSteps * way, count)) return false;
+      if (!solid.isInside(place.middle + kGoesOn * step / kSteps * way)) return false;
     }
   }
   return true;
 }
 
+/// Of the places of one leaf: every plate, and one wire or crumb.
+LostPlaces lostAmong(const std::vector<Place>& places, const MeshSolid& solid,
+                     const BakePlan& plan) {
+  LostPlaces lost;
+  std::vector<Vec3> none;  // middles of places that are neither
+  for (const Place& place : places) {
+    if (!solid.isInside(place.middle)) continue;
+    const auto add = [&](LostShape shape) {
+      lost.add({place.middle * plan.voxel, place.thickness * plan.voxel, shape});
+    };
+    if (place.may_be_plate && isPlate(place, solid)) {
+      add(LostShape::kPlate);
+      continue;
+    }
+    if (!lost.empty() || std::any_of(none.begin(), none.end(), [&](const Vec3& other) {
+          return glm::distance(other, place.middle) < kSamePlace;
+        })) {
+      continue;
+    }
+    if (const auto shape = ThinPart(solid).lostAt(place.middle, place.in)) {
+      add(*shape);
+    } else {
+      none.push_back(place.middle);
+    }
+  }
+  return lost;
+}
+
 }  // namespace
 
-void refuseLostPlates(const BakedMesh& mesh, const LevelSet& grid, const BakePlan& plan,
-                      const BakeOptions& options) {
+std::string refuseLostPlates(const BakedMesh& mesh, const LevelSet& grid, const BakePlan& plan,
+                             const BakeOptions& options) {
   std::vector<std::vector<Place>> places(mesh.bins.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()),
                     [&](const tbb::blocked_range<std::size_t>& range) {
@@ -200,19 +191,22 @@ void refuseLostPlates(const BakedMesh& mesh, const LevelSet& grid, const BakePla
                       }
                     });
   if (std::all_of(places.begin(), places.end(), [](const auto& list) { return list.empty(); })) {
-    return;
+    return {};
   }
   const SolidInside inside(mesh.solid, mesh.columns);
-  WallCount count = inside.counter();
-  LostPlates all;
-  for (const std::vector<Place>& list : places) {
-    for (const Place& place : list) {
-      if (isPlate(place, inside, count)) {
-        all.add(place.middle * plan.voxel, place.thickness * plan.voxel);
-      }
-    }
-  }
+  std::vector<LostPlaces> found(places.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      const GridValues values(grid, plan);
+                      const MeshSolid solid(mesh, inside, values);
+                      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                        found[i] = lostAmong(places[i], solid, plan);
+                      }
+                    });
+  LostPlaces all;
+  for (const LostPlaces& lost : found) all.add(lost);
   all.refuse(plan, options);
+  return all.crumbs(plan);
 }
 
 }  // namespace palpate::vdb

@@ -184,4 +184,17 @@ Coord TriangleBins::origin(std::size_t leaf) const noexcept {
   return origin;
 }
 
+std::optional<std::size_t> TriangleBins::find(const Coord& voxel) const noexcept {
+  std::uint64_t key = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto bits = bits_[static_cast<std::size_t>(axis)];
+    const int place = (voxel[axis] - lo_[axis]) >> 3;
+    if (place < 0 || place >> bits != 0) return {};
+    key = key << bits | static_cast<std::uint64_t>(place);
+  }
+  const auto at = std::lower_bound(keys_.begin(), keys_.end(), key);
+  if (at == keys_.end() || *at != key) return {};
+  return static_cast<std::size_t>(at - keys_.begin());
+}
+
 }  // namespace palpate::vdb

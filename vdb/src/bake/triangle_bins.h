@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,8 @@ class TriangleBins {
 
   [[nodiscard]] std::size_t size() const noexcept { return first_.size() - 1; }
   [[nodiscard]] openvdb::Coord origin(std::size_t leaf) const noexcept;
+  /// The leaf with this voxel, if it has triangles.
+  [[nodiscard]] std::optional<std::size_t> find(const openvdb::Coord& voxel) const noexcept;
   [[nodiscard]] std::span<const std::uint32_t> triangles(std::size_t leaf) const noexcept {
     return std::span(triangles_).subspan(first_[leaf], first_[leaf + 1] - first_[leaf]);
   }

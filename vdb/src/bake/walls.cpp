@@ -7,6 +7,7 @@
 #include "bake/bake_plan.h"
 #include "bake/edges.h"
 #include "bake/solid_inside.h"
+#include "mesh/triangles_meet.h"
 
 namespace palpate::vdb {
 namespace {
@@ -68,20 +69,6 @@ class Sorter {
   WallCount count_;
 };
 
-/// Where the segment from p to q passes through a triangle.
-std::optional<Vec3> passes(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t) {
-  const Vec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
-  const double before = glm::dot(normal, p - t[0]);
-  const double after = glm::dot(normal, q - t[0]);
-  if (!(before * after < 0.0)) return {};
-  const Vec3 at = p + before / (before - after) * (q - p);
-  for (std::size_t n = 0; n < 3; ++n) {
-    const Vec3& from = t[n];
-    if (!(glm::dot(glm::cross(t[(n + 1) % 3] - from, at - from), normal) > 0.0)) return {};
-  }
-  return at;
-}
-
 }  // namespace
 
 void dropIdleWalls(Solid& solid, const Columns& columns, const Progress& progress) {
@@ -133,13 +120,8 @@ std::optional<Vec3> findCrossing(const Solid& solid, const Box3& box) {
   }
   std::sort(near.begin(), near.end(),
             [](const Near& a, const Near& b) { return a.box.lo.x < b.box.lo.x; });
-  const auto corners_of = [&](const Near& n) {
-    const auto& [a, b, c] = solid.triangles[n.triangle];
-    return std::array<Vec3, 3>{solid.vertices[a], solid.vertices[b], solid.vertices[c]};
-  };
   for (std::size_t i = 0; i < near.size(); ++i) {
     const Triangle& mine = solid.triangles[near[i].triangle];
-    const std::array<Vec3, 3> here = corners_of(near[i]);
     for (std::size_t k = i + 1; k < near.size() && near[k].box.lo.x <= near[i].box.hi.x; ++k) {
       if (solid.part_of[near[i].triangle] != solid.part_of[near[k].triangle]) continue;
       if (near[i].box.intersectedWith(near[k].box).isEmpty()) continue;
@@ -148,11 +130,7 @@ std::optional<Vec3> findCrossing(const Solid& solid, const Box3& box) {
         return std::find(other.begin(), other.end(), v) != other.end();
       });
       if (touches) continue;
-      const std::array<Vec3, 3> there = corners_of(near[k]);
-      for (std::size_t n = 0; n < 3; ++n) {
-        if (const auto at = passes(here[n], here[(n + 1) % 3], there)) return at;
-        if (const auto at = passes(there[n], there[(n + 1) % 3], here)) return at;
-      }
+      if (const auto at = trianglesMeet(solid.vertices, mine, other)) return at;
     }
   }
   return {};

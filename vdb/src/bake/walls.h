@@ -18,8 +18,8 @@ namespace palpate::vdb {
 /// @throws Error (kCancelled).
 void dropIdleWalls(Solid& solid, const Columns& columns, const Progress& progress);
 
-/// A place [voxels] within `box` where two triangles of one part, without a common vertex, pass
-/// through each other.
+/// A place [voxels] within `box` where two triangles of one part, without a common vertex, meet; exact,
+/// and touching counts (mesh/triangles_meet.h).
 [[nodiscard]] std::optional<Vec3> findCrossing(const Solid& solid, const Box3& box);
 
 }  // namespace palpate::vdb

@@ -4,6 +4,9 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <memory>
+
+#include "grid/mark_inside.h"
 #include "grid/vdb_file.h"
 #include "palpate/core/error.h"
 #include "palpate/scene/units.h"
@@ -61,6 +64,55 @@ bool fillFromAny(const openvdb::GridBase& base, const openvdb::CoordBBox& box, I
 
 Vec3 fromVdb(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
 
+/// [m] of the length unit of a grid. @throws Error (kInput, unit.unknown).
+double metresOf(const openvdb::GridBase& grid, const std::string& unit_if_missing,
+                const std::string& path) {
+  const std::string unit = unitOf(grid, unit_if_missing, path);
+  const auto metres = metresPer(unit);
+  if (metres) return *metres;
+  throw inputError("unit.unknown", "unknown length unit '" + unit + "'", "use m, cm, mm or um",
+                   path);
+}
+
+Image imageOf(const openvdb::GridBase& grid, double metres, const std::string& path) {
+  if (!grid.transform().isLinear()) {
+    throw inputError(
+        "vdb.transform",
+        "grid '" + grid.getName() + "' has a transform that is not linear (a frustum)",
+        "resample it to cubic voxels first", path);
+  }
+  openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  if (box.empty()) {
+    throw inputError("vdb.empty", "grid '" + grid.getName() + "' has no voxels", "", path);
+  }
+  box.expand(1);
+  Image image = emptyImage(box, grid.getName());
+  if (!fillFromAny<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid, openvdb::Int64Grid,
+                   openvdb::BoolGrid, openvdb::MaskGrid>(grid, box, image)) {
+    throw inputError("vdb.type",
+                     "grid '" + grid.getName() + "' is a " + typeOf(grid) +
+                         "; an image has one number a voxel",
+                     "", path);
+  }
+  image.source = path;
+  const Vec3 origin = fromVdb(grid.indexToWorld(openvdb::Vec3d(0.0)));
+  for (int axis = 0; axis < 3; ++axis) {
+    openvdb::Vec3d step(0.0);
+    step[axis] = 1.0;
+    image.axes[axis] = metres * (fromVdb(grid.indexToWorld(step)) - origin);
+  }
+  image.origin = metres * fromVdb(grid.indexToWorld(box.min()));
+  return image;
+}
+
+/// As floats; null if it is a grid of something else.
+openvdb::FloatGrid::Ptr asFloats(const openvdb::GridBase::Ptr& grid) {
+  if (const auto doubles = openvdb::gridPtrCast<openvdb::DoubleGrid>(grid)) {
+    return std::make_shared<openvdb::FloatGrid>(*doubles);
+  }
+  return openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+}
+
 }  // namespace
 
 Image gridImage(const LevelSet& grid) {
@@ -83,40 +135,23 @@ Image readVdbImage(const std::string& path, const std::string& name,
                    const std::string& unit_if_missing) {
   VdbFile file(path);
   const openvdb::GridBase::Ptr grid = file.read(file.choose(name));
-  const std::string unit = unitOf(*grid, unit_if_missing, path);
-  const auto metres = metresPer(unit);
-  if (!metres) {
-    throw inputError("unit.unknown", "unknown length unit '" + unit + "'", "use m, cm, mm or um",
-                     path);
-  }
-  if (!grid->transform().isLinear()) {
-    throw inputError(
-        "vdb.transform",
-        "grid '" + grid->getName() + "' has a transform that is not linear (a frustum)",
-        "resample it to cubic voxels first", path);
-  }
-  openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
-  if (box.empty()) {
-    throw inputError("vdb.empty", "grid '" + grid->getName() + "' has no voxels", "", path);
-  }
-  box.expand(1);
-  Image image = emptyImage(box, grid->getName());
-  if (!fillFromAny<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid, openvdb::Int64Grid,
-                   openvdb::BoolGrid, openvdb::MaskGrid>(*grid, box, image)) {
+  return imageOf(*grid, metresOf(*grid, unit_if_missing, path), path);
+}
+
+DistanceImage readVdbDistances(const std::string& path, const std::string& name,
+                               const std::string& unit_if_missing) {
+  VdbFile file(path);
+  const openvdb::GridBase::Ptr grid = file.read(file.choose(name));
+  const double metres = metresOf(*grid, unit_if_missing, path);
+  const openvdb::FloatGrid::Ptr floats = asFloats(grid);
+  if (!floats) {
     throw inputError("vdb.type",
                      "grid '" + grid->getName() + "' is a " + typeOf(*grid) +
-                         "; an image has one number a voxel",
+                         "; distances are floats or doubles",
                      "", path);
   }
-  image.source = path;
-  const Vec3 origin = fromVdb(grid->indexToWorld(openvdb::Vec3d(0.0)));
-  for (int axis = 0; axis < 3; ++axis) {
-    openvdb::Vec3d step(0.0);
-    step[axis] = 1.0;
-    image.axes[axis] = *metres * (fromVdb(grid->indexToWorld(step)) - origin);
-  }
-  image.origin = *metres * fromVdb(grid->indexToWorld(box.min()));
-  return image;
+  const std::uint64_t marked = markInside(*floats, metres, path);
+  return {imageOf(*floats, metres, path), marked};
 }
 
 }  // namespace palpate::vdb

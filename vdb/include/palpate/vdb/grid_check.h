@@ -48,6 +48,18 @@ struct GridCheck {
 /// [m^3] of what is negative, voxels on the surface by their share.
 [[nodiscard]] double solidVolume(const LevelSet& grid);
 
+/// A level set whose inside is marked as such, and how many voxels that took.
+struct MarkedInside {
+  LevelSet grid;
+  std::uint64_t voxels = 0;  ///< not active, and now on the other side than before
+};
+
+/// Mends the sign breaks of GridCheck: every voxel that is not active takes the side of the band that it is enclosed
+/// by. The band itself is kept, bit by bit. Without sign breaks, `grid` itself.
+/// @throws Error (kInput, vdb.torn) naming a place where the band has a hole, or was cut off, so that inside and
+/// outside are one space; `path` is the file to name.
+[[nodiscard]] MarkedInside withInsideMarked(const LevelSet& grid, const std::string& path = {});
+
 /// Every grid of the file; or only `name`, if it is not empty. Lengths of a grid without a unit are in
 /// `unit_if_missing`, or taken as [m] if that is empty too.
 /// @throws Error (kInput): a file that cannot be read, or has no such grid; kCancelled.

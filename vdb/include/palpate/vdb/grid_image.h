@@ -1,6 +1,7 @@
 #pragma once
 /// Grids as images.
 
+#include <cstdint>
 #include <string>
 
 #include "palpate/vdb/image.h"
@@ -21,5 +22,16 @@ namespace palpate::vdb {
 /// that is not linear; kOperation as gridImage() does.
 [[nodiscard]] Image readVdbImage(const std::string& path, const std::string& name,
                                  const std::string& unit_if_missing);
+
+/// Signed distances as an image, and how many voxels beyond the band had to change sides for it.
+struct DistanceImage {
+  Image image;
+  std::uint64_t marked_inside = 0;
+};
+
+/// The same of a grid of floats or doubles that holds signed distances, with its inside marked as
+/// withInsideMarked() does. @throws Error as both.
+[[nodiscard]] DistanceImage readVdbDistances(const std::string& path, const std::string& name,
+                                             const std::string& unit_if_missing);
 
 }  // namespace palpate::vdb

@@ -1,0 +1,53 @@
+#include "grid/mark_inside.h"
+
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "grid/grid_tally.h"
+#include "palpate/core/error.h"
+#include "palpate/vdb/grid_check.h"
+#include "palpate/vdb/openvdb_access.h"
+
+namespace palpate::vdb {
+
+std::uint64_t markInside(openvdb::FloatGrid& grid, double metres_per_unit,
+                         const std::string& path) {
+  const GridTally before = tallyOf(grid);
+  if (before.sign_breaks.voxels == 0) return 0;
+  // Leaves and nodes without active voxels would keep the side that they say, right or wrong.
+  grid.tree().voxelizeActiveTiles();
+  openvdb::tools::pruneInactive(grid.tree());
+  openvdb::tools::signedFloodFill(grid.tree());
+  // Sides now go from voxel to voxel up to the band. Where none breaks, each space between has one side, that
+  // of the band all around it; where the band has a hole, some must.
+  const GridTally after = tallyOf(grid);
+  if (after.sign_breaks.voxels > 0) {
+    const openvdb::Vec3d p = metres_per_unit * 1e3 * grid.indexToWorld(after.sign_breaks.first);
+    char place[96];
+    std::snprintf(place, sizeof place, "(%.6g, %.6g, %.6g) mm", p.x(), p.y(), p.z());
+    throw inputError("vdb.torn",
+                     "the inside of grid '" + grid.getName() +
+                         "' is not marked, and its band does not tell it: inside and outside meet "
+                         "without a band in between at " +
+                         std::to_string(after.sign_breaks.voxels) + " voxels, one at " + place,
+                     "the band has holes, or the grid was cut off: write it again with a whole band "
+                     "all around",
+                     path);
+  }
+  const double changed = std::abs(after.marked_inside - before.marked_inside);
+  return static_cast<std::uint64_t>(std::llround(changed));
+}
+
+MarkedInside withInsideMarked(const LevelSet& grid, const std::string& path) {
+  const openvdb::FloatGrid& old = *grid.impl().grid;
+  if (tallyOf(old).sign_breaks.voxels == 0) return {grid, 0};
+  const LevelSetInfo& info = grid.info();
+  const openvdb::FloatGrid::Ptr copy = old.deepCopy();
+  const std::uint64_t voxels = markInside(*copy, info.metres_per_unit, path);
+  return {makeLevelSet(copy, info.length_unit), voxels};
+}
+
+}  // namespace palpate::vdb
