@@ -16,11 +16,20 @@ case ${1:-} in
 esac
 [ $# -le 1 ] || { echo "error: one mesh at most" >&2; exit 2; }
 
+# What is being done, since when; each part prints as it goes on from there.
+parts=4
+part=0
+tell() { # WHAT
+  part=$((part + 1))
+  printf '== %d of %d, after %d s: %s\n' "$part" "$parts" "$SECONDS" "$1" >&2
+}
+
 cd "$root"
 source tools/setup.sh
 install_packages "${build_packages[@]}" "${test_packages[@]}"
 use_ccache
 [ -f build/release/build.ninja ] || configure release -DPALPATE_TESTS=OFF
+tell 'building'
 cmake --build build/release --target palpate_command palpate_sampler_bench palpate_bake_bench
 
 # The table between the two comments in README.md: a row for each voxel size and sampler.
@@ -42,11 +51,16 @@ write_table() { # CSV
 
 csv=$(mktemp --suffix=.csv)
 trap 'rm -f "$csv"' EXIT
+tell 'accuracy of samplers, some 60 s'
 build/release/bin/palpate accuracy data/scenes/reference.yaml --field torus --ladder 2,1,0.5,0.25 \
   --repeat 30 --svg tools/docs/accuracy.svg --csv "$csv" --force
 write_table "$csv"
 
 mkdir -p data/bench
+tell 'times of samplers, some 60 s, told at the end'
 build/release/bin/palpate_sampler_bench --benchmark_enable_random_interleaving=true \
   --write=data/bench "${mesh[@]}"
-build/release/bin/palpate_bake_bench --benchmark_repetitions=3 --write=data/bench
+tell 'baking, some 120 s'
+build/release/bin/palpate_bake_bench --benchmark_repetitions=3 --benchmark_min_time=0.2 \
+  --benchmark_counters_tabular=true --write=data/bench
+printf '== done, after %d s\n' "$SECONDS" >&2

@@ -57,6 +57,31 @@ class Results final : public benchmark::ConsoleReporter {
     }
   }
 
+  /// Adds to each row of two threads how much faster it was than that of one, and prints that beside the
+  /// control's.
+  void compareThreads() {
+    std::string table;
+    for (nlohmann::ordered_json& row : rows_) {
+      const std::string name = row["name"];
+      const std::string two = "threads:2";
+      const std::size_t at = name.rfind(two);
+      if (at == std::string::npos) continue;
+      std::string alone = name;
+      alone.replace(at, two.size(), "threads:1");
+      const auto one = std::find_if(rows_.begin(), rows_.end(),
+                                    [&](const auto& other) { return other["name"] == alone; });
+      if (one == rows_.end()) continue;
+      const double times = (*one)["seconds"].get<double>() / row["seconds"].get<double>();
+      row["times_as_fast_as_one_thread"] = times;
+      char line[160];
+      std::snprintf(line, sizeof line, "  %-48s %5.2f\n", name.c_str(), times);
+      table += line;
+    }
+    if (table.empty()) return;
+    std::printf("\nTwo threads, times as fast as one (%s: no memory, what the machine gives)\n%s",
+                kControl, table.c_str());
+  }
+
   [[nodiscard]] nlohmann::ordered_json json(const tools::Machine& machine) const {
     return {{"schema", "palpate.bench_baking/1"},
             {"machine", palpate::bench::machineJson(machine)},
@@ -75,6 +100,7 @@ int runAll(int count, char** arguments) {
   if (!machine.optimised) std::fputs("warning: not optimised: times say nothing\n", stderr);
   Results results;
   benchmark::RunSpecifiedBenchmarks(&results);
+  results.compareThreads();
   if (!folder.empty()) palpate::bench::write(results.json(machine), machine, folder, "-baking");
   return 0;
 }

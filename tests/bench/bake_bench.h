@@ -14,6 +14,9 @@ namespace palpate::vdb::bench {
 /// [voxels] as in the measurements that others are known by.
 inline constexpr double kHalfWidth = 3.0;
 
+/// The run that touches no memory: what two threads can give here.
+inline constexpr const char* kControl = "control";
+
 /// Limits the threads while it lives.
 class Threads {
  public:

@@ -151,6 +151,28 @@ TEST(Bake, AMeshNeedsItsUnit) {
   EXPECT_LT(grid["bounds_m"]["hi"][0], 0.0126);
 }
 
+TEST(Bake, WhatVoxelsCannotHoldIsTold) {
+  const TempFolder folder;
+  (void)folder.file("crumb.yaml", R"(palpate: 1
+length: mm
+layers:
+  - {name: ball, inside: {union: [{sphere: {center: [0, 0, 0], radius: 6}},
+                                  {sphere: {center: [12.5, 0.5, 0.5], radius: 0.2}}]}}
+)");
+  const CommandResult result =
+      runPalpate({"bake", "crumb.yaml", "-o", "c.vdb", "--voxel", "1", "--json"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("ball/surface has lost what its voxels cannot hold: 1 separate part"),
+            std::string::npos)
+      << result.err;
+  EXPECT_NE(std::string(parseOnly(result)["grids"][0]["lost_parts"]).find("1 separate part"),
+            std::string::npos)
+      << result.out;
+  const CommandResult fine =
+      runPalpate({"bake", "crumb.yaml", "-o", "f.vdb", "--voxel", "0.2", "--json"}, folder.path());
+  EXPECT_TRUE(parseOnly(fine)["grids"][0]["lost_parts"].is_null()) << fine.out;
+}
+
 TEST(Bake, AnImageByThresholdOrByLabel) {
   const TempFolder folder;
   const std::string grey = writeImage(folder, "grey.nii", balls(false));

@@ -211,9 +211,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   return grids;
 }
 
-}  // namespace
-
-std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console) try {
+std::vector<BakedGrid> baked(const BakeOptions& options, Console& console) {
   switch (inputKind(options.input)) {
     case InputKind::kScene:
       return bakeScene(options, console);
@@ -228,6 +226,20 @@ std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console) t
                                          : std::vector<BakedGrid>{rebakeGrid(options, console)});
   }
   return {};
+}
+
+}  // namespace
+
+std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console) try {
+  std::vector<BakedGrid> grids = baked(options, console);
+  for (const BakedGrid& one : grids) {
+    const vdb::LevelSetInfo& info = one.grid.info();
+    const auto lost = info.metadata.find("lost_parts");
+    if (lost != info.metadata.end()) {
+      console.note(info.name + " has lost what its voxels cannot hold: " + lost->second);
+    }
+  }
+  return grids;
 } catch (const Error& error) {
   throw withMemoryHint(error);
 }

@@ -36,6 +36,8 @@ class GridList {
                      {"memory_bytes", info.memory},
                      {"bounds_m", boxJson(info.bounds)},
                      {"seconds", seconds}});
+    const auto lost = info.metadata.find("lost_parts");
+    json_.back()["lost_parts"] = lost == info.metadata.end() ? Json() : Json(lost->second);
     grids_.push_back(grid);
     return json_.back();
   }

@@ -103,8 +103,7 @@ Written asImage(const ConvertOptions& options, Console& console) {
   vdb::Image image;
   double metres = 1.0;
   const bool as_it_is = isTakenAsItIs(options.bake);
-  vdb::LevelSet grid =
-      as_it_is ? takenAsItIs(options.bake, console) : onlyGrid(options, console);
+  vdb::LevelSet grid = as_it_is ? takenAsItIs(options.bake, console) : onlyGrid(options, console);
   if (!grid) {
     // A grid that is turned or stretched becomes an image that is as well, with the same voxels.
     image = readDistances(options.bake, console);

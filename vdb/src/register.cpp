@@ -57,6 +57,9 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     try {
       grid = make(named);
       made = grid.info();
+      if (made.metadata.contains("lost_parts")) {
+        common->notes->add(what, {"not in the grid: " + made.metadata.at("lost_parts")});
+      }
       if (sampler == Sampler::kCubic && isTooNarrow(made)) {
         grid = widened(grid, kCubicHalfWidth, named);
         common->notes->add(what, {widenedNote(made.half_width)});

@@ -4,39 +4,42 @@
 #include "bake/lost_plates.h"
 
 namespace palpate::vdb {
+namespace {
+
+std::string textOf(const LostPlace& place, const BakePlan& plan) {
+  return inMillimetres(place.thickness) + " thin near " +
+         placeText(place.where / plan.voxel, plan.voxel);
+}
+
+}  // namespace
 
 void LostPlaces::add(const LostPlaces& others) {
   places_.insert(places_.end(), others.places_.begin(), others.places_.end());
 }
 
-void LostPlaces::refuse(const BakePlan& plan, const BakeOptions& options) const {
+void LostPlaces::refusePlates(const BakePlan& plan, const BakeOptions& options) const {
   const LostPlace* first = nullptr;
   double thinnest = kInfinity;
   for (const LostPlace& place : places_) {
-    if (place.shape == LostShape::kCrumb) continue;
+    if (place.shape != LostShape::kPlate) continue;
     if (first == nullptr) first = &place;
     thinnest = std::min(thinnest, place.thickness);
   }
   if (first == nullptr) return;
-  const std::string thin = inMillimetres(first->thickness) + " thin near " +
-                           placeText(first->where / plan.voxel, plan.voxel);
-  const std::string grid = "a grid of " + inMillimetres(plan.voxel) + " voxels";
-  const std::string held = "a voxel of " + inMillimetres(thinnest / kHeld) +
-                           " holds it; or keep this part analytic, or ";
-  if (first->shape == LostShape::kPlate) {
-    throw inputError("bake.too_thin",
-                     "'" + options.name + "' is " + thin + " and would have holes in " + grid,
-                     held + "make it a sheet");
-  }
   throw inputError("bake.too_thin",
-                   "'" + options.name + "' has a wire " + thin + ", which would be broken in " + grid,
-                   held + "take it out");
+                   "'" + options.name + "' is " + textOf(*first, plan) +
+                       " and would have holes in a grid of " + inMillimetres(plan.voxel) +
+                       " voxels",
+                   "a voxel of " + inMillimetres(thinnest / kHeld) +
+                       " holds it; or keep this part analytic, or make it a sheet");
 }
 
-std::string LostPlaces::crumbs(const BakePlan& plan) const {
-  std::vector<LostPlace> found;
+std::string LostPlaces::wiresAndCrumbs(const BakePlan& plan) const {
+  std::vector<LostPlace> wires;
+  std::vector<LostPlace> crumbs;
   for (const LostPlace& place : places_) {
-    if (place.shape != LostShape::kCrumb) continue;
+    if (place.shape == LostShape::kPlate) continue;
+    std::vector<LostPlace>& found = place.shape == LostShape::kWire ? wires : crumbs;
     // Seen from several leaves, it is still one.
     const auto same = std::find_if(found.begin(), found.end(), [&](const LostPlace& other) {
       return glm::distance(other.where, place.where) < kGoesOn * plan.voxel;
@@ -47,14 +50,21 @@ std::string LostPlaces::crumbs(const BakePlan& plan) const {
       *same = place;
     }
   }
-  if (found.empty()) return {};
-  const auto thickest = std::max_element(
-      found.begin(), found.end(),
-      [](const LostPlace& a, const LostPlace& b) { return a.thickness < b.thickness; });
-  return std::to_string(found.size()) +
-         (found.size() == 1 ? " separate part" : " separate parts, the thickest") + " of " +
-         inMillimetres(thickest->thickness) + " near " +
-         placeText(thickest->where / plan.voxel, plan.voxel);
+  const auto thickest = [&](const std::vector<LostPlace>& found) {
+    return textOf(*std::max_element(found.begin(), found.end(),
+                                    [](const LostPlace& a, const LostPlace& b) {
+                                      return a.thickness < b.thickness;
+                                    }),
+                  plan);
+  };
+  std::string text;
+  // A long one is seen here and there, so that how many there are is not known.
+  if (!wires.empty()) text = "wires, the thickest " + thickest(wires);
+  if (crumbs.empty()) return text;
+  if (!text.empty()) text += "; ";
+  return text + std::to_string(crumbs.size()) +
+         (crumbs.size() == 1 ? " separate part, " : " separate parts, the thickest ") +
+         thickest(crumbs);
 }
 
 }  // namespace palpate::vdb

@@ -200,8 +200,8 @@ std::string refuseLostPlates(const Field& field, const LevelSet& grid, const Bak
   found = search_all();
   LostPlaces all;
   for (const LostPlaces& lost : found) all.add(lost);
-  all.refuse(plan, options);
-  return all.crumbs(plan);
+  all.refusePlates(plan, options);
+  return all.wiresAndCrumbs(plan);
 }
 
 }  // namespace palpate::vdb

@@ -39,10 +39,10 @@ class LostPlaces {
   [[nodiscard]] bool empty() const noexcept { return places_.empty(); }
   void add(const LostPlace& place) { places_.push_back(place); }
   void add(const LostPlaces& others);
-  /// @throws Error (kInput) if there are plates or wires: the first of them, and a voxel that holds all.
-  void refuse(const BakePlan& plan, const BakeOptions& options) const;
-  /// "2 separate parts ...", how many crumbs there are and where the thickest is; empty without any.
-  [[nodiscard]] std::string crumbs(const BakePlan& plan) const;
+  /// @throws Error (kInput) if there are plates: the first of them, and a voxel that holds all.
+  void refusePlates(const BakePlan& plan, const BakeOptions& options) const;
+  /// "2 separate parts, the thickest 0.3 mm thin near (...)"; empty if there are none.
+  [[nodiscard]] std::string wiresAndCrumbs(const BakePlan& plan) const;
 
  private:
   std::vector<LostPlace> places_;
@@ -52,9 +52,9 @@ class LostPlaces {
 /// falls through; a wire is broken there, and a crumb gone. Looks for such places from every voxel by the surface; a
 /// plate counts where it goes on for two voxels to all sides, so that the last voxel of a sharp edge does not, a wire
 /// where it does so to both (lost_wires.h).
-/// Crumbs, which scans are full of, are no reason to refuse.
-/// @throws Error (kInput) naming a plate or wire, the thickness there and a voxel size that holds it.
-/// @return LostPlaces::crumbs()
+/// Wires and crumbs are no reason to refuse: meshes of scans have some.
+/// @throws Error (kInput) naming a plate, the thickness there and a voxel size that holds it.
+/// @return LostPlaces::wiresAndCrumbs()
 [[nodiscard]] std::string refuseLostPlates(const Field& field, const LevelSet& grid,
                                            const BakePlan& plan, const BakeOptions& options);
 

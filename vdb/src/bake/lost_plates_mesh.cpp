@@ -205,8 +205,8 @@ std::string refuseLostPlates(const BakedMesh& mesh, const LevelSet& grid, const 
                     });
   LostPlaces all;
   for (const LostPlaces& lost : found) all.add(lost);
-  all.refuse(plan, options);
-  return all.crumbs(plan);
+  all.refusePlates(plan, options);
+  return all.wiresAndCrumbs(plan);
 }
 
 }  // namespace palpate::vdb

@@ -169,24 +169,41 @@ PALPATE_KERNEL Slabs sumSlabs(const float* first, const Weights& y) noexcept {
           {s0.bend, s1.bend, s2.bend, s3.bend}};
 }
 
+/// The sums over a cell's stencil that make value and gradient, and what the Hessian is made of besides.
+struct Sums {
+  Weights x;
+  LaneWeights z;
+  Slabs slabs;
+  Lanes s, sx, sy;
+  Lanes first;  ///< [m] the value; the gradient
+};
+
+template <bool kWithBend>
+PALPATE_KERNEL Sums sumsAt(const BrickView& view, const Brick& brick, const Cell& cell) noexcept {
+  Sums sum;
+  sum.x = weightsAt(cell.ux);
+  const Weights y = weightsAt(cell.uy);
+  sum.z = laneWeightsAt(cell.uz);
+  sum.slabs = sumSlabs<kWithBend>(firstOf(brick, cell), y);
+  sum.s = valueOf(sum.x, sum.slabs.value);
+  sum.sx = slopeOf(sum.x, sum.slabs.value);
+  sum.sy = valueOf(sum.x, sum.slabs.slope);
+  sum.first =
+      sums(sum.s * sum.z.value, sum.sx * sum.z.value, sum.sy * sum.z.value, sum.s * sum.z.slope) *
+      Lanes{view.voxel, 3.0, 3.0, 1.0};
+  return sum;
+}
+
 PALPATE_ENTRY FieldSample sampleCubic(const BrickView& view, const Vec3& p) noexcept {
   const Cell cell = locate(view, p);
   const std::uint32_t entry = entryAt(view, cell);
   if (entry >= BrickView::kBeyond) [[unlikely]]
     return sampleWithoutBrick(view, entry, p);
   const Brick& brick = brickAt(view, entry);
-  const Weights x = weightsAt(cell.ux);
-  const Weights y = weightsAt(cell.uy);
-  const LaneWeights z = laneWeightsAt(cell.uz);
-  const Slabs slabs = sumSlabs<false>(firstOf(brick, cell), y);
-  const Lanes s = valueOf(x, slabs.value);
-  const Lanes sx = slopeOf(x, slabs.value);
-  const Lanes sy = valueOf(x, slabs.slope);
-  const Lanes all_sums =
-      sums(s * z.value, sx * z.value, sy * z.value, s * z.slope) * Lanes{view.voxel, 3.0, 3.0, 1.0};
+  const Lanes first = sumsAt<false>(view, brick, cell).first;
   if (!isKnown(brick, cell)) [[unlikely]]
-    return {all_sums[0], Vec3(0.0), false};
-  return {all_sums[0], Vec3(all_sums[1], all_sums[2], all_sums[3]), true};
+    return {first[0], Vec3(0.0), false};
+  return {first[0], Vec3(first[1], first[2], first[3]), true};
 }
 
 PALPATE_ENTRY FieldJet jetCubic(const BrickView& view, const Vec3& p) noexcept {
@@ -197,22 +214,17 @@ PALPATE_ENTRY FieldJet jetCubic(const BrickView& view, const Vec3& p) noexcept {
     return {sample.value, sample.gradient, Mat3(0.0), false};
   }
   const Brick& brick = brickAt(view, entry);
-  const Weights x = weightsAt(cell.ux);
-  const Weights y = weightsAt(cell.uy);
-  const LaneWeights z = laneWeightsAt(cell.uz);
-  const Slabs slabs = sumSlabs<true>(firstOf(brick, cell), y);
-  const Lanes s = valueOf(x, slabs.value);
-  const Lanes sx = slopeOf(x, slabs.value);
-  const Lanes sy = valueOf(x, slabs.slope);
-  const Lanes first =
-      sums(s * z.value, sx * z.value, sy * z.value, s * z.slope) * Lanes{view.voxel, 3.0, 3.0, 1.0};
+  const Sums sum = sumsAt<true>(view, brick, cell);
+  const Lanes first = sum.first;
   if (!isKnown(brick, cell)) [[unlikely]]
     return {first[0], Vec3(0.0), Mat3(0.0), false};
   const double scale = view.per_voxel;
-  const Lanes second = sums(bendOf(x, slabs.value) * z.value, valueOf(x, slabs.bend) * z.value,
-                            s * z.bend, sy * z.slope) *
-                       (scale * Lanes{6.0, 6.0, 1.0, 3.0});
-  const Lanes mixed = sums(slopeOf(x, slabs.slope) * z.value, sx * z.slope, all(0.0), all(0.0)) *
+  const Lanes second =
+      sums(bendOf(sum.x, sum.slabs.value) * sum.z.value,
+           valueOf(sum.x, sum.slabs.bend) * sum.z.value, sum.s * sum.z.bend, sum.sy * sum.z.slope) *
+      (scale * Lanes{6.0, 6.0, 1.0, 3.0});
+  const Lanes mixed = sums(slopeOf(sum.x, sum.slabs.slope) * sum.z.value, sum.sx * sum.z.slope,
+                           all(0.0), all(0.0)) *
                       (scale * Lanes{9.0, 3.0, 0.0, 0.0});
   const double xy = mixed[0];
   const double xz = mixed[1];

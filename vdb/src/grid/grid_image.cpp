@@ -76,10 +76,9 @@ double metresOf(const openvdb::GridBase& grid, const std::string& unit_if_missin
 
 Image imageOf(const openvdb::GridBase& grid, double metres, const std::string& path) {
   if (!grid.transform().isLinear()) {
-    throw inputError(
-        "vdb.transform",
-        "grid '" + grid.getName() + "' has a transform that is not linear (a frustum)",
-        "resample it to cubic voxels first", path);
+    throw inputError("vdb.transform",
+                     "grid '" + grid.getName() + "' has a transform that is not linear (a frustum)",
+                     "resample it to cubic voxels first", path);
   }
   openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
   if (box.empty()) {
@@ -89,10 +88,10 @@ Image imageOf(const openvdb::GridBase& grid, double metres, const std::string& p
   Image image = emptyImage(box, grid.getName());
   if (!fillFromAny<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Int32Grid, openvdb::Int64Grid,
                    openvdb::BoolGrid, openvdb::MaskGrid>(grid, box, image)) {
-    throw inputError("vdb.type",
-                     "grid '" + grid.getName() + "' is a " + typeOf(grid) +
-                         "; an image has one number a voxel",
-                     "", path);
+    throw inputError(
+        "vdb.type",
+        "grid '" + grid.getName() + "' is a " + typeOf(grid) + "; an image has one number a voxel",
+        "", path);
   }
   image.source = path;
   const Vec3 origin = fromVdb(grid.indexToWorld(openvdb::Vec3d(0.0)));

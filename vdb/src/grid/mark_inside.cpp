@@ -28,14 +28,15 @@ std::uint64_t markInside(openvdb::FloatGrid& grid, double metres_per_unit,
     const openvdb::Vec3d p = metres_per_unit * 1e3 * grid.indexToWorld(after.sign_breaks.first);
     char place[96];
     std::snprintf(place, sizeof place, "(%.6g, %.6g, %.6g) mm", p.x(), p.y(), p.z());
-    throw inputError("vdb.torn",
-                     "the inside of grid '" + grid.getName() +
-                         "' is not marked, and its band does not tell it: inside and outside meet "
-                         "without a band in between at " +
-                         std::to_string(after.sign_breaks.voxels) + " voxels, one at " + place,
-                     "the band has holes, or the grid was cut off: write it again with a whole band "
-                     "all around",
-                     path);
+    throw inputError(
+        "vdb.torn",
+        "the inside of grid '" + grid.getName() +
+            "' is not marked, and its band does not tell it: inside and outside meet "
+            "without a band in between at " +
+            std::to_string(after.sign_breaks.voxels) + " voxels, one at " + place,
+        "the band has holes, or the grid was cut off: write it again with a whole band "
+        "all around",
+        path);
   }
   const double changed = std::abs(after.marked_inside - before.marked_inside);
   return static_cast<std::uint64_t>(std::llround(changed));

@@ -43,6 +43,7 @@ struct BakeOptions {
 /// within its half width of the field's bounds.
 /// Active are the voxels with |value| less than half_width voxels. The result does not depend on the
 /// number of threads.
+/// Wires and separate parts too thin for the voxels are missing: the metadata `lost_parts` tells how thin and where.
 /// @throws Error: kInput for options or an empty result (a shape the voxels cannot hold), kOperation
 /// for memory, kCancelled.
 [[nodiscard]] LevelSet bake(const Field& field, const BakeOptions& options,
@@ -55,6 +56,7 @@ struct BakeOptions {
 /// size), doubled triangles dropped, triangles turned as most of their
 /// neighbors are; holes get lids of least area. Parts that overlap are one solid, a part within another
 /// one and turned against it is a cavity, a mesh that is inside out is the same mesh.
+/// `lost_parts` as of bake().
 /// @throws Error: kInput, naming a place, for a mesh without faces, with an index out of range, a vertex
 /// that is not finite or a thousand times farther out than the rest, with lids that make up more
 /// than an eighth of a part's surface, about which winding number and flood differ, or with a plate or shell

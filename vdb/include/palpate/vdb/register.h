@@ -32,7 +32,8 @@ struct RegisterOptions {
 ///   images  NAME: {file, names}
 ///   layers  labels: {image, match: [..], voxel, sampler}      its label group is the image's name
 ///           threshold: {image, above, keep: largest | all, fill, voxel, sampler}
-///   sampler: cubic (the default) | trilinear | accessor. A note tells of a band too narrow for cubic.
+///   sampler: cubic (the default) | trilinear | accessor. Notes tell of a band too narrow for cubic, and of
+///   thin parts that a grid has lost.
 /// Reading a scene looks at files only as far as it is quick: that they are there, image headers,
 /// name tables. Grids are made when their field is first asked for; an image is then read once for
 /// all its layers. Errors of either point at the scene's file, line and column. The functions in
