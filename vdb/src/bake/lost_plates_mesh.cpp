@@ -103,7 +103,9 @@ class Search {
     }
     const double distance = std::sqrt(least);
     if (distance > kHair) {
-      goDown(foot, (is_inside ? p - foot : foot - p) / distance, triangles, places);
+      const bool met =
+          goDown(foot, (is_inside ? p - foot : foot - p) / distance, triangles, places);
+      if (!met && !is_inside) goDownFromEdge(p, foot, distance, triangles, places);
       return;
     }
     const Corners t = cornersOf(mesh_.walls, nearest);
@@ -112,9 +114,28 @@ class Search {
     goDown(foot, -normal, triangles, places);
   }
 
-  /// To the wall opposite, and by what the grid has in the middle.
-  void goDown(const Vec3& foot, const Vec3& in, std::span<const std::uint32_t> triangles,
-              std::vector<Place>& places) const {
+  /// From an edge of less than a right angle the way on is not always into the part, but halfway between
+  /// the walls that meet there it is: how wires of three sides are found.
+  void goDownFromEdge(const Vec3& p, const Vec3& foot, double distance,
+                      std::span<const std::uint32_t> triangles, std::vector<Place>& places) const {
+    Vec3 sum(0.0);
+    double most =
+        0.0;  // of the walls' normals, all turned the same way, the one most towards the voxel tells which
+    for (const std::uint32_t triangle : triangles) {
+      const Corners t = cornersOf(mesh_.walls, triangle);
+      if (glm::distance(closestOn(t, p), p) > distance + kHair) continue;
+      const Vec3 normal = unitOr(glm::cross(t[1] - t[0], t[2] - t[0]), Vec3(0.0));
+      const double towards = glm::dot(normal, p - foot);
+      if (std::fabs(towards) > std::fabs(most)) most = towards;
+      sum += normal;
+    }
+    const Vec3 out = most < 0.0 ? -sum : sum;
+    if (glm::length(out) > kHair) goDown(foot, -glm::normalize(out), triangles, places, true);
+  }
+
+  /// To the wall opposite, and by what the grid has in the middle; whether there is one.
+  bool goDown(const Vec3& foot, const Vec3& in, std::span<const std::uint32_t> triangles,
+              std::vector<Place>& places, bool from_edge = false) const {
     double thickness = kHeld;
     double opposite = 0.0;
     for (const std::uint32_t triangle : triangles) {
@@ -124,11 +145,12 @@ class Search {
       thickness = *way;
       opposite = std::fabs(glm::dot(unitOr(glm::cross(t[1] - t[0], t[2] - t[0]), in), in));
     }
-    if (opposite < kOppositeOfWire) return;
+    if (opposite < kOppositeOfWire) return false;
     const Vec3 middle = foot + 0.5 * thickness * in;
     if (values_.at(middle) >= 0.0) {
-      places.push_back({middle, in, thickness, opposite >= kOpposite});
+      places.push_back({middle, in, thickness, opposite >= kOpposite && !from_edge});
     }
+    return true;
   }
 
   const BakedMesh& mesh_;
