@@ -266,10 +266,10 @@ TEST_F(ConvertGrids, TurnedGridsBecomeMeshesAndTurnedImages) {
 TEST_F(ConvertGrids, AnInsideThatIsNotMarkedIsMarked) {
   // Not a second wall where the band ends inside.
   const CommandResult made =
-      runPalpate({"convert", "hollow.vdb", "-o", "hollow.stl"}, folder().path());
+      runPalpate({"convert", "hollow.vdb", "-o", "marked.stl"}, folder().path());
   EXPECT_EQ(made.exit_code, 0) << made.err;
   EXPECT_NE(made.err.find("its inside was not marked"), std::string::npos) << made.err;
-  expectBall("hollow.stl", 0.015);
+  expectBall("marked.stl", 0.015);
   (void)converted(folder(), {"hollow_turned.vdb", "-o", "hollow_turned.ply"});
   expectBall("hollow_turned.ply", 0.015);
   for (const std::string name : {"hollow", "hollow_turned"}) {

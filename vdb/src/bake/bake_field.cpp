@@ -110,7 +110,9 @@ class FieldBaker {
   /// Puts the blocks of 8^3 voxels that the band can touch into cells_, those inside into inside_.
   void findLeaves() {
     const CoordBBox range = voxelRange(domain_, plan_, options_.name);
-    auto [cells, size] = topCells(range);
+    std::pair<std::vector<Cell>, int> top = topCells(range);
+    std::vector<Cell>& cells = top.first;
+    int& size = top.second;
     parts_.assign(1, source_.whole());
     std::vector<Verdict> verdicts;
     std::vector<FieldPart> left;  // empty where it is that of the cell before
@@ -218,7 +220,8 @@ class FieldBaker {
       PointBatch points;
       for (int x = 0; x < 4; ++x) {
         for (int y = 0; y < 4; ++y) {
-          const auto first = static_cast<std::size_t>(16 * x + 4 * y);
+          const std::size_t first =
+              16 * static_cast<std::size_t>(x) + 4 * static_cast<std::size_t>(y);
           for (int z = 0; z < 4; ++z) {
             const Vec3 p = position(origin.x() + x, origin.y() + y, origin.z() + z);
             points.x[first + static_cast<std::size_t>(z)] = p.x;

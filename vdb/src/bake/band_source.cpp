@@ -41,7 +41,8 @@ Verdict BandSource::judge(const FieldPart& from, const Vec3& center, double radi
   // A billionth covers the rounding of positions and values.
   const double far = lipschitz_ * band_ * (1.0 + 1e-9);
   // What is made a distance by its gradient is asked as a whole.
-  const double limit = only_in_band && !implicit_ ? far : kInfinity;
+  double limit = kInfinity;
+  if (only_in_band && !implicit_) limit = far;
   const ValueRange range = parts_.narrow(from, center, radius, limit, to);
   Verdict verdict = Verdict::kKeep;
   if (range.lo > far) verdict = Verdict::kOutside;

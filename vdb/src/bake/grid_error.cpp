@@ -57,7 +57,7 @@ class Comparison {
       Vec3 p = center + voxel * scattered(at);
       if (!ontoSurface(p) || !box_.contains(p)) continue;
       if (glm::length(p - center) > kFarthest * voxel) continue;
-      worst = worse(worst, at_(p));
+      worst = worse(worst, errorAt(p));
     }
     return worst;
   }
@@ -77,7 +77,7 @@ class Comparison {
     return false;
   }
 
-  [[nodiscard]] GridError at_(const Vec3& p) const noexcept {
+  [[nodiscard]] GridError errorAt(const Vec3& p) const noexcept {
     const FieldSample s = made_.sample(p);
     const double slope = glm::length(s.gradient);
     const Vec3 normal = unitOr(field_.sample(p).gradient, Vec3(0.0));

@@ -61,10 +61,10 @@ void LeafValues::store(const openvdb::Coord& local, const ValueBatch& distances,
   }
   const unsigned first = BandLeaf::coordToOffset(local);
   const unsigned shift = first & 63U;
-  for (unsigned x = 0; x < 4; ++x) {
+  for (std::size_t x = 0; x < 4; ++x) {
     const auto rows = near >> (16 * x) & 0xFFFFU;
     std::uint64_t spread = 0;
-    for (unsigned y = 0; y < 4; ++y) {
+    for (std::size_t y = 0; y < 4; ++y) {
       std::copy_n(stored.begin() + 16 * x + 4 * y, 4, values.begin() + first + 64 * x + 8 * y);
       spread |= (rows >> (4 * y) & 0xFU) << (8 * y);
     }

@@ -103,15 +103,15 @@ Solid cleaned(const Mesh& mesh, double voxel, std::vector<Side>& sides) {
   refuseOutliers(mesh);
   Solid solid;
   weld(mesh, voxel, solid);
-  const auto requireSome = [&] {
+  const auto require_some = [&] {
     if (!solid.triangles.empty()) return;
     throw inputError("mesh.no_faces", "all faces of the mesh have two corners in one point", "",
                      mesh.source);
   };
-  requireSome();
+  require_some();
   sides = sortedSides(solid.triangles);
   if (weldRims(solid, sides)) {
-    requireSome();
+    require_some();
     sides = sortedSides(solid.triangles);
   }
   const std::size_t before = solid.triangles.size();

@@ -132,9 +132,9 @@ void expandByNegative(const Brick& brick, const Coord& block, CoordBBox& negativ
 /// [voxels per voxel]^2 of all cells of the brick.
 double steepestSquareIn(const Brick& brick, bool cubic) noexcept {
   const int first = cubic ? -1 : 0;
-  const int last = cubic ? 9 : 8;
-  return steepestSquare(brick.values + Brick::at(first, first, first),
-                        static_cast<std::size_t>(last - first + 1), {Brick::kSlab, Brick::kRow});
+  const std::size_t side = cubic ? 11 : 9;
+  return steepestSquare(brick.values + Brick::at(first, first, first), side,
+                        {Brick::kSlab, Brick::kRow});
 }
 
 std::byte* allocateBricks(std::size_t bytes) {

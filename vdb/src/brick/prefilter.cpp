@@ -114,8 +114,10 @@ void markCells(const Flags& flags, int first, int last, Brick& brick) {
     for (int y = 0; y < Brick::kSide; ++y) {
       unsigned rows = ~0U;
       for (int i = first; i <= last; ++i) {
+        const int slab = x + i + 1;
         for (int j = first; j <= last; ++j) {
-          rows &= flags[static_cast<std::size_t>(x + i + 1)][static_cast<std::size_t>(y + j + 1)];
+          const int row = y + j + 1;
+          rows &= flags[static_cast<std::size_t>(slab)][static_cast<std::size_t>(row)];
         }
       }
       unsigned cells = ~0U;

@@ -16,9 +16,9 @@ struct Neighborhood {
   static constexpr int kRow = 16;
   static constexpr int kSlab = kSide * kRow;
 
-  alignas(64) std::array<float, kSide * kSlab> values{};  ///< [units]
+  alignas(64) std::array<float, std::size_t{kSide} * kSlab> values{};  ///< [units]
   /// Bit n of row x * kSide + y: voxel kFirst + n along z is in the band; of others only the sign counts.
-  std::array<std::uint16_t, kSide * kSide> known{};
+  std::array<std::uint16_t, std::size_t{kSide} * kSide> known{};
 };
 
 /// Coefficients of the cubic B-spline that stays closest to the grid's values f. With D the sum of the

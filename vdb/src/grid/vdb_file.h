@@ -62,7 +62,7 @@ class VdbFile {
 
 /// What readVdb() makes of a grid, or why it does not. May change the grid's metadata.
 /// @throws Error (kInput, vdb.*).
-[[nodiscard]] LevelSet acceptLevelSet(const openvdb::GridBase::Ptr& grid,
+[[nodiscard]] LevelSet acceptLevelSet(const openvdb::GridBase::Ptr& base,
                                       const std::string& unit_if_missing,
                                       UnknownClass unknown_class, const std::string& path);
 
