@@ -6,17 +6,18 @@
 # fonts-dejavu-core: the letters in pictures. mricron-data: the scanned head that data/scenes/head.yaml is about.
 build_packages=(
   g++ cmake ninja-build ccache
-  libopenvdb-dev libtbb-dev libboost-dev libnifti-dev zlib1g-dev libassimp-dev
+  libopenvdb-dev libtbb-dev libboost-dev libnifti-dev libgdcm-dev zlib1g-dev libassimp-dev
   libglm-dev libyaml-cpp-dev
   libcli11-dev nlohmann-json3-dev pkg-config libcairo2-dev fonts-dejavu-core
   mricron-data
 )
 
-# To test and measure it as well (NanoVDB: a rival in tests/bench). git tells what changed; Python, CGAL and OpenVDB's own tools are what results are held against.
+# To test and measure it as well (NanoVDB: a rival in tests/bench). git tells what changed; Python, CGAL, ITK and OpenVDB's own tools are what results are held against.
 test_packages=(
   clang-format clang-tidy git
   libgtest-dev libbenchmark-dev libnanovdb-dev libcgal-dev
   python3-nibabel python3-numpy python3-scipy python3-openvdb libopenvdb-tools
+  libinsighttoolkit5-dev python3-pydicom python3-gdcm
 )
 
 export LC_ALL=C.UTF-8

@@ -13,7 +13,11 @@ namespace {
 
 using test::writeTemporary;
 
-NameTable tableOf(const std::string& text) { return readNameTable(writeTemporary("t.txt", text)); }
+const std::string kData = PALPATE_SOURCE_DIR "/../shared/data";
+
+NameTable tableOf(const std::string& text) {
+  return readLabelTable(writeTemporary("t.txt", text)).names;
+}
 
 void expectRefused(const std::string& text, const std::string& code, int line,
                    const std::string& says) {
@@ -28,7 +32,7 @@ void expectRefused(const std::string& text, const std::string& code, int line,
 }
 
 TEST(NameTable, ReadsMricronsAal) {
-  const NameTable names = readNameTable("/usr/share/mricron/templates/aal.nii.txt");
+  const NameTable names = readLabelTable("/usr/share/mricron/templates/aal.nii.txt").names;
   EXPECT_EQ(names.size(), 116U);
   EXPECT_EQ(names.at(1), "Precentral_L");
   EXPECT_EQ(names.at(77), "Thalamus_L");
@@ -38,7 +42,7 @@ TEST(NameTable, ReadsMricronsAal) {
 TEST(NameTable, ReadsTheAbdomensCsv) {
   const std::string path = PALPATE_SOURCE_DIR "/../shared/data/abdomen/labels.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
-  const NameTable names = readNameTable(path);
+  const NameTable names = readLabelTable(path).names;
   EXPECT_EQ(names.at(0), "background");
   EXPECT_EQ(names.at(5), "liver");
 }
@@ -67,15 +71,49 @@ TEST(NameTable, RefusesWhatItCannotBeSureOf) {
   expectRefused("1 a\n2\n", "labels.table_row", 2, "label 2 has no name");
   expectRefused("value,name\nvalue,name\n", "labels.table_row", 2, "`value`");
   expectRefused("1 left lobe\n", "labels.table_row", 1, "`lobe`");
-  // ITK-SNAP's own format: the second column is a colour, no name.
-  expectRefused("1 255 0 0 1 1 1 \"liver\"\n", "labels.table_row", 1, "\"liver\"");
+  // A name in quotes where ITK-SNAP has none.
+  expectRefused("1 255 0 0 1 1 \"liver\"\n", "labels.table_row", 1, "\"liver\"");
+  expectRefused("1 255 0 0 1 1 1 \"a\"\n2 255 0 0 1 1 b\n", "labels.table_row", 2, "ITK-SNAP");
+  expectRefused("1 255 0 0 1 x 1 \"a\"\n", "labels.table_row", 1, "`x`");
+  expectRefused("1 liver 300 0 0 255\n", "labels.table_color", 1, "300");
   expectRefused("# only this\n", "labels.table_empty", 0, "no label");
+}
+
+TEST(LabelTable, ColorsOfEveryKindOfTableAreKept) {
+  const NameTable names = {{0, "Clear Label"}, {2, "left lobe"}};
+  const std::map<int, LabelColor> colors = {{0, {0, 0, 0}}, {2, {1.0F, 0.2F, 0.4F}}};
+  const std::vector<std::string> texts = {
+      "################\n# ITK-SnAP Label Description File\n# IDX   -R-  -G-  -B-  -A--  VIS MSH  "
+      "LABEL\n"
+      "    0     0    0    0        0  0  0    \"Clear Label\"\n"
+      "    2   255   51  102        1  1  1    \"left lobe\"\n",
+      "LabelValue,Name,Color_R,Color_G,Color_B,Color_A,SegmentedProperty\n"
+      "0,Clear Label,0,0,0,0,\n2,left lobe,255,51,102,255,SCT 1 Lobe\n",
+      "#No. Label Name:   R   G   B   A\n0\tClear Label\t0\t0\t0\t0\n2\tleft "
+      "lobe\t255\t51\t102\t0\n",
+  };
+  for (const std::string& text : texts) {
+    const LabelTable table = readLabelTable(writeTemporary("t.txt", text));
+    EXPECT_EQ(table.names, names) << text;
+    EXPECT_EQ(table.colors, colors) << text;
+  }
+  // A code is no colour.
+  EXPECT_TRUE(readLabelTable(writeTemporary("t.txt", "2 lobe 7001\n")).colors.empty());
+}
+
+TEST(LabelTable, TheHeadsColorsAreSlicers) {
+  const std::string path = kData + "/head_neck/colors.ctbl";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  const LabelTable table = readLabelTable(path);
+  EXPECT_EQ(table.names.at(25), "mandible");
+  EXPECT_EQ(table.colors.at(25), (LabelColor{220 / 255.0F, 225 / 255.0F, 105 / 255.0F}));
+  EXPECT_EQ(table.names.size(), table.colors.size());
 }
 
 TEST(NameTable, TellsOfMissingFiles) {
   for (const std::string& path : {testing::TempDir() + "/no_such_table.csv", testing::TempDir()}) {
     try {
-      (void)readNameTable(path);
+      (void)readLabelTable(path).names;
       ADD_FAILURE();
     } catch (const Error& error) {
       EXPECT_EQ(error.problem().code, "labels.table_missing");

@@ -287,6 +287,97 @@ TEST(Nifti, KeepsNaNAndSaysSo) {
   EXPECT_NE(image.notes[0].find("1 voxels are NaN"), std::string::npos) << image.notes[0];
 }
 
+TEST(Nifti, TheFormThatIsAskedForCounts) {
+  NiftiFile file;
+  file.qform_code = 1;
+  file.q_offset = {7, 8, 9};
+  const std::string both = writeTemporary("conflict.nii", bytesOf(file));
+  const auto origin = [&](const std::string& path, AffineChoice choice) {
+    ImageOptions options;
+    options.affine = choice;
+    return readImage(path, options).origin * 1e3;
+  };
+  EXPECT_LT(glm::length(origin(both, AffineChoice::kSform) - Vec3(-3, -4, -5)), 1e-9);
+  EXPECT_LT(glm::length(origin(both, AffineChoice::kQform) - Vec3(7, 8, 9)), 1e-9);
+  EXPECT_EQ(origin(both, AffineChoice::kSpacing), Vec3(0.0));
+  file.qform_code = file.sform_code = 0;
+  file.pixdim = {-1, 2, 3, 4};
+  const std::string none = writeTemporary("none.nii", bytesOf(file));
+  ImageOptions options;
+  options.affine = AffineChoice::kSpacing;
+  EXPECT_LT(glm::length(readImage(none, options).toWorld({1, 1, 1}) * 1e3 - Vec3(2, 3, 4)), 1e-9);
+  for (const AffineChoice choice : {AffineChoice::kSform, AffineChoice::kQform}) {
+    options.affine = choice;
+    EXPECT_THROW((void)readImage(none, options), Error);
+  }
+}
+
+TEST(Nifti, OfFourDimensionsAFrameIsChosen) {
+  for (const int version : {1, 2}) {
+    NiftiFile file;
+    file.version = version;
+    file.dim = {4, 5, 6, 3};
+    file.datatype = 4;
+    for (int i = 0; i < 360; ++i) file.values.push_back(i);
+    for (const bool gzip : {false, true}) {
+      const test::Bytes bytes = bytesOf(file);
+      const std::string path =
+          writeTemporary(gzip ? "4d.nii.gz" : "4d.nii", gzip ? gzipped(bytes) : bytes);
+      ImageOptions options;
+      for (int frame = 0; frame < 3; ++frame) {
+        options.frame = frame;
+        const Image image = readImage(path, options);
+        EXPECT_EQ(image.size, (std::array{4, 5, 6}));
+        EXPECT_EQ(image.at(3, 4, 5), static_cast<float>(120 * frame + 119));
+        // ITK makes the direction an identity here.
+        EXPECT_LT(glm::length(image.origin * 1e3 - Vec3(-3, -4, -5)), 1e-9);
+      }
+      options.frame = 3;
+      EXPECT_THROW((void)readImage(path, options), Error);
+    }
+  }
+}
+
+TEST(Nifti, NoiseInTheSformIsNoReasonToRefuseIt) {
+  NiftiFile file;
+  file.sform = {{{2, 2e-4, 0, -3}, {-3e-4, 2, 0, -4}, {0, 1e-4, 2, -5}}};
+  expectAffinesAsNibabel({writeTemporary("noise.nii", bytesOf(file))});
+}
+
+TEST(Nifti, NamesOfLabelsComeOutOfTheExtension) {
+  NiftiFile file;
+  const std::string table =
+      "<?xml version=\"1.0\"?><CaretExtension><VolumeInformation Index=\"0\"><LabelTable>\n"
+      "<Label Key=\"3\" Red=\"1\" Green=\"0.5\" Blue=\"0\" Alpha=\"1\"><![CDATA[a < b]]></Label>\n"
+      "<Label Key=\"-1\">skin &amp; fat</Label>\n";
+  file.extension = table + "</LabelTable></VolumeInformation></CaretExtension>";
+  for (const int code : {0, 30}) {
+    for (const bool big : {false, true}) {
+      file.extension_code = code;
+      file.big_endian = big;
+      file.version = big ? 2 : 1;
+      const std::string path = writeTemporary("names.nii", bytesOf(file));
+      const Image image = readImage(path);
+      EXPECT_EQ(image.labels.names, (NameTable{{3, "a < b"}, {-1, "skin & fat"}}));
+      EXPECT_EQ(image.labels.colors, (std::map<int, LabelColor>{{3, {1.0F, 0.5F, 0.0F}}}));
+      EXPECT_EQ(image.at(3, 4, 5), 119 % 100);
+      EXPECT_TRUE(readImageInfo(path).is_labels);
+    }
+  }
+  file.extension_code = 6;  // of another's
+  EXPECT_TRUE(readImage(writeTemporary("other.nii", bytesOf(file))).labels.names.empty());
+  file.extension_code = 0;
+  file.extension = table + "<Label Key=\"3\">other</Label></LabelTable>";
+  EXPECT_THROW((void)readImage(writeTemporary("twice.nii", bytesOf(file))), Error);
+  file.extension = table;
+  EXPECT_THROW((void)readImage(writeTemporary("open.nii", bytesOf(file))), Error);
+  file.extension = "<LabelTable><Label Key=\"x\">a</Label></LabelTable>";
+  EXPECT_THROW((void)readImage(writeTemporary("key.nii", bytesOf(file))), Error);
+  file.extension.clear();
+  file.intent = 1002;
+  EXPECT_TRUE(readImageInfo(writeTemporary("intent.nii", bytesOf(file))).is_labels);
+}
+
 TEST(Nifti, ReadsTheHeadOfMricron) {
   const Image head = readNifti(kMricron + "/ch2.nii.gz");
   EXPECT_EQ(head.size, (std::array{181, 217, 181}));

@@ -141,7 +141,10 @@ void putHeader2(Writer& out, const NiftiFile& f, double offset) {
 }  // namespace
 
 Bytes bytesOf(const NiftiFile& f) {
-  const std::size_t header = f.version == 1 ? 352 : 544;
+  // An extension is made of its size, its code and its text, filled up to 16 bytes.
+  const std::size_t extended = f.extension.empty() ? 0 : (8 + f.extension.size() + 15) / 16 * 16;
+  const std::size_t plain = f.version == 1 ? 352 : 544;
+  const std::size_t header = plain + extended;
   const double offset = f.data_offset > 0.0 ? f.data_offset : static_cast<double>(header);
   std::size_t count = 1;
   for (const std::int64_t n : f.dim)
@@ -153,6 +156,12 @@ Bytes bytesOf(const NiftiFile& f) {
     putHeader1(out, f, offset);
   } else {
     putHeader2(out, f, offset);
+  }
+  if (extended > 0) {
+    out.put<std::uint8_t>(plain - 4, 1);
+    out.put<std::int32_t>(plain, static_cast<std::int32_t>(extended));
+    out.put<std::int32_t>(plain + 4, f.extension_code);
+    out.text(plain + 8, f.extension);
   }
   for (std::size_t i = 0; i < count; ++i) {
     const double value = f.values.empty() ? static_cast<double>(i % 100) : f.values.at(i);

@@ -25,7 +25,9 @@ struct NiftiFile {
   std::array<double, 4> pixdim = {1, 2, 2, 2};  ///< qfac, then the spacings
   int units = 2;                                ///< mm
   int intent = 0;
-  double data_offset = 0;  ///< 0: right behind the header
+  double data_offset = 0;      ///< 0: right behind the header and the extension
+  std::string extension = {};  ///< its text, if there is one
+  int extension_code = 0;
   std::string magic = {};  ///< empty: single file
 };
 

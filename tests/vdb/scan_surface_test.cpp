@@ -320,7 +320,7 @@ TEST(ScanSurface, FiveOrgansByNameKeepTheirVolume) {
   const std::string folder = PALPATE_SOURCE_DIR "/../shared/data/abdomen";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
   const Image image = readNifti(folder + "/example_seg.nii.gz");
-  const NameTable names = readNameTable(folder + "/labels.csv");
+  const NameTable names = readLabelTable(folder + "/labels.csv").names;
   for (const char* name : {"liver", "spleen", "kidney_right", "stomach", "aorta"}) {
     const std::vector<int> values = resolveLabels({name}, names, "labels.csv");
     ASSERT_EQ(values.size(), 1U);

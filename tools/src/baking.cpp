@@ -13,6 +13,7 @@
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
+#include "scan_options.h"
 #include "scene_baking.h"
 #include "text.h"
 
@@ -69,6 +70,7 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
   LoadedScene loaded(options.input, console, memoryLeft(options));
   const SceneDescription& description = loaded.description();
   checkSceneOptions(options, description);
+  refuseScanOptions(options.scan, false);
   const LengthUnit unit = loaded.unit();
   const double asked = askedVoxel(options, unit);
   const ScenePtr scene = palpate::compile(neededFor(options, description), console.progress());
@@ -103,10 +105,7 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
   refuse(options.above.has_value(), "--above", "images");
   refuse(!options.labels.empty(), "--labels", "images");
   const std::string layer = onlyLayerName(options);
-  if (options.units.empty()) {
-    console.note(options.input + ": one unit is taken as 1 mm; --units says otherwise");
-  }
-  const LengthUnit unit = lengthUnit(options.units.empty() ? "mm" : options.units);
+  const LengthUnit unit = meshUnit(options.units);
   const double asked = askedVoxel(options, unit);
   const vdb::MeshSign sign = options.sign == "winding" ? vdb::MeshSign::kWinding
                              : options.sign == "flood" ? vdb::MeshSign::kFlood
@@ -115,7 +114,7 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
   if (!options.shell.empty() && !(shell > 0.0)) {
     throw bakeUsageError("--shell must be greater than 0");
   }
-  const vdb::Mesh mesh = vdb::readMesh(options.input, unit.metres);
+  const vdb::Mesh mesh = readMeshFile(options.input, options.units, options.scan, console);
   Box3 bounds;
   for (const Vec3& v : mesh.vertices) bounds.include(v);
   return {timed([&] {
@@ -130,11 +129,15 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
 
 /// The labels asked for, as layers: a name for each set of values, in the order asked.
 std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOptions& options) {
+  const bool is_grid = inputKind(options.input) == InputKind::kGrid;
   const vdb::NameTable names =
-      options.names.empty() ? vdb::NameTable{} : vdb::readNameTable(options.names);
+      !options.names.empty() ? vdb::readLabelTable(options.names).names
+      : is_grid              ? vdb::NameTable{}
+                : vdb::readImageInfo(options.input, imageOptions(options.scan)).labels.names;
+  const std::string source = options.names.empty() ? options.input : options.names;
   std::vector<std::pair<std::string, std::vector<int>>> layers;
   for (const std::string& entry : options.labels) {
-    for (const int value : vdb::resolveLabels({entry}, names, options.names)) {
+    for (const int value : vdb::resolveLabels({entry}, names, source)) {
       const auto named = names.find(value);
       const std::string layer =
           named != names.end() ? named->second : "label_" + std::to_string(value);
@@ -170,6 +173,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   refuse(options.labels.empty() && !options.names.empty(), "--names", "--labels");
   refuse(!options.labels.empty() && !options.layers.empty() && !is_grid, "--layer",
          "--above; labels are called by their names");
+  if (is_grid) refuseScanOptions(options.scan, false);
   const auto layers = labelLayers(options);
 
   std::string unit;
@@ -221,6 +225,7 @@ std::vector<BakedGrid> baked(const BakeOptions& options, Console& console) {
       return bakeImage(options, console);
     case InputKind::kGrid:
       refuseMeshOptions(options);
+      refuseScanOptions(options.scan, false);
       return inTheSameFrame(options, options.above || !options.labels.empty()
                                          ? bakeImage(options, console)
                                          : std::vector<BakedGrid>{rebakeGrid(options, console)});

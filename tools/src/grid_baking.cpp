@@ -10,6 +10,7 @@
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/scan_surface.h"
+#include "scan_options.h"
 #include "scene_baking.h"
 #include "text.h"
 #include "vdb_grid_name.h"
@@ -172,7 +173,7 @@ std::vector<BakedGrid> inTheSameFrame(const BakeOptions& options, std::vector<Ba
 vdb::Image readVoxels(const BakeOptions& options, std::string& length_unit) {
   if (inputKind(options.input) == InputKind::kImage) {
     length_unit = "mm";
-    return vdb::readNifti(options.input);
+    return vdb::readImage(options.input, imageOptions(options.scan));
   }
   const std::string name = askedName(options);
   length_unit = unitOfGrid(options);

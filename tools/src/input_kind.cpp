@@ -7,11 +7,12 @@
 #include <utility>
 
 #include "palpate/core/error.h"
+#include "palpate/vdb/image.h"
 
 namespace palpate::tools {
 namespace {
 
-constexpr std::array<std::pair<const char*, InputKind>, 11> kExtensions = {{
+constexpr std::array<std::pair<const char*, InputKind>, 10> kExtensions = {{
     {".yaml", InputKind::kScene},
     {".yml", InputKind::kScene},
     {".json", InputKind::kScene},
@@ -21,8 +22,7 @@ constexpr std::array<std::pair<const char*, InputKind>, 11> kExtensions = {{
     {".ply", InputKind::kMesh},
     {".gltf", InputKind::kMesh},
     {".glb", InputKind::kMesh},
-    {".nii", InputKind::kImage},
-    {".nii.gz", InputKind::kImage},
+    {".vtk", InputKind::kMesh},
 }};
 
 std::string lower(std::string text) {
@@ -42,22 +42,26 @@ InputKind inputKind(const std::string& path) {
   if (!std::filesystem::exists(path, failed)) {
     throw inputError("file.missing", "there is no such file", "check the path", path);
   }
+  if (vdb::isImageFile(path)) return InputKind::kImage;
   if (std::filesystem::is_directory(path, failed)) {
-    throw inputError("file.is_folder", "this is a folder", "name a file in it", path);
+    throw inputError("file.is_folder", "this is a folder, and holds no DICOM images",
+                     "name a file in it", path);
   }
   for (const auto& [extension, kind] : kExtensions) {
     if (hasExtension(path, extension)) return kind;
   }
   throw inputError(
       "file.unknown_kind", "cannot tell from its name what this file is",
-      "known are scenes (.yaml .yml .json), grids (.vdb), meshes (.stl .obj .ply .gltf .glb) "
-      "and images (.nii .nii.gz)",
+      "known are scenes (.yaml .yml .json), grids (.vdb), meshes (.stl .obj .ply .vtk .gltf .glb) "
+      "and images (.nii .nii.gz .nrrd .nhdr .mha .mhd, folders of DICOM files)",
       path);
 }
 
 std::string stemOf(const std::string& path) {
   std::string name = std::filesystem::path(path).filename().string();
-  if (hasExtension(name, ".nii.gz")) return name.substr(0, name.size() - 7);
+  for (const std::string two : {".nii.gz", ".seg.nrrd"}) {
+    if (hasExtension(name, two)) return name.substr(0, name.size() - two.size());
+  }
   return std::filesystem::path(name).stem().string();
 }
 

@@ -12,22 +12,29 @@ LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_
   vdb::RegisterOptions options;
   options.on_grid = [this](const vdb::GridRecord& record) { grids_.push_back(record); };
   options.on_note = [this](const std::string& note) { console_->note(note); };
+  options.on_color = [this](const std::string& layer, const vdb::LabelColor& color) {
+    colors_[layer] = color;
+  };
+  SceneImage image;
+  options.on_image = [&image](const vdb::ImageRecord& record) {
+    image.file = record.file;
+    image.options = record.options;
+    image.has_names = record.is_labels;
+  };
   options.max_memory = max_memory;
   vdb::registerKinds(registry, std::move(options));
 
   // Pictures want the scans themselves, so the entries are noted down on their way through.
-  registry.image = [this, inner = registry.image](MapReader& reader) {
-    SceneImage image;
-    image.file = reader.loader().resolvePath(reader.requireText("file"));
-    image.has_names = reader.has("names");
+  registry.image = [this, &image, inner = registry.image](MapReader& reader) {
+    auto made = inner(reader);
     for (const auto& entry : reader.loader().document().root.entries) {
       if (entry.key != "images") continue;
       for (const auto& named : entry.value.entries) {
         if (&named.value == &reader.node()) image.name = named.key;
       }
     }
-    auto made = inner(reader);
     images_.push_back(std::move(image));
+    image = {};
     return made;
   };
   description_ = readScene(file, registry);

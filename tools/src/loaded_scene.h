@@ -2,6 +2,7 @@
 /// A scene file read with everything palpate::vdb can read, and what its grids cost.
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,8 +18,9 @@ namespace palpate::tools {
 /// An entry of the scene's `images`.
 struct SceneImage {
   std::string name;
-  std::string file;        ///< as this process can open it
-  bool has_names = false;  ///< a label image, not grey values
+  std::string file;           ///< as this process can open it
+  vdb::ImageOptions options;  ///< how the scene reads it
+  bool has_names = false;     ///< a label image, not grey values
 };
 
 /// Stays where it is: the description's sources report back to it.
@@ -33,6 +35,10 @@ class LoadedScene {
   [[nodiscard]] const SceneDescription& description() const noexcept { return description_; }
   [[nodiscard]] LengthUnit unit() const;
   [[nodiscard]] const std::vector<SceneImage>& images() const noexcept { return images_; }
+  /// Of layers that come from labels with a colour.
+  [[nodiscard]] const std::map<std::string, vdb::LabelColor>& colors() const noexcept {
+    return colors_;
+  }
   [[nodiscard]] const std::vector<vdb::GridRecord>& grids() const noexcept { return grids_; }
 
   /// Compiles, with progress. @throws Error.
@@ -45,6 +51,7 @@ class LoadedScene {
   Console* console_;
   std::vector<vdb::GridRecord> grids_;
   std::vector<SceneImage> images_;
+  std::map<std::string, vdb::LabelColor> colors_;
   SceneDescription description_;
 };
 

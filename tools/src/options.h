@@ -45,14 +45,23 @@ struct TouchOptions {
   std::string image;
 };
 
+/// What a scan or a mesh leaves open.
+struct ScanOptions {
+  std::string affine;        ///< image: "sform", "qform" or "spacing"; empty: as the file says
+  std::string space;         ///< mesh, NRRD image: "RAS" or "LPS"; empty: as the file says
+  std::optional<int> frame;  ///< 4-D image
+  std::string series;        ///< DICOM
+};
+
 struct BakeOptions {
   std::string input;
   std::string output;
   std::vector<std::string> layers;  ///< scene: which layers; threshold and mesh: the layer's name
   std::string units;                ///< mesh
-  std::string sign;                 ///< mesh: "vote", "winding" or "flood"; empty: vote
-  std::string shell;                ///< mesh: thickness; empty: a solid
-  std::optional<double> smooth;     ///< mesh: [degrees]
+  ScanOptions scan;
+  std::string sign;              ///< mesh: "vote", "winding" or "flood"; empty: vote
+  std::string shell;             ///< mesh: thickness; empty: a solid
+  std::optional<double> smooth;  ///< mesh: [degrees]
   std::optional<double> above;
   std::string keep;  ///< "largest" or "all"; empty: largest
   bool fill = false;
@@ -74,6 +83,8 @@ struct ConvertOptions {
 struct InfoOptions {
   std::vector<std::string> files;
   std::string units;
+  ScanOptions scan;
+  std::string names;
 };
 
 struct CheckOptions {
@@ -89,6 +100,7 @@ struct QueryOptions {
   std::vector<std::string> at;
   std::string points;
   std::string field;
+  ScanOptions scan;
 };
 
 struct ExplainOptions {

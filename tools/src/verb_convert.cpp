@@ -9,6 +9,7 @@
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/surface_mesh.h"
+#include "scan_options.h"
 #include "text.h"
 #include "verbs.h"
 
@@ -70,11 +71,7 @@ Written asMesh(const ConvertOptions& options, Console& console) {
   vdb::LevelSet grid;
   vdb::Mesh mesh;
   if (inputKind(options.bake.input) == InputKind::kMesh) {
-    if (options.bake.units.empty()) {
-      console.note(options.bake.input + ": one unit is taken as 1 mm; --units says otherwise");
-    }
-    mesh = vdb::readMesh(options.bake.input,
-                         lengthUnit(options.bake.units.empty() ? "mm" : options.bake.units).metres);
+    mesh = readMeshFile(options.bake.input, options.bake.units, options.bake.scan, console);
   } else {
     grid = onlyGrid(options, console);
     mesh = vdb::surfaceMesh(grid, console.progress());

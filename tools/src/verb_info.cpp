@@ -1,28 +1,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "image_report.h"
 #include "input_kind.h"
 #include "json_parts.h"
 #include "loaded_scene.h"
-#include "palpate/vdb/image.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/mesh.h"
+#include "scan_options.h"
 #include "text.h"
 #include "verbs.h"
 
 namespace palpate::tools {
 namespace {
-
-/// One file's part of the report.
-struct FileReport {
-  Json json;
-  std::string text;
-};
-
-std::string boxText(const Box3& box, double unit, const std::string& name) {
-  if (box.isEmpty()) return "empty";
-  return formatVector(box.lo / unit) + " to " + formatVector(box.hi / unit) + " " + name;
-}
 
 std::string plural(std::size_t count, const std::string& thing) {
   return formatCount(count) + " " + thing + (count == 1 ? "" : "s");
@@ -117,15 +107,16 @@ FileReport gridInfo(const std::string& file) {
   return out;
 }
 
-FileReport meshInfo(const std::string& file, const std::string& units, Console& console) {
-  if (units.empty()) console.note(file + ": one unit is taken as 1 mm; --units says otherwise");
-  const LengthUnit unit = lengthUnit(units.empty() ? "mm" : units);
-  const vdb::Mesh mesh = vdb::readMesh(file, unit.metres);
+FileReport meshInfo(const std::string& file, const InfoOptions& options, Console& console) {
+  const LengthUnit unit = meshUnit(options.units);
+  const vdb::Mesh mesh = readMeshFile(file, options.units, options.scan, console);
   const vdb::MeshReport r = vdb::checkMesh(mesh);
   FileReport out;
   out.json = {{"file", file},
               {"kind", "mesh"},
               {"length_unit", unit.name},
+              {"space", mesh.space == vdb::Space::kLps ? "LPS" : "RAS"},
+              {"space_stated", mesh.space_is_stated},
               {"vertices", mesh.vertices.size()},
               {"triangles", mesh.triangles.size()},
               {"components", r.components},
@@ -140,7 +131,8 @@ FileReport meshInfo(const std::string& file, const std::string& units, Console& 
              plural(mesh.triangles.size(), "triangle") + " and " +
              formatCount(mesh.vertices.size()) + " vertices in " + plural(r.components, "piece") +
              "\n";
-  out.text += "  bounds  " + boxText(r.bounds, unit.metres, unit.name) + "\n";
+  out.text += "  space   " + spaceText(mesh, options.scan) + "\n";
+  out.text += "  bounds  " + boxText(r.bounds, unit.metres, unit.name) + " (RAS)\n";
   out.text += "  volume  " + formatNumber(r.volume / std::pow(unit.metres, 3)) + " " + unit.name +
               "^3" + (r.volume < 0.0 ? " (the triangles wind inwards)" : "") + "\n";
   if (!r.isClosed()) {
@@ -161,58 +153,6 @@ FileReport meshInfo(const std::string& file, const std::string& units, Console& 
   return out;
 }
 
-/// In the words of a radiologist's axes: "right", "left", ...
-std::string axisWords(const std::string& orientation) {
-  std::string text;
-  for (const char c : orientation) {
-    const char* word = c == 'R'   ? "right"
-                       : c == 'L' ? "left"
-                       : c == 'A' ? "front"
-                       : c == 'P' ? "back"
-                       : c == 'S' ? "up"
-                       : c == 'I' ? "down"
-                                  : "?";
-    text += (text.empty() ? "" : ", ") + std::string(word);
-  }
-  return text;
-}
-
-FileReport imageInfo(const std::string& file, Console& console) {
-  const vdb::ImageInfo info = vdb::readNiftiInfo(file);
-  for (const auto& note : info.notes) console.note(file + ": " + note);
-  Box3 box;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3 index{0.0};
-    for (int i = 0; i < 3; ++i) {
-      index[i] = ((corner >> i) & 1) != 0 ? info.size[static_cast<std::size_t>(i)] - 1.0 : 0.0;
-    }
-    box.include(info.axes * index + info.origin);
-  }
-  const Vec3 spacing(glm::length(info.axes[0]), glm::length(info.axes[1]),
-                     glm::length(info.axes[2]));
-  const auto size = std::to_string(info.size[0]) + " x " + std::to_string(info.size[1]) + " x " +
-                    std::to_string(info.size[2]);
-  FileReport out;
-  out.json = {{"file", file},
-              {"kind", "image"},
-              {"size", info.size},
-              {"spacing_m", vectorJson(spacing)},
-              {"data_type", info.data_type},
-              {"orientation", info.orientation},
-              {"axes_m", Json::array({vectorJson(info.axes[0]), vectorJson(info.axes[1]),
-                                      vectorJson(info.axes[2])})},
-              {"origin_m", vectorJson(info.origin)},
-              {"bounds_m", boxJson(box)},
-              {"notes", info.notes}};
-  out.text = file + ": an image of " + size + " voxels (" + info.data_type + ")\n";
-  out.text += "  spacing      " + formatNumber(spacing.x * 1e3) + " x " +
-              formatNumber(spacing.y * 1e3) + " x " + formatNumber(spacing.z * 1e3) + " mm\n";
-  out.text += "  orientation  " + info.orientation + ": its axes run to the " +
-              axisWords(info.orientation) + "\n";
-  out.text += "  centres      " + boxText(box, 1e-3, "mm (RAS)") + "\n";
-  return out;
-}
-
 }  // namespace
 
 Report run(const InfoOptions& options, const GeneralOptions&, Console& console) {
@@ -229,10 +169,10 @@ Report run(const InfoOptions& options, const GeneralOptions&, Console& console) 
         one = gridInfo(file);
         break;
       case InputKind::kMesh:
-        one = meshInfo(file, options.units, console);
+        one = meshInfo(file, options, console);
         break;
       case InputKind::kImage:
-        one = imageInfo(file, console);
+        one = imageReport(file, options, console);
         break;
     }
     if (!report.text.empty()) report.text += "\n";

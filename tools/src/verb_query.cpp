@@ -8,6 +8,7 @@
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/image.h"
 #include "points_file.h"
+#include "scan_options.h"
 #include "text.h"
 #include "verbs.h"
 
@@ -28,7 +29,7 @@ Report queryImage(const QueryOptions& options, Console& console) {
   }
   const LengthUnit mm = {"mm", 1e-3};
   const std::vector<Vec3> points = queryPoints(options, mm);
-  const vdb::Image image = vdb::readNifti(options.input);
+  const vdb::Image image = vdb::readImage(options.input, imageOptions(options.scan));
   for (const auto& note : image.notes) console.note(options.input + ": " + note);
   Report report;
   report.json = {{"schema", "palpate.query/1"},
@@ -68,6 +69,7 @@ Json sampleJson(const AskedField& asked, const FieldSample& s, double unit) {
 }
 
 Report queryScene(const QueryOptions& options, Console& console) {
+  refuseScanOptions(options.scan, false);
   LoadedScene loaded(options.input, console);
   const LengthUnit unit = loaded.unit();
   const std::vector<Vec3> points = queryPoints(options, unit);

@@ -52,6 +52,7 @@ Report run(const RenderOptions& options, const GeneralOptions& general, Console&
   if (!options.cut.empty()) picture.plane = parseCut(options.cut, unit);
   if (!options.trace.empty()) picture.track = readTrack(options.trace);
   picture.image = pictureImage(loaded, options.image);
+  picture.colors = loaded.colors();
   picture.anatomical = !loaded.images().empty();
   picture.title = std::filesystem::path(options.scene).filename().string();
 

@@ -139,6 +139,7 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
     picture.title = std::filesystem::path(options.scene).filename().string();
     picture.track = trackOf(trace.rows());
     picture.image = pictureImage(loaded, "");
+    picture.colors = loaded.colors();
     picture.anatomical = !loaded.images().empty();
     (void)drawPicture(*scene, picture, files.temporary(options.image), console);
   }

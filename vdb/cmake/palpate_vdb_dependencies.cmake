@@ -1,4 +1,4 @@
-# OpenVDB, TBB, libnifti and Assimp as Debian 12 has them. Debian's FindOpenVDB.cmake is not used: it sets
+# OpenVDB, TBB, libnifti, GDCM and Assimp as Debian 12 has them. Debian's FindOpenVDB.cmake is not used: it sets
 # BUILD_SHARED_LIBS in its caller and asks for libboost-iostreams-dev.
 include(CMakeFindDependencyMacro)
 find_dependency(TBB)
@@ -34,3 +34,10 @@ set_property(TARGET palpate_external::openvdb PROPERTY
   INTERFACE_LINK_LIBRARIES palpate_external::imath TBB::tbb)
 set_property(TARGET palpate_external::nifti PROPERTY
   INTERFACE_LINK_LIBRARIES palpate_external::nifticdf palpate_external::znz ZLIB::ZLIB m)
+
+# Debian's GDCMConfig.cmake asks for packages that reading does not need.
+_palpate_import(palpate_external::gdcm gdcmImageReader.h gdcmMSFF gdcm-3.0)
+_palpate_import(palpate_external::gdcm_dsed gdcmDataSet.h gdcmDSED gdcm-3.0)
+_palpate_import(palpate_external::gdcm_common gdcmTrace.h gdcmCommon gdcm-3.0)
+set_property(TARGET palpate_external::gdcm PROPERTY
+  INTERFACE_LINK_LIBRARIES palpate_external::gdcm_dsed palpate_external::gdcm_common)

@@ -114,13 +114,18 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
   bake.voxel_size = readPositiveOrNone(reader, "voxel");
   bake.half_width = readHalfWidth(reader, bake.half_width);
   readMeshKeys(reader, bake);
+  const Space space = readSpace(reader);
   bake.metadata["source"] = path;
   const Sampler sampler = readSampler(reader);
   return lazyField(common, fileName(path), "mesh " + fileName(path),
                    reader.loader().document().place(reader.node().mark), sampler,
-                   [path, metres, bake](const Progress& progress) {
+                   [common, path, metres, space, bake](const Progress& progress) {
                      report(progress, "read", 0.0);
-                     const Mesh mesh = readMesh(path, metres);
+                     const Mesh mesh = readMesh(path, metres, space);
+                     if (mesh.space_is_stated && mesh.space == Space::kLps) {
+                       common->notes->add(
+                           path, {"coordinates are LPS, as the file says: x and y are negated"});
+                     }
                      BakeOptions options = bake;
                      if (!(options.voxel_size > 0.0)) {
                        const Vec3 size = checkMesh(mesh).bounds.size();
@@ -184,7 +189,8 @@ std::vector<int> readMatch(MapReader& reader, const SceneImage& image) {
       throw document.error(item.mark, "scene.kind", "a label is a name or a value");
     }
     try {
-      const std::vector<int> found = resolveLabels({item.text}, image.names, image.names_path);
+      const std::vector<int> found =
+          resolveLabels({item.text}, image.labels.names, image.names_path);
       values.insert(values.end(), found.begin(), found.end());
     } catch (const Error& error) {
       const Problem& problem = error.problem();
@@ -202,6 +208,13 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
                                         const std::string& layer) {
   const LayerImage from(reader, layer, common->options.max_memory);
   const std::vector<int> values = readMatch(reader, *from.image);
+  // Several labels have the colour of the first that has one.
+  for (const int value : values) {
+    const auto color = from.image->labels.colors.find(value);
+    if (color == from.image->labels.colors.end()) continue;
+    if (common->options.on_color) common->options.on_color(layer, color->second);
+    break;
+  }
   const double voxel_size = readPositiveOrNone(reader, "voxel");
   std::string summary = values.size() == 1 ? "label" : "labels";
   for (const int value : values) summary += " " + std::to_string(value);
@@ -244,7 +257,7 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
 void registerKinds(SceneRegistry& registry, RegisterOptions options) {
   auto notes = std::make_shared<Notes>(options.on_note);
   const auto common =
-      std::make_shared<Common>(Common{std::move(options), notes, SceneImages(notes)});
+      std::make_shared<Common>(Common{options, notes, SceneImages(notes, options.on_image)});
   registry.image = [common](MapReader& reader) { return common->images.read(reader); };
   registry.fields["mesh"] = [common](MapReader& reader) { return meshField(common, reader); };
   registry.fields["grid"] = [common](MapReader& reader) { return gridFileField(common, reader); };

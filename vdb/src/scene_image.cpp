@@ -1,5 +1,8 @@
 #include "scene_image.h"
 
+#include <cmath>
+#include <limits>
+
 namespace palpate::vdb {
 
 void Notes::add(const std::string& path, const std::vector<std::string>& notes) {
@@ -11,7 +14,7 @@ void Notes::add(const std::string& path, const std::vector<std::string>& notes) 
 
 const Image& ImageFile::image() {
   if (!image_) {
-    image_ = readNifti(path_);
+    image_ = readImage(path_, options_);
     notes_->add(path_, image_->notes);
   }
   return *image_;
@@ -33,27 +36,82 @@ Error atKey(const MapReader& reader, std::string_view key, const Error& error) {
                         problem.hint);
 }
 
+namespace {
+
+ImageOptions readImageOptions(MapReader& reader) {
+  ImageOptions options;
+  const std::string affine = reader.textOr("affine", "");
+  if (affine == "sform") {
+    options.affine = AffineChoice::kSform;
+  } else if (affine == "qform") {
+    options.affine = AffineChoice::kQform;
+  } else if (affine == "spacing") {
+    options.affine = AffineChoice::kSpacing;
+  } else if (!affine.empty()) {
+    throw reader.errorAt("affine", "scene.kind", "'affine' is `" + affine + "`",
+                         "write affine: sform, affine: qform or affine: spacing");
+  }
+  options.space = readSpace(reader);
+  if (reader.has("frame")) {
+    const double frame = reader.requireNumber("frame");
+    if (!(frame >= 0.0 && frame <= std::numeric_limits<int>::max()) || frame != std::floor(frame)) {
+      throw reader.errorAt("frame", "scene.range", "'frame' must be a whole number from 0");
+    }
+    options.frame = static_cast<int>(frame);
+  }
+  options.series = reader.textOr("series", "");
+  return options;
+}
+
+/// What tells one way to read a file from another.
+std::string keyOf(const std::string& path, const ImageOptions& options) {
+  return path + '\n' + std::to_string(static_cast<int>(options.affine)) + '\n' +
+         std::to_string(static_cast<int>(options.space)) + '\n' +
+         std::to_string(options.frame.value_or(-1)) + '\n' + options.series;
+}
+
+}  // namespace
+
+Space readSpace(MapReader& reader) {
+  const std::string space = reader.textOr("space", "");
+  if (space.empty()) return Space::kStated;
+  if (space == "RAS") return Space::kRas;
+  if (space == "LPS") return Space::kLps;
+  throw reader.errorAt("space", "scene.kind", "'space' is `" + space + "`",
+                       "write space: RAS or space: LPS");
+}
+
 std::shared_ptr<SceneImage> SceneImages::read(MapReader& reader) {
   auto made = std::make_shared<SceneImage>();
   const std::string path = reader.loader().resolvePath(reader.requireText("file"));
+  const ImageOptions options = readImageOptions(reader);
+  ImageRecord record{path, options, reader.has("names")};
   try {
-    notes_->add(path, readNiftiInfo(path).notes);
+    ImageInfo info = readImageInfo(path, options);
+    notes_->add(path, info.notes);
+    record.is_labels = record.is_labels || info.is_labels;
+    if (!info.labels.names.empty()) {
+      made->labels = std::move(info.labels);
+      made->names_path = path;
+    }
   } catch (const Error& error) {
     throw atKey(reader, "file", error);
   }
-  made->file = files_[path].lock();
+  std::weak_ptr<ImageFile>& known = files_[keyOf(path, options)];
+  made->file = known.lock();
   if (!made->file) {
-    made->file = std::make_shared<ImageFile>(path, notes_);
-    files_[path] = made->file;
+    made->file = std::make_shared<ImageFile>(path, options, notes_);
+    known = made->file;
   }
   if (const std::string names = reader.textOr("names", ""); !names.empty()) {
     made->names_path = reader.loader().resolvePath(names);
     try {
-      made->names = readNameTable(made->names_path);
+      made->labels = readLabelTable(made->names_path);
     } catch (const Error& error) {
       throw atKey(reader, "names", error);
     }
   }
+  if (tell_) tell_(record);
   return made;
 }
 

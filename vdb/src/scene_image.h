@@ -11,6 +11,7 @@
 
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/image.h"
+#include "palpate/vdb/register.h"
 #include "palpate/vdb/scan_surface.h"
 
 namespace palpate::vdb {
@@ -29,13 +30,14 @@ class Notes {
 /// One image file, read at most once however many layers come from it.
 class ImageFile {
  public:
-  ImageFile(std::string path, std::shared_ptr<Notes> notes)
-      : path_(std::move(path)), notes_(std::move(notes)) {}
+  ImageFile(std::string path, ImageOptions options, std::shared_ptr<Notes> notes)
+      : path_(std::move(path)), options_(std::move(options)), notes_(std::move(notes)) {}
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] const Image& image();
 
  private:
   std::string path_;
+  ImageOptions options_;
   std::shared_ptr<Notes> notes_;
   std::optional<Image> image_;
 };
@@ -43,8 +45,8 @@ class ImageFile {
 /// One entry of `images:`.
 struct SceneImage {
   std::shared_ptr<ImageFile> file;
-  NameTable names;
-  std::string names_path;  ///< empty if there is no table
+  LabelTable labels;       ///< of the table that is named, else of the image itself
+  std::string names_path;  ///< empty if there is none
   /// The labels of each layer that comes from this image, as the scene is read; they share walls.
   std::vector<std::vector<int>> layers;
 
@@ -56,17 +58,22 @@ struct SceneImage {
   std::size_t layers_then_ = 0;
 };
 
-/// Makes SceneImages; a file that two entries name is shared.
+/// Makes SceneImages; a file that two entries name, and read alike, is shared.
 class SceneImages {
  public:
-  explicit SceneImages(std::shared_ptr<Notes> notes) : notes_(std::move(notes)) {}
+  SceneImages(std::shared_ptr<Notes> notes, std::function<void(const ImageRecord&)> tell)
+      : notes_(std::move(notes)), tell_(std::move(tell)) {}
   [[nodiscard]] std::shared_ptr<SceneImage> read(MapReader& reader);
 
  private:
   std::shared_ptr<Notes> notes_;
-  std::map<std::string, std::weak_ptr<ImageFile>>
-      files_;  ///< weak: voxels go when their scene goes
+  std::function<void(const ImageRecord&)> tell_;
+  /// By path and by how it is read. Weak: voxels go when their scene goes.
+  std::map<std::string, std::weak_ptr<ImageFile>> files_;
 };
+
+/// `space:` RAS or LPS; not given: as the file says.
+[[nodiscard]] Space readSpace(MapReader& reader);
 
 /// `error`, met while the file named by `key` was looked at, told at that key of the scene.
 [[nodiscard]] Error atKey(const MapReader& reader, std::string_view key, const Error& error);

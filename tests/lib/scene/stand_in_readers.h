@@ -19,6 +19,7 @@ inline SceneRegistry standInReaders() {
   registry.fields["mesh"] = [later](MapReader& reader) {
     const std::string file = reader.loader().resolvePath(reader.requireText("file"));
     (void)reader.textOr("units", "");
+    (void)reader.textOr("space", "");
     (void)reader.numberOr("half_width", 6.0);
     (void)reader.textOr("sampler", "");
     (void)reader.textOr("sign", "");
@@ -48,6 +49,10 @@ inline SceneRegistry standInReaders() {
   registry.image = [](MapReader& reader) -> std::shared_ptr<void> {
     auto file = std::make_shared<std::string>(reader.requireText("file"));
     (void)reader.textOr("names", "");
+    (void)reader.textOr("affine", "");
+    (void)reader.textOr("space", "");
+    (void)reader.numberOr("frame", 0.0);
+    (void)reader.textOr("series", "");
     return file;
   };
   const auto image = [](MapReader& reader) {

@@ -5,6 +5,24 @@
 namespace palpate::tools {
 namespace {
 
+/// What a scan or a mesh leaves open.
+void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes) {
+  add(app, group, "--affine", "sform|qform|spacing", o.affine,
+      "NIfTI: which form counts (default: sform, else qform; if both, they must agree); NIfTI, "
+      "NRRD: "
+      "spacings only, axes along R, A, S from 0")
+      ->check(CLI::IsMember({"sform", "qform", "spacing"}));
+  add(app, group, "--space", "RAS|LPS", o.space,
+      meshes
+          ? "which way the axes of a mesh run (default: as the file says, else RAS), or of a NRRD "
+            "image that does not say"
+          : "which way the axes of a NRRD image run that does not say")
+      ->check(CLI::IsMember({"RAS", "LPS"}));
+  add(app, group, "--frame", "N", o.frame, "which volume of a 4-D image, from 0")
+      ->check(CLI::Range(0, 1000000));
+  add(app, group, "--series", "UID", o.series, "which DICOM series of a folder that holds several");
+}
+
 /// How a surface is made into a grid, and which.
 void addBaking(CLI::App& app, BakeOptions& o) {
   const char* g = "The grid";
@@ -30,7 +48,8 @@ void addBaking(CLI::App& app, BakeOptions& o) {
   add(app, g, "--smooth", "DEGREES", o.smooth,
       "facets that meet at less than this angle become one smooth surface")
       ->check(CLI::Range(0.0, 180.0));
-  g = "From a NIfTI image, or a grid of densities or labels";
+  addScan(app, "What a scan or a mesh leaves open", o.scan, true);
+  g = "From an image, or a grid of densities or labels";
   add(app, g, "--above", "VALUE", o.above, "the surface around all voxels greater than this");
   add(app, g, "--keep", "largest|all", o.keep, "--above: which pieces (default largest)")
       ->check(CLI::IsMember({"largest", "all"}));
@@ -41,7 +60,9 @@ void addBaking(CLI::App& app, BakeOptions& o) {
       ->delimiter(',')
       ->take_all()
       ->allow_extra_args(false);
-  add(app, g, "--names", "FILE", o.names, "name table: lines `index name` or `value,name`");
+  add(app, g, "--names", "FILE", o.names,
+      "table of names: `index name`, `value,name`, of Slicer, ITK-SNAP or FreeSurfer (default: the "
+      "image's own)");
 }
 
 void addLevelSet(CLI::App& app, const char* group, bool& level_set) {
@@ -76,6 +97,8 @@ void defineInfo(CLI::App& app, Invocation& invocation) {
   app.add_option("files", o.files);
   add(app, "Options", "--units", "UNIT", o.units,
       "what one unit of a mesh is: mm (default), cm, m, um, in");
+  add(app, "Options", "--names", "FILE", o.names, "image: table of names of its labels");
+  addScan(app, "What a scan or a mesh leaves open", o.scan, true);
 }
 
 void defineCheck(CLI::App& app, Invocation& invocation) {
@@ -121,8 +144,9 @@ Verb bakeVerb() {
       "Turn a scene, a mesh or a scan into narrow-band level sets (.vdb)",
       "palpate bake data/scenes/container.yaml -o container.vdb --voxel 0.5",
       "palpate bake INPUT -o OUT.vdb [OPTIONS]",
-      "INPUT is a scene file, a mesh (.stl .obj .ply .gltf .glb) or an image (.nii .nii.gz). Each "
-      "layer\n"
+      "INPUT is a scene file, a mesh (.stl .obj .ply .vtk .gltf .glb) or an image (.nii .nii.gz "
+      ".nrrd\n"
+      ".nhdr .mha .mhd, or a folder with a DICOM series). Each layer\n"
       "becomes a grid `<layer>/surface`. An image needs --above or --labels.\n"
       "\n"
       "No grid holds an edge: its normal is some ten degrees off there, however small the voxels "
@@ -176,7 +200,9 @@ Verb infoVerb() {
           "Say what a file is: scene, grid, mesh or scan",
           "palpate info /usr/share/mricron/templates/ch2.nii.gz",
           "palpate info FILE... [OPTIONS]",
-          "",
+          "An image is read whole: its place in space, its values, and how many voxels each label "
+          "has. It\n"
+          "counts as labels if it says so, has a table of names, or few different whole values.",
           {},
           defineInfo,
           [](const Invocation& i) { need(!chosen<InfoOptions>(i).files.empty(), "FILE"); }};

@@ -163,7 +163,7 @@ class Marcher {
       normal = unitOr(there_.inside(leaf) ? gradient : -gradient, normal);
       break;
     }
-    Color base = regionColor(region);
+    Color base = paint_.of(region);
     if (met.kind == Boundary::Kind::kPort) base = mixed(base, kPortInk, 0.35);
     if (met.kind == Boundary::Kind::kAbsent) base = mixed(base, kPaper, 0.4);
     return {shaded(base, std::abs(glm::dot(normal, light_))), 2 * region + 1};
@@ -241,7 +241,7 @@ Camera cameraFor(const Scene& scene, const CutPlane& plane, const Box3& box,
   camera.width = kTrial;
   camera.height = kTrial;
   camera.step = glm::length(box.size()) / kTrial;
-  const Paint plain(nullptr);
+  const Paint plain(nullptr, scene, {});
   Marcher marcher(scene, plane, box, camera, plain);
   double left = kInfinity, right = -kInfinity, low = kInfinity, high = -kInfinity;
   const auto include = [&](double x, double y, double margin) {

@@ -45,7 +45,7 @@ void drawLegend(Sheet& s, double y) {
     const Region& region = s.scene.regions()[i];
     if (!seen[i]) continue;
     entry(region.name, feelOf(s, region), [&](double at) {
-      s.canvas.rectangle(x, at - s.px(8), s.px(34), s.px(17), regionColor(static_cast<RegionId>(i)),
+      s.canvas.rectangle(x, at - s.px(8), s.px(34), s.px(17), s.paint.of(static_cast<RegionId>(i)),
                          s.px(3));
       s.canvas.frame(x, at - s.px(8), s.px(34), s.px(17), {rgb(0x9A9AA2), s.px(0.8)});
     });

@@ -13,7 +13,15 @@ constexpr double kOutsideGrey = 0.5;  // how much of the scan shows where there 
 
 }  // namespace
 
-Paint::Paint(std::shared_ptr<const vdb::Image> image) : image_(std::move(image)) {
+Paint::Paint(std::shared_ptr<const vdb::Image> image, const Scene& scene,
+             const std::map<std::string, vdb::LabelColor>& colors)
+    : image_(std::move(image)) {
+  for (std::size_t i = 0; i < scene.regions().size(); ++i) {
+    const auto own = colors.find(scene.regions()[i].name);
+    colors_.push_back(own == colors.end()
+                          ? regionColor(static_cast<RegionId>(i))
+                          : Color{own->second[0], own->second[1], own->second[2], 1.0});
+  }
   if (!image_) return;
   to_index_ = glm::inverse(image_->axes);
   std::vector<float> values;
@@ -32,7 +40,7 @@ Paint::Paint(std::shared_ptr<const vdb::Image> image) : image_(std::move(image))
 }
 
 Color Paint::at(RegionId region, const Vec3& p) const {
-  const Color base = regionColor(region);
+  const Color base = of(region);
   if (!image_) return base;
   // Image::interpolate inverts the affine every time; here are a million pixels.
   const Vec3 index = to_index_ * (p - image_->origin);

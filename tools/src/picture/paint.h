@@ -1,9 +1,12 @@
 #pragma once
 /// The colour of a point of a cut face: its region's, darkened and lightened by a scan's grey values.
 
+#include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
-#include "palpate/interior/partition.h"
+#include "palpate/scene/scene.h"
 #include "palpate/vdb/image.h"
 #include "picture/canvas.h"
 
@@ -11,13 +14,18 @@ namespace palpate::tools {
 
 class Paint {
  public:
-  /// Without an image: plain colours. Grey runs from the 1st to the 99th percentile of the voxels.
-  explicit Paint(std::shared_ptr<const vdb::Image> image);
+  /// Without an image: plain colours. Grey runs from the 1st to the 99th percentile of the voxels. `colors` of
+  /// regions, by their names, go before those of the palette.
+  Paint(std::shared_ptr<const vdb::Image> image, const Scene& scene,
+        const std::map<std::string, vdb::LabelColor>& colors);
 
   [[nodiscard]] Color at(RegionId region, const Vec3& p) const;
+  /// Without grey values.
+  [[nodiscard]] Color of(RegionId region) const { return colors_.at(region); }
   [[nodiscard]] bool hasImage() const noexcept { return image_ != nullptr; }
 
  private:
+  std::vector<Color> colors_;  ///< by region
   std::shared_ptr<const vdb::Image> image_;
   Mat3 to_index_{1.0};
   double low_ = 0.0;

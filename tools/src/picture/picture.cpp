@@ -134,14 +134,16 @@ double drawInset(Sheet& s, const Box3& box, Console& console) {
 std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
                                                const std::string& wanted) {
   std::string file = wanted;
+  vdb::ImageOptions options;
   for (const SceneImage& image : scene.images()) {
     if (wanted.empty() ? !image.has_names : image.name == wanted) {
       file = image.file;
+      options = image.options;
       break;
     }
   }
   if (file.empty()) return nullptr;
-  return std::make_shared<const vdb::Image>(vdb::readNifti(file));
+  return std::make_shared<const vdb::Image>(vdb::readImage(file, options));
 }
 
 CutPlane drawPicture(const Scene& scene, const PictureOptions& options, const std::string& file,

@@ -2,6 +2,7 @@
 /// The picture of a scene: a flat section with names, walls, ports, the hand's path and the forces; the scene in
 /// space with its front cut away; and a legend.
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,7 +23,8 @@ struct PictureOptions {
   int height = 1000;                        ///< [pixels]
   Track track;                              ///< may be empty
   std::shared_ptr<const vdb::Image> image;  ///< grey values; may be null
-  bool anatomical = false;                  ///< x, y, z run to the right, the front and up
+  std::map<std::string, vdb::LabelColor> colors = {};  ///< of layers that have one of their own
+  bool anatomical = false;  ///< x, y, z run to the right, the front and up
 };
 
 /// The grey values to show: of the scene's image called `wanted`, of the file `wanted`, or if it is empty

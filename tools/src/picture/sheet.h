@@ -38,7 +38,7 @@ struct Sheet {
         scale(std::clamp(std::min(the_options.width / 1600.0, the_options.height / 1000.0), 0.45,
                          4.0)),
         canvas(the_options.width, the_options.height),
-        paint(the_options.image) {}
+        paint(the_options.image, the_scene, the_options.colors) {}
 
   [[nodiscard]] double px(double at_full_size) const { return at_full_size * scale; }
   [[nodiscard]] Pixel onSheet(const Pixel& p) const { return {p.x + left, p.y + top}; }

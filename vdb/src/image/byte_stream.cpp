@@ -1,54 +1,72 @@
 #include "image/byte_stream.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <string_view>
 #include <system_error>
 
-#include "palpate/core/error.h"
-
 namespace palpate::vdb {
 namespace {
 
 constexpr std::size_t kBufferSize = std::size_t{1} << 18U;
-constexpr int kGzipOnly = 15 + 16;  // zlib: largest window, gzip wrapper with its checksum
+constexpr int kLargestWindow = 15;
+constexpr int kGzipOnly = kLargestWindow + 16;  // zlib: gzip's wrapper with its checksum
+constexpr const char* kFetchAgain = "fetch or write the file again";
 
 }  // namespace
 
-ByteStream::ByteStream(std::string path) : path_(std::move(path)) {
+Error ByteStream::fail(const char* what, std::string message, std::string hint) const {
+  return inputError(format_ + "." + what, std::move(message), std::move(hint), path_);
+}
+
+void ByteStream::open() {
   namespace fs = std::filesystem;
   std::error_code failure;
   const fs::file_status status = fs::status(path_, failure);
-  if (!fs::exists(status)) throw inputError("nifti.missing", "no such file", {}, path_);
+  if (!fs::exists(status)) throw fail("missing", "no such file");
   if (fs::is_directory(status)) {
-    throw inputError("nifti.directory", "this is a directory, not an image",
-                     "name the .nii or .nii.gz file in it", path_);
+    throw fail("directory", "this is a directory, not an image", "name the image file in it");
   }
   file_.open(path_, std::ios::binary);
-  if (!file_)
-    throw inputError("nifti.unreadable", "the file cannot be opened for reading", {}, path_);
+  if (!file_) throw fail("unreadable", "the file cannot be opened for reading");
   file_.seekg(0, std::ios::end);
   file_size_ = static_cast<std::uint64_t>(std::max<std::streamoff>(file_.tellg(), 0));
   file_.seekg(0);
-  if (file_size_ == 0) throw inputError("nifti.empty", "the file is empty", {}, path_);
+  if (file_size_ == 0) throw fail("empty", "the file is empty");
+}
 
+void ByteStream::startUnpacking() {
+  if (packing_ == Packing::kNone) return;
+  buffer_.resize(kBufferSize);
+  if (inflateInit2(&zlib_, packing_ == Packing::kGzip ? kGzipOnly : kLargestWindow) != Z_OK) {
+    throw Error(ErrorKind::kOperation,
+                {format_ + ".memory", "zlib could not be started", "free some memory", path_});
+  }
+}
+
+ByteStream::ByteStream(std::string path, std::string format)
+    : path_(std::move(path)), format_(std::move(format)) {
+  open();
   unsigned char magic[2] = {0, 0};
   file_.read(reinterpret_cast<char*>(magic), 2);
   file_.clear();
   file_.seekg(0);
-  gzip_ = magic[0] == 0x1f && magic[1] == 0x8b;
-  if (gzip_) {
-    buffer_.resize(kBufferSize);
-    if (inflateInit2(&zlib_, kGzipOnly) != Z_OK) {
-      throw Error(ErrorKind::kOperation,
-                  {"nifti.memory", "zlib could not be started", "free some memory", path_});
-    }
-  }
+  if (magic[0] == 0x1f && magic[1] == 0x8b) packing_ = Packing::kGzip;
+  startUnpacking();
+}
+
+ByteStream::ByteStream(std::string path, std::string format, std::uint64_t offset, Packing packing)
+    : path_(std::move(path)), format_(std::move(format)), packing_(packing) {
+  open();
+  offset_ = std::min(offset, file_size_);
+  file_.seekg(static_cast<std::streamoff>(offset_));
+  startUnpacking();
 }
 
 ByteStream::~ByteStream() {
-  if (gzip_) inflateEnd(&zlib_);
+  if (isPacked()) inflateEnd(&zlib_);
 }
 
 std::size_t ByteStream::refill() {
@@ -56,21 +74,27 @@ std::size_t ByteStream::refill() {
   const auto got = static_cast<std::size_t>(file_.gcount());
   zlib_.next_in = buffer_.data();
   zlib_.avail_in = static_cast<uInt>(got);
+  taken_ += got;
   return got;
 }
 
 void ByteStream::failDamaged() const {
   const std::string_view reason = zlib_.msg != nullptr ? zlib_.msg : "";
+  const std::string kind = packing_ == Packing::kGzip ? "gzip" : "zlib";
   if (reason == "incorrect data check" || reason == "incorrect length check") {
-    throw inputError("nifti.checksum", "the gzip checksum does not match: the data are damaged",
-                     "fetch or write the file again", path_);
+    throw fail("checksum", "the " + kind + " checksum does not match: the data are damaged",
+               kFetchAgain);
   }
-  throw inputError("nifti.damaged", "the gzip data are damaged (" + std::string(reason) + ")",
-                   "fetch or write the file again", path_);
+  throw fail("damaged", "the " + kind + " data are damaged (" + std::string(reason) + ")",
+             kFetchAgain);
 }
 
 // A gzip file may be several members one after the other; zeros after the last are padding.
 void ByteStream::startNextMember() {
+  if (packing_ == Packing::kZlib) {
+    ended_ = true;
+    return;
+  }
   for (;;) {
     if (zlib_.avail_in == 0 && refill() == 0) {
       ended_ = true;
@@ -88,7 +112,7 @@ void ByteStream::startNextMember() {
 }
 
 std::size_t ByteStream::read(std::span<unsigned char> out) {
-  if (!gzip_) {
+  if (!isPacked()) {
     file_.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size()));
     return static_cast<std::size_t>(file_.gcount());
   }
@@ -112,15 +136,39 @@ std::size_t ByteStream::read(std::span<unsigned char> out) {
   return done;
 }
 
-void ByteStream::verifyEnd() {
-  if (!gzip_) return;
+std::uint64_t ByteStream::verifyEnd() {
+  if (!isPacked()) return 0;
   std::vector<unsigned char> rest(kBufferSize);
-  while (read(rest) > 0) {
-  }
+  std::uint64_t passed = 0;
+  for (std::size_t got = 0; (got = read(rest)) > 0;) passed += got;
   if (broken_off_) {
-    throw inputError("nifti.truncated", "the gzip data break off before their end",
-                     "fetch or write the file again", path_);
+    throw fail("truncated",
+               std::string("the ") + (packing_ == Packing::kGzip ? "gzip" : "zlib") +
+                   " data break off before their end",
+               kFetchAgain);
   }
+  return passed;
+}
+
+void ByteStream::failShort(std::uint64_t voxels, std::uint64_t wanted) const {
+  throw fail("truncated",
+             "the file is cut short: it holds " + std::to_string(voxels) + " of " +
+                 std::to_string(wanted) + " voxels",
+             kFetchAgain);
+}
+
+void ByteStream::requireContent(double bytes) const {
+  if (bytes <= static_cast<double>(contentLimit())) return;
+  char needs[32];
+  std::snprintf(needs, sizeof needs, "%.0f", bytes);
+  throw fail(
+      "truncated",
+      "the file is cut short: it has " + std::to_string(file_size_ - offset_) +
+          (isPacked() ? packing_ == Packing::kGzip ? " bytes of gzip data" : " bytes of zlib data"
+                      : " bytes") +
+          (offset_ > 0 ? " of voxels" : "") + ", its header asks for " + needs +
+          (isPacked() ? " unpacked" : ""),
+      kFetchAgain);
 }
 
 }  // namespace palpate::vdb

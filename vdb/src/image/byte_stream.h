@@ -1,5 +1,5 @@
 #pragma once
-/// A file read front to back, gzip or plain, with every gzip checksum verified.
+/// A file read front to back, packed or plain, with every checksum verified.
 
 #include <zlib.h>
 
@@ -9,48 +9,73 @@
 #include <string>
 #include <vector>
 
+#include "palpate/core/error.h"
+
 namespace palpate::vdb {
 
-/// libnifti and zlib's gz* calls both hand out data whose checksum is wrong or whose end is
-/// missing; this reader does neither. Errors carry codes "nifti.*", since NIfTI files are what it
-/// is for.
+enum class Packing {
+  kNone,
+  kGzip,  ///< gzip, with a CRC-32 and the length at the end of each member
+  kZlib,  ///< one zlib stream, with an Adler-32 at its end
+};
+
+/// libnifti, NrrdIO and zlib's gz* calls all hand out data whose checksum is wrong or whose end is
+/// missing; this reader does neither.
 class ByteStream {
  public:
+  /// Begins at the front of the file, which is gzip data if it begins as they do. `format` is what the
+  /// codes of errors begin with ("nifti").
   /// @throws Error (kInput): missing, a directory, empty, not readable.
-  explicit ByteStream(std::string path);
+  ByteStream(std::string path, std::string format);
+  /// Begins at byte `offset`.
+  ByteStream(std::string path, std::string format, std::uint64_t offset, Packing packing);
   ~ByteStream();
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
 
   /// Fills `out` as far as the content goes; returns how many bytes that was.
-  /// @throws Error (kInput) for damaged gzip data. A gzip stream that breaks off just ends.
+  /// @throws Error (kInput) for damaged packed data. Such that break off just end.
   std::size_t read(std::span<unsigned char> out);
 
-  /// Reads on to the end of gzip data, so that its checksum is verified; nothing to do for plain
+  /// Reads on to the end of packed data, so that their checksum is verified; nothing to do for plain
   /// files.
-  /// @throws Error (kInput) if the data break off or the checksum is wrong.
-  void verifyEnd();
+  /// Returns how many bytes of content that was. @throws Error (kInput) if the data break off or the checksum is
+  /// wrong.
+  std::uint64_t verifyEnd();
 
-  [[nodiscard]] bool isGzip() const noexcept { return gzip_; }
-  /// True once reading came to where gzip data end before their proper end.
+  [[nodiscard]] bool isPacked() const noexcept { return packing_ != Packing::kNone; }
+  /// True once reading came to where packed data end before their proper end.
   [[nodiscard]] bool brokeOff() const noexcept { return broken_off_; }
   [[nodiscard]] std::uint64_t fileSize() const noexcept { return file_size_; }
   /// The most bytes that the content can have (a deflate stream grows by less than 1032 times).
   [[nodiscard]] std::uint64_t contentLimit() const noexcept {
-    return gzip_ ? file_size_ * 1032 : file_size_;
+    return isPacked() ? (file_size_ - offset_) * 1032 : file_size_ - offset_;
   }
+  /// @throws Error (kInput, "<format>.truncated"): the content ends after `voxels` of `wanted`.
+  [[noreturn]] void failShort(std::uint64_t voxels, std::uint64_t wanted) const;
+  /// Refuses, before memory is taken, a header that asks for more bytes than can be there.
+  /// @throws Error (kInput, "<format>.truncated")
+  void requireContent(double bytes) const;
+  /// Bytes of packed data taken up to their end; once verifyEnd() was called.
+  [[nodiscard]] std::uint64_t packedBytes() const noexcept { return taken_ - zlib_.avail_in; }
 
  private:
+  void open();
+  void startUnpacking();
   std::size_t refill();
   void startNextMember();
+  [[nodiscard]] Error fail(const char* what, std::string message, std::string hint = {}) const;
   [[noreturn]] void failDamaged() const;
 
   std::string path_;
+  std::string format_;
   std::ifstream file_;
   std::uint64_t file_size_ = 0;
-  bool gzip_ = false;
-  bool ended_ = false;       ///< the last gzip member came to its proper end
-  bool broken_off_ = false;  ///< the file ended within a gzip member
+  std::uint64_t offset_ = 0;
+  std::uint64_t taken_ = 0;  ///< [bytes] of packed data
+  Packing packing_ = Packing::kNone;
+  bool ended_ = false;       ///< the packed data came to their proper end
+  bool broken_off_ = false;  ///< the file ended before that
   z_stream zlib_{};
   std::vector<unsigned char> buffer_;
 };

@@ -1,137 +1,65 @@
-#include <nifti2_io.h>
-
-#include <cmath>
-#include <cstring>
 #include <new>
 
-#include "image/byte_stream.h"
 #include "image/nifti_header.h"
+#include "image/nifti_labels.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/image.h"
 
 namespace palpate::vdb {
 namespace {
 
-/// What the conversion to float met on its way.
-struct Oddities {
-  std::uint64_t not_finite = 0;
-  std::uint64_t rounded = 0;  ///< integers beyond 2^24, which float cannot hold
-};
+/// More than any table of names takes; a longer gap before the voxels is passed over.
+constexpr std::uint64_t kLongestExtensions = std::uint64_t{1} << 24U;
 
-template <typename T>
-void convertAs(std::span<const unsigned char> raw, const NiftiHeader& header, float* out,
-               Oddities& odd) {
-  const std::size_t count = raw.size() / sizeof(T);
-  for (std::size_t i = 0; i < count; ++i) {
-    T stored;
-    std::memcpy(&stored, raw.data() + i * sizeof(T), sizeof(T));
-    auto value = static_cast<double>(stored);
-    if (header.scaled) value = value * header.slope + header.intercept;
-    out[i] = static_cast<float>(value);
-    if constexpr (std::is_floating_point_v<T>) {
-      odd.not_finite += std::isfinite(out[i]) ? 0U : 1U;
-    } else if constexpr (sizeof(T) >= 4) {
-      odd.rounded += !header.scaled && std::abs(value) > 16777216.0 ? 1U : 0U;
-    }
-  }
-}
-
-void convert(std::span<unsigned char> raw, const NiftiHeader& header, float* out, Oddities& odd) {
-  const int bytes = header.bytes_per_voxel;
-  if (header.swapped && bytes > 1) {
-    nifti_swap_Nbytes(static_cast<std::int64_t>(raw.size()) / bytes, bytes, raw.data());
-  }
-  switch (header.type) {
-    case VoxelType::kUint8:
-      return convertAs<std::uint8_t>(raw, header, out, odd);
-    case VoxelType::kInt8:
-      return convertAs<std::int8_t>(raw, header, out, odd);
-    case VoxelType::kUint16:
-      return convertAs<std::uint16_t>(raw, header, out, odd);
-    case VoxelType::kInt16:
-      return convertAs<std::int16_t>(raw, header, out, odd);
-    case VoxelType::kUint32:
-      return convertAs<std::uint32_t>(raw, header, out, odd);
-    case VoxelType::kInt32:
-      return convertAs<std::int32_t>(raw, header, out, odd);
-    case VoxelType::kUint64:
-      return convertAs<std::uint64_t>(raw, header, out, odd);
-    case VoxelType::kInt64:
-      return convertAs<std::int64_t>(raw, header, out, odd);
-    case VoxelType::kFloat32:
-      return convertAs<float>(raw, header, out, odd);
-    case VoxelType::kFloat64:
-      return convertAs<double>(raw, header, out, odd);
-  }
-}
-
-[[noreturn]] void failShort(const std::string& path, std::uint64_t voxels, std::uint64_t wanted) {
-  throw inputError("nifti.truncated",
-                   "the file is cut short: it holds " + std::to_string(voxels) + " of " +
-                       std::to_string(wanted) + " voxels",
-                   "fetch or write the file again", path);
-}
-
-void skip(ByteStream& stream, std::uint64_t bytes, const NiftiHeader& header,
-          const std::string& path) {
-  std::vector<unsigned char> scratch(4096);
-  while (bytes > 0) {
-    const auto step = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, scratch.size()));
-    const std::size_t got = stream.read(std::span(scratch).first(step));
-    if (got == 0) failShort(path, 0, header.voxelCount());
-    bytes -= got;
-  }
+/// The names of labels between header and voxels; returns how many bytes were read for them.
+std::uint64_t readLabels(ByteStream& stream, const NiftiHeader& header, const std::string& path,
+                         LabelTable& labels) {
+  if (header.extension_bytes > kLongestExtensions) return 0;
+  std::vector<unsigned char> bytes(header.extension_bytes);
+  const std::size_t got = stream.read(bytes);
+  if (got < bytes.size()) stream.failShort(0, header.voxelCount());
+  labels = niftiLabels(bytes, header.coding.swapped, path);
+  return got;
 }
 
 }  // namespace
 
-Image readNifti(const std::string& path) try {
-  ByteStream stream(path);
-  std::uint64_t consumed = 0;
-  const NiftiHeader header = readNiftiHeader(stream, path, consumed);
-  skip(stream, header.data_offset - consumed, header, path);
-
+Image readNifti(const std::string& path, const ImageOptions& options) try {
+  ByteStream stream(path, "nifti");
+  const NiftiHeader header = readNiftiHeader(stream, path, options);
   Image image;
+  const std::uint64_t done = header.header_bytes + readLabels(stream, header, path, image.labels);
+  skipBytes(stream, header.data_offset - done, header.voxelCount());
   image.source = path;
   image.size = header.size;
-  image.axes = header.axes;
-  image.origin = header.origin;
+  image.axes = header.place.axes;
+  image.origin = header.place.origin;
   image.notes = header.notes;
-  image.values.resize(header.voxelCount());
-
   Oddities odd;
-  const auto bytes = static_cast<std::size_t>(header.bytes_per_voxel);
-  std::vector<unsigned char> raw(std::size_t{1} << 20U);  // a multiple of every voxel size
-  for (std::uint64_t done = 0; done < image.values.size();) {
-    const auto count = static_cast<std::size_t>(
-        std::min<std::uint64_t>(raw.size() / bytes, image.values.size() - done));
-    const std::size_t got = stream.read(std::span(raw).first(count * bytes));
-    if (got < count * bytes) failShort(path, done + got / bytes, header.voxelCount());
-    convert(std::span(raw).first(got), header, image.values.data() + done, odd);
-    done += count;
-  }
+  image.values = readVoxels(stream, header.voxelCount(), header.coding, odd);
   stream.verifyEnd();
-
-  if (odd.not_finite > 0) {
-    image.notes.push_back(std::to_string(odd.not_finite) +
-                          " voxels are NaN or infinite: NaN is taken as background");
-  }
-  if (odd.rounded > 0) {
-    image.notes.push_back(std::to_string(odd.rounded) +
-                          " voxels are integers beyond 16777216 and were rounded");
-  }
+  odd.tell(image.notes);
   return image;
 } catch (const std::bad_alloc&) {
   throw Error(ErrorKind::kOperation,
               {"nifti.memory", "there is not enough memory for the image", "crop the image", path});
 }
 
-ImageInfo readNiftiInfo(const std::string& path) {
-  ByteStream stream(path);
-  std::uint64_t consumed = 0;
-  const NiftiHeader header = readNiftiHeader(stream, path, consumed);
-  return {header.size,         header.axes,        header.origin,
-          nameOf(header.type), header.orientation, header.notes};
+ImageInfo readNiftiInfo(const std::string& path, const ImageOptions& options) {
+  ByteStream stream(path, "nifti");
+  const NiftiHeader header = readNiftiHeader(stream, path, options);
+  ImageInfo info;
+  info.size = header.size;
+  info.axes = header.place.axes;
+  info.origin = header.place.origin;
+  info.data_type = nameOf(header.coding.type);
+  info.orientation = orientationCodes(header.place.axes);
+  info.notes = header.notes;
+  info.format = "NIfTI-" + std::to_string(header.version);
+  info.length_unit = header.length_unit;
+  readLabels(stream, header, path, info.labels);
+  info.is_labels = header.is_labels || !info.labels.names.empty();
+  return info;
 }
 
 }  // namespace palpate::vdb

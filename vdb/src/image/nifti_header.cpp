@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -13,11 +14,6 @@
 
 namespace palpate::vdb {
 namespace {
-
-struct Affine {
-  Mat3 axes{1.0};
-  Vec3 origin{0.0, 0.0, 0.0};
-};
 
 struct FreeNifti {
   void operator()(nifti_image* image) const noexcept { nifti_image_free(image); }
@@ -34,7 +30,7 @@ Error fail(const std::string& path, const char* code, std::string message, std::
 
 Error notNifti(const std::string& path) {
   return fail(path, "nifti.format", "this is not a NIfTI file",
-              "images are read as .nii or .nii.gz (NIfTI-1 or NIfTI-2)");
+              "such files end in .nii or .nii.gz (NIfTI-1 or NIfTI-2)");
 }
 
 void checkMagic(const char* magic, char version, const std::string& path) {
@@ -57,27 +53,37 @@ void checkMagic(const char* magic, char version, const std::string& path) {
 /// dim[] before libnifti sees it: libnifti prints its complaints to stderr, whatever its debug
 /// level.
 template <typename Header>
-void checkDimensions(const Header& header, const std::string& path) {
+void checkDimensions(const Header& header, const std::string& path, std::optional<int> frame) {
   if (header.dim[0] < 1 || header.dim[0] > 7) {
     throw fail(path, "nifti.dimensions",
                "the header gives " + std::to_string(header.dim[0]) + " dimensions; 1 to 7 can be");
   }
   std::string shape;
   bool more_than_3d = false;
+  bool more_than_4d = false;
   for (int i = 1; i <= header.dim[0]; ++i) {
     shape += (i > 1 ? " x " : "") + std::to_string(header.dim[i]);
     more_than_3d = more_than_3d || (i > 3 && header.dim[i] > 1);
+    more_than_4d = more_than_4d || (i > 4 && header.dim[i] > 1);
   }
   for (int i = 1; i <= header.dim[0]; ++i) {
     if (header.dim[i] < 1 || header.dim[i] > std::numeric_limits<int>::max()) {
       throw fail(path, "nifti.dimensions", "the image is " + shape + " voxels, which cannot be");
     }
   }
-  if (more_than_3d) {
+  if (more_than_4d || (more_than_3d && !frame)) {
     throw fail(path, "nifti.dimensions",
                "the image has " + std::to_string(header.dim[0]) + " dimensions (" + shape +
                    "); one 3-D volume of single values is needed",
-               "save the volume that you mean to a file of its own");
+               more_than_4d ? "save the volume that you mean to a file of its own"
+                            : "frame chooses one of the " + std::to_string(header.dim[4]) +
+                                  " volumes, from 0 (on the command line --frame 0)");
+  }
+  const auto frames = header.dim[0] >= 4 ? static_cast<std::int64_t>(header.dim[4]) : 1;
+  if (frame && (*frame < 0 || *frame >= frames)) {
+    throw fail(path, "nifti.frame",
+               "there is no frame " + std::to_string(*frame) + " in an image of " + shape,
+               "frames are counted from 0");
   }
   if (header.dim[0] < 3 || header.dim[1] < 2 || header.dim[2] < 2 || header.dim[3] < 2) {
     throw fail(path, "nifti.dimensions",
@@ -144,27 +150,17 @@ double metresPerSpaceUnit(int code, const std::string& path, std::vector<std::st
              "set xyzt_units to 2 if the image is in mm");
 }
 
-Affine affineOf(const nifti_dmat44& m, double scale) {
-  Affine a;
+Place placeOf(const nifti_dmat44& m) {
+  Place a;
   for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) a.axes[column][row] = scale * m.m[row][column];
-    a.origin[row] = scale * m.m[row][3];
+    for (int column = 0; column < 3; ++column) a.axes[column][row] = m.m[row][column];
+    a.origin[row] = m.m[row][3];
   }
   return a;
 }
 
-/// Volume of a voxel against that of a box with the same edges: 1 for orthogonal axes, 0 for flat
-/// ones.
-double solidity(const Mat3& axes) {
-  const double edges = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
-  return edges > 0.0 ? std::abs(glm::determinant(axes)) / edges : 0.0;
-}
-
-void checkAffine(const Affine& affine, const char* name, const std::string& path) {
-  bool finite = isFinite(affine.origin);
-  for (int c = 0; c < 3; ++c) finite = finite && isFinite(affine.axes[c]);
-  // Written as a negation so that NaN fails too.
-  if (!finite || !(solidity(affine.axes) > 1e-6)) {
+void checkPlace(const Place& place, const char* name, const std::string& path) {
+  if (!isUsable(place)) {
     throw fail(path, "nifti.singular",
                std::string("the ") + name + " is singular: it gives the voxels no volume in space",
                std::string("set a valid sform") +
@@ -172,96 +168,98 @@ void checkAffine(const Affine& affine, const char* name, const std::string& path
   }
 }
 
-/// Largest distance between the two places of a corner of the image, in voxels of `a`.
-double disagreement(const Affine& a, const Affine& b, const std::array<int, 3>& size) {
-  const Mat3 to_index = glm::inverse(a.axes);
-  double worst = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 index((corner & 1) != 0 ? size[0] - 1 : 0, (corner & 2) != 0 ? size[1] - 1 : 0,
-                     (corner & 4) != 0 ? size[2] - 1 : 0);
-    const Vec3 apart = to_index * (b.axes * index + b.origin - a.axes * index - a.origin);
-    worst = std::max(worst, glm::length(apart));
-  }
-  return worst;
-}
-
-std::string shortNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-std::optional<Affine> qform(const nifti_image& nim, double scale, const std::string& path) {
-  if (nim.qform_code <= 0) return std::nullopt;
+void checkSpacings(const nifti_image& nim, const char* user, const std::string& path) {
   for (int i = 1; i <= 3; ++i) {
     // libnifti puts 1 in the place of such spacings.
     if (!(nim.pixdim[i] > 0.0) || !std::isfinite(nim.pixdim[i])) {
       throw fail(path, "nifti.spacing",
                  "the voxel spacing pixdim[" + std::to_string(i) + "] is " +
-                     shortNumber(nim.pixdim[i]) + ", which the qform needs to be positive",
+                     shortNumber(nim.pixdim[i]) + ", which " + user + " needs to be positive",
                  "set the sform and set qform_code to 0");
     }
   }
-  const Affine affine = affineOf(nim.qto_xyz, scale);
-  checkAffine(affine, "qform", path);
-  return affine;
 }
 
-Affine placeInSpace(const nifti_image& nim, double scale, const std::array<int, 3>& size,
-                    const std::string& path) {
-  const std::optional<Affine> from_q = qform(nim, scale, path);
-  if (nim.sform_code <= 0) {
+/// [units of the file]
+std::optional<Place> qform(const nifti_image& nim, const std::string& path) {
+  if (nim.qform_code <= 0) return std::nullopt;
+  checkSpacings(nim, "the qform", path);
+  const Place place = placeOf(nim.qto_xyz);
+  checkPlace(place, "qform", path);
+  return place;
+}
+
+std::optional<Place> sform(const nifti_image& nim, const std::string& path) {
+  if (nim.sform_code <= 0) return std::nullopt;
+  const Place place = placeOf(nim.sto_xyz);
+  checkPlace(place, "sform", path);
+  return place;
+}
+
+Place chosen(const std::optional<Place>& form, const char* name, const std::string& path) {
+  if (form) return *form;
+  throw fail(path, "nifti.no_affine",
+             std::string("the ") + name + " was asked for, and its code says that it is not set",
+             "leave the choice out, or choose another: sform, qform, spacing");
+}
+
+Place placeInSpace(const nifti_image& nim, const std::array<int, 3>& size, const std::string& path,
+                   AffineChoice choice) {
+  if (choice == AffineChoice::kSform) return chosen(sform(nim, path), "sform", path);
+  if (choice == AffineChoice::kQform) return chosen(qform(nim, path), "qform", path);
+  if (choice == AffineChoice::kSpacing) {
+    checkSpacings(nim, "affine: spacing", path);
+    Place place;
+    for (int i = 0; i < 3; ++i) place.axes[i][i] = nim.pixdim[i + 1];
+    return place;
+  }
+  const std::optional<Place> from_q = qform(nim, path);
+  const std::optional<Place> from_s = sform(nim, path);
+  if (!from_s) {
     if (from_q) return *from_q;
     throw fail(
         path, "nifti.no_affine",
         "neither the sform nor the qform is set, so nothing says where and which way round "
         "the image lies",
-        "set the sform, for example in Python with nibabel: image.set_sform(affine, code=1)");
+        "set the sform, for example in Python with nibabel: image.set_sform(affine, code=1); or, "
+        "if axes "
+        "along R, A, S from 0 will do: affine: spacing (on the command line --affine spacing)");
   }
-  const Affine from_s = affineOf(nim.sto_xyz, scale);
-  checkAffine(from_s, "sform", path);
   if (from_q) {
-    const double apart = disagreement(from_s, *from_q, size);
+    const double apart = disagreement(*from_s, *from_q, size);
     if (apart > 0.1) {
-      throw fail(path, "nifti.affine_conflict",
-                 "sform (code " + std::to_string(nim.sform_code) + ") and qform (code " +
-                     std::to_string(nim.qform_code) + ") place the image differently: by " +
-                     shortNumber(apart) + " voxels at a corner, 0.1 at most is taken as agreement",
-                 "set the code of the wrong one to 0");
+      throw fail(
+          path, "nifti.affine_conflict",
+          "sform (code " + std::to_string(nim.sform_code) + ") and qform (code " +
+              std::to_string(nim.qform_code) + ") place the image differently: by " +
+              shortNumber(apart) + " voxels at a corner, 0.1 at most is taken as agreement",
+          "set the code of the wrong one to 0, or say which counts: affine: sform or affine: qform "
+          "(on the command line --affine sform)");
     }
   }
-  return from_s;
-}
-
-std::string orientationCodes(const Mat3& axes) {
-  nifti_dmat44 m{};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) m.m[row][column] = axes[column][row];
-  }
-  m.m[3][3] = 1.0;
-  int codes[3] = {0, 0, 0};
-  nifti_dmat44_to_orientation(m, &codes[0], &codes[1], &codes[2]);
-  constexpr char kLetters[] = "?RLAPSI";  // indexed by NIFTI_L2R (towards R) = 1, ...
-  std::string text;
-  for (const int code : codes) text += code >= 1 && code <= 6 ? kLetters[code] : '?';
-  return text;
+  return *from_s;
 }
 
 void applyScaling(NiftiHeader& out, const nifti_image& nim) {
   if (!std::isfinite(nim.scl_slope) || nim.scl_slope == 0.0) return;  // "none", says the standard
-  out.slope = nim.scl_slope;
-  out.intercept = std::isfinite(nim.scl_inter) ? nim.scl_inter : 0.0;
-  out.scaled = out.slope != 1.0 || out.intercept != 0.0;
+  VoxelCoding& coding = out.coding;
+  coding.slope = nim.scl_slope;
+  coding.intercept = std::isfinite(nim.scl_inter) ? nim.scl_inter : 0.0;
+  coding.scaled = coding.slope != 1.0 || coding.intercept != 0.0;
 }
 
 template <typename Header>
-NiftiHeader interpret(Header raw, int version, bool swapped, const std::string& path) {
+NiftiHeader interpret(Header raw, int version, bool swapped, const std::string& path,
+                      const ImageOptions& options) {
   if (swapped) swap_nifti_header(&raw, version);
   checkMagic(raw.magic, version == 1 ? '1' : '2', path);
-  checkDimensions(raw, path);
+  checkDimensions(raw, path, options.frame);
 
   NiftiHeader out;
-  out.type = voxelType(raw.datatype, path);
+  out.version = version;
+  out.coding.type = voxelType(raw.datatype, path);
+  out.coding.swapped = swapped;
+  out.is_labels = raw.intent_code == NIFTI_INTENT_LABEL;
   // The file's own spacings, before libnifti mends them.
   const double pixdim[4] = {0.0, static_cast<double>(raw.pixdim[1]),
                             static_cast<double>(raw.pixdim[2]), static_cast<double>(raw.pixdim[3])};
@@ -275,73 +273,33 @@ NiftiHeader interpret(Header raw, int version, bool swapped, const std::string& 
   std::copy(pixdim + 1, pixdim + 4, nim->pixdim + 1);
 
   out.size = {static_cast<int>(nim->nx), static_cast<int>(nim->ny), static_cast<int>(nim->nz)};
-  out.bytes_per_voxel = nim->nbyper;
-  out.swapped = swapped;
   const auto offset = static_cast<double>(raw.vox_offset);
+  out.header_bytes = sizeof(Header);
   const std::size_t header_size = sizeof(Header) + 4;  // four bytes announce the extensions
   if (!(offset >= 0.0) || offset > 1e15) {
     throw fail(path, "nifti.offset", "the voxels are said to begin at byte " + shortNumber(offset));
   }
   out.data_offset = std::max<std::uint64_t>(static_cast<std::uint64_t>(offset), header_size);
+  out.extension_bytes = out.data_offset - sizeof(Header);
+  out.data_offset += static_cast<std::uint64_t>(options.frame.value_or(0)) * out.voxelCount() *
+                     bytesOf(out.coding.type);
   applyScaling(out, *nim);
 
   const double scale = metresPerSpaceUnit(nim->xyz_units, path, out.notes);
-  const Affine affine = placeInSpace(*nim, scale, out.size, path);
-  out.axes = affine.axes;
-  out.origin = affine.origin;
-  out.orientation = orientationCodes(affine.axes);
+  out.length_unit = nim->xyz_units == NIFTI_UNITS_METER    ? "m"
+                    : nim->xyz_units == NIFTI_UNITS_MICRON ? "um"
+                                                           : "mm";
+  out.place = scaled(placeInSpace(*nim, out.size, path, options.affine), scale);
   return out;
-}
-
-/// No product of three ints times eight bytes is trusted to fit before this.
-void checkLength(const NiftiHeader& header, const ByteStream& stream, const std::string& path) {
-  const double needed = static_cast<double>(header.data_offset) +
-                        static_cast<double>(header.size[0]) * static_cast<double>(header.size[1]) *
-                            static_cast<double>(header.size[2]) *
-                            static_cast<double>(header.bytes_per_voxel);
-  if (needed > static_cast<double>(stream.contentLimit())) {
-    char needs[32];
-    std::snprintf(needs, sizeof needs, "%.0f", needed);
-    throw fail(path, "nifti.truncated",
-               "the file is cut short: it has " + std::to_string(stream.fileSize()) +
-                   (stream.isGzip() ? " bytes of gzip data" : " bytes") + ", its header asks for " +
-                   needs + (stream.isGzip() ? " unpacked" : ""),
-               "fetch or write the file again");
-  }
 }
 
 }  // namespace
 
-const char* nameOf(VoxelType type) noexcept {
-  switch (type) {
-    case VoxelType::kUint8:
-      return "uint8";
-    case VoxelType::kInt8:
-      return "int8";
-    case VoxelType::kUint16:
-      return "uint16";
-    case VoxelType::kInt16:
-      return "int16";
-    case VoxelType::kUint32:
-      return "uint32";
-    case VoxelType::kInt32:
-      return "int32";
-    case VoxelType::kUint64:
-      return "uint64";
-    case VoxelType::kInt64:
-      return "int64";
-    case VoxelType::kFloat32:
-      return "float32";
-    case VoxelType::kFloat64:
-      return "float64";
-  }
-  return "";
-}
-
-NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path, std::uint64_t& consumed) {
+NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path,
+                            const ImageOptions& options) {
   nifti_set_debug_level(0);  // otherwise libnifti talks on stderr
   std::array<unsigned char, kNifti2Size> bytes{};
-  consumed = stream.read(std::span(bytes).first(kNifti1Size));
+  std::size_t consumed = stream.read(std::span(bytes).first(kNifti1Size));
   std::int32_t header_size = 0;
   std::memcpy(&header_size, bytes.data(), sizeof header_size);
   std::int32_t other_order = header_size;
@@ -369,13 +327,17 @@ NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path, std::ui
   if (wanted == kNifti1Size) {
     nifti_1_header raw;
     std::memcpy(&raw, bytes.data(), sizeof raw);
-    header = interpret(raw, 1, swapped, path);
+    header = interpret(raw, 1, swapped, path, options);
   } else {
     nifti_2_header raw;
     std::memcpy(&raw, bytes.data(), sizeof raw);
-    header = interpret(raw, 2, swapped, path);
+    header = interpret(raw, 2, swapped, path, options);
   }
-  checkLength(header, stream, path);
+  // As doubles: no product of three ints times eight bytes is trusted to fit before this.
+  stream.requireContent(static_cast<double>(header.data_offset) +
+                        static_cast<double>(header.size[0]) * static_cast<double>(header.size[1]) *
+                            static_cast<double>(header.size[2]) *
+                            static_cast<double>(bytesOf(header.coding.type)));
   return header;
 }
 

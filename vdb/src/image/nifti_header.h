@@ -7,52 +7,34 @@
 #include <vector>
 
 #include "image/byte_stream.h"
-#include "palpate/core/math.h"
+#include "image/place.h"
+#include "image/voxels.h"
+#include "palpate/vdb/image.h"
 
 namespace palpate::vdb {
 
-enum class VoxelType {
-  kUint8,
-  kInt8,
-  kUint16,
-  kInt16,
-  kUint32,
-  kInt32,
-  kUint64,
-  kInt64,
-  kFloat32,
-  kFloat64
-};
-
-[[nodiscard]] const char* nameOf(VoxelType type) noexcept;
-
 struct NiftiHeader {
+  int version = 1;
   std::array<int, 3> size{};
-  VoxelType type = VoxelType::kUint8;
-  int bytes_per_voxel = 1;
-  bool swapped = false;           ///< the file's byte order is not this machine's
-  std::uint64_t data_offset = 0;  ///< [bytes] of the first voxel
-  bool scaled = false;            ///< slope and intercept are to be applied
-  double slope = 1.0;
-  double intercept = 0.0;
-  Mat3 axes{1.0};              ///< [m per voxel]
-  Vec3 origin{0.0, 0.0, 0.0};  ///< [m]
-  std::string orientation;     ///< "RAS"
+  VoxelCoding coding;
+  std::uint64_t data_offset = 0;  ///< [bytes] of the first voxel, of the frame that was chosen
+  std::uint64_t header_bytes = 0;
+  std::uint64_t extension_bytes = 0;  ///< between the header and the first voxel of the file
+  Place place;                        ///< [m], RAS
+  std::string length_unit;
+  bool is_labels = false;  ///< intent code 1002
   std::vector<std::string> notes;
 
   [[nodiscard]] std::uint64_t voxelCount() const noexcept {
     return static_cast<std::uint64_t>(size[0]) * static_cast<std::uint64_t>(size[1]) *
            static_cast<std::uint64_t>(size[2]);
   }
-  [[nodiscard]] std::uint64_t dataBytes() const noexcept {
-    return voxelCount() * static_cast<std::uint64_t>(bytes_per_voxel);
-  }
 };
 
-/// Reads the header at the front of `stream`; `consumed` becomes the number of bytes taken from it.
+/// Reads the header at the front of `stream`, no more.
 /// @throws Error (kInput) for whatever cannot be placed in space or read as scalars; also if the
 /// file is certainly too short for its voxels.
 [[nodiscard]] NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path,
-                                          std::uint64_t& consumed);
+                                          const ImageOptions& options);
 
 }  // namespace palpate::vdb

@@ -67,6 +67,12 @@ class MeshBuilder {
 /// PLY, ASCII and binary of either byte order.
 [[nodiscard]] Mesh readPly(const std::string& path, double metres_per_unit);
 
+/// Legacy VTK polydata, ASCII and binary: polygons and triangle strips; points and lines are passed over.
+[[nodiscard]] Mesh readVtk(const std::string& path, double metres_per_unit);
+
+/// What the first lines of a file say of its space; kStated if they do not.
+[[nodiscard]] Space statedSpace(const std::string& path);
+
 /// The whole file. @throws Error (kInput)
 [[nodiscard]] std::string readBytes(const std::string& path);
 

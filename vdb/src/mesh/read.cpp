@@ -102,7 +102,7 @@ Mesh readWithAssimp(const std::string& path, double metres_per_unit) {
     throw inputError(index ? "mesh.index" : "mesh.unreadable",
                      "not a mesh that can be read: " + reason,
                      index ? "the file is damaged or was written wrongly; export the mesh again"
-                           : "STL, OBJ, PLY, glTF and GLB are read",
+                           : "STL, OBJ, PLY, VTK polydata, glTF and GLB are read",
                      path);
   }
   if (dropped.seen()) {
@@ -147,15 +147,31 @@ std::string readBytes(const std::string& path) {
   return bytes;
 }
 
+namespace {
+
 // STL, OBJ and PLY are read by our own code: of files that were cut short Assimp 5.2.5 takes some for
 // whole and crashes on others, and it cannot say which line is wrong.
-Mesh readMesh(const std::string& path, double metres_per_unit) {
+Mesh readAsItIs(const std::string& path, double metres_per_unit) {
   const std::string extension = extensionOf(path);
   if (extension == ".stl") return readStl(path, metres_per_unit);
   if (extension == ".ply") return readPly(path, metres_per_unit);
   if (extension == ".obj") return readObj(path, metres_per_unit);
+  if (extension == ".vtk") return readVtk(path, metres_per_unit);
   openFile(path);
   return readWithAssimp(path, metres_per_unit);
+}
+
+}  // namespace
+
+Mesh readMesh(const std::string& path, double metres_per_unit, Space space) {
+  Mesh mesh = readAsItIs(path, metres_per_unit);
+  const Space stated = statedSpace(path);
+  mesh.space_is_stated = space == Space::kStated && stated != Space::kStated;
+  mesh.space = space != Space::kStated ? space : stated == Space::kLps ? stated : Space::kRas;
+  if (mesh.space == Space::kLps) {
+    for (Vec3& v : mesh.vertices) v = {-v.x, -v.y, v.z};
+  }
+  return mesh;
 }
 
 }  // namespace palpate::vdb

@@ -4,23 +4,38 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "palpate/core/math.h"
+#include "palpate/vdb/space.h"
 
 namespace palpate::vdb {
+
+/// Label value -> name.
+using NameTable = std::map<int, std::string>;
+
+/// Red, green, blue, each from 0 to 1.
+using LabelColor = std::array<float, 3>;
+
+/// What is known of label values; not all that have a name need have a colour.
+struct LabelTable {
+  NameTable names;
+  std::map<int, LabelColor> colors;
+};
 
 /// A 3-D image. Voxel (i, j, k) is values[i + nx (j + ny k)] and its centre lies at affine applied
 /// to (i, j, k): RAS, [m]. Sheared, oblique and left-handed affines are kept as they are.
 struct Image {
   std::string source;
   std::array<int, 3> size{};
-  std::vector<float> values;   ///< after scl_slope and scl_inter
+  std::vector<float> values;   ///< after the file's own slope and intercept
   Mat3 axes{1.0};              ///< [m per voxel] columns: step along i, j, k
   Vec3 origin{0.0, 0.0, 0.0};  ///< [m] centre of voxel (0, 0, 0)
   std::vector<std::string>
-      notes;  ///< what was assumed ("unit code 0 taken as mm"), to be told once
+      notes;               ///< what was assumed ("unit code 0 taken as mm"), to be told once
+  LabelTable labels = {};  ///< out of the file itself
 
   [[nodiscard]] float at(int i, int j, int k) const noexcept {
     return values[static_cast<std::size_t>(i) +
@@ -37,24 +52,23 @@ struct Image {
   [[nodiscard]] double interpolate(const Vec3& world) const noexcept;
 };
 
-/// NIfTI-1 and -2, .nii and .nii.gz, either byte order, every integer and float type of 8 to 64
-/// bits, scaled by scl_slope and scl_inter (libnifti reads the header). The place is the sform if
-/// its code is above 0, else the qform; if both are set they must agree within 0.1 voxel at the
-/// image's corners. Units scale spacing and origin; without a unit (code 0) mm is taken, with a
-/// note. NaN voxels stay NaN, with a note; surfaces take them as outside. Dimensions beyond the
-/// third must be 1.
-/// @throws Error (kInput, codes "nifti.*"): missing, empty, not NIfTI, cut short, wrong gzip
-/// checksum, 4-D or 2-D, colour or complex voxels, neither form set or both in conflict, singular
-/// affine, a detached .hdr / .img pair, ...
-[[nodiscard]] Image readNifti(const std::string& path);
+/// Which of a file's statements about its place in space counts.
+enum class AffineChoice {
+  kAuto,   ///< NIfTI: sform, else qform, and both must agree; else what the file says
+  kSform,  ///< NIfTI
+  kQform,  ///< NIfTI
+  kSpacing,  ///< NIfTI, NRRD: spacings only; axes along R, A, S, the first voxel's centre at the origin
+};
 
-/// The bytes of a NIfTI-1 file: float voxels, the place as sform (code 2, aligned), mm; compressed
-/// with gzip if asked. readNifti() gives the same values back, the place to a float's rounding.
-/// @throws Error (kInput) for an empty image or one longer than 32767 voxels (the format's limit).
-[[nodiscard]] std::string encodeNifti(const Image& image, bool gzip);
+/// What a reader is told where files leave room.
+struct ImageOptions {
+  AffineChoice affine = AffineChoice::kAuto;
+  Space space = Space::kStated;  ///< of an NRRD file whose space is not an anatomical one
+  std::optional<int> frame;      ///< of a 4-D file, from 0; not given: 4-D is refused
+  std::string series;            ///< DICOM: UID of the series, if a folder holds several
+};
 
-/// Header only, for `info`: no voxel is read, so that only what the header and the file's size tell
-/// is checked. Throws as readNifti() does.
+/// All but the voxels.
 struct ImageInfo {
   std::array<int, 3> size{};
   Mat3 axes{1.0};              ///< [m per voxel]
@@ -62,17 +76,53 @@ struct ImageInfo {
   std::string data_type;
   std::string orientation;  ///< axis codes, "RAS"
   std::vector<std::string> notes;
+  std::string format = {};       ///< "NIfTI-1", "NRRD", "MetaImage", "DICOM series"
+  std::string length_unit = {};  ///< of the file: "mm"
+  LabelTable labels = {};        ///< out of the file itself
+  bool is_labels = false;        ///< the file says, or has a table of names
 };
-[[nodiscard]] ImageInfo readNiftiInfo(const std::string& path);
 
-/// Label value -> name.
-using NameTable = std::map<int, std::string>;
+/// Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd) and DICOM series (a
+/// folder, or any file of it). What a file leaves open is asked for, by an error that names the option, or
+/// told in `notes`; what it contradicts itself in, and what is cut short or damaged, is refused. Each format's
+/// rules are in vdb/README.md.
+/// @throws Error (kInput, codes "nifti.*", "nrrd.*", "metaimage.*", "dicom.*", "image.*").
+[[nodiscard]] Image readImage(const std::string& path, const ImageOptions& options = {});
 
-/// `index name [code]` separated by blanks (or tabs, if names hold blanks), or CSV `value,name`
-/// with or without a header line. LF or CR LF; a byte order mark, blank lines and lines from # on
-/// are skipped; further numeric columns (colours) are ignored.
+/// Header only: no voxel is read, so that only what the header and the file's size tell is checked. Throws as
+/// readImage() does.
+[[nodiscard]] ImageInfo readImageInfo(const std::string& path, const ImageOptions& options = {});
+
+/// True if readImage() takes `path` for an image by its extension, in any case; of folders and files without
+/// one, if it holds or is DICOM.
+[[nodiscard]] bool isImageFile(const std::string& path);
+
+/// NIfTI-1 and -2, .nii and .nii.gz, either byte order, every integer and float type of 8 to 64
+/// bits, scaled by scl_slope and scl_inter (libnifti reads the header). The place is the sform if
+/// its code is above 0, else the qform; if both are set they must agree within 0.1 voxel at the
+/// image's corners, unless `affine` chooses. Units scale spacing and origin; without a unit (code 0) mm is
+/// taken, with a note. NaN voxels stay NaN, with a note; surfaces take them as outside. Names come from an
+/// extension with a LabelTable (Caret, TotalSegmentator).
+/// @throws Error (kInput, codes "nifti.*"): missing, empty, not NIfTI, cut short, wrong gzip
+/// checksum, 4-D or 2-D, colour or complex voxels, neither form set or both in conflict, singular
+/// affine, a detached .hdr / .img pair, ...
+[[nodiscard]] Image readNifti(const std::string& path, const ImageOptions& options = {});
+[[nodiscard]] ImageInfo readNiftiInfo(const std::string& path, const ImageOptions& options = {});
+
+/// The bytes of a NIfTI-1 file: float voxels, the place as sform (code 2, aligned), mm; compressed
+/// with gzip if asked. readNifti() gives the same values back, the place to a float's rounding.
+/// @throws Error (kInput) for an empty image or one longer than 32767 voxels (the format's limit).
+[[nodiscard]] std::string encodeNifti(const Image& image, bool gzip);
+
+/// A table of label names, and colours if it has some:
+///   `index name [code]`, `index name R G B [A]` (Slicer .ctbl and .txt, FreeSurfer LUT; 0 to 255), separated by
+///       blanks, or by tabs if names hold blanks
+///   `index R G B A visible mesh "name"` (ITK-SNAP)
+///   CSV `value,name` with or without a header line, with Color_R, Color_G, Color_B (Slicer .csv)
+///   an image with a table of its own (.seg.nrrd, .nii.gz)
+/// LF or CR LF; a byte order mark, blank lines and lines from # on are skipped.
 /// @throws Error (kInput, codes "labels.*") naming file and line: a value that is no integer or has
-/// two names, a missing name, a column that does not belong.
-[[nodiscard]] NameTable readNameTable(const std::string& path);
+/// two names, a missing name, a column that does not belong, a colour out of range.
+[[nodiscard]] LabelTable readLabelTable(const std::string& path);
 
 }  // namespace palpate::vdb

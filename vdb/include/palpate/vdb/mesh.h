@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "palpate/core/math.h"
+#include "palpate/vdb/space.h"
 
 namespace palpate::vdb {
 
@@ -15,6 +16,8 @@ struct Mesh {
   std::vector<Vec3> vertices;  ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::size_t dropped_triangles = 0;  ///< by readMesh(): two corners in one point
+  Space space = Space::kRas;          ///< by readMesh(): of the file; vertices are RAS in any case
+  bool space_is_stated = false;       ///< by readMesh(): the file said so, as 3D Slicer writes it
 };
 
 /// What a look at a mesh showed.
@@ -30,10 +33,13 @@ struct MeshReport {
   [[nodiscard]] bool isClosed() const noexcept { return boundary_edges == 0; }
 };
 
-/// Reads STL, OBJ, PLY, glTF / GLB (and what else Assimp reads, each part where its nodes put it); cuts polygons into
-/// triangles; welds vertices in the same place; drops triangles with two corners in one point.
+/// Reads STL, OBJ, PLY, legacy VTK polydata, glTF / GLB (and what else Assimp reads, each part where its nodes put it); cuts polygons into
+/// triangles; welds vertices in the same place; drops triangles with two corners in one point. Coordinates are LPS
+/// if `space` says so, or if it is kStated and the file does (SPACE=LPS); then x and y are negated. Else they are
+/// taken as they are.
 /// @throws Error (kInput): missing, unreadable, no faces, NaN or infinite vertices, bad indices.
-[[nodiscard]] Mesh readMesh(const std::string& path, double metres_per_unit);
+[[nodiscard]] Mesh readMesh(const std::string& path, double metres_per_unit,
+                            Space space = Space::kStated);
 
 /// Half-edges counted, components by shared vertices. Every index must be in range.
 [[nodiscard]] MeshReport checkMesh(const Mesh& mesh);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "palpate/scene/scene_file.h"
+#include "palpate/vdb/image.h"
 #include "palpate/vdb/level_set.h"
 
 namespace palpate::vdb {
@@ -17,19 +18,30 @@ struct GridRecord {
   double seconds = 0.0;  ///< [s] it took, reading its file included
 };
 
+/// An entry of `images:`, as it is read.
+struct ImageRecord {
+  std::string file;  ///< as this process can open it
+  ImageOptions options;
+  bool is_labels = false;  ///< it has names, or says that it holds labels
+};
+
 struct RegisterOptions {
   std::function<void(const GridRecord&)> on_grid = {};  ///< told of each grid when it is ready
   std::function<void(const std::string&)> on_note =
-      {};                        ///< told what was assumed or decided, once each
+      {};  ///< told what was assumed or decided, once each
+  /// Told of each layer of labels that has a colour in its table of names, as the scene is read.
+  std::function<void(const std::string& layer, const LabelColor&)> on_color = {};
+  std::function<void(const ImageRecord&)> on_image =
+      {};                        ///< told of each image as the scene is read
   std::uint64_t max_memory = 0;  ///< [bytes] of each grid that is made, as BakeOptions has it
 };
 
 /// Adds to a scene's vocabulary (paths are relative to the scene file, lengths in its unit):
-///   fields  mesh: {file, units, voxel, half_width, sampler}  units: the scene's; voxel: longest side / 128
+///   fields  mesh: {file, units, space, voxel, half_width, sampler}  units: the scene's; voxel: longest side / 128
 ///           grid: {file, name, units, sampler}               units: only if the file does not say
 ///           baked: {field, voxel, half_width, sampler, parts, tolerance}   parts: auto | operands | whole,
 ///                  see hybrid.h
-///   images  NAME: {file, names}
+///   images  NAME: {file, names, affine, space, frame, series}
 ///   layers  labels: {image, match: [..], voxel, sampler}      its label group is the image's name
 ///           threshold: {image, above, keep: largest | all, fill, voxel, sampler}
 ///   sampler: cubic (the default) | trilinear | accessor. Notes tell of a band too narrow for cubic, and of

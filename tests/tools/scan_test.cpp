@@ -1,0 +1,173 @@
+// Scans of all formats through the verbs: what info tells of them, names and colours out of tables, and options that
+// say what files leave open.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "tools/helpers.h"
+#include "tools/png_pixels.h"
+
+namespace palpate::testing {
+namespace {
+
+/// 12^3 voxels of 1 mm, two blocks that touch, as a .seg.nrrd with names and colours.
+std::string segmentation(const std::string& more = "") {
+  std::string text =
+      "NRRD0004\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\nsizes: 12 12 "
+      "12\n"
+      "space directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: domain domain domain\nencoding: raw\n"
+      "space origin: (-5.5,-5.5,-5.5)\n" +
+      more +
+      "Segment0_Name:=left part\nSegment0_LabelValue:=4\nSegment0_Color:=0.2 0.4 0.8\n"
+      "Segment1_Name:=right part\nSegment1_LabelValue:=7\nSegment1_Color:=0.8 0.2 0.2\n"
+      "Segment2_Name:=nowhere\nSegment2_LabelValue:=9\n\n";
+  for (int k = 0; k < 12; ++k) {
+    for (int j = 0; j < 12; ++j) {
+      for (int i = 0; i < 12; ++i) {
+        const bool inside = std::min({i, j, k}) >= 2 && std::max({i, j, k}) <= 9;
+        // i runs to the left.
+        text += static_cast<char>(!inside ? 0 : i < 6 ? 7 : 4);
+      }
+    }
+  }
+  return text;
+}
+
+Json infoOf(const std::vector<std::string>& arguments) {
+  std::vector<std::string> all = {"info", "--json"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  const CommandResult result = runPalpate(all);
+  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+  return parseOnly(result)["files"][0];
+}
+
+TEST(Scan, InfoTellsPlaceUnitAndLabelsWithTheirVoxels) {
+  const TempFolder folder;
+  const std::string file = folder.file("s.seg.nrrd", segmentation());
+  const Json one = infoOf({file});
+  EXPECT_EQ(one["format"], "NRRD segmentation");
+  EXPECT_EQ(one["length_unit"], "mm");
+  EXPECT_EQ(one["orientation"], "LPS");
+  EXPECT_NEAR(one["axes_m"][0][0], -0.001, 1e-12);
+  EXPECT_NEAR(one["origin_m"][0], 0.0055, 1e-12);
+  ASSERT_EQ(one["labels"].size(), 4U);
+  EXPECT_EQ(one["labels"][0]["voxels"], 12 * 12 * 12 - 512);
+  const Json left = {{"value", 4}, {"name", "left part"}, {"voxels", 256}, {"color", "#3366CC"}};
+  EXPECT_EQ(one["labels"][1], left);
+  EXPECT_EQ(one["labels"][3]["voxels"], 0);
+  const std::string text = runPalpate({"info", file}).out;
+  for (const std::string says : {"right part", "256", "#CC3333", "1 more names have no voxels",
+                                 "lengths in mm", "left, back, up", "affine"}) {
+    EXPECT_NE(text.find(says), std::string::npos) << says << "\n" << text;
+  }
+  // Another table in its place.
+  const std::string table = folder.file("t.txt", "4 other 10 20 30 255\n");
+  EXPECT_EQ(infoOf({file, "--names", table})["labels"][1]["name"], "other");
+}
+
+TEST(Scan, AFolderOfSlicesIsAnImageAndAnyOtherIsNone) {
+  const std::string data = PALPATE_SOURCE_DIR "/../shared/data/dicom_cthead";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no " << data;
+  const Json one = infoOf({data});
+  EXPECT_EQ(one["size"], Json::array({64, 64, 93}));
+  EXPECT_NEAR(one["spacing_m"][2], 0.0015, 1e-9);
+  const CommandResult query = runPalpate({"query", data, "--at", "0,0,0", "--json"});
+  EXPECT_EQ(query.exit_code, 0) << query.err;
+  const TempFolder empty;
+  const CommandResult refused = runPalpate({"info", empty.path()});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("holds no DICOM images"), std::string::npos) << refused.err;
+}
+
+TEST(Scan, SegmentsAreBakedByTheirNames) {
+  const TempFolder folder;
+  (void)folder.file("s.seg.nrrd", segmentation());
+  const CommandResult baked = runPalpate(
+      {"bake", "s.seg.nrrd", "-o", "s.vdb", "--labels", "* part", "--json"}, folder.path());
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  const Json grids = infoOf({folder.path("s.vdb")})["grids"];
+  ASSERT_EQ(grids.size(), 2U);
+  EXPECT_EQ(grids[0]["name"], "left part/surface");
+  // Left is at negative x of RAS: index 6 to 9, half a voxel more on each side.
+  const Json ask = parseOnly(
+      runPalpate({"convert", "s.vdb", "-o", "left.stl", "--layer", "left part/surface", "--json"},
+                 folder.path()));
+  EXPECT_NEAR(ask["bounds_m"]["lo"][0], -0.004, 3e-4);
+  EXPECT_NEAR(ask["bounds_m"]["hi"][0], 0.0, 3e-4);
+}
+
+TEST(Scan, PicturesHaveTheColorsOfTheTable) {
+  const TempFolder folder;
+  (void)folder.file("s.seg.nrrd", segmentation());
+  const std::string scene =
+      folder.file("scene.yaml",
+                  "palpate: 1\nlength: mm\nimages: {s: {file: s.seg.nrrd}}\nlayers:\n"
+                  "  - {name: blue, labels: {image: s, match: [\"left part\"]}}\n"
+                  "  - {name: red, labels: {image: s, match: [7]}}\n");
+  const CommandResult drawn = runPalpate(
+      {"render", scene, "-o", folder.path("p.png"), "--plane", "z=0", "--size", "640x400"});
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  const Pixels pixels = pixelsOf(textOf(folder.path("p.png")));
+  constexpr std::array<std::uint8_t, 3> kBlue = {0x33, 0x66, 0xCC};
+  constexpr std::array<std::uint8_t, 3> kRed = {0xCC, 0x33, 0x33};
+  const auto blue = std::count(pixels.colors.begin(), pixels.colors.end(), kBlue);
+  const auto red = std::count(pixels.colors.begin(), pixels.colors.end(), kRed);
+  EXPECT_GT(blue, 1000);
+  EXPECT_GT(red, 1000);
+}
+
+TEST(Scan, WhatFilesLeaveOpenIsSaidByOptionsAndKeys) {
+  const TempFolder folder;
+  std::string bare = segmentation();
+  const auto cut = [&](const std::string& from, const std::string& to) {
+    const std::size_t at = bare.find(from);
+    bare.erase(at, bare.find(to) - at);
+  };
+  cut("space: ", "sizes");
+  cut("space directions", "kinds");
+  cut("space origin", "Segment0_Name");
+  bare.insert(bare.find("kinds"), "spacings: 1 1 2\n");
+  (void)folder.file("bare.nrrd", bare);
+  const CommandResult refused = runPalpate({"info", "bare.nrrd"}, folder.path());
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("--affine spacing"), std::string::npos) << refused.err;
+  const CommandResult read =
+      runPalpate({"info", "bare.nrrd", "--affine", "spacing", "--json"}, folder.path());
+  EXPECT_EQ(parseOnly(read)["files"][0]["orientation"], "RAS");
+
+  const auto scene = [&](const std::string& keys) {
+    const std::string text = "palpate: 1\nlength: mm\nimages: {s: {file: bare.nrrd" + keys +
+                             "}}\nlayers:\n  - {name: a, threshold: {image: s, above: 3}}\n";
+    return runPalpate({"explain", folder.file("scene.yaml", text)});
+  };
+  EXPECT_EQ(scene(", affine: spacing").exit_code, 0);
+  for (const std::string& keys :
+       {std::string(), std::string(", affine: best"), std::string(", affine: spacing, space: up"),
+        std::string(", affine: spacing, frame: -1"), std::string(", affine: spacing, frame: 0.5"),
+        std::string(", affine: qform"), std::string(", affine: spacing, series: 1.2")}) {
+    const CommandResult wrong = scene(keys);
+    EXPECT_EQ(wrong.exit_code, 3) << keys;
+    EXPECT_NE(wrong.err.find("scene.yaml:3"), std::string::npos) << wrong.err;
+  }
+}
+
+TEST(Scan, MeshesSayTheirSpaceOrAreTold) {
+  const TempFolder folder;
+  const std::string triangle = "POINTS 3 float\n0 0 0 1 2 3 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n";
+  const std::string plain =
+      folder.file("a.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n" + triangle);
+  const std::string slicer = folder.file(
+      "b.vtk", "# vtk DataFile Version 3.0\nSPACE=LPS\nASCII\nDATASET POLYDATA\n" + triangle);
+  EXPECT_EQ(infoOf({plain})["space"], "RAS");
+  EXPECT_NEAR(infoOf({plain, "--space", "LPS"})["bounds_m"]["lo"][1], -0.002, 1e-12);
+  EXPECT_NEAR(infoOf({slicer})["bounds_m"]["lo"][1], -0.002, 1e-12);
+  EXPECT_EQ(infoOf({slicer})["space_stated"], true);
+  EXPECT_NE(runPalpate({"info", plain}).err.find("--space says otherwise"), std::string::npos);
+  EXPECT_NE(runPalpate({"info", slicer}).out.find("LPS, as the file says"), std::string::npos);
+  EXPECT_EQ(runPalpate({"info", plain, "--frame", "1"}).exit_code, 2);
+  EXPECT_EQ(runPalpate({"info", plain, "--space", "up"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace palpate::testing

@@ -1,0 +1,189 @@
+// Every real scan against nibabel, ITK and pydicom: where its voxels lie, and what they hold.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+
+#include "itk/itk_image.h"
+#include "palpate/vdb/image.h"
+#include "vdb/python_oracle.h"
+
+namespace palpate::vdb {
+namespace {
+
+const std::string kData = PALPATE_SOURCE_DIR "/../shared/data";
+
+std::vector<std::string> scansBelow(const std::string& folder, const std::string& extension) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().string().ends_with(extension)) files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+template <typename Twelve>
+double worstEntry(const Image& image, const Twelve& affine) {
+  double worst = 0.0;
+  for (std::size_t row = 0; row < 3; ++row) {
+    const int r = static_cast<int>(row);
+    for (std::size_t column = 0; column < 3; ++column) {
+      const double ours = image.axes[static_cast<int>(column)][r] * 1e3;
+      // Times the image's length: how far the last voxel is off.
+      worst = std::max(worst, std::abs(ours - affine[4 * row + column]) * image.size[column]);
+    }
+    worst = std::max(worst, std::abs(image.origin[r] * 1e3 - affine[4 * row + 3]));
+  }
+  return worst;
+}
+
+std::map<double, std::size_t> histogramOf(const Image& image) {
+  std::map<double, std::size_t> counts;
+  for (const float value : image.values) ++counts[static_cast<double>(value)];
+  return counts;
+}
+
+// Numbers of files are decimal or single precision, and both sides compute in double: far below 1e-5 mm.
+constexpr double kMm = 1e-5;
+
+TEST(Scans, NiftiIsAsNibabelHasIt) {
+  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  const auto files = scansBelow(kData, ".nii.gz");
+  ASSERT_GE(files.size(), 7U);
+  const auto affines = test::askPython("affine", files);
+  const auto histograms = test::askPython("histogram", files);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    SCOPED_TRACE(files[i]);
+    const Image image = readImage(files[i]);
+    EXPECT_LT(worstEntry(image, affines.at(i)), kMm);
+    std::map<double, std::size_t> expected;
+    for (std::size_t n = 0; n + 1 < histograms.at(i).size(); n += 2) {
+      expected[histograms[i][n]] = static_cast<std::size_t>(histograms[i][n + 1]);
+    }
+    EXPECT_EQ(histogramOf(image), expected);
+  }
+}
+
+TEST(Scans, NrrdAndMetaImageAreAsItkHasThem) {
+  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  std::vector<std::string> files = scansBelow(kData, ".nrrd");
+  const auto meta = scansBelow(kData, ".mhd");
+  files.insert(files.end(), meta.begin(), meta.end());
+  ASSERT_GE(files.size(), 8U);
+  for (const std::string& file : files) {
+    SCOPED_TRACE(file);
+    if (file.ends_with("Overlapping.seg.nrrd")) continue;  // two numbers a voxel to ITK; below
+    const bool without_place = file.ends_with("hand_lowres.nrrd");
+    ImageOptions options;
+    if (without_place) options.affine = AffineChoice::kSpacing;
+    const Image image = readImage(file, options);
+    const test::ItkImage itk = test::readWithItk(file);
+    EXPECT_EQ(image.size, itk.size);
+    EXPECT_EQ(histogramOf(image), itk.histogram);
+    // Of an image without a place ITK assumes L, P, S; so it is asked for instead.
+    if (!without_place) EXPECT_LT(worstEntry(image, itk.affine), kMm);
+  }
+}
+
+TEST(Scans, DicomIsAsItkHasIt) {
+  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  for (const std::string folder : {"/dicom_cthead", "/abdomen_dicom/series"}) {
+    SCOPED_TRACE(folder);
+    const Image image = readImage(kData + folder);
+    const test::ItkImage itk = test::readSeriesWithItk(kData + folder);
+    EXPECT_EQ(image.size, itk.size);
+    EXPECT_LT(worstEntry(image, itk.affine), kMm);
+    EXPECT_EQ(histogramOf(image), itk.histogram);
+  }
+}
+
+TEST(Scans, LabelsOfADicomSeriesLieOnItsRibs) {
+  const std::string folder = kData + "/abdomen_dicom";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const Image ct = readImage(folder + "/series");
+  const Image labels = readImage(folder + "/seg_LAS.nii.gz");
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (int k = 0; k < labels.size[2]; ++k) {
+    for (int j = 0; j < labels.size[1]; ++j) {
+      for (int i = 0; i < labels.size[0]; ++i) {
+        const float label = labels.at(i, j, k);
+        if (!(label >= 92.0F && label <= 115.0F)) continue;  // ribs
+        const Vec3 there = glm::round(ct.toIndex(labels.toWorld({i, j, k})));
+        sum += static_cast<double>(
+            ct.at(static_cast<int>(there.x), static_cast<int>(there.y), static_cast<int>(there.z)));
+        ++count;
+      }
+    }
+  }
+  const double mean = sum / static_cast<double>(count);
+  const auto expected =
+      test::askPython("mean", {folder + "/series", folder + "/seg_LAS.nii.gz", "92", "115"});
+  EXPECT_EQ(static_cast<double>(count), expected.at(0).at(1));
+  // The same whole numbers summed: the difference is rounding.
+  EXPECT_NEAR(mean, expected[0][0], 1e-6);
+  EXPECT_NEAR(mean, 275.0, 5.0);
+  std::printf("mean of the ribs: %.2f HU (%zu voxels)\n", mean, count);
+}
+
+TEST(Scans, TheTwoFilesOfAPairAreOneGeometry) {
+  const std::string folder = kData + "/orientation_pair/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const Image a = readImage(folder + "FLAIR.nii.gz");
+  const Image b = readImage(folder + "FLAIR.nrrd");
+  EXPECT_EQ(a.size, b.size);
+  EXPECT_EQ(a.values, b.values);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 index((corner & 1) * (a.size[0] - 1), (corner >> 1 & 1) * (a.size[1] - 1),
+                     (corner >> 2 & 1) * (a.size[2] - 1));
+    // The NIfTI's numbers are single precision: 200 mm to 24 bits.
+    EXPECT_LT(glm::length(a.toWorld(index) - b.toWorld(index)) * 1e3, 1e-4);
+  }
+}
+
+TEST(Scans, OverlappingSegmentsShareVoxelsByTheRule) {
+  const std::string folder = kData + "/chest_segnrrd/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const Image plain = readImage(folder + "Segmentation.seg.nrrd");
+  const Image image = readImage(folder + "SegmentationOverlapping.seg.nrrd");
+  // The layers as they are, each alone.
+  ImageOptions first, second;
+  first.frame = 0;
+  second.frame = 1;
+  const Image below = readImage(folder + "SegmentationOverlapping.seg.nrrd", first);
+  const Image above = readImage(folder + "SegmentationOverlapping.seg.nrrd", second);
+  EXPECT_EQ(below.values, plain.values);
+  std::size_t shared = 0;
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    if (above.values[i] != 0.0F && below.values[i] != 0.0F) ++shared;
+    // Label 1 of layer 1 is the eighth segment, and the later one of the file has the voxel.
+    ASSERT_EQ(image.values[i], above.values[i] != 0.0F ? 8.0F : below.values[i]);
+  }
+  EXPECT_EQ(shared, 15514U);
+  ASSERT_EQ(image.labels.names.size(), 8U);
+  EXPECT_EQ(image.labels.names.at(1), "ribs");
+  EXPECT_EQ(image.labels.names.at(8), "overlapping sphere");
+  EXPECT_EQ(image.labels.colors.at(2), (LabelColor{1.0F, 1.0F, 0.811765F}));
+  ASSERT_EQ(image.notes.size(), 2U);
+  EXPECT_NE(image.notes[0].find("it is label 8 here"), std::string::npos);
+  EXPECT_NE(image.notes[1].find("15514 voxels are in several segments"), std::string::npos);
+}
+
+TEST(Scans, NamesInsideTotalSegmentatorsFileAreThoseOfItsTable) {
+  const std::string folder = kData + "/abdomen/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const ImageInfo info = readImageInfo(folder + "example_seg.nii.gz");
+  EXPECT_TRUE(info.is_labels);
+  NameTable table = readLabelTable(folder + "labels.csv").names;
+  table.erase(0);
+  EXPECT_EQ(info.labels.names, table);
+  EXPECT_EQ(info.labels.colors.at(1), (LabelColor{0.0F, 1.0F, 0.0F}));
+  // The image serves as a table too.
+  EXPECT_EQ(readLabelTable(folder + "example_seg.nii.gz").names, table);
+}
+
+}  // namespace
+}  // namespace palpate::vdb

@@ -1,0 +1,238 @@
+#include "image/dicom_elements.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "image/header_text.h"
+#include "palpate/core/error.h"
+
+namespace palpate::vdb {
+namespace {
+
+constexpr std::uint32_t kUndefined = 0xFFFFFFFFU;
+constexpr std::uint32_t kItem = 0xFFFEE000U;
+constexpr std::uint32_t kItemEnd = 0xFFFEE00DU;
+constexpr std::uint32_t kSequenceEnd = 0xFFFEE0DDU;
+constexpr std::uint32_t kTransferSyntax = 0x00020010U;
+constexpr std::size_t kPreamble = 128;
+constexpr std::size_t kLongestText = 4096;
+constexpr int kDeepest = 32;
+
+class Walker {
+ public:
+  Walker(const std::string& bytes, DicomElements& out) : bytes_(bytes), out_(out) {}
+
+  void walk() {
+    at_ = kPreamble + 4;
+    // The file's meta information is always explicit and little endian.
+    while (at_ + 4 <= bytes_.size() && number(at_, 2) == 0x0002) element(bytes_.size(), 0);
+    const std::string& syntax = out_.transfer_syntax;
+    if (syntax == "1.2.840.10008.1.2.1.99") {
+      throw inputError("dicom.encoding", "the whole data set is deflated, which cannot be read",
+                       "save it without (dcmdjpeg, gdcmconv --raw)", out_.path);
+    }
+    explicit_ = syntax != "1.2.840.10008.1.2";
+    big_ = out_.big_endian = syntax == "1.2.840.10008.1.2.2";
+    while (at_ < bytes_.size()) element(bytes_.size(), 0);
+  }
+
+ private:
+  [[noreturn]] void failShort() const {
+    throw inputError("dicom.truncated",
+                     "the file is cut short: an element reaches beyond its " +
+                         std::to_string(bytes_.size()) + " bytes",
+                     "fetch or write the file again", out_.path);
+  }
+  [[noreturn]] void failDamaged(const std::string& what) const {
+    throw inputError("dicom.damaged", what + " at byte " + std::to_string(at_),
+                     "fetch or write the file again", out_.path);
+  }
+
+  [[nodiscard]] std::uint32_t number(std::size_t at, std::size_t size) const {
+    if (at + size > bytes_.size()) failShort();
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::size_t from = big_ ? at + i : at + size - 1 - i;
+      value = (value << 8U) | static_cast<unsigned char>(bytes_[from]);
+    }
+    return value;
+  }
+
+  std::uint32_t takeTag() {
+    const std::uint32_t group = number(at_, 2);
+    const std::uint32_t tag = (group << 16U) | number(at_ + 2, 2);
+    at_ += 4;
+    return tag;
+  }
+
+  std::uint32_t takeLength() {
+    const std::uint32_t length = number(at_, 4);
+    at_ += 4;
+    return length;
+  }
+
+  void skip(std::uint32_t length, std::size_t end) {
+    if (length > end - at_) {
+      if (end == bytes_.size()) failShort();
+      failDamaged("an element is longer than what holds it,");
+    }
+    at_ += length;
+  }
+
+  /// One element that ends before `end`.
+  void element(std::size_t end, int depth) {
+    if (depth > kDeepest) failDamaged("sequences within too many others");
+    const std::uint32_t tag = takeTag();
+    if ((tag >> 16U) == 0xFFFE) failDamaged("an item outside of a sequence");
+    std::string_view vr;
+    std::uint32_t length = 0;
+    if (explicit_) {
+      if (at_ + 4 > bytes_.size()) failShort();
+      vr = std::string_view(bytes_).substr(at_, 2);
+      if (vr[0] < 'A' || vr[0] > 'Z' || vr[1] < 'A' || vr[1] > 'Z') {
+        failDamaged("no value representation");
+      }
+      constexpr std::array<std::string_view, 13> kLong = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
+                                                          "SV", "UC", "UN", "UR", "UT", "UV"};
+      if (std::find(kLong.begin(), kLong.end(), vr) != kLong.end()) {
+        at_ += 4;
+        length = takeLength();
+      } else {
+        length = number(at_ + 2, 2);
+        at_ += 4;
+      }
+    } else {
+      length = takeLength();
+    }
+    if (tag == dicom::kPixelData && depth == 0) return pixels(length);
+    if (length == kUndefined) {
+      // An unknown sequence within an explicit file is implicit.
+      const bool was_explicit = explicit_;
+      if (vr == "UN") explicit_ = false;
+      items(bytes_.size(), true, depth);
+      explicit_ = was_explicit;
+      return;
+    }
+    const std::size_t begin = at_;
+    skip(length, end);
+    if (vr == "SQ") {
+      at_ = begin;
+      items(begin + length, false, depth);
+    } else if (depth == 0 && length <= kLongestText) {
+      keep(tag, bytes_.substr(begin, length));
+    }
+  }
+
+  void keep(std::uint32_t tag, std::string value) {
+    if (tag == kTransferSyntax) {
+      out_.transfer_syntax = trimmed(value.substr(0, value.find('\0')));
+    }
+    out_.texts[tag] = std::move(value);
+  }
+
+  /// The items of a sequence up to `end`, or to where it says that it ends.
+  void items(std::size_t end, bool until_mark, int depth) {
+    while (until_mark || at_ < end) {
+      const std::uint32_t tag = takeTag();
+      const std::uint32_t length = takeLength();
+      if (tag == kSequenceEnd && until_mark) return;
+      if (tag != kItem) failDamaged("no item in a sequence");
+      if (length != kUndefined) {
+        const std::size_t item_begin = at_;
+        skip(length, end);
+        const std::size_t item_end = at_;
+        at_ = item_begin;
+        while (at_ < item_end) element(item_end, depth + 1);
+        continue;
+      }
+      while (number(at_, 2) != 0xFFFE) element(end, depth + 1);
+      if (takeTag() != kItemEnd) failDamaged("an item without an end");
+      takeLength();
+    }
+  }
+
+  void pixels(std::uint32_t length) {
+    out_.has_pixels = true;
+    if (length != kUndefined) {
+      out_.pixel_bytes = length;
+      skip(length, bytes_.size());
+      return;
+    }
+    out_.packed = true;
+    for (;;) {
+      const std::uint32_t tag = takeTag();
+      const std::uint32_t size = takeLength();
+      if (tag == kSequenceEnd) return;
+      if (tag != kItem || size == kUndefined) failDamaged("no fragment of pixel data");
+      skip(size, bytes_.size());
+    }
+  }
+
+  const std::string& bytes_;
+  DicomElements& out_;
+  std::size_t at_ = 0;
+  bool explicit_ = true;
+  bool big_ = false;
+};
+
+std::string tagName(std::uint32_t tag) {
+  char name[16];
+  std::snprintf(name, sizeof name, "(%04X,%04X)", tag >> 16U, tag & 0xFFFFU);
+  return name;
+}
+
+}  // namespace
+
+std::string DicomElements::text(std::uint32_t tag) const {
+  const auto at = texts.find(tag);
+  if (at == texts.end()) return {};
+  return std::string(trimmed(std::string_view(at->second).substr(0, at->second.find('\0'))));
+}
+
+std::vector<double> DicomElements::numbers(std::uint32_t tag, std::size_t count) const {
+  std::string words = text(tag);
+  std::replace(words.begin(), words.end(), '\\', ' ');
+  const auto list = numbersIn<double>(words);
+  const bool finite =
+      list && std::all_of(list->begin(), list->end(), [](double v) { return std::isfinite(v); });
+  if (!finite || list->size() != count) {
+    throw inputError("dicom.value",
+                     tagName(tag) + " is '" + text(tag) + "', not " + std::to_string(count) +
+                         (count == 1 ? " number" : " numbers"),
+                     {}, path);
+  }
+  return *list;
+}
+
+std::optional<int> DicomElements::shortAt(std::uint32_t tag) const {
+  const auto at = texts.find(tag);
+  if (at == texts.end()) return {};
+  if (at->second.size() != 2) {
+    throw inputError("dicom.value", tagName(tag) + " is not of two bytes", {}, path);
+  }
+  const auto first = static_cast<unsigned char>(at->second[0]);
+  const auto second = static_cast<unsigned char>(at->second[1]);
+  return big_endian ? first * 256 + second : second * 256 + first;
+}
+
+DicomElements readDicomElements(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    throw inputError("dicom.unreadable", "the file cannot be opened for reading", {}, path);
+  }
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (bytes.size() < kPreamble + 4 || bytes.compare(kPreamble, 4, "DICM") != 0) {
+    throw inputError("dicom.format", "this is not a DICOM file: DICM is not at byte 128",
+                     "name a folder with one DICOM series, or a file of it", path);
+  }
+  DicomElements out;
+  out.path = path;
+  Walker(bytes, out).walk();
+  return out;
+}
+
+}  // namespace palpate::vdb

@@ -1,0 +1,62 @@
+#pragma once
+/// The elements of a DICOM file, found by walking it from end to end.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate::vdb {
+
+/// GDCM takes what is missing of a file for zeros, or ends the process on an assertion. So every file is walked
+/// before GDCM sees it: every length must fit, every sequence end.
+struct DicomElements {
+  std::string path;
+  std::map<std::uint32_t, std::string>
+      texts;  ///< short values of the outermost level, without padding
+  std::string transfer_syntax;
+  bool big_endian = false;
+  bool has_pixels = false;
+  bool packed = false;            ///< pixel data in fragments
+  std::uint64_t pixel_bytes = 0;  ///< of pixel data that are not
+
+  [[nodiscard]] bool has(std::uint32_t tag) const { return texts.contains(tag); }
+  /// The text, without the blanks around it; empty if there is none.
+  [[nodiscard]] std::string text(std::uint32_t tag) const;
+  /// The numbers of a text such as "1\-2.5". @throws Error (kInput, dicom.value)
+  [[nodiscard]] std::vector<double> numbers(std::uint32_t tag, std::size_t count) const;
+  /// An unsigned short. @throws Error (kInput, dicom.value)
+  [[nodiscard]] std::optional<int> shortAt(std::uint32_t tag) const;
+};
+
+/// @throws Error (kInput): dicom.format, dicom.truncated, dicom.damaged, dicom.encoding.
+[[nodiscard]] DicomElements readDicomElements(const std::string& path);
+
+namespace dicom {
+
+inline constexpr std::uint32_t kModality = 0x00080060;
+inline constexpr std::uint32_t kSeriesDescription = 0x0008103E;
+inline constexpr std::uint32_t kGantryTilt = 0x00181120;
+inline constexpr std::uint32_t kSeriesUid = 0x0020000E;
+inline constexpr std::uint32_t kPosition = 0x00200032;
+inline constexpr std::uint32_t kOrientation = 0x00200037;
+inline constexpr std::uint32_t kSamplesPerPixel = 0x00280002;
+inline constexpr std::uint32_t kPhotometric = 0x00280004;
+inline constexpr std::uint32_t kFrames = 0x00280008;
+inline constexpr std::uint32_t kRows = 0x00280010;
+inline constexpr std::uint32_t kColumns = 0x00280011;
+inline constexpr std::uint32_t kPixelSpacing = 0x00280030;
+inline constexpr std::uint32_t kBitsAllocated = 0x00280100;
+inline constexpr std::uint32_t kBitsStored = 0x00280101;
+inline constexpr std::uint32_t kHighBit = 0x00280102;
+inline constexpr std::uint32_t kPixelRepresentation = 0x00280103;
+inline constexpr std::uint32_t kIntercept = 0x00281052;
+inline constexpr std::uint32_t kSlope = 0x00281053;
+inline constexpr std::uint32_t kLossy = 0x00282110;
+inline constexpr std::uint32_t kModalityTable = 0x00283000;
+inline constexpr std::uint32_t kPixelData = 0x7FE00010;
+
+}  // namespace dicom
+
+}  // namespace palpate::vdb

@@ -1,0 +1,39 @@
+#pragma once
+/// What headers made of text lines share.
+
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate::vdb {
+
+[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
+[[nodiscard]] std::string lowerCase(std::string_view text);
+/// Between runs of blanks.
+[[nodiscard]] std::vector<std::string_view> wordsOf(std::string_view text);
+
+/// The whole text as a number; nothing if it is none. A leading + is allowed.
+template <typename Number>
+[[nodiscard]] std::optional<Number> numberIn(std::string_view text) {
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+  Number value{};
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// All words as numbers; nothing if one is none.
+template <typename Number>
+[[nodiscard]] std::optional<std::vector<Number>> numbersIn(std::string_view text) {
+  std::vector<Number> numbers;
+  for (const std::string_view word : wordsOf(text)) {
+    const auto number = numberIn<Number>(word);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+}  // namespace palpate::vdb

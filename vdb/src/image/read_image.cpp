@@ -1,0 +1,102 @@
+#include <filesystem>
+
+#include "image/header_text.h"
+#include "image/readers.h"
+#include "palpate/core/error.h"
+
+namespace palpate::vdb {
+namespace {
+
+enum class Format { kNifti, kNrrd, kMetaImage, kDicom };
+
+bool endsWith(const std::string& path, std::initializer_list<const char*> extensions) {
+  const std::string lower = lowerCase(path);
+  for (const char* extension : extensions) {
+    if (lower.ends_with(extension)) return true;
+  }
+  return false;
+}
+
+std::optional<Format> formatOf(const std::string& path) {
+  std::error_code failure;
+  if (std::filesystem::is_directory(path, failure)) {
+    return isDicomFolder(path) ? std::optional(Format::kDicom) : std::nullopt;
+  }
+  if (endsWith(path, {".nii", ".nii.gz"})) return Format::kNifti;
+  if (endsWith(path, {".nrrd", ".nhdr"})) return Format::kNrrd;
+  if (endsWith(path, {".mha", ".mhd"})) return Format::kMetaImage;
+  if (endsWith(path, {".dcm", ".ima"})) return Format::kDicom;
+  const bool no_extension = std::filesystem::path(path).extension().empty();
+  if (no_extension && isDicomFile(path)) return Format::kDicom;
+  return {};
+}
+
+Format requireFormat(const std::string& path) {
+  if (const auto format = formatOf(path)) return *format;
+  std::error_code failure;
+  const bool is_folder = std::filesystem::is_directory(path, failure);
+  throw inputError(
+      is_folder ? "dicom.missing" : "image.format",
+      is_folder ? "the folder holds no DICOM images"
+                : "cannot tell from its name what kind of image this is",
+      "known are NIfTI (.nii .nii.gz), NRRD (.nrrd .nhdr), MetaImage (.mha .mhd) and folders of "
+      "DICOM series",
+      path);
+}
+
+/// Refuses what a format has no use for: an option that does nothing is a slip.
+void checkOptions(Format format, const ImageOptions& options, const std::string& path) {
+  const auto refuse = [&](bool given, const std::string& what, const char* formats) {
+    if (!given) return;
+    throw inputError("image.option", what + " applies to " + formats, "leave it out", path);
+  };
+  const bool nifti = format == Format::kNifti;
+  const bool nrrd = format == Format::kNrrd;
+  const AffineChoice affine = options.affine;
+  refuse(!nifti && (affine == AffineChoice::kSform || affine == AffineChoice::kQform),
+         "affine: sform or qform", "NIfTI files");
+  refuse(!nifti && !nrrd && affine == AffineChoice::kSpacing, "affine: spacing",
+         "NIfTI and NRRD files");
+  refuse(!nrrd && options.space != Space::kStated, "the space of an image", "NRRD files");
+  refuse(format == Format::kDicom && options.frame.has_value(), "a frame",
+         "files of four dimensions");
+  refuse(format != Format::kDicom && !options.series.empty(), "a series", "DICOM folders");
+}
+
+}  // namespace
+
+bool isImageFile(const std::string& path) { return formatOf(path).has_value(); }
+
+Image readImage(const std::string& path, const ImageOptions& options) {
+  const Format format = requireFormat(path);
+  checkOptions(format, options, path);
+  switch (format) {
+    case Format::kNrrd:
+      return readNrrd(path, options);
+    case Format::kMetaImage:
+      return readMetaImage(path, options);
+    case Format::kDicom:
+      return readDicom(path, options);
+    case Format::kNifti:
+      break;
+  }
+  return readNifti(path, options);
+}
+
+ImageInfo readImageInfo(const std::string& path, const ImageOptions& options) {
+  const Format format = requireFormat(path);
+  checkOptions(format, options, path);
+  switch (format) {
+    case Format::kNrrd:
+      return readNrrdInfo(path, options);
+    case Format::kMetaImage:
+      return readMetaImageInfo(path, options);
+    case Format::kDicom:
+      return readDicomInfo(path, options);
+    case Format::kNifti:
+      break;
+  }
+  return readNiftiInfo(path, options);
+}
+
+}  // namespace palpate::vdb

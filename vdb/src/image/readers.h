@@ -1,0 +1,27 @@
+#pragma once
+/// One reader for each format, with their infos.
+
+#include <string>
+
+#include "palpate/vdb/image.h"
+
+namespace palpate::vdb {
+
+/// NRRD, .nrrd, .nhdr and .seg.nrrd. @throws Error (kInput, codes "nrrd.*").
+[[nodiscard]] Image readNrrd(const std::string& path, const ImageOptions& options);
+[[nodiscard]] ImageInfo readNrrdInfo(const std::string& path, const ImageOptions& options);
+
+/// MetaImage, .mha and .mhd. @throws Error (kInput, codes "metaimage.*").
+[[nodiscard]] Image readMetaImage(const std::string& path, const ImageOptions& options);
+[[nodiscard]] ImageInfo readMetaImageInfo(const std::string& path, const ImageOptions& options);
+
+/// A DICOM series: a folder, or one file of it. @throws Error (kInput, codes "dicom.*").
+[[nodiscard]] Image readDicom(const std::string& path, const ImageOptions& options);
+[[nodiscard]] ImageInfo readDicomInfo(const std::string& path, const ImageOptions& options);
+
+/// True if the file begins as DICOM files do.
+[[nodiscard]] bool isDicomFile(const std::string& path);
+/// True if one of the folder's own files does.
+[[nodiscard]] bool isDicomFolder(const std::string& path);
+
+}  // namespace palpate::vdb

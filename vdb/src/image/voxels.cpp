@@ -1,0 +1,146 @@
+#include "image/voxels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace palpate::vdb {
+namespace {
+
+template <typename T>
+void convertAs(std::span<const unsigned char> raw, const VoxelCoding& coding, float* out,
+               Oddities& odd) {
+  const std::size_t count = raw.size() / sizeof(T);
+  for (std::size_t i = 0; i < count; ++i) {
+    T stored;
+    std::memcpy(&stored, raw.data() + i * sizeof(T), sizeof(T));
+    auto value = static_cast<double>(stored);
+    if (coding.scaled) value = value * coding.slope + coding.intercept;
+    out[i] = static_cast<float>(value);
+    if constexpr (std::is_floating_point_v<T>) {
+      odd.not_finite += std::isfinite(out[i]) ? 0U : 1U;
+    } else if constexpr (sizeof(T) >= 4) {
+      odd.rounded += !coding.scaled && std::abs(value) > 16777216.0 ? 1U : 0U;
+    }
+  }
+}
+
+}  // namespace
+
+const char* nameOf(VoxelType type) noexcept {
+  switch (type) {
+    case VoxelType::kUint8:
+      return "uint8";
+    case VoxelType::kInt8:
+      return "int8";
+    case VoxelType::kUint16:
+      return "uint16";
+    case VoxelType::kInt16:
+      return "int16";
+    case VoxelType::kUint32:
+      return "uint32";
+    case VoxelType::kInt32:
+      return "int32";
+    case VoxelType::kUint64:
+      return "uint64";
+    case VoxelType::kInt64:
+      return "int64";
+    case VoxelType::kFloat32:
+      return "float32";
+    case VoxelType::kFloat64:
+      return "float64";
+  }
+  return "";
+}
+
+std::size_t bytesOf(VoxelType type) noexcept {
+  switch (type) {
+    case VoxelType::kUint8:
+    case VoxelType::kInt8:
+      return 1;
+    case VoxelType::kUint16:
+    case VoxelType::kInt16:
+      return 2;
+    case VoxelType::kUint32:
+    case VoxelType::kInt32:
+    case VoxelType::kFloat32:
+      return 4;
+    case VoxelType::kUint64:
+    case VoxelType::kInt64:
+    case VoxelType::kFloat64:
+      break;
+  }
+  return 8;
+}
+
+void Oddities::tell(std::vector<std::string>& notes) const {
+  if (not_finite > 0) {
+    notes.push_back(std::to_string(not_finite) +
+                    " voxels are NaN or infinite: NaN is taken as background");
+  }
+  if (rounded > 0) {
+    notes.push_back(std::to_string(rounded) +
+                    " voxels are integers beyond 16777216 and were rounded");
+  }
+}
+
+void convertVoxels(std::span<unsigned char> raw, const VoxelCoding& coding, float* out,
+                   Oddities& odd) {
+  const std::size_t bytes = bytesOf(coding.type);
+  if (coding.swapped && bytes > 1) {
+    for (std::size_t at = 0; at + bytes <= raw.size(); at += bytes) {
+      std::reverse(raw.begin() + static_cast<std::ptrdiff_t>(at),
+                   raw.begin() + static_cast<std::ptrdiff_t>(at + bytes));
+    }
+  }
+  switch (coding.type) {
+    case VoxelType::kUint8:
+      return convertAs<std::uint8_t>(raw, coding, out, odd);
+    case VoxelType::kInt8:
+      return convertAs<std::int8_t>(raw, coding, out, odd);
+    case VoxelType::kUint16:
+      return convertAs<std::uint16_t>(raw, coding, out, odd);
+    case VoxelType::kInt16:
+      return convertAs<std::int16_t>(raw, coding, out, odd);
+    case VoxelType::kUint32:
+      return convertAs<std::uint32_t>(raw, coding, out, odd);
+    case VoxelType::kInt32:
+      return convertAs<std::int32_t>(raw, coding, out, odd);
+    case VoxelType::kUint64:
+      return convertAs<std::uint64_t>(raw, coding, out, odd);
+    case VoxelType::kInt64:
+      return convertAs<std::int64_t>(raw, coding, out, odd);
+    case VoxelType::kFloat32:
+      return convertAs<float>(raw, coding, out, odd);
+    case VoxelType::kFloat64:
+      return convertAs<double>(raw, coding, out, odd);
+  }
+}
+
+std::vector<float> readVoxels(ByteStream& stream, std::uint64_t count, const VoxelCoding& coding,
+                              Oddities& odd) {
+  std::vector<float> values(count);
+  const std::size_t bytes = bytesOf(coding.type);
+  std::vector<unsigned char> raw(std::size_t{1} << 20U);  // a multiple of every voxel size
+  for (std::uint64_t done = 0; done < count;) {
+    const auto here =
+        static_cast<std::size_t>(std::min<std::uint64_t>(raw.size() / bytes, count - done));
+    const std::size_t got = stream.read(std::span(raw).first(here * bytes));
+    if (got < here * bytes) stream.failShort(done + got / bytes, count);
+    convertVoxels(std::span(raw).first(got), coding, values.data() + done, odd);
+    done += here;
+  }
+  return values;
+}
+
+void skipBytes(ByteStream& stream, std::uint64_t bytes, std::uint64_t count) {
+  std::vector<unsigned char> scratch(4096);
+  while (bytes > 0) {
+    const auto step = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, scratch.size()));
+    const std::size_t got = stream.read(std::span(scratch).first(step));
+    if (got == 0) stream.failShort(0, count);
+    bytes -= got;
+  }
+}
+
+}  // namespace palpate::vdb
