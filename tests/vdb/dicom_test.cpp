@@ -123,7 +123,7 @@ struct BadSeries {
   std::function<void(DicomFile&, int)> spoil;
 };
 
-class DicomErrors : public testing::TestWithParam<BadSeries> {};
+class DicomErrors : public ::testing::TestWithParam<BadSeries> {};
 
 TEST_P(DicomErrors, AreNamed) {
   const TempFolder folder;
@@ -143,7 +143,7 @@ TEST_P(DicomErrors, AreNamed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DicomErrors,
-                         testing::Values(
+                         ::testing::Values(
                              // ITK only warns, and stretches the spacing.
                              BadSeries{"MissingSlice", "dicom.spacing", "a slice may be missing",
                                        [](DicomFile& f, int k) {

@@ -165,7 +165,7 @@ struct BadHeader {
   std::function<void(Lines&)> spoil;
 };
 
-class MetaImageErrors : public testing::TestWithParam<BadHeader> {};
+class MetaImageErrors : public ::testing::TestWithParam<BadHeader> {};
 
 TEST_P(MetaImageErrors, AreNamed) {
   const TempFolder folder;
@@ -178,7 +178,7 @@ TEST_P(MetaImageErrors, AreNamed) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, MetaImageErrors,
-    testing::Values(
+    ::testing::Values(
         BadHeader{"Type", "metaimage.data_type",
                   [](Lines& l) { set(l, "ElementType", "MET_STRING"); }},
         BadHeader{"Channels", "metaimage.data_type",

@@ -224,7 +224,7 @@ struct BadHeader {
   std::function<void(Lines&)> spoil;
 };
 
-class NrrdErrors : public testing::TestWithParam<BadHeader> {};
+class NrrdErrors : public ::testing::TestWithParam<BadHeader> {};
 
 TEST_P(NrrdErrors, AreToldByFileAndByReaderAndInfoAlike) {
   const TempFolder folder;
@@ -248,7 +248,7 @@ TEST_P(NrrdErrors, AreToldByFileAndByReaderAndInfoAlike) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, NrrdErrors,
-    testing::Values(
+    ::testing::Values(
         BadHeader{"Type", "nrrd.data_type", "block", [](Lines& l) { set(l, "type", "block"); }},
         BadHeader{"NoType", "nrrd.field", "'type'", [](Lines& l) { set(l, "type", "-"); }},
         BadHeader{"Twice", "nrrd.field", "given twice",

@@ -84,7 +84,9 @@ TEST(Scans, NrrdAndMetaImageAreAsItkHasThem) {
     EXPECT_EQ(image.size, itk.size);
     EXPECT_EQ(histogramOf(image), itk.histogram);
     // Of an image without a place ITK assumes L, P, S; so it is asked for instead.
-    if (!without_place) EXPECT_LT(worstEntry(image, itk.affine), kMm);
+    if (!without_place) {
+      EXPECT_LT(worstEntry(image, itk.affine), kMm);
+    }
   }
 }
 

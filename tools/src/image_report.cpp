@@ -102,9 +102,11 @@ void addValues(const std::vector<float>& values, FileReport& out) {
 }
 
 std::string rowText(const Mat3& axes, const Vec3& origin, int row) {
+  constexpr double kPlusZero = 0.0;  // added to -0 it is 0
   char text[128];
-  std::snprintf(text, sizeof text, "%12.6g %12.6g %12.6g %12.6g", axes[0][row] * 1e3,
-                axes[1][row] * 1e3, axes[2][row] * 1e3, origin[row] * 1e3);
+  std::snprintf(text, sizeof text, "%12.6g %12.6g %12.6g %12.6g", axes[0][row] * 1e3 + kPlusZero,
+                axes[1][row] * 1e3 + kPlusZero, axes[2][row] * 1e3 + kPlusZero,
+                origin[row] * 1e3 + kPlusZero);
   return text;
 }
 

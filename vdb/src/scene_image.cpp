@@ -52,8 +52,8 @@ ImageOptions readImageOptions(MapReader& reader) {
                          "write affine: sform, affine: qform or affine: spacing");
   }
   options.space = readSpace(reader);
+  const double frame = reader.numberOr("frame", 0.0);
   if (reader.has("frame")) {
-    const double frame = reader.requireNumber("frame");
     if (!(frame >= 0.0 && frame <= std::numeric_limits<int>::max()) || frame != std::floor(frame)) {
       throw reader.errorAt("frame", "scene.range", "'frame' must be a whole number from 0");
     }

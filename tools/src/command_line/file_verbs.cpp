@@ -3,9 +3,7 @@
 #include "command_line/verb.h"
 
 namespace palpate::tools {
-namespace {
 
-/// What a scan or a mesh leaves open.
 void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes) {
   add(app, group, "--affine", "sform|qform|spacing", o.affine,
       "NIfTI: which form counts (default: sform, else qform; if both, they must agree); NIfTI, "
@@ -22,6 +20,8 @@ void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes) {
       ->check(CLI::Range(0, 1000000));
   add(app, group, "--series", "UID", o.series, "which DICOM series of a folder that holds several");
 }
+
+namespace {
 
 /// How a surface is made into a grid, and which.
 void addBaking(CLI::App& app, BakeOptions& o) {

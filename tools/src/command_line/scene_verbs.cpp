@@ -58,6 +58,7 @@ void defineQuery(CLI::App& app, Invocation& invocation) {
   add(app, g, "--points", "FILE.csv", o.points, "at the points of a file with the header x,y,z");
   g = "Options";
   add(app, g, "--field", "NAME", o.field, "scene: this field or layer only");
+  addScan(app, "What an image leaves open", o.scan, false);
 }
 
 void defineRender(CLI::App& app, Invocation& invocation) {
@@ -73,7 +74,7 @@ void defineRender(CLI::App& app, Invocation& invocation) {
   g = "What to show";
   add(app, g, "--trace", "FILE.csv", o.trace, "the path and the forces of a `touch --trace`");
   add(app, g, "--image", "IMAGE", o.image,
-      "grey values of this NIfTI file, or of this image of the scene (default: the scene's first "
+      "grey values of this scan, or of this image of the scene (default: the scene's first "
       "that has no names)");
 }
 
@@ -108,7 +109,8 @@ Verb queryVerb() {
           "Value, gradient, region and material at points; or an image's intensity",
           "palpate query data/scenes/container.yaml --at 0,0,14 0,0,16",
           "palpate query SCENE|IMAGE POINTS [OPTIONS]",
-          "An image (.nii .nii.gz) is read at RAS points in mm, trilinear between voxel centres; "
+          "An image (NIfTI, NRRD, MetaImage, a DICOM series) is read at RAS points in mm, "
+          "trilinear between voxel centres; "
           "outside\n"
           "these there is no value.",
           {"--at"},

@@ -47,6 +47,9 @@ struct Verb {
 [[nodiscard]] Verb benchVerb();
 [[nodiscard]] Verb helpVerb();
 
+/// What a scan or, if `meshes`, a mesh leaves open.
+void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes);
+
 // accuracy_verb.cpp
 [[nodiscard]] Verb accuracyVerb();
 
