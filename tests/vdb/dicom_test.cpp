@@ -116,6 +116,22 @@ TEST(Dicom, OfSeveralSeriesOneMustBeChosen) {
   EXPECT_EQ(errorOf([&] { (void)readImage(path, options); }).problem().code, "dicom.series");
 }
 
+TEST(Dicom, AReportBesideTheSlicesIsPassedOverAndASliceWithoutPixelsIsNot) {
+  const TempFolder folder;
+  const std::string path = writeSeries(folder, "s", 4, {0, 0, 1}, kAsItIs);
+  DicomFile report;
+  report.with_pixels = false;
+  report.storage_class = "1.2.840.10008.5.1.4.1.1.88.11";
+  (void)folder.file("s/report", bytesOf(report));
+  const Image image = readImage(path);
+  EXPECT_EQ(image.size[2], 4);
+  ASSERT_EQ(image.notes.size(), 1U);
+  EXPECT_NE(image.notes[0].find("1 DICOM files without pixels"), std::string::npos);
+  report.storage_class = "1.2.840.10008.5.1.4.1.1.2";
+  (void)folder.file("s/report", bytesOf(report));
+  EXPECT_EQ(errorOf([&] { (void)readImage(path); }).problem().code, "dicom.truncated");
+}
+
 struct BadSeries {
   const char* name;
   const char* code;

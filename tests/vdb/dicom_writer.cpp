@@ -48,7 +48,7 @@ class Writer {
 
 std::string bytesOf(const DicomFile& file) {
   Writer meta(false);
-  meta.text(0x0002, 0x0002, "UI", "1.2.840.10008.5.1.4.1.1.2");
+  meta.text(0x0002, 0x0002, "UI", file.storage_class);
   meta.text(0x0002, 0x0003, "UI", "1.2.3.4");
   meta.text(0x0002, 0x0010, "UI", file.is_implicit ? "1.2.840.10008.1.2" : "1.2.840.10008.1.2.1");
   Writer length(false);
@@ -56,7 +56,7 @@ std::string bytesOf(const DicomFile& file) {
   put(length.out, static_cast<std::uint32_t>(meta.out.size()), 4);
 
   Writer w(file.is_implicit);
-  w.text(0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.2");
+  w.text(0x0008, 0x0016, "UI", file.storage_class);
   w.text(0x0008, 0x0018, "UI", "1.2.3.4");
   w.text(0x0008, 0x0060, "CS", "CT");
   if (file.with_sequence) {
@@ -85,6 +85,8 @@ std::string bytesOf(const DicomFile& file) {
   w.text(0x0028, 0x1052, "DS", file.intercept);
   w.text(0x0028, 0x1053, "DS", file.slope);
   const int count = file.rows * file.columns;
+  const std::string front = std::string(128, '\0') + "DICM" + length.out + meta.out;
+  if (!file.with_pixels) return front + w.out;
   w.head(0x7FE0, 0x0010, "OW", static_cast<std::uint32_t>(2 * count + file.pixel_bytes_off));
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -95,7 +97,7 @@ std::string bytesOf(const DicomFile& file) {
   } else {
     w.out.append(static_cast<std::size_t>(file.pixel_bytes_off), '\0');
   }
-  return std::string(128, '\0') + "DICM" + length.out + meta.out + w.out;
+  return front + w.out;
 }
 
 }  // namespace palpate::vdb::test

@@ -27,6 +27,8 @@ struct DicomFile {
   std::string photometric = "MONOCHROME2";
   std::string frames = {};
   int pixel_bytes_off = 0;  ///< added to the length of the pixel data
+  std::string storage_class = "1.2.840.10008.5.1.4.1.1.2";  ///< CT
+  bool with_pixels = true;
   bool is_implicit = false;
   bool with_sequence = false;  ///< a nested one, before all that matters
 };

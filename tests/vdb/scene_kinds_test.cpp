@@ -195,15 +195,76 @@ TEST_F(SceneKinds, MeshesTakeASignAShellAndSmoothing) {
   EXPECT_LT(scene.fields[3].source->get()->value(Vec3(10.0 / 3.0) * kMm), -1.0 * kMm);
 }
 
+TEST_F(SceneKinds, AMeshSaysItsSpaceOrTheSceneDoes) {
+  // A tetrahedron at x and y above 0.
+  const std::string text =
+      "v 1 1 0\nv 9 1 0\nv 1 9 0\nv 1 1 8\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  (void)folder_.file("plain.obj", text);
+  (void)folder_.file("slicer.obj", "# SPACE=LPS\n" + text);
+  const SceneDescription scene = read(
+      "fields:\n"
+      "  plain: {mesh: {file: plain.obj, voxel: 0.5}}\n"
+      "  said: {mesh: {file: plain.obj, voxel: 0.5, space: LPS}}\n"
+      "  stated: {mesh: {file: slicer.obj, voxel: 0.5}}\n"
+      "  overruled: {mesh: {file: slicer.obj, voxel: 0.5, space: RAS}}\n");
+  const Vec3 ras(2 * kMm, 2 * kMm, 2 * kMm);
+  const Vec3 lps(-2 * kMm, -2 * kMm, 2 * kMm);
+  const std::vector<bool> is_lps = {false, true, true, false};
+  ASSERT_EQ(scene.fields.size(), is_lps.size());
+  for (std::size_t i = 0; i < is_lps.size(); ++i) {
+    const FieldPtr& field = scene.fields[i].source->get();
+    EXPECT_LT(field->value(is_lps[i] ? lps : ras), 0.0) << scene.fields[i].name;
+    EXPECT_GT(field->value(is_lps[i] ? ras : lps), 0.0) << scene.fields[i].name;
+  }
+  ASSERT_EQ(notes_.size(), 1U);
+  EXPECT_NE(notes_[0].find("slicer.obj: coordinates are LPS"), std::string::npos) << notes_[0];
+}
+
+TEST_F(SceneKinds, AnImagesOwnNamesAndColorsServe) {
+  std::vector<std::pair<std::string, LabelColor>> colors;
+  std::vector<ImageRecord> images;
+  RegisterOptions options;
+  options.on_color = [&](const std::string& layer, const LabelColor& color) {
+    colors.emplace_back(layer, color);
+  };
+  options.on_image = [&](const ImageRecord& image) { images.push_back(image); };
+  SceneRegistry registry;
+  registerKinds(registry, options);
+  std::string bytes =
+      "NRRD0004\ntype: uchar\ndimension: 3\nspace: RAS\nsizes: 2 2 2\nencoding: raw\n"
+      "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nSegment0_Name:=liver\n"
+      "Segment0_LabelValue:=3\nSegment0_Color:=1 0.5 0\n\n";
+  bytes.append(8, '\3');
+  (void)folder_.file("s.seg.nrrd", bytes);
+  const std::string text =
+      "palpate: 1\nlength: mm\nimages:\n  own: {file: s.seg.nrrd}\n"
+      "  other: {file: s.seg.nrrd, names: names.csv}\nlayers:\n"
+      "  - {name: a, labels: {image: own, match: [liver]}}\n"
+      "  - {name: b, labels: {image: other, match: [right]}}\n";
+  const SceneDescription scene = readScene(folder_.file("own.yaml", text), registry);
+  EXPECT_EQ(scene.layers.size(), 2U);
+  ASSERT_EQ(colors.size(), 1U);
+  EXPECT_EQ(colors[0], (std::pair<std::string, LabelColor>("a", {1.0F, 0.5F, 0.0F})));
+  ASSERT_EQ(images.size(), 2U);
+  EXPECT_TRUE(images[0].is_labels);
+}
+
 TEST_F(SceneKinds, WhatCanBeKnownIsRefusedWhenTheSceneIsRead) {
   expectError("images: {i: {file: gone.nii}}\n", "nifti.missing", 3, 20, "gone.nii");
-  expectError("images: {i: {file: names.csv}}\n", "nifti.format", 3, 20, "not a NIfTI");
+  expectError("images: {i: {file: names.csv}}\n", "image.format", 3, 20, "what kind of image");
   expectError("images: {i: {file: labels.nii, names: gone.csv}}\n", "labels.table_missing", 3, 39,
               "gone.csv");
   (void)folder_.file("bad.csv", "value,name\n1,a\nx,b\n");
   expectError("images: {i: {file: labels.nii, names: bad.csv}}\n", "labels.table_row", 3, 39,
               "bad.csv:3");
   expectError("fields: {m: {mesh: {file: gone.stl}}}\n", "scene.no_file", 3, 27, "gone.stl");
+  expectError("fields: {m: {mesh: {file: octahedron.obj, space: up}}}\n", "scene.kind", 3, 50,
+              "space: RAS or space: LPS");
+  expectError("images: {i: {file: labels.nii, affine: best}}\n", "scene.kind", 3, 40,
+              "affine: sform");
+  expectError("images: {i: {file: labels.nii, frame: 1}}\n", "nifti.frame", 3, 20, "from 0");
+  expectError("images: {i: {file: labels.nii, frame: -1}}\n", "scene.range", 3, 39, "whole number");
+  expectError("images: {i: {file: labels.nii, space: LPS}}\n", "image.option", 3, 20, "NRRD");
   expectError("fields: {m: {mesh: {file: octahedron.obj, units: parsec}}}\n", "scene.unit", 3, 50,
               "parsec");
   expectError("fields: {m: {mesh: {file: octahedron.obj, voxel: -1}}}\n", "scene.range", 3, 50,

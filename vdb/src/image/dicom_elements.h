@@ -35,6 +35,7 @@ struct DicomElements {
 
 namespace dicom {
 
+inline constexpr std::uint32_t kStorageClass = 0x00020002;
 inline constexpr std::uint32_t kModality = 0x00080060;
 inline constexpr std::uint32_t kSeriesDescription = 0x0008103E;
 inline constexpr std::uint32_t kGantryTilt = 0x00181120;

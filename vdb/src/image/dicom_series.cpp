@@ -21,6 +21,7 @@ constexpr double kSameDirection = 1e-4;
 constexpr double kEvenSteps = 0.05;   ///< [share of a step]
 constexpr double kShearToTell = 0.1;  ///< [degrees]
 constexpr double kTiltToDoubt = 0.5;  ///< [degrees]
+constexpr const char* kWithoutPixels[] = {"11.", "66.", "88.", "104.", "481."};
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 struct Slice {
@@ -200,6 +201,16 @@ void tell(const std::vector<Slice>& slices, const Vec3& step, std::vector<std::s
   if (e.text(kLossy) == "01") notes.emplace_back("the pixels went through lossy compression");
 }
 
+/// Whether a file is of a kind that has no pixels: a folder's index, presentations, raw data, reports, plans. A
+/// slice without pixels was cut short.
+bool needsNoPixels(const DicomElements& e) {
+  const std::string kind = e.text(kStorageClass);
+  const std::string images = "1.2.840.10008.5.1.4.1.1.";
+  if (kind == "1.2.840.10008.1.3.10" || kind == images + "66") return true;
+  return std::any_of(std::begin(kWithoutPixels), std::end(kWithoutPixels),
+                     [&](const char* group) { return kind.starts_with(images + group); });
+}
+
 /// The series of the folder by UID, and how many files are no slices.
 std::map<std::string, std::vector<DicomElements>> seriesIn(const fs::path& folder,
                                                            std::size_t& without_pixels) {
@@ -208,6 +219,10 @@ std::map<std::string, std::vector<DicomElements>> seriesIn(const fs::path& folde
     if (!entry.is_regular_file() || !isDicomFile(entry.path().string())) continue;
     DicomElements elements = readDicomElements(entry.path().string());
     if (!elements.has_pixels) {
+      if (!needsNoPixels(elements)) {
+        throw inputError("dicom.truncated", "the file has no pixel data",
+                         "fetch or write the file again", elements.path);
+      }
       ++without_pixels;
       continue;
     }

@@ -20,7 +20,7 @@ constexpr std::size_t kLongestLine = std::size_t{1} << 20U;
 class Fields {
  public:
   explicit Fields(const std::string& path) : path_(path) {
-    ByteStream(path, "metaimage", 0, Packing::kNone);  // refuses what is no file
+    const ByteStream whole(path, "metaimage", 0, Packing::kNone);  // refuses what is no file
     std::ifstream file(path, std::ios::binary);
     std::string line;
     for (int number = 1; std::getline(file, line); ++number) {
@@ -37,7 +37,7 @@ class Fields {
       }
       lines_[key] = number;
       if (key == "ElementDataFile") {  // by the format's rule the last line
-        end_ = static_cast<std::uint64_t>(std::max<std::streamoff>(file.tellg(), 0));
+        end_ = file.eof() ? whole.fileSize() : static_cast<std::uint64_t>(file.tellg());
         return;
       }
     }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <string_view>
 
 #include "image/byte_stream.h"
 #include "image/header_text.h"
@@ -10,6 +12,14 @@ namespace palpate::vdb {
 namespace {
 
 constexpr std::size_t kLongestLine = std::size_t{1} << 20U;
+
+constexpr std::string_view kFields[] = {
+    "axismaxs",   "axismins", "blocksize",      "byteskip",    "centers",
+    "content",    "datafile", "dimension",      "encoding",    "endian",
+    "kinds",      "labels",   "lineskip",       "max",         "measurementframe",
+    "min",        "number",   "oldmax",         "oldmin",      "sampleunits",
+    "sizes",      "space",    "spacedimension", "spaceorigin", "spacedirections",
+    "spaceunits", "spacings", "thicknesses",    "type",        "units"};
 
 /// Names that mean the same.
 std::string canonical(std::string_view name) {
@@ -88,6 +98,9 @@ NrrdFields readNrrdFields(const std::string& path) {
       continue;
     }
     const std::string key = canonical(std::string_view(line).substr(0, colon));
+    if (std::find(std::begin(kFields), std::end(kFields), key) == std::end(kFields)) {
+      throw fail("`" + line.substr(0, 40) + "` is no line of a NRRD header");
+    }
     if (!out.fields.emplace(key, trimmed(std::string_view(line).substr(colon + 1))).second) {
       throw fail("the field '" + key + "' is given twice");
     }
