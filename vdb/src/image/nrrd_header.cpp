@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 
 #include "image/header_text.h"
 #include "image/nrrd_fields.h"
+#include "image/nrrd_place.h"
 
 namespace palpate::vdb {
 namespace {
@@ -82,37 +82,6 @@ void readSizes(const NrrdFields& fields, NrrdHeader& out) {
   out.sizes = *sizes;
 }
 
-/// The vectors of `space directions`; nothing for an axis that is not in space.
-std::vector<std::optional<Vec3>> readDirections(const NrrdFields& fields, std::size_t axes) {
-  const std::string& text = *fields.find("spacedirections");
-  const auto wrong = [&](const std::string& what) {
-    return fields.fail("nrrd.directions", "spacedirections",
-                       what + " in space directions '" + text + "'",
-                       "one `none` or `(x,y,z)` is needed for each axis");
-  };
-  std::vector<std::optional<Vec3>> out;
-  std::string_view rest = text;
-  while (!(rest = trimmed(rest)).empty()) {
-    if (lowerCase(rest.substr(0, 4)) == "none") {
-      out.emplace_back();
-      rest.remove_prefix(4);
-      continue;
-    }
-    const std::size_t close = rest.find(')');
-    if (rest.front() != '(' || close == std::string_view::npos) throw wrong("something else");
-    std::string numbers(rest.substr(1, close - 1));
-    std::replace(numbers.begin(), numbers.end(), ',', ' ');
-    const auto v = numbersIn<double>(numbers);
-    if (!v || v->size() != 3) throw wrong("a vector that is not of three numbers");
-    const Vec3 direction((*v)[0], (*v)[1], (*v)[2]);
-    const bool none = std::isnan(direction.x) && std::isnan(direction.y) && std::isnan(direction.z);
-    out.push_back(none ? std::nullopt : std::optional(direction));
-    rest.remove_prefix(close + 1);
-  }
-  if (out.size() != axes) throw wrong(std::to_string(out.size()) + " entries");
-  return out;
-}
-
 std::vector<std::string> readKinds(const NrrdFields& fields, std::size_t axes) {
   std::vector<std::string> kinds;
   if (const std::string* text = fields.find("kinds")) {
@@ -167,128 +136,6 @@ void sortAxes(const NrrdFields& fields, const std::vector<std::optional<Vec3>>& 
     throw fields.fail("nrrd.data_type", "kinds",
                       "voxels of kind '" + kind + "' are not single numbers",
                       "save one number a voxel");
-  }
-}
-
-/// [m] in the unit of space.
-double metresPerUnit(const NrrdFields& fields, NrrdHeader& out) {
-  const std::string* text = fields.find("spaceunits");
-  out.length_unit = "mm";
-  if (text == nullptr) return 1e-3;
-  std::string name;
-  for (std::string_view word : wordsOf(*text)) {
-    if (word.starts_with('"')) word.remove_prefix(1);
-    if (word.ends_with('"')) word.remove_suffix(1);
-    if (!name.empty() && name != word) {
-      throw fields.fail("nrrd.unit", "spaceunits",
-                        "the axes of space have different units: " + *text, "use mm for all");
-    }
-    name = word;
-  }
-  constexpr std::pair<std::string_view, double> kUnits[] = {
-      {"mm", 1e-3}, {"m", 1.0}, {"cm", 1e-2}, {"um", 1e-6}, {"µm", 1e-6}};
-  for (const auto& [known, metres] : kUnits) {
-    if (known != name) continue;
-    out.length_unit = metres == 1e-6 ? "um" : name;
-    return metres;
-  }
-  throw fields.fail("nrrd.unit", "spaceunits", "the length unit " + *text + " is not known",
-                    "m, cm, mm and um are");
-}
-
-/// Signs that turn the file's space into RAS.
-Vec3 toRas(const NrrdFields& fields, Space chosen) {
-  const std::string* const space = fields.find("space");
-  const std::string name = space == nullptr ? "" : lowerCase(*space);
-  if (name == "right-anterior-superior" || name == "ras") return Vec3(1.0);
-  if (name == "left-anterior-superior" || name == "las") return {-1.0, 1.0, 1.0};
-  if (name == "left-posterior-superior" || name == "lps") return {-1.0, -1.0, 1.0};
-  if (name.ends_with("-time") || name == "rast" || name == "last" || name == "lpst") {
-    throw fields.fail("nrrd.space", "space", "the space '" + *space + "' has four dimensions",
-                      "save one 3-D volume");
-  }
-  if (chosen == Space::kRas) return Vec3(1.0);
-  if (chosen == Space::kLps) return {-1.0, -1.0, 1.0};
-  throw fields.fail("nrrd.space", "space",
-                    space == nullptr
-                        ? std::string("the header does not say which way its space runs")
-                        : "the space '" + *space + "' is not an anatomical one",
-                    "say it: space: RAS or space: LPS (on the command line --space RAS)");
-}
-
-Vec3 readOrigin(const NrrdFields& fields, std::vector<std::string>& notes) {
-  const std::string* const text = fields.find("spaceorigin");
-  if (text == nullptr) {
-    notes.emplace_back(
-        "the header has no space origin: the first voxel's centre is taken as 0, 0, 0");
-    return Vec3(0.0);
-  }
-  std::string numbers = *text;
-  for (char& c : numbers) {
-    if (c == ',' || c == '(' || c == ')') c = ' ';
-  }
-  const auto v = numbersIn<double>(numbers);
-  if (!v || v->size() != 3) {
-    throw fields.fail("nrrd.origin", "spaceorigin",
-                      "the space origin '" + *text + "' is not of three numbers");
-  }
-  return {(*v)[0], (*v)[1], (*v)[2]};
-}
-
-/// Spacings along the three axes in space, whatever says them.
-Vec3 readSpacings(const NrrdFields& fields, const std::vector<std::optional<Vec3>>& directions,
-                  const NrrdHeader& header) {
-  Vec3 spacing(0.0);
-  if (!directions.empty()) {
-    for (int a = 0; a < 3; ++a) {
-      spacing[a] = glm::length(*directions[header.spatial[static_cast<std::size_t>(a)]]);
-    }
-    return spacing;
-  }
-  const auto numbers = numbersIn<double>(fields.require("spacings"));
-  if (!numbers || numbers->size() != header.sizes.size()) {
-    throw fields.fail("nrrd.spacing", "spacings",
-                      "spacings '" + fields.require("spacings") + "' are not those of " +
-                          std::to_string(header.sizes.size()) + " axes");
-  }
-  for (int a = 0; a < 3; ++a) {
-    spacing[a] = (*numbers)[header.spatial[static_cast<std::size_t>(a)]];
-    if (!(spacing[a] > 0.0) || !std::isfinite(spacing[a])) {
-      throw fields.fail("nrrd.spacing", "spacings",
-                        "the spacing " + shortNumber(spacing[a]) + " is not greater than 0");
-    }
-  }
-  return spacing;
-}
-
-void placeInSpace(const NrrdFields& fields, const std::vector<std::optional<Vec3>>& directions,
-                  const ImageOptions& options, NrrdHeader& out) {
-  const double metres = metresPerUnit(fields, out);
-  if (options.affine == AffineChoice::kSpacing) {
-    const Vec3 spacing = readSpacings(fields, directions, out);
-    for (int a = 0; a < 3; ++a) out.place.axes[a][a] = spacing[a] * metres;
-    return;
-  }
-  if (directions.empty()) {
-    throw fields.fail("nrrd.no_affine", "space",
-                      "the header has no space directions, so nothing says where and which way "
-                      "round the image lies",
-                      "if axes along R, A, S from 0 will do: affine: spacing (on the command line "
-                      "--affine spacing)");
-  }
-  if (fields.find("spacings") != nullptr) {
-    throw fields.fail("nrrd.directions", "spacings",
-                      "both space directions and spacings are given, and only one of them can hold",
-                      "drop one of the two lines");
-  }
-  const Vec3 sign = toRas(fields, options.space);
-  for (int a = 0; a < 3; ++a) {
-    out.place.axes[a] = *directions[out.spatial[static_cast<std::size_t>(a)]] * sign * metres;
-  }
-  out.place.origin = readOrigin(fields, out.notes) * sign * metres;
-  if (!isUsable(out.place)) {
-    throw fields.fail("nrrd.singular", "spacedirections",
-                      "the space directions are singular: they give the voxels no volume in space");
   }
 }
 
@@ -364,12 +211,12 @@ NrrdHeader readNrrdHeader(const std::string& path, const ImageOptions& options) 
   readSizes(fields, out);
   std::vector<std::optional<Vec3>> directions;
   if (fields.find("spacedirections") != nullptr)
-    directions = readDirections(fields, out.sizes.size());
+    directions = readNrrdDirections(fields, out.sizes.size());
   sortAxes(fields, directions, out);
   out.encoding = encodingOf(fields);
   readByteOrder(fields, out);
   findData(fields, out);
-  placeInSpace(fields, directions, options, out);
+  placeNrrd(fields, directions, options, out);
   return out;
 }
 
