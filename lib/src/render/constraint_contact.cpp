@@ -197,8 +197,7 @@ bool ConstraintRenderer::puncture() noexcept {
   for (std::size_t i = 0; i < c.count; ++i) {
     const Facet& facet = c.facet[c.index[i]];
     if (!facet.opens) continue;
-    const double elastic =
-        wallMaterial(facet).stiffness.at(walker_.position()) * c.held[i].multiplier;
+    const double elastic = springOf(i).force(c.held[i].multiplier);
     if (elastic >= facet.opens_at &&
         c.held[i].multiplier >= walker_.punctures().restOf(facet.port)) {
       walker_.cross(c.leaf[c.index[i]], facet, elastic);

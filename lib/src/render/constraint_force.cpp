@@ -4,45 +4,9 @@
 #include "constraint_renderer.h"
 #include "palpate/contact/surface_effects.h"
 
-// What the hand feels: walls and content.
+// What the hand feels of the walls that hold the proxy.
 
 namespace palpate {
-namespace {
-
-/// Content is felt in full this far behind the facet it was entered through [m], so that hovering in a
-/// mouth does not chatter.
-constexpr double kFadeLength = 0.25e-3;
-
-}  // namespace
-
-double ConstraintRenderer::contentShare() noexcept {
-  if (walker_.mouth() < 0) return 1.0;
-  const auto mouth = static_cast<LeafId>(walker_.mouth());
-  const FieldSample s = walker_.leaf(mouth).field->sample(walker_.position());
-  const double slope = s.in_band ? glm::length(s.gradient) : 1.0;
-  const double behind = slope > 0.0 ? std::fabs(s.value) / slope : kFadeLength;
-  if (behind >= kFadeLength) return 1.0;
-  // Only an opening is hovered in: behind a valve that has shut, and along the wall beside the mouth, the
-  // content is there in full.
-  const Facet::Kind kind = walker_.facetAt(mouth).kind;
-  const bool is_open = kind == Facet::Kind::kOpen || kind == Facet::Kind::kAbsent;
-  return is_open ? behind / kFadeLength : 1.0;
-}
-
-/// The share of the content that is felt changes no faster than the hand moves, wherever an opening ends.
-void ConstraintRenderer::fadeContent(const Vec3& hip) noexcept {
-  const double share = contentShare();
-  if (is_first_) {
-    content_share_ = share;
-  } else {
-    const double most = glm::length(hip - last_hip_) / kFadeLength;
-    if (walker_.region() != felt_region_) content_share_ = 0.0;
-    content_share_ = std::clamp(share, content_share_ - most, content_share_ + most);
-  }
-  felt_region_ = walker_.region();
-  last_hip_ = hip;
-  is_first_ = false;
-}
 
 /// The wall's normal smoothed, over the whole solid that the wall bounds: its facets may be leaves.
 Vec3 ConstraintRenderer::shaded(const HeldWall& held, const Facet& facet,
@@ -58,63 +22,96 @@ Vec3 ConstraintRenderer::shaded(const HeldWall& held, const Facet& facet,
   return shadedNormal(*solid, side, walker_.position(), held.normal, radius);
 }
 
-/// What a stiffness that varies adds (materials/material.h): the energy of the springs as they are, by the
-/// place of the proxy, is handed on to the hand. `slopes` [N/m^2] are the gradients of the walls' stiffness.
-Vec3 ConstraintRenderer::stiffnessForce(const std::array<Vec3, 3>& slopes, const Vec3& load,
-                                        double total) const noexcept {
+/// The Maxwell branch of the wall that is pressed most: stretched by how deep the hand presses now.
+void ConstraintRenderer::relax(double dt) noexcept {
   const Contact& c = contact_;
-  // Held by friction, the proxy stays where it is, whatever the hand does.
-  if (sticking_) return Vec3(0.0);
-  Vec3 rise(0.0);  // [N]
-  for (std::size_t i = 0; i < c.count; ++i) {
-    const HeldWall& held = c.held[i];
-    const double lag = glm::dot(c.lag, c.lag) / total;
-    rise += 0.5 * held.multiplier * (glm::dot(held.normal, load) + lag) * slopes[i];
+  if (c.count == 0) {
+    branch_ = {};
+    return;
   }
-  return -gradientByHand(rise, c.walls());
+  std::size_t most = 0;
+  for (std::size_t i = 1; i < c.count; ++i) {
+    if (c.held[i].multiplier > c.held[most].multiplier) most = i;
+  }
+  const Facet& facet = c.facet[c.index[most]];
+  const Material& wall = wallMaterial(facet);
+  const bool has_branch = wall.maxwell.time > 0.0;
+  const double depth = has_branch ? c.load() : 0.0;
+  const bool goes_on = branch_.material == facet.material && branch_.region == walker_.region();
+  // Pressed from free space it is stretched by all of the depth. A wall that the proxy was handed on to was not
+  // pressed by the hand's motion of this tick: it is taken as relaxed.
+  const double before = goes_on || branch_.material < 0 ? branch_.depth : depth;
+  if (!goes_on) branch_.state.reset();
+  branch_.material = facet.material;
+  branch_.region = walker_.region();
+  branch_.depth = depth;
+  if (!has_branch) return;
+  branch_.state.step(depth - before, dt, wall.maxwell.time);
+  const double stiffness = wall.maxwell.stiffness.at(walker_.position());
+  // It slackens rather than to pull the wall's own spring below zero.
+  if (stiffness > 0.0) branch_.state.keepAbove(-springOf(most).force(depth) / stiffness);
 }
 
-Vec3 ConstraintRenderer::force(const HipState& hip) const noexcept {
+Vec3 ConstraintRenderer::wallForce(const Vec3& velocity) const noexcept {
   const Contact& c = contact_;
   Vec3 force(0.0);
-  if (c.count > 0) {
-    double total = 0.0;
-    double stiffness = 0.0;
-    double damping = 0.0;
-    Vec3 outward(0.0);
-    std::array<Vec3, 3> slopes{};
-    bool varies = false;
-    for (std::size_t i = 0; i < c.count; ++i) {
-      const Material& wall = wallMaterial(c.facet[c.index[i]]);
-      const HeldWall& held = c.held[i];
-      const double multiplier = held.multiplier;
-      const Vec3& x = walker_.position();
-      const MaterialMap::Sample own = wall.stiffness.sample(x);
-      const Vec3 n =
-          wall.shading > 0.0 ? shaded(held, c.facet[c.index[i]], wall.shading) : held.normal;
-      force += own.value * (multiplier + textureHeight(wall.texture, x, multiplier)) * n;
-      outward += multiplier * held.normal;
-      total += multiplier;
-      stiffness += own.value * multiplier;
-      damping += wall.damping.at(x) * multiplier;
-      slopes[i] = own.gradient;
-      varies = varies || own.gradient != Vec3(0.0);
+  if (c.count == 0) return force;
+  const Vec3& x = walker_.position();
+  double total = 0.0;
+  Vec3 outward(0.0);
+  for (const HeldWall& held : c.walls()) {
+    outward += held.multiplier * held.normal;
+    total += held.multiplier;
+  }
+  const Vec3 n = unitOr(outward, Vec3(0.0));
+  const double lag = glm::dot(c.lag, c.lag) / total;
+  double stiffness = 0.0;
+  double damping = 0.0;
+  // What parameters that vary add: the energy of the springs as they are, by the place of the proxy, is handed
+  // on to the hand.
+  Vec3 rise(0.0);  // [N]
+  bool varies = false;
+  for (std::size_t i = 0; i < c.count; ++i) {
+    const Material& wall = wallMaterial(c.facet[c.index[i]]);
+    const HeldWall& held = c.held[i];
+    const double multiplier = held.multiplier;
+    const MaterialMap::Sample linear = wall.stiffness.sample(x);
+    const MaterialMap::Sample stiffening = wall.curve.stiffening.sample(x);
+    const WallSpring spring{linear.value, stiffening.value, wall.curve.exponent,
+                            wall.curve.reference};
+    const bool is_even = linear.gradient == Vec3(0.0) && stiffening.gradient == Vec3(0.0);
+    double length = multiplier;
+    if (!is_even || !spring.isStraight()) {
+      // From the proxy to the hand, with what friction holds.
+      length = std::sqrt(std::max(0.0, multiplier * (glm::dot(held.normal, outward) + lag)));
     }
-    stiffness /= total;
-    damping /= total;
-    force -= stiffness * c.lag + damping * hip.velocity;
-    if (varies) force += stiffnessForce(slopes, outward, total);
-    // A wall never pulls the hand towards itself.
-    const Vec3 n = unitOr(outward, Vec3(0.0));
-    const double along = glm::dot(force, n);
-    if (along < 0.0) force -= along * n;
+    const double secant = spring.secant(length);
+    const Vec3 normal =
+        wall.shading > 0.0 ? shaded(held, c.facet[c.index[i]], wall.shading) : held.normal;
+    force += secant * (multiplier + textureHeight(wall.texture, x, multiplier)) * normal;
+    stiffness += secant * multiplier;
+    damping += wall.damping.at(x) * multiplier;
+    if (is_even) continue;
+    varies = true;
+    rise += spring.energyPerStiffness(length) * linear.gradient +
+            WallSpring::energyPerStiffening(length) * stiffening.gradient;
   }
-  const int content = scene_->regions()[walker_.region()].content;
-  if (content >= 0) {
-    const Material& medium = scene_->materials()[static_cast<std::size_t>(content)];
-    const double viscosity = medium.viscosity.at(walker_.position());
-    if (viscosity > 0.0) force -= content_share_ * viscosity * (hip.velocity - medium.flow);
+  stiffness /= total;
+  damping /= total;
+  force -= stiffness * c.lag + damping * velocity;
+  if (branch_.state.stretch() != 0.0) {
+    const Maxwell& branch = scene_->materials()[static_cast<std::size_t>(branch_.material)].maxwell;
+    const MaterialMap::Sample own = branch.stiffness.sample(x);
+    const double stretch = branch_.state.stretch();
+    force += own.value * stretch * n;
+    rise += 0.5 * stretch * stretch * own.gradient;
+    varies = varies || !branch.stiffness.isConstant();
   }
+  // Held by friction, the proxy stays where it is, whatever the hand does.
+  if (varies && !sticking_) force -= gradientByHand(rise, c.walls());
+  // A wall never pulls the hand towards itself.
+  const double along = glm::dot(force, n);
+  if (along < 0.0) force -= along * n;
   return force;
 }
 

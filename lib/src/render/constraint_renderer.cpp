@@ -17,9 +17,7 @@ constexpr int kPatience = 5;
 }  // namespace
 
 ConstraintRenderer::ConstraintRenderer(ScenePtr scene, const RendererSettings& settings)
-    : HapticRenderer(settings.limits, scene->startRegion()),
-      scene_(std::move(scene)),
-      walker_(*scene_) {}
+    : HapticRenderer(*scene, settings.limits), scene_(std::move(scene)), walker_(*scene_) {}
 
 void ConstraintRenderer::forget() noexcept {
   started_ = false;
@@ -28,6 +26,8 @@ void ConstraintRenderer::forget() noexcept {
   walker_.forget();
   contact_ = {};
   piece_count_ = 0;
+  branch_ = {};
+  insertion_.reset();
 }
 
 TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
@@ -36,13 +36,14 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   walker_.beginTick();
   track(hip.position);
   fadeContent(hip.position);
+  relax(hip.dt);
 
   out.proxy = walker_.position();
   out.region = walker_.region();
   out.contact = contact_.count > 0;
   out.event_count = walker_.eventCount();
   out.events = walker_.events();
-  out.force = force(hip);
+  out.force = wallForce(hip.velocity) + contentForce(hip);
   return out;
 }
 

@@ -5,8 +5,11 @@
 #include <array>
 
 #include "cell_walker.h"
+#include "insertion.h"
+#include "palpate/contact/maxwell_branch.h"
 #include "palpate/contact/planes.h"
 #include "palpate/contact/slide.h"
+#include "palpate/contact/wall_spring.h"
 #include "palpate/render/haptic_renderer.h"
 
 namespace palpate {
@@ -76,13 +79,20 @@ class ConstraintRenderer final : public HapticRenderer {
   [[nodiscard]] bool isSettled(const Vec3& hip) const noexcept;
   [[nodiscard]] bool isOnWalls() const noexcept;
   [[nodiscard]] Vec3 shaded(const HeldWall& held, const Facet& facet, double radius) const noexcept;
-  [[nodiscard]] Vec3 force(const HipState& hip) const noexcept;
-  [[nodiscard]] Vec3 stiffnessForce(const std::array<Vec3, 3>& slopes, const Vec3& load,
-                                    double total) const noexcept;
+  void relax(double dt) noexcept;
+  [[nodiscard]] Vec3 wallForce(const Vec3& velocity) const noexcept;
+  [[nodiscard]] Vec3 contentForce(const HipState& hip) noexcept;
   [[nodiscard]] double contentShare() noexcept;
   void fadeContent(const Vec3& hip) noexcept;
   [[nodiscard]] const Material& wallMaterial(const Facet& facet) const noexcept {
     return scene_->materials()[static_cast<std::size_t>(facet.material)];
+  }
+  /// The spring of a held wall at the proxy.
+  [[nodiscard]] WallSpring springOf(std::size_t held) const noexcept {
+    const Material& wall = wallMaterial(contact_.facet[contact_.index[held]]);
+    const Vec3& x = walker_.position();
+    return {wall.stiffness.at(x), wall.curve.stiffening.at(x), wall.curve.exponent,
+            wall.curve.reference};
   }
 
   ScenePtr scene_;
@@ -103,6 +113,13 @@ class ConstraintRenderer final : public HapticRenderer {
   double content_share_ = 1.0;
   bool sticking_ = false;
   bool tick_begins_ = false;
+  struct {
+    MaxwellBranch state;
+    double depth = 0.0;          ///< [m] at the last tick
+    int material = -1;           ///< of the wall pressed; -1: none
+    RegionId region = kOutside;  ///< from where
+  } branch_;
+  Insertion insertion_;
   bool is_pressed_ = false;  ///< walls within the tolerance count as reached
 };
 

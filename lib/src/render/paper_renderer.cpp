@@ -22,7 +22,7 @@ bool isOneOf(const std::vector<LeafId>& leaves, const std::vector<LeafId>& among
 }  // namespace
 
 PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
-    : HapticRenderer(settings.limits, scene->startRegion()),
+    : HapticRenderer(*scene, settings.limits),
       scene_(std::move(scene)),
       scratch_(scene_->partition().leaves().size()) {
   for (const Port& port : scene_->ports()) {
@@ -216,11 +216,8 @@ void PaperRenderer::feel(const HipState& hip, TickResult& out) noexcept {
     if (!table.entered && table.in_wall && table.in_openings) return touch(i, 1.0, hip, out);
   }
   in_contact_ = false;
-  const int content = scene_->regions()[here].content;
-  if (content >= 0) {
-    const Material& medium = scene_->materials()[static_cast<std::size_t>(content)];
-    out.force = -medium.viscosity.at(hip.position) * (hip.velocity - medium.flow);
-  }
+  const Vec3& p = hip.position;
+  out.force = dragForce(here, p, hip.velocity, 1.0) + latticeForce(here, p);
 }
 
 void PaperRenderer::touch(std::size_t layer, double side, const HipState& hip,

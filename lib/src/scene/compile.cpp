@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <cmath>
 #include <map>
 
+#include "material_checks.h"
 #include "scene_compiler.h"
 
 namespace palpate {
@@ -9,44 +9,6 @@ namespace {
 
 /// Where a layer names no wall (documented in tools/docs/scene.md).
 constexpr double kDefaultStiffness = 1000.0;  // [N/m]
-
-/// Wherever the hand may come, a parameter must be a number, and not below 0.
-void checkParameter(const Parameter& parameter, const std::string& name, const std::string& of) {
-  const MaterialMap::Range range = parameter.range();
-  if (range.least >= 0.0 && range.least <= range.most && std::isfinite(range.most)) return;
-  throw inputError("scene.parameter", "the " + name + " of " + of + " is not 0 or more everywhere",
-                   "all its values must be finite numbers from 0 on");
-}
-
-void checkTexture(const Material& material) {
-  const Texture& texture = material.texture;
-  const MaterialMap::Range amplitude = texture.amplitude.range();
-  if (amplitude.least == 0.0 && amplitude.most == 0.0) return;
-  if (amplitude.least >= 0.0 && amplitude.least <= amplitude.most &&
-      amplitude.most <= Texture::highestAmplitude(texture.wavelength)) {
-    return;
-  }
-  throw inputError("scene.texture",
-                   "the texture of material " + quoted(material.name) + " is too high",
-                   "its amplitude must be from 0 to its wavelength / 2 pi");
-}
-
-void checkMaterial(const Material& material) {
-  const std::string of = "material " + quoted(material.name);
-  checkParameter(material.stiffness, "stiffness", of);
-  checkParameter(material.damping, "damping", of);
-  checkParameter(material.viscosity, "viscosity", of);
-  checkParameter(material.friction.static_ratio, "static friction", of);
-  checkParameter(material.friction.kinetic_ratio, "kinetic friction", of);
-  // Kinetic below static everywhere implies both; what is left, the loop clamps.
-  const MaterialMap::Range held = material.friction.static_ratio.range();
-  const MaterialMap::Range slides = material.friction.kinetic_ratio.range();
-  if (slides.least > held.least || slides.most > held.most) {
-    throw inputError("scene.parameter", "the kinetic friction of " + of + " exceeds the static",
-                     "what slides is held less than what sticks");
-  }
-  checkTexture(material);
-}
 
 std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress,
                                   std::vector<LeafBetween>& between) {

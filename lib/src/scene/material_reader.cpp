@@ -2,6 +2,7 @@
 
 #include "scene/messages.h"
 #include "scene/shape_reader.h"
+#include "scene/tissue_reader.h"
 #include "scene/values.h"
 
 namespace palpate {
@@ -72,6 +73,7 @@ Material readMaterial(const SceneLoader& loader, const Node::Entry& entry) {
                                       Dimension::kVelocity, "a component of 'flow'");
     }
   }
+  readTissue(reader, material);
   reader.finish();
   return material;
 }

@@ -65,6 +65,12 @@ const std::vector<Probe>& probes() {
       {"material", "materials: {m: {@}}\n"},
       {"friction", "materials: {m: {friction: {static: 1, @}}}\n"},
       {"texture", "materials: {m: {texture: {amplitude: 1, wavelength: 9, @}}}\n"},
+      {"curve", "materials: {m: {curve: {stiffening: 1 N/m^2, @}}}\n"},
+      {"maxwell", "materials: {m: {maxwell: {stiffness: 1 N/m, time: 1 s, @}}}\n"},
+      {"lattice",
+       "materials: {m: {stiffness: 1 N/m, lattice: {force: 1 mN, wavelength: [9, 9, 9], @}}}\n"},
+      {"shaft", "materials: {m: {shaft: {stiffness: 1 N/m^2, in: {static: 1 N/m}, @}}}\n"},
+      {"shaft_way", "materials: {m: {shaft: {stiffness: 1 N/m^2, in: {static: 1 N/m, @}}}}\n"},
       {"image", "images: {i: {file: a.nii, @}}\n"},
       {"labels",
        "images: {i: {file: a.nii}}\nlayers: [{name: a, labels: {image: i, match: [x], @}}]\n"},
@@ -133,10 +139,14 @@ class Pattern {
 };
 
 TEST(Vocabulary, TheSchemasQuantitiesAreTheReaders) {
-  const std::pair<const char*, Dimension> quantities[] = {{"force", Dimension::kForce},
-                                                          {"stiffness", Dimension::kStiffness},
-                                                          {"damping", Dimension::kDamping},
-                                                          {"velocity", Dimension::kVelocity}};
+  const std::pair<const char*, Dimension> quantities[] = {
+      {"force", Dimension::kForce},
+      {"stiffness", Dimension::kStiffness},
+      {"damping", Dimension::kDamping},
+      {"velocity", Dimension::kVelocity},
+      {"time", Dimension::kTime},
+      {"stiffness_per_length", Dimension::kStiffness2},
+      {"damping_per_length", Dimension::kDamping2}};
   const std::vector<std::string> numbers = {"0",  "1",   "15",  "1.5", ".5",  "5.",  "1e3",  "1E-3",
                                             "+2", "010", "00",  "1_0", "1,5", "0x1", "e3",   "1e",
                                             ".",  "",    "inf", "nan", "1 2", "--1", "1.2.3"};
@@ -199,8 +209,9 @@ TEST(Vocabulary, TheReferenceNamesEveryKeyAndUnit) {
   for (const std::string& key : allSchemaKeys()) {
     EXPECT_NE(page.find("`" + key + "`"), std::string::npos) << key;
   }
-  for (const Dimension dimension : {Dimension::kLength, Dimension::kForce, Dimension::kStiffness,
-                                    Dimension::kDamping, Dimension::kVelocity}) {
+  for (const Dimension dimension :
+       {Dimension::kLength, Dimension::kForce, Dimension::kStiffness, Dimension::kDamping,
+        Dimension::kVelocity, Dimension::kTime, Dimension::kStiffness2, Dimension::kDamping2}) {
     EXPECT_NE(page.find(unitHelp(dimension)), std::string::npos) << unitHelp(dimension);
   }
 }

@@ -6,6 +6,7 @@
 
 #include "palpate/core/math.h"
 #include "palpate/materials/parameter.h"
+#include "palpate/materials/tissue.h"
 
 namespace palpate {
 
@@ -48,6 +49,14 @@ struct Material {
                         ///< facets of a coarse mesh feel round; 0: off
   Parameter viscosity;  ///< [N s/m] Bv of the drag -Bv V while inside
   Vec3 flow{0.0, 0.0, 0.0};  ///< [m/s] velocity of the medium: drag is -Bv (V - flow)
+
+  // Of tissue and needles. What a content presses with has the material's own stiffness.
+  SpringCurve curve = {};  ///< of a wall
+  Maxwell maxwell = {};    ///< of a wall
+  Lattice lattice = {};    ///< of a content
+  Parameter cutting =
+      {};  ///< [N] of a content: what moves a tip on where it has not been; 0: nothing
+  ShaftFriction shaft = {};  ///< of a content
 };
 
 }  // namespace palpate

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "palpate/contact/force_guard.h"
+#include "palpate/render/contents.h"
 #include "palpate/scene/scene.h"
 
 namespace palpate {
@@ -17,7 +18,7 @@ namespace palpate {
 struct HipState {
   Vec3 position{0.0, 0.0, 0.0};  ///< [m, world] the haptic interface point P
   Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s, world] by whatever estimator the caller names
-  double dt = 1e-3;              ///< [s] since the last tick; used by slew limit and ramp only
+  double dt = 1e-3;              ///< [s] since the last tick; for limits, and what relaxes in time
 };
 
 /// How the proxy went through a port.
@@ -87,14 +88,35 @@ class HapticRenderer {
     return details().first(last_.event_count);
   }
 
+  /// From the next tick on, the content of `region` feels as `change` says; what is felt may jump. False, and
+  /// nothing is changed, for an unknown region or a value out of its range. Real-time safe, on the thread
+  /// that update() is called on. It stays so after reset(); an empty change takes it back.
+  [[nodiscard]] bool setContent(RegionId region, const ContentChange& change) noexcept {
+    return contents_.change(region, change);
+  }
+
+  /// [J] Work on the hand since the first tick, up to the last, of what is a source of energy by its nature: flows,
+  /// and lattices whose potential differs where a region is entered and left. A hand that got no more than
+  /// this from the renderer met a passive world. Counted before the limits of the force.
+  [[nodiscard]] double sourceWork() const noexcept { return source_work_; }
+
   /// Back to the start region, with no port passed and no hole made; the next update() is a first tick.
   void reset() noexcept;
 
  protected:
-  /// `start` is the region told until the first good tick.
-  HapticRenderer(const ForceLimits& limits, RegionId start) : guard_(limits), start_(start) {
-    last_.region = start;
+  HapticRenderer(const Scene& scene, const ForceLimits& limits)
+      : contents_(scene), guard_(limits), start_(scene.startRegion()) {
+    last_.region = start_;  // told until the first good tick
   }
+
+  /// Drag of the content of `region` at the tip `p` [m], of which `share` is felt by a hand that moves at
+  /// `velocity` [m/s]. Counts what the flow does.
+  [[nodiscard]] Vec3 dragForce(RegionId region, const Vec3& p, const Vec3& velocity,
+                               double share) noexcept;
+  /// The lattice's force of `region` at the tip `p` [m]; once a tick. Counts its potential where it jumps.
+  [[nodiscard]] Vec3 latticeForce(RegionId region, const Vec3& p) noexcept;
+
+  Contents contents_;
 
  private:
   /// The algorithm's own tick: `hip` is finite, the force is not limited yet.
@@ -106,6 +128,14 @@ class HapticRenderer {
   ForceGuard guard_;
   RegionId start_;
   TickResult last_;
+  bool has_hip_ = false;
+  Vec3 last_hip_{0.0, 0.0, 0.0};   ///< [m] of the last good tick
+  Vec3 flow_push_{0.0, 0.0, 0.0};  ///< [N]
+  double lattice_energy_ = 0.0;    ///< [J] at the tip in this tick
+  bool in_lattice_ = false;        ///< felt in this tick
+  RegionId lattice_region_ = kOutside;
+  std::uint32_t lattice_version_ = 0;
+  double source_work_ = 0.0;  ///< [J]
 };
 
 /// @throws Error (kInput) if the scene is null or asks the paper's renderer for what it cannot do.
