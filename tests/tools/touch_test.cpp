@@ -1,5 +1,6 @@
 // palpate touch: what is felt, what is reported and what is written.
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/helpers.h"
@@ -230,6 +231,36 @@ TEST_F(Touch, APictureComesWithIt) {
   EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"c.yaml", "i.png"}));
 }
 
+TEST_F(Touch, APlotComesWithIt) {
+  const CommandResult result =
+      touch({"--insert", "0,0,35", "0,0,-10", "--back", "--plot", "p.svg", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(parseOnly(result)["plot"], "p.svg");
+  const std::string svg = textOf(folder_.path("p.svg"));
+  EXPECT_EQ(svg.rfind("<svg ", 0), 0U);
+  EXPECT_NE(svg.find("depth of the hand, mm"), std::string::npos);
+  // The mouth on the way in and on the way back; two curves of 45 mm at 50 um a tick.
+  std::size_t mouths = 0;
+  for (std::size_t at = svg.find(">mouth<"); at != std::string::npos;
+       at = svg.find(">mouth<", at + 1)) {
+    ++mouths;
+  }
+  EXPECT_EQ(mouths, 2U);
+  EXPECT_GT(std::count(svg.begin(), svg.end(), ','), 2 * 900);
+  const CommandResult wrong = touch({"--insert", "0,0,35", "0,0,-10", "--plot", "p.png"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find(".svg"), std::string::npos);
+}
+
+TEST_F(Touch, WorkIsThatOfTheTrace) {
+  const CommandResult result = touch({"--insert", "0,0,35", "0,0,-10", "--back", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  Json json = parseOnly(result);
+  // 25 mm of syrup at 4 N.s/m and 50 mm/s, twice; the first quarter millimetre behind the mouth fades.
+  EXPECT_NEAR(json["work_on_hand_J"], -2 * 0.2 * 0.025, 0.2 * 0.5e-3);
+  EXPECT_EQ(json["source_work_J"], 0.0);
+}
+
 TEST(TouchScenes, TheShippedScenesRun) {
   const struct {
     const char* scene;
@@ -252,6 +283,12 @@ TEST(TouchScenes, TheShippedScenesRun) {
       {"flag.yaml",
        {"--insert", "30,0,15", "-5,0,15", "-5,0,-15", "30,0,-15"},
        {"outside", "water"}},
+      {"slab.yaml",
+       {"--insert", "0,0,5", "0,0,-45", "--back"},
+       {"outside", "fat", "muscle", "outside", "muscle", "fat", "skin", "outside"}},
+      {"lattice.yaml",
+       {"--insert", "3,-7,30", "-11,13,-15", "--back"},
+       {"outside", "grid", "outside"}},
       // The valve refuses the way back: the proxy stays downstream.
       {"valve_tube.yaml",
        {"--insert", "-60,0,0", "20,0,0", "--back"},

@@ -43,6 +43,7 @@ struct TouchOptions {
   std::string ramp;
   std::string trace;
   std::string image;
+  std::string plot;
 };
 
 /// What a scan or a mesh leaves open.

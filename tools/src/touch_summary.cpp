@@ -28,8 +28,13 @@ TouchSummary summarize(std::span<const TraceRow> rows) {
   std::optional<Vec3> first_surface;
   std::vector<std::int64_t> times;
   times.reserve(rows.size());
+  const TraceRow* before = nullptr;
   for (const TraceRow& row : rows) {
     const TickResult& r = row.result;
+    if (before != nullptr && isFinite(row.hip - before->hip)) {
+      summary.work += glm::dot(before->result.force, row.hip - before->hip);
+    }
+    before = &row;
     times.push_back(row.tick_ns);
     const bool new_region = summary.visits.empty() || summary.visits.back().region != r.region;
     if (!first_surface &&
@@ -65,6 +70,8 @@ Json summaryJson(const TouchSummary& s, const Scene& scene) {
   json["contact_ticks"] = s.contact_ticks;
   json["peak_force_N"] = s.peak_force;
   json["peak_force_at_m"] = vectorJson(s.peak_force_at);
+  json["work_on_hand_J"] = s.work;
+  json["source_work_J"] = s.source_work;
   json["regions"] = Json::array();
   for (const Visit& v : s.visits) {
     json["regions"].push_back({{"region", scene.regions()[v.region].name},
@@ -111,6 +118,10 @@ std::string summaryText(const TouchSummary& s, const Scene& scene) {
 
   text += "\nPeak force  " + formatNumber(s.peak_force, 4) + " N";
   if (s.peak_force > 0.0) text += " at " + formatVector(s.peak_force_at / unit) + " " + name;
+  text += "\nWork        " + formatNumber(s.work, 4) + " J on the hand";
+  if (s.source_work != 0.0) {
+    text += ", where flows and lattices gave " + formatNumber(s.source_work, 4) + " J";
+  }
   text += "\nTicks       " + formatCount(s.ticks) + " in " + formatNumber(s.seconds, 4) +
           " s of hand time, " + formatCount(s.contact_ticks) + " in contact\n";
   text += "A tick took " + formatNanoseconds(s.tick_median) + " (median), " +

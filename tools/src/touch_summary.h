@@ -34,6 +34,9 @@ struct TouchSummary {
   std::uint64_t contact_ticks = 0;
   double peak_force = 0.0;  ///< [N]
   Vec3 peak_force_at{0.0};  ///< [m] proxy
+  double work = 0.0;        ///< [J] on the hand, each force held until the next tick
+  double source_work =
+      0.0;  ///< [J] HapticRenderer::sourceWork(), filled in by who has the renderer
   std::vector<Visit> visits;
   std::vector<PassedPort> ports;
   double tick_median = 0.0, tick_p99 = 0.0, tick_p999 = 0.0, tick_max = 0.0;  ///< [ns]

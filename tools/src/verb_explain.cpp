@@ -119,6 +119,17 @@ std::string whyUnreachable(const Scene& scene, RegionId region) {
          ") start in regions that cannot be reached either, or come after such";
 }
 
+std::string contentText(const Material& content) {
+  std::string text = content.name + " (" + formatParameter(content.viscosity) + " N.s/m";
+  const auto add = [&](const Parameter& parameter, const char* what, const char* unit) {
+    if (parameter.range().most > 0.0) text += what + formatParameter(parameter) + unit;
+  };
+  add(content.lattice.force, ", lattice ", " N");
+  add(content.cutting, ", cut by ", " N");
+  add(content.shaft.in.kinetic_force, ", holds a shaft by ", " N/m");
+  return text + ")";
+}
+
 }  // namespace
 
 Report run(const ExplainOptions& options, const GeneralOptions&, Console& console) {
@@ -148,10 +159,7 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
     const Region& r = regions[i];
     const Material* content = materialOf(scene, r.content);
     const std::string source = i == kOutside ? "-" : r.source.empty() ? "formula" : r.source;
-    region_table.add({r.name, source,
-                      content == nullptr
-                          ? "-"
-                          : content->name + " (" + formatParameter(content->viscosity) + " N.s/m)",
+    region_table.add({r.name, source, content == nullptr ? "-" : contentText(*content),
                       i == kOutside ? "-" : wallText(scene, {r.wall_absent, r.wall}),
                       r.reachable ? "yes" : "NO",
                       r.has_seed ? formatVector(r.seed / unit, 3) : "-"});

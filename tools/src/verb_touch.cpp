@@ -12,6 +12,7 @@
 #include "picture/picture.h"
 #include "stop_signal.h"
 #include "text.h"
+#include "touch_plot.h"
 #include "touch_summary.h"
 #include "verbs.h"
 
@@ -112,6 +113,13 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
     }
     files.announce(options.image, inputs);
   }
+  if (!options.plot.empty()) {
+    if (!hasExtension(options.plot, ".svg")) {
+      throw Error(ErrorKind::kUsage,
+                  {"usage.touch", "the plot " + options.plot + " must end in .svg"});
+    }
+    files.announce(options.plot, inputs);
+  }
 
   LoadedScene loaded(options.scene, console);
   devices::Path path = makeMotion(options, loaded.unit());
@@ -131,7 +139,8 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   devices::ServoReport servo_report;
   const Trace trace = follow(*renderer, std::move(path), servo, servo_report);
   checkExit(servo_report.exit);
-  const TouchSummary summary = summarize(trace.rows());
+  TouchSummary summary = summarize(trace.rows());
+  summary.source_work = renderer->sourceWork();
 
   if (!options.trace.empty()) files.write(options.trace, traceCsv(trace.rows(), *scene));
   if (!options.image.empty()) {
@@ -142,6 +151,10 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
     picture.colors = loaded.colors();
     picture.anatomical = !loaded.images().empty();
     (void)drawPicture(*scene, picture, files.temporary(options.image), console);
+  }
+  if (!options.plot.empty()) {
+    const std::string title = std::filesystem::path(options.scene).filename().string();
+    files.write(options.plot, forcePlot(trace.rows(), *scene, title));
   }
   checkStop();
   files.commit();
@@ -161,6 +174,7 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   report.json["grids"] = loaded.gridsJson();
   report.json["trace"] = options.trace.empty() ? Json() : Json(options.trace);
   report.json["image"] = options.image.empty() ? Json() : Json(options.image);
+  report.json["plot"] = options.plot.empty() ? Json() : Json(options.plot);
 
   report.text = summaryText(summary, *scene) + limitsText(limits);
   if (options.realtime) {
@@ -170,10 +184,11 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   }
   const std::string grids = loaded.gridsText();
   if (!grids.empty()) report.text += "\nGrids\n" + grids;
-  if (!options.trace.empty()) report.text += "\nTrace    " + options.trace + "\n";
-  if (!options.image.empty())
-    report.text +=
-        (options.trace.empty() ? "\n" : "") + std::string("Picture  ") + options.image + "\n";
+  std::string written;
+  if (!options.trace.empty()) written += "Trace    " + options.trace + "\n";
+  if (!options.image.empty()) written += "Picture  " + options.image + "\n";
+  if (!options.plot.empty()) written += "Plot     " + options.plot + "\n";
+  if (!written.empty()) report.text += "\n" + written;
   return report;
 }
 

@@ -48,6 +48,7 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   add(app, g, "--trace", "FILE.csv", o.trace, "write one row a tick (SI units)");
   add(app, g, "--image", "FILE.png", o.image,
       "draw the scene cut open, with the path and the forces");
+  add(app, g, "--plot", "FILE.svg", o.plot, "draw the force over the depth of the hand");
 }
 
 void defineQuery(CLI::App& app, Invocation& invocation) {
