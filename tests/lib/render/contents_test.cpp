@@ -11,6 +11,7 @@
 #include "lib/render/drive.h"
 #include "support/alloc_guard.h"
 #include "support/energy_meter.h"
+#include "support/test_maps.h"
 
 namespace palpate::test {
 namespace {
@@ -188,6 +189,32 @@ TEST(Contents, LatticeAndCuttingAreChangedWithinTheirLimits) {
   (void)needle.walk(mm(0, 0, -12), 50e-6);
   // At rest: friction of 2 mm of skin and 10 mm of fat, and nothing to cut.
   EXPECT_NEAR(needle.last().force.z, 2e-3 * 16 + 10e-3 * 3, 1e-6);
+}
+
+// What of a needle's tissue varies, along its way by so much per metre.
+TEST(Contents, WhatHoldsANeedleMayVaryFromPlaceToPlace) {
+  SceneDescription description = parseScene(R"(
+palpate: 1
+length: mm
+materials:
+  jelly: {stiffness: 300 N/m, shaft: {stiffness: 1e5 N/m^2, in: {static: 1 N/m}}}
+layers: [{name: jelly, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, content: jelly}]
+ports: [{name: top, between: [outside, jelly]}]
+)",
+                                            "test.yaml");
+  Material& jelly = description.materials.at(0);
+  jelly.cutting = testing::linearMap(0.2, Vec3(0.0, 0.0, -10.0), {0.0, 10.0});
+  jelly.shaft.in.static_force = testing::linearMap(8.0, Vec3(0.0, 0.0, -500.0), {0.0, 100.0});
+  jelly.shaft.in.kinetic_force = testing::linearMap(5.0, Vec3(0.0, 0.0, -400.0), {0.0, 100.0});
+  Drive hand(compile(description));
+  (void)hand.walk(mm(0, 0, 2));
+  for (double z = 2.0; z > -20.0; z -= 0.05) {
+    const double depth = -1e-3 * z;
+    const double force = hand.to(mm(0, 0, z)).force.z;
+    if (depth < 2e-3) continue;  // pressed, and not sliding yet
+    // The force to cut at the tip, and the friction of each slice of the shaft: 5 N/m + 400 N/m^2 s.
+    EXPECT_NEAR(force, 0.2 + 10.0 * depth + 5.0 * depth + 200.0 * depth * depth, 1e-9);
+  }
 }
 
 TEST(Contents, NeedlesLatticesAndChangesNeitherAllocateNorLock) {
