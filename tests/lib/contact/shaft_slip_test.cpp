@@ -69,7 +69,7 @@ TEST(ShaftSlip, ACreepingHandFeelsASaw) {
     EXPECT_LE(force, kLength * (18.0 + 290.0 * 0.5e-3));
   }
   // From C to D is 80 um of stretch, then it slips: one drop every 80 ticks after the first 180.
-  EXPECT_NEAR(drops, (2000 - 180) / 80, 2);
+  EXPECT_NEAR(drops, (2000 - 180) / 80.0, 2.0);
 }
 
 TEST(ShaftSlip, LengthThatComesInIsUnstretched) {
