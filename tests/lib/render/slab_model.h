@@ -99,9 +99,9 @@ class SlabModel {
   // Karnopp with a spring for what sticks, per length of shaft in the tissue.
   double shaft(std::size_t i, double tip_before, double speed) {
     const SlabTissue& t = tissues[i];
-    const auto lengthAt = [&](double depth) { return std::clamp(depth, t.top, t.bottom) - t.top; };
-    const double was = lengthAt(tip_before);
-    const double is = lengthAt(tip);
+    const auto length_at = [&](double depth) { return std::clamp(depth, t.top, t.bottom) - t.top; };
+    const double was = length_at(tip_before);
+    const double is = length_at(tip);
     double& stretch = stretch_[i];
     if (is <= 0.0) {
       stretch = 0.0;
