@@ -157,7 +157,8 @@ TEST(Explain, SheetsAndTheirMaterials) {
 
 // Whatever the fields are made of: explain, info, query and render take every shipped analytic scene.
 TEST(EveryVerb, TakesTheShippedScenes) {
-  for (const char* name : {"container", "csg_part", "valve_tube", "fields", "sponge", "flag"}) {
+  for (const char* name : {"container", "csg_part", "valve_tube", "fields", "sponge", "flag",
+                           "composite_tube", "cup", "metaballs", "heart", "csg"}) {
     const TempFolder folder;
     const std::string scene = scenePath(std::string(name) + ".yaml");
     EXPECT_GE(jsonOf({"explain", scene})["regions"].size(), 2U) << name;
