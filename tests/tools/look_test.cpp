@@ -138,6 +138,80 @@ TEST(Explain, AValveHasNoTransitionBack) {
   EXPECT_EQ(json["transitions"][1]["conditions"], Json::array({"on leaflets", "after inlet"}));
 }
 
+// The table of transitions as a picture: a node for each region, an arrow for each row.
+TEST(Explain, DrawsItsTable) {
+  const TempFolder folder;
+  const auto count = [](const std::string& text, const std::string& part) {
+    int found = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  for (const char* name : {"composite_tube", "cup", "valve_tube", "csg"}) {
+    const std::string file = folder.path(std::string(name) + ".svg");
+    Json json = jsonOf({"explain", scenePath(std::string(name) + ".yaml"), "--svg", file});
+    EXPECT_EQ(json["svg"], file);
+    const std::string svg = textOf(file);
+    EXPECT_EQ(count(svg, "marker-end"), static_cast<int>(json["transitions"].size())) << name;
+    EXPECT_EQ(count(svg, " rx='10'"), static_cast<int>(json["regions"].size())) << name;
+    for (const Json& region : json["regions"]) {
+      EXPECT_GE(count(svg, ">" + region["name"].get<std::string>() + "<"), 1) << name;
+    }
+    for (const Json& t : json["transitions"]) {
+      const std::string label = t["port"].is_null() ? "no wall" : t["port"].get<std::string>();
+      EXPECT_GE(count(svg, ">" + label + "<"), 1) << name;
+      for (const Json& condition : t["conditions"]) {
+        EXPECT_GE(count(svg, ">" + condition.get<std::string>() + "<"), 1) << name;
+      }
+    }
+  }
+  const CommandResult again = runPalpate(
+      {"explain", scenePath("cup.yaml"), "--svg", folder.path("cup.svg")}, folder.path());
+  EXPECT_EQ(again.exit_code, 1) << "nothing is overwritten unasked";
+}
+
+TEST(Explain, WhatIsLeftOutIsNamedWithTheReasonAndTheSaving) {
+  const TempFolder folder;
+  (void)folder.file("a.obj",
+                    "v 10 0 0\nv -10 0 0\nv 0 10 0\nv 0 -10 0\nv 0 0 10\nv 0 0 -10\n"
+                    "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n");
+  const std::string scene = folder.file("s.yaml", R"(palpate: 1
+length: mm
+device: {workspace: {box: {center: [0, 0, 0], size: [60, 60, 60]}}}
+fields:
+  near: {mesh: {file: a.obj, voxel: 0.5}}
+  far: {mesh: {file: a.obj, units: cm, voxel: 0.5}}
+layers:
+  - {name: near, inside: near}
+  - {name: inner, inside: {mesh: {file: a.obj, units: mm, voxel: 0.5}}}
+  - {name: far, inside: {transform: {field: {sphere: {center: [0, 0, 0], radius: 5}}, translate: [500, 0, 0]}}}
+)");
+  Json json = jsonOf({"explain", scene});
+  EXPECT_EQ(json["device"]["reach"][1], Json::array({30.0, 30.0, 30.0}));
+  EXPECT_TRUE(json["regions"][3]["left_out"].is_null()) << "a formula costs nothing";
+  for (const Json& source : json["sources"]) {
+    EXPECT_EQ(source["made"], source["name"] != "far") << source;
+  }
+  const std::string moved = folder.file("m.yaml", R"(palpate: 1
+length: mm
+device: {offset: [300, 0, 0], workspace: {sphere: {center: [0, 0, 0], radius: 20}}}
+layers:
+  - {name: near, inside: {mesh: {file: a.obj, voxel: 0.5}}}
+  - {name: here, inside: {sphere: {center: [300, 0, 0], radius: 5}}}
+)");
+  json = jsonOf({"explain", moved});
+  EXPECT_EQ(json["regions"][1]["left_out"], "beyond the device's workspace");
+  EXPECT_EQ(json["sources"][0]["made"], false);
+  EXPECT_EQ(json["sources"][0]["why_not"], "beyond the device's workspace");
+  EXPECT_TRUE(json["saved_estimate"].is_null()) << "no grid was made that tells what one costs";
+  const std::string text = runPalpate({"explain", moved}).out;
+  EXPECT_NE(text.find("The device reaches from (280, -20, -20) to (320, 20, 20)"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("no: beyond the device's workspace"), std::string::npos) << text;
+}
+
 TEST(Explain, SheetsAndTheirMaterials) {
   Json json = jsonOf({"explain", scenePath("flag.yaml")});
   ASSERT_EQ(json["sheets"].size(), 2U);

@@ -34,6 +34,7 @@ TEST(SceneVocabulary, KindsOfVdbAndTheSchemaKnowTheSameKeys) {
   };
   EXPECT_EQ(keys_in("fields: {f: {mesh: {file: m.stl, @}}}\n"), schemaKeys("mesh"));
   EXPECT_EQ(keys_in("fields: {f: {grid: {file: g.vdb, @}}}\n"), schemaKeys("grid"));
+  EXPECT_EQ(keys_in("fields: {f: {mask: {file: g.vdb, @}}}\n"), schemaKeys("mask"));
   EXPECT_EQ(
       keys_in("fields: {b: {sphere: {center: [0, 0, 0], radius: 1}}, f: {baked: {field: b, @}}}\n"),
       schemaKeys("baked"));

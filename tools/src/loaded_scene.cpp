@@ -44,8 +44,8 @@ LengthUnit LoadedScene::unit() const {
   return {description_.length_unit, description_.metres_per_unit};
 }
 
-ScenePtr LoadedScene::compile() const {
-  return palpate::compile(description_, console_->progress());
+ScenePtr LoadedScene::compile(Purpose purpose) const {
+  return palpate::compile(description_, console_->progress(), purpose);
 }
 
 Json LoadedScene::gridsJson() const {

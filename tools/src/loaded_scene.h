@@ -42,7 +42,7 @@ class LoadedScene {
   [[nodiscard]] const std::vector<vdb::GridRecord>& grids() const noexcept { return grids_; }
 
   /// Compiles, with progress. @throws Error.
-  [[nodiscard]] ScenePtr compile() const;
+  [[nodiscard]] ScenePtr compile(Purpose purpose = Purpose::kShow) const;
 
   [[nodiscard]] Json gridsJson() const;
   [[nodiscard]] std::string gridsText() const;  ///< empty if there is none

@@ -106,6 +106,7 @@ struct QueryOptions {
 
 struct ExplainOptions {
   std::string scene;
+  std::string svg;
 };
 
 struct RenderOptions {

@@ -2,7 +2,11 @@
 
 #include "json_parts.h"
 #include "loaded_scene.h"
+#include "output_files.h"
+#include "palpate/scene/transitions.h"
+#include "saving.h"
 #include "text.h"
+#include "transition_graph.h"
 #include "verbs.h"
 
 namespace palpate::tools {
@@ -23,37 +27,6 @@ Json wallJson(const Scene& scene, const Wall& wall) {
   return {{"absent", wall.absent}, {"material", m == nullptr ? Json() : materialJson(*m)}};
 }
 
-/// One row of the table of transitions: from a region, by a port or an absent wall, to a region.
-struct Transition {
-  RegionId from = 0;
-  RegionId to = 0;
-  const Port* port = nullptr;  ///< null: no wall is there
-  Parameter force;             ///< [N] at which it opens
-};
-
-std::vector<Transition> transitions(const Scene& scene) {
-  std::vector<Transition> all;
-  const std::size_t count = scene.regions().size();
-  for (std::size_t a = 0; a < count; ++a) {
-    const auto from = static_cast<RegionId>(a);
-    for (std::size_t b = 0; b < count; ++b) {
-      const auto to = static_cast<RegionId>(b);
-      if (!scene.touches(from, to)) continue;
-      if (scene.passages().wall(from, to).absent) {
-        all.push_back({from, to, nullptr, {}});
-        continue;
-      }
-      for (const PortId id : scene.passages().portsOf(from)) {
-        const Port& port = scene.ports()[id];
-        if (!port.leads(from, to)) continue;
-        const bool forward = std::find(port.from.begin(), port.from.end(), from) != port.from.end();
-        all.push_back({from, to, &port, forward ? port.opens_at : port.back});
-      }
-    }
-  }
-  return all;
-}
-
 const PortDescription* describedPort(const SceneDescription& description, const std::string& name) {
   for (const auto& port : description.ports) {
     if (port.name == name) return &port;
@@ -65,16 +38,22 @@ const PortDescription* describedPort(const SceneDescription& description, const 
 std::vector<std::string> conditions(const Transition& t, const Scene& scene,
                                     const SceneDescription& description) {
   std::vector<std::string> all;
-  if (t.port == nullptr) return all;
-  const PortDescription* described = describedPort(description, t.port->name);
-  if (!t.port->on.empty()) {
+  if (!t.port) return all;
+  const Port& port = scene.ports()[*t.port];
+  const PortDescription* described = describedPort(description, port.name);
+  if (!port.on.empty()) {
     all.push_back("on " + (described != nullptr && !described->on_name.empty()
                                ? described->on_name
                                : std::string("one face")));
   }
-  if (t.port->mask >= 0) all.emplace_back("within its extent");
-  for (const PortId before : t.port->after) all.push_back("after " + scene.ports()[before].name);
-  if (t.force != 0.0) all.push_back("pressed with " + formatParameter(t.force) + " N");
+  if (port.mask >= 0) all.emplace_back("within its extent");
+  for (const PortId before : port.after) all.push_back("after " + scene.ports()[before].name);
+  if (t.force != 0.0) {
+    all.push_back("pressed with " + formatParameter(t.force) + " N");
+    if (port.hole_radius > 0.0 && port.reopens_at < t.force.range().most) {
+      all.back() += " (in a hole: " + formatNumber(port.reopens_at) + " N)";
+    }
+  }
   return all;
 }
 
@@ -130,11 +109,38 @@ std::string contentText(const Material& content) {
   return text + ")";
 }
 
+/// The table of transitions as a picture.
+std::string graphOf(const Scene& scene, const SceneDescription& description,
+                    const std::string& title) {
+  std::vector<GraphState> states;
+  for (std::size_t i = 0; i < scene.regions().size(); ++i) {
+    const Region& region = scene.regions()[i];
+    const Material* content = materialOf(scene, region.content);
+    states.push_back({region.name,
+                      !region.reachable    ? "cannot be reached"
+                      : content == nullptr ? std::string()
+                                           : content->name,
+                      i == scene.startRegion(), region.reachable});
+  }
+  std::vector<GraphArrow> arrows;
+  for (const Transition& t : transitions(scene)) {
+    GraphArrow arrow{t.from, t.to, {}, !t.port};
+    arrow.label.push_back(t.port ? scene.ports()[*t.port].name : "no wall");
+    for (std::string& condition : conditions(t, scene, description)) {
+      arrow.label.push_back(std::move(condition));
+    }
+    arrows.push_back(std::move(arrow));
+  }
+  return transitionSvg(title, states, arrows);
+}
+
 }  // namespace
 
-Report run(const ExplainOptions& options, const GeneralOptions&, Console& console) {
+Report run(const ExplainOptions& options, const GeneralOptions& general, Console& console) {
+  OutputFiles files(general.force);
+  if (!options.svg.empty()) files.announce(options.svg, {options.scene});
   LoadedScene loaded(options.scene, console);
-  const ScenePtr compiled = loaded.compile();
+  const ScenePtr compiled = loaded.compile(Purpose::kTouch);
   const Scene& scene = *compiled;
   const SceneDescription& description = loaded.description();
   const auto regions = scene.regions();
@@ -148,9 +154,23 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
                  {"start", regions[scene.startRegion()].name},
                  {"memory", scene.keepsMemory() ? "keep" : "until outside"}};
 
+  const DeviceMapping& device = scene.device();
+  const Box3 reach = device.reach();
+  report.json["device"] = {{"offset", vectorJson(device.offset / unit)},
+                           {"scale", device.scale},
+                           {"clutch", device.clutch},
+                           {"reach", reach.isBounded() ? Json::array({vectorJson(reach.lo / unit),
+                                                                      vectorJson(reach.hi / unit)})
+                                                       : Json()}};
+
   report.text = options.scene + ": the probe starts in " + regions[scene.startRegion()].name +
                 "; renderer " + report.json["renderer"].get<std::string>() + "; lengths in " +
-                scene.lengthUnit() + "\n\n";
+                scene.lengthUnit() + "\n";
+  if (reach.isBounded()) {
+    report.text += "The device reaches from " + formatVector(reach.lo / unit) + " to " +
+                   formatVector(reach.hi / unit) + "\n";
+  }
+  report.text += "\n";
 
   report.json["regions"] = Json::array();
   Table region_table({"region", "made from", "content", "wall", "can be entered", "a point of it"});
@@ -165,11 +185,13 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
                       r.has_seed ? formatVector(r.seed / unit, 3) : "-"});
     Json json = {{"name", r.name},
                  {"source", source},
+                 {"left_out", r.left_out.empty() ? Json() : Json(r.left_out)},
                  {"content", content == nullptr ? Json() : materialJson(*content)},
                  {"reachable", r.reachable},
                  {"seed", r.has_seed ? vectorJson(r.seed / unit) : Json()}};
     if (!r.reachable) {
-      const std::string why = whyUnreachable(scene, static_cast<RegionId>(i));
+      const std::string why =
+          r.left_out.empty() ? whyUnreachable(scene, static_cast<RegionId>(i)) : r.left_out;
       json["why_unreachable"] = why;
       unreachable += "  " + r.name + ": " + why + "\n";
     }
@@ -222,6 +244,10 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
     for (const PortId before : port.after) json["after"].push_back(scene.ports()[before].name);
     json["opens_at_N"] = parameterJson(port.opens_at);
     json["back_N"] = parameterJson(port.back);
+    json["hole"] = port.hole_radius > 0.0
+                       ? Json{{"radius_m", port.hole_radius}, {"reopens_at_N", port.reopens_at}}
+                       : Json();
+    json["rearm_m"] = port.rearm;
     report.json["ports"].push_back(std::move(json));
   }
 
@@ -229,11 +255,12 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
   Table move_table({"from", "through", "to", "direction", "open when"});
   for (const Transition& t : transitions(scene)) {
     const auto when = conditions(t, scene, description);
-    move_table.add({regions[t.from].name, t.port == nullptr ? "(no wall)" : t.port->name,
-                    regions[t.to].name,
-                    t.port == nullptr ? "both" : directionName(t.port->direction), joined(when)});
+    const Port* port = t.port ? &scene.ports()[*t.port] : nullptr;
+    move_table.add({regions[t.from].name, port == nullptr ? "(no wall)" : port->name,
+                    regions[t.to].name, port == nullptr ? "both" : directionName(port->direction),
+                    joined(when)});
     report.json["transitions"].push_back({{"from", regions[t.from].name},
-                                          {"port", t.port == nullptr ? Json() : Json(t.port->name)},
+                                          {"port", port == nullptr ? Json() : Json(port->name)},
                                           {"to", regions[t.to].name},
                                           {"opens_at_N", parameterJson(t.force)},
                                           {"conditions", when}});
@@ -243,18 +270,38 @@ Report run(const ExplainOptions& options, const GeneralOptions&, Console& consol
 
   report.json["sources"] = Json::array();
   Table source_table({"field or layer", "made from", "made"});
-  const auto source = [&](const std::string& name, const FieldSource& from) {
+  const auto source = [&](const std::string& name, const FieldSource& from,
+                          const std::string& left_out) {
     if (from.summary().empty()) return;
-    source_table.add({name, from.summary(), from.isMade() ? "yes" : "no: nothing needs it"});
-    report.json["sources"].push_back(
-        {{"name", name}, {"source", from.summary()}, {"made", from.isMade()}});
+    const std::string why = left_out.empty() ? "nothing needs it" : left_out;
+    source_table.add({name, from.summary(), from.isMade() ? "yes" : "no: " + why});
+    report.json["sources"].push_back({{"name", name},
+                                      {"source", from.summary()},
+                                      {"made", from.isMade()},
+                                      {"why_not", from.isMade() ? Json() : Json(why)}});
   };
-  for (const auto& layer : description.layers) source(layer.name, *layer.inside);
-  for (const auto& field : description.fields) source(field.name, *field.source);
+  for (std::size_t i = 0; i < description.layers.size(); ++i) {
+    source(description.layers[i].name, *description.layers[i].inside, regions[i + 1].left_out);
+  }
+  for (const auto& field : description.fields) source(field.name, *field.source, {});
   if (!source_table.empty()) report.text += "\nMade for this scene\n" + source_table.text("  ");
   report.json["grids"] = loaded.gridsJson();
   const std::string grids = loaded.gridsText();
   if (!grids.empty()) report.text += "\nGrids\n" + grids;
+  const std::optional<Saving> saving = savingOf(loaded, scene);
+  report.json["saved_estimate"] =
+      saving ? Json{{"memory_bytes", saving->bytes}, {"seconds", saving->seconds}} : Json();
+  if (saving) {
+    report.text +=
+        "\nSaved by what was left out, estimated from the grids above by the size of its box: " +
+        formatBytes(saving->bytes) + ", " + formatSeconds(saving->seconds) + "\n";
+  }
+  report.json["svg"] = options.svg.empty() ? Json() : Json(options.svg);
+  if (!options.svg.empty()) {
+    files.write(options.svg, graphOf(scene, description, options.scene));
+    files.commit();
+    report.text += "\nWritten  " + options.svg + "\n";
+  }
   return report;
 }
 

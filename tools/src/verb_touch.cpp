@@ -123,8 +123,12 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
 
   LoadedScene loaded(options.scene, console);
   devices::Path path = makeMotion(options, loaded.unit());
-  const ScenePtr scene = loaded.compile();
   RendererSettings settings = rendererSettings(options.renderer);
+  const bool is_paper =
+      settings.kind.value_or(loaded.description().renderer) == RendererKind::kPaper;
+  // A picture shows all layers, and so does the paper's table.
+  const bool wants_all = is_paper || !options.image.empty();
+  const ScenePtr scene = loaded.compile(wants_all ? Purpose::kShow : Purpose::kTouch);
   settings.limits = limits;
   const auto renderer = makeRenderer(scene, settings);
 

@@ -10,17 +10,21 @@
 #include "named_progress.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/bake.h"
+#include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
 #include "scene_baked.h"
 #include "scene_grid.h"
 #include "scene_image.h"
+#include "scene_mask.h"
+#include "voxel_box.h"
 
 namespace palpate::vdb {
 namespace {
 
 using GridMaker = std::function<LevelSet(const Progress&)>;
+using Measurer = FieldSource::Measurer;
 
 /// What the makers need after the scene file is read and its readers are gone.
 struct Common {
@@ -47,7 +51,14 @@ std::string widenedNote(double half_width) {
 /// The field of a grid that is made when it is first asked for. What the maker finds wrong is told
 /// at `place` of the scene; `what` names the grid in progress and records.
 FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string summary,
-                         SourcePlace place, Sampler sampler, GridMaker make) {
+                         SourcePlace place, Sampler sampler, GridMaker make, Measurer measure) {
+  auto measurer = [place, measure = std::move(measure)](const Progress& progress) {
+    try {
+      return measure(progress);
+    } catch (const Error& error) {
+      throwAt(place, error);
+    }
+  };
   auto maker = [common, what = std::move(what), summary, place = std::move(place), sampler,
                 make = std::move(make)](const Progress& progress) {
     const Progress named = namedProgress(progress, what);
@@ -73,7 +84,7 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     }
     return gridField(grid, sampler);
   };
-  return std::make_shared<FieldSource>(std::move(summary), std::move(maker));
+  return std::make_shared<FieldSource>(std::move(summary), std::move(maker), std::move(measurer));
 }
 
 /// The length unit at `units`, or `fallback`.
@@ -105,6 +116,12 @@ void readMeshKeys(MapReader& reader, BakeOptions& bake) {
   bake.smooth_angle = degrees * std::numbers::pi / 180.0;
 }
 
+Box3 boxOf(const Mesh& mesh) {
+  Box3 box;
+  for (const Vec3& vertex : mesh.vertices) box.include(vertex);
+  return box;
+}
+
 FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
   const std::string path = readExistingFile(reader, "file");
   BakeOptions bake;
@@ -117,22 +134,25 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
   const Space space = readSpace(reader);
   bake.metadata["source"] = path;
   const Sampler sampler = readSampler(reader);
-  return lazyField(common, fileName(path), "mesh " + fileName(path),
-                   reader.loader().document().place(reader.node().mark), sampler,
-                   [common, path, metres, space, bake](const Progress& progress) {
-                     report(progress, "read", 0.0);
-                     const Mesh mesh = readMesh(path, metres, space);
-                     if (mesh.space_is_stated && mesh.space == Space::kLps) {
-                       common->notes->add(
-                           path, {"coordinates are LPS, as the file says: x and y are negated"});
-                     }
-                     BakeOptions options = bake;
-                     if (!(options.voxel_size > 0.0)) {
-                       const Vec3 size = checkMesh(mesh).bounds.size();
-                       options.voxel_size = std::max({size.x, size.y, size.z}) / 128.0;
-                     }
-                     return bakeMesh(mesh, options, progress);
-                   });
+  return lazyField(
+      common, fileName(path), "mesh " + fileName(path),
+      reader.loader().document().place(reader.node().mark), sampler,
+      [common, path, metres, space, bake](const Progress& progress) {
+        report(progress, "read", 0.0);
+        const Mesh mesh = readMesh(path, metres, space);
+        if (mesh.space_is_stated && mesh.space == Space::kLps) {
+          common->notes->add(path, {"coordinates are LPS, as the file says: x and y are negated"});
+        }
+        BakeOptions options = bake;
+        if (!(options.voxel_size > 0.0)) {
+          const Vec3 size = checkMesh(mesh).bounds.size();
+          options.voxel_size = std::max({size.x, size.y, size.z}) / 128.0;
+        }
+        return bakeMesh(mesh, options, progress);
+      },
+      [path, metres, space, shell = bake.shell_thickness](const Progress&) {
+        return boxOf(readMesh(path, metres, space)).grownBy(shell);
+      });
 }
 
 FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
@@ -147,12 +167,41 @@ FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
   }
   const auto unknown = grid_class.empty() ? UnknownClass::kRefuse : UnknownClass::kLevelSet;
   const Sampler sampler = readSampler(reader);
-  return lazyField(common, fileName(path), "grid " + fileName(path),
-                   reader.loader().document().place(reader.node().mark), sampler,
-                   [path, name, unit, unknown](const Progress& progress) {
-                     report(progress, "read", 0.0);
-                     return readVdb(path, name, unit, unknown);
-                   });
+  return lazyField(
+      common, fileName(path), "grid " + fileName(path),
+      reader.loader().document().place(reader.node().mark), sampler,
+      [path, name, unit, unknown](const Progress& progress) {
+        report(progress, "read", 0.0);
+        return readVdb(path, name, unit, unknown);
+      },
+      [path, name, unit, unknown](const Progress&) {
+        return readVdb(path, name, unit, unknown).info().bounds;
+      });
+}
+
+FieldSourcePtr maskField(const CommonPtr& common, MapReader& reader) {
+  MaskOptions mask;
+  mask.file = readExistingFile(reader, "file");
+  mask.name = reader.textOr("name", "");
+  mask.unit_if_missing = lengthUnitOr(reader, "");
+  if (reader.optional("above") != nullptr) mask.above = reader.requireNumber("above");
+  mask.voxel_size = readPositiveOrNone(reader, "voxel");
+  BakeOptions bake;
+  bake.max_memory = common->options.max_memory;
+  bake.length_unit = reader.loader().lengthUnit();
+  bake.metadata["source"] = mask.file;
+  const Sampler sampler = readSampler(reader);
+  return lazyField(
+      common, fileName(mask.file), "mask " + fileName(mask.file),
+      reader.loader().document().place(reader.node().mark), sampler,
+      [mask, bake](const Progress& progress) {
+        report(progress, "read", 0.0);
+        return surfaceOfMask(mask, bake, progress);
+      },
+      [mask](const Progress&) {
+        return boxWhere(readVdbImage(mask.file, mask.name, mask.unit_if_missing),
+                        [](float value) { return value != 0.0F; });
+      });
 }
 
 /// The image a layer names, and what its grid will be called.
@@ -225,6 +274,12 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
               common, layer, std::move(summary), from.place, from.sampler,
               [image = from.image, index, voxel_size, bake = from.bake](const Progress& progress) {
                 return image->surfaces().surface(index, voxel_size, bake, progress);
+              },
+              [image = from.image, values](const Progress&) {
+                return boxWhere(image->file->image(), [&](float value) {
+                  return std::any_of(values.begin(), values.end(),
+                                     [&](int label) { return value == static_cast<float>(label); });
+                });
               }),
           from.name};
 }
@@ -244,12 +299,15 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
   threshold.fill = reader.boolOr("fill", false);
   threshold.voxel_size = readPositiveOrNone(reader, "voxel");
   std::string summary = fileName(from.image->file->path()) + " above " + above.text;
-  return {
-      lazyField(common, layer, std::move(summary), from.place, from.sampler,
-                [file = from.image->file, threshold, bake = from.bake](const Progress& progress) {
-                  return surfaceFromThreshold(file->image(), threshold, bake, progress);
-                }),
-      {}};
+  return {lazyField(
+              common, layer, std::move(summary), from.place, from.sampler,
+              [file = from.image->file, threshold, bake = from.bake](const Progress& progress) {
+                return surfaceFromThreshold(file->image(), threshold, bake, progress);
+              },
+              [file = from.image->file, above = threshold.above](const Progress&) {
+                return boxWhere(file->image(), [&](float value) { return value > above; });
+              }),
+          {}};
 }
 
 }  // namespace
@@ -261,8 +319,13 @@ void registerKinds(SceneRegistry& registry, RegisterOptions options) {
   registry.image = [common](MapReader& reader) { return common->images.read(reader); };
   registry.fields["mesh"] = [common](MapReader& reader) { return meshField(common, reader); };
   registry.fields["grid"] = [common](MapReader& reader) { return gridFileField(common, reader); };
+  registry.fields["mask"] = [common](MapReader& reader) { return maskField(common, reader); };
   registry.fields["baked"] = [common](MapReader& reader) {
     return readBaked(reader, common->options);
+  };
+  registry.choose_grids = [common](const FieldSourcePtr& field,
+                                   const SceneRegistry::GridChoice& choice) {
+    return chooseGrids(field, choice, common->options);
   };
   registry.layers["labels"] = [common](MapReader& reader, const std::string& layer) {
     return labelsLayer(common, reader, layer);

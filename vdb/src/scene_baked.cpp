@@ -129,7 +129,48 @@ FieldSourcePtr readBaked(MapReader& reader, const RegisterOptions& options) {
     return made.field;
   };
   const std::string& from = field->summary();
-  return std::make_shared<FieldSource>("baked" + (from.empty() ? "" : " " + from), std::move(make));
+  return std::make_shared<FieldSource>(
+      "baked" + (from.empty() ? "" : " " + from), std::move(make),
+      [field](const Progress& progress) {
+        return field->bounds(progress).value_or(Box3::everything());
+      });
+}
+
+FieldSourcePtr chooseGrids(const FieldSourcePtr& field, const SceneRegistry::GridChoice& choice,
+                           const RegisterOptions& options) {
+  const std::string what = "layer " + choice.layer;
+  HybridOptions hybrid;
+  hybrid.bake.length_unit = choice.length_unit;
+  hybrid.bake.name = choice.layer + "/surface";
+  hybrid.bake.metadata["layer"] = choice.layer;
+  hybrid.bake.max_memory = options.max_memory;
+  hybrid.bake.voxel_size = choice.voxel_size;
+  hybrid.tolerance = choice.tolerance;
+  hybrid.keep = choice.keep;
+  auto make = [field, hybrid, what, place = choice.place, options](const Progress& progress) {
+    const FieldPtr operand = field->get(progress);
+    if (!operand->bounds().isBounded()) {
+      if (options.on_note) options.on_note(what + " stays a formula: it has no end");
+      return operand;
+    }
+    HybridOptions asked = hybrid;
+    if (!(asked.bake.voxel_size > 0.0))
+      asked.bake.voxel_size = longestSide(*operand) / kVoxelsAlong;
+    const auto start = std::chrono::steady_clock::now();
+    Hybrid made;
+    try {
+      made = bakeHybrid(operand, asked, namedProgress(progress, what));
+    } catch (const Error& error) {
+      throwAt(place, error);
+    }
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    tell(options, what, made, took.count());
+    return made.field;
+  };
+  return std::make_shared<FieldSource>(
+      "formula, or grids where faster", std::move(make), [field](const Progress& progress) {
+        return field->bounds(progress).value_or(Box3::everything());
+      });
 }
 
 }  // namespace palpate::vdb

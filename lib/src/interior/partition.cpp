@@ -62,6 +62,10 @@ struct Partition::Builder {
 
   Program build(const FieldPtr& root) {
     Program program;
+    if (!root) {
+      program.steps.push_back({Step::Op::kAnyOf, 0, 0});  // any of none
+      return program;
+    }
     append(program, root, Pose{}, 1);
     std::sort(program.leaves.begin(), program.leaves.end());
     program.leaves.erase(std::unique(program.leaves.begin(), program.leaves.end()),

@@ -43,6 +43,12 @@ PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
     const auto region = static_cast<RegionId>(i);
     Table table;
     const FieldPtr& whole = scene_->regions()[i].field;
+    if (!whole) {
+      throw inputError("render.paper_left_out",
+                       "the paper's renderer wants all layers, and '" + scene_->regions()[i].name +
+                           "' was left out: " + scene_->regions()[i].left_out,
+                       "compile the scene for Purpose::kShow");
+    }
     const FieldStructure structure = whole->structure();
     std::vector<FieldPtr> kept;
     if (structure.kind == FieldStructure::Kind::kIntersection) {

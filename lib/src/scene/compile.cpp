@@ -2,6 +2,7 @@
 #include <map>
 
 #include "material_checks.h"
+#include "need.h"
 #include "scene_compiler.h"
 
 namespace palpate {
@@ -11,6 +12,7 @@ namespace {
 constexpr double kDefaultStiffness = 1000.0;  // [N/m]
 
 std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress,
+                                  const std::vector<std::string>& left_out,
                                   std::vector<LeafBetween>& between) {
   std::vector<FieldPtr> fields;
   std::map<std::string, std::vector<std::size_t>> groups;
@@ -20,6 +22,10 @@ std::vector<FieldPtr> layerFields(const SceneDescription& description, const Pro
     if (!layer.inside) {
       throw errorAt(layer.place, "scene.layer_without_field",
                     "layer " + quoted(layer.name) + " has no field");
+    }
+    if (!left_out[i].empty()) {
+      fields.emplace_back();
+      continue;
     }
     report(progress, "layer " + layer.name, static_cast<double>(i) / static_cast<double>(count));
     fields.push_back(layer.inside->get(progress));
@@ -37,9 +43,14 @@ std::vector<FieldPtr> layerFields(const SceneDescription& description, const Pro
 
 }  // namespace
 
-SceneCompiler::SceneCompiler(const SceneDescription& description, const Progress& progress)
+SceneCompiler::SceneCompiler(const SceneDescription& description, const Progress& progress,
+                             Purpose purpose)
     : description_(description),
-      layers_(layerFields(description, progress, between_)),
+      // The paper's table has a row for every layer.
+      left_out_(purpose == Purpose::kTouch && description.renderer != RendererKind::kPaper
+                    ? reasonsToLeaveOut(description, progress)
+                    : std::vector<std::string>(description.layers.size())),
+      layers_(layerFields(description, progress, left_out_, between_)),
       scene_(new Scene(makePartition(progress))) {}
 
 ScenePtr SceneCompiler::build() {
@@ -54,6 +65,7 @@ ScenePtr SceneCompiler::build() {
   markReachable();
   scene_->keep_memory_ = description_.keep_memory;
   scene_->renderer_ = description_.renderer;
+  scene_->device_ = description_.device;
   scene_->length_unit_ = description_.length_unit;
   scene_->metres_per_unit_ = description_.metres_per_unit;
   for (const NamedField& field : description_.fields) {
@@ -65,8 +77,9 @@ ScenePtr SceneCompiler::build() {
 Partition SceneCompiler::makePartition(const Progress& progress) {
   std::vector<FieldPtr> masks;
   for (const PortDescription& port : description_.ports) {
-    mask_of_.push_back(port.where ? static_cast<int>(masks.size()) : -1);
-    if (port.where) masks.push_back(port.where->get(progress));
+    const bool is_limited = port.where && !isNowhere(port.from) && !isNowhere(port.to);
+    mask_of_.push_back(is_limited ? static_cast<int>(masks.size()) : -1);
+    if (is_limited) masks.push_back(port.where->get(progress));
   }
   for (const SheetDescription& sheet : description_.sheets) {
     if (!sheet.on) {
@@ -97,6 +110,7 @@ void SceneCompiler::regions() {
     region.name = layer.name;
     region.field = layers_[i];
     region.source = layer.inside->summary();
+    region.left_out = left_out_[i];
   }
 }
 
@@ -152,6 +166,17 @@ void SceneCompiler::materials() {
   }
 }
 
+bool SceneCompiler::isNowhere(const std::string& glob) const {
+  bool is_any = false;
+  for (std::size_t i = 0; i <= description_.layers.size(); ++i) {
+    const std::string& name = i == 0 ? std::string("outside") : description_.layers[i - 1].name;
+    if (!matchesGlob(glob, name)) continue;
+    if (!isLeftOut(static_cast<RegionId>(i))) return false;
+    is_any = true;
+  }
+  return is_any;
+}
+
 std::vector<RegionId> SceneCompiler::matching(const std::string& glob, const SourcePlace& place) {
   std::vector<RegionId> out;
   for (std::size_t i = 0; i < count(); ++i) {
@@ -194,8 +219,8 @@ std::vector<Wall> SceneCompiler::makeWalls() {
   return walls;
 }
 
-ScenePtr compile(const SceneDescription& description, const Progress& progress) {
-  return SceneCompiler(description, progress).build();
+ScenePtr compile(const SceneDescription& description, const Progress& progress, Purpose purpose) {
+  return SceneCompiler(description, progress, purpose).build();
 }
 
 }  // namespace palpate

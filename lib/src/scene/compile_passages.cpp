@@ -70,9 +70,16 @@ std::vector<Port> SceneCompiler::makePorts() {
     port.hole_radius = given.hole_radius;
     port.reopens_at = given.reopens_at;
     port.rearm = given.rearm;
-    if (given.on) port.on = facetLeaves(given, port);
+    // A port into what was left out leads nowhere; it keeps its place, for those that come after it.
+    const auto leaveOut = [&](std::vector<RegionId>& regions) {
+      std::erase_if(regions, [&](RegionId region) { return isLeftOut(region); });
+    };
+    leaveOut(port.from);
+    leaveOut(port.to);
+    const bool is_real = !port.from.empty() && !port.to.empty();
+    if (given.on && is_real) port.on = facetLeaves(given, port);
     for (const std::string& before : given.after) port.after.push_back(portNamed(before, given));
-    requireTouching(given, port);
+    if (is_real) requireTouching(given, port);
     ports.push_back(std::move(port));
   }
   refuseCycles(ports);

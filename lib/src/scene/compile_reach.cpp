@@ -14,12 +14,13 @@ constexpr std::size_t kSurveyLines = 192;
 std::vector<Box3> surveyBoxes(std::span<const FieldPtr> layers) {
   Box3 all;
   for (const FieldPtr& field : layers) {
-    if (field->bounds().isBounded()) all = all.unitedWith(field->bounds());
+    if (field && field->bounds().isBounded()) all = all.unitedWith(field->bounds());
   }
   if (all.isEmpty()) all = {Vec3(-0.1), Vec3(0.1)};
   all = all.grownBy(0.25 * glm::length(all.size()));
   std::vector<Box3> boxes{all};
   for (const FieldPtr& field : layers) {
+    if (!field) continue;
     const Box3 box = field->bounds().intersectedWith(all);
     if (box.isBounded()) boxes.push_back(box);
   }

@@ -18,4 +18,10 @@ const FieldPtr& FieldSource::get(const Progress& progress) const {
   return made_;
 }
 
+std::optional<Box3> FieldSource::bounds(const Progress& progress) const {
+  if (made_) return made_->bounds();
+  if (!measurer_) return std::nullopt;
+  return measurer_(progress);
+}
+
 }  // namespace palpate

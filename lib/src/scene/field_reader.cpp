@@ -18,7 +18,7 @@ constexpr std::string_view kOperations[] = {
     "smooth_union", "smooth_intersection", "smooth_difference", "scale",      "offset",
     "shell"};
 // Kinds of palpate::vdb: a scene that asks for them is right, only this program cannot read it.
-constexpr std::string_view kKindsOfGrids[] = {"mesh", "grid", "baked"};
+constexpr std::string_view kKindsOfGrids[] = {"mesh", "grid", "mask", "baked"};
 
 std::vector<std::string_view> builtInKinds() {
   const std::span<const std::string_view> shapes = shapeKinds();

@@ -17,7 +17,7 @@ namespace palpate {
 /// Makes one Scene.
 class SceneCompiler {
  public:
-  SceneCompiler(const SceneDescription& description, const Progress& progress);
+  SceneCompiler(const SceneDescription& description, const Progress& progress, Purpose purpose);
   ScenePtr build();
 
  private:
@@ -50,8 +50,15 @@ class SceneCompiler {
   void markReachable();
   bool spread(RegionId a, RegionId b, std::vector<bool>& passable);
 
+  [[nodiscard]] bool isLeftOut(RegionId region) const {
+    return region != kOutside && !left_out_[region - 1U].empty();
+  }
+  /// Whether the names of regions `glob` stands for are all left out.
+  [[nodiscard]] bool isNowhere(const std::string& glob) const;
+
   const SceneDescription& description_;
-  std::vector<LeafBetween> between_;  // filled with the layers
+  std::vector<std::string> left_out_;  // by layer: why; empty if it is made
+  std::vector<LeafBetween> between_;   // filled with the layers
   std::vector<FieldPtr> layers_;
   std::vector<int> mask_of_;  // by port: index of a mask of the partition; -1: none
   std::vector<int> sheet_mask_of_;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "scene/device_reader.h"
 #include "scene/file_loader.h"
+#include "scene/grids_reader.h"
 #include "scene/material_reader.h"
 #include "scene/messages.h"
 #include "scene/region_reader.h"
@@ -16,7 +18,7 @@ namespace {
 // Every key of a scene's top level. The keys of what lies below are where they are read.
 constexpr std::string_view kSections[] = {
     "palpate", "length", "renderer", "description", "fields", "images", "materials",
-    "layers",  "walls",  "ports",    "sheets",      "start",  "memory"};
+    "layers",  "walls",  "ports",    "sheets",      "start",  "memory", "device"};
 
 }  // namespace
 
@@ -116,6 +118,8 @@ SceneDescription FileLoader::read() {
   if (const Node* ports = top.optional("ports")) regions.readPorts(*ports);
   if (const Node* sheets = top.optional("sheets")) regions.readSheets(*sheets);
   if (const Node* start = top.optional("start")) regions.readStart(*start);
+  if (const Node* device = top.optional("device")) scene.device = readDevice(*this, *device);
+  if (const Node* grids = top.optional("grids")) readGrids(*this, registry_, *grids, scene);
   return scene;
 }
 

@@ -26,6 +26,20 @@ bool isAtRegion(const Figure& figure, int region, const Vec3& p) {
   return false;
 }
 
+/// Whether a crossing told on the straight way from a to b [mm] is one by the formulas too: just behind its point the
+/// way is in the region that it leads to. Samples of the way may miss a corner that is cut by micrometres.
+bool isOnWay(const Figure& figure, const PortCrossing& crossing, const Vec3& a, const Vec3& b) {
+  const Vec3 way = b - a;
+  const double length = glm::length(way);
+  const Vec3 point = 1e3 * crossing.point;
+  const double at = glm::dot(point - a, way) / length;
+  if (glm::length(a + at / length * way - point) > 1e-6) return false;
+  for (const double behind : {1e-6, 1e-5, 1e-4}) {
+    if (figure.region(a + (at + behind) / length * way) == crossing.to) return true;
+  }
+  return false;
+}
+
 TEST_P(RandomFigure, CrossesAsItsTableSaysInPathOrderAndThroughNoWall) {
   const Figure& figure = GetParam();
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
@@ -39,6 +53,7 @@ TEST_P(RandomFigure, CrossesAsItsTableSaysInPathOrderAndThroughNoWall) {
   Vec3 last(0.0);
   int judged = 0;
   int unsettled = 0;
+  int too_fine = 0;
   for (int i = 0; i < ticks; ++i) {
     const Vec3 hip = hand.next();
     const TickResult out = drive.renderer().update({hip, Vec3(0.0)});
@@ -68,9 +83,19 @@ TEST_P(RandomFigure, CrossesAsItsTableSaysInPathOrderAndThroughNoWall) {
       auto way = passageOf(figure, 1e3 * last, 1e3 * hip, came_from, before, 32);
       if (way && (way->events != events || way->region != region || out.proxy != hip)) {
         way = passageOf(figure, 1e3 * last, 1e3 * hip, came_from, before, 5000);
+        const auto told = drive.renderer().crossings();
+        if (way && way->events != events &&
+            std::any_of(told.begin(), told.end(), [&](const PortCrossing& crossing) {
+              return isOnWay(figure, crossing, 1e3 * last, 1e3 * hip);
+            })) {
+          way.reset();
+          ++too_fine;
+        }
       }
       if (way && figure.name != "heart") {
-        ASSERT_EQ(out.proxy, hip);
+        ASSERT_TRUE(isNear(out.proxy, hip, 0.0))
+            << "the way from (" << 1e3 * last.x << ", " << 1e3 * last.y << ", " << 1e3 * last.z
+            << ") mm in " << came_from << " has no wall in it, and " << way->events;
         ASSERT_EQ(events, way->events);
         ASSERT_EQ(region, way->region);
         judged += way->events.empty() ? 0 : 1;
@@ -83,6 +108,7 @@ TEST_P(RandomFigure, CrossesAsItsTableSaysInPathOrderAndThroughNoWall) {
     last = hip;
   }
   EXPECT_LE(unsettled, ticks / 500);
+  EXPECT_LE(too_fine, 1 + ticks / 100'000);
   if (!scene->ports().empty()) {
     EXPECT_GT(judged, ticks / 1000);
   }

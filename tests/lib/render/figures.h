@@ -52,7 +52,7 @@ struct Figure {
     for (Material& material : description.materials) {
       Material bare;
       bare.name = material.name;
-      bare.stiffness = material.stiffness > 0.0 ? 1000.0 : 0.0;
+      bare.stiffness = material.stiffness.range().most > 0.0 ? 1000.0 : 0.0;
       material = bare;
     }
     return compile(description);

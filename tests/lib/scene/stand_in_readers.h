@@ -35,6 +35,15 @@ inline SceneRegistry standInReaders() {
     (void)reader.textOr("sampler", "");
     return later("grid " + file, 1.0);
   };
+  registry.choose_grids = [](const FieldSourcePtr& field, const SceneRegistry::GridChoice&) {
+    return field;
+  };
+  registry.fields["mask"] = [later](MapReader& reader) {
+    const std::string file = reader.loader().resolvePath(reader.requireText("file"));
+    for (const char* key : {"name", "units", "sampler"}) (void)reader.textOr(key, "");
+    (void)reader.numberOr("above", 0.5);
+    return later("mask " + file, reader.lengthOr("voxel", 1.0));
+  };
   registry.fields["baked"] = [](MapReader& reader) {
     const FieldSourcePtr field = reader.loader().field(reader.require("field"));
     (void)reader.lengthOr("voxel", 1.0);

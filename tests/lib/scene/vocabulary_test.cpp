@@ -61,6 +61,7 @@ const std::vector<Probe>& probes() {
        field("{transform: {field: " + ball + ", rotate: {axis: [0, 0, 1], degrees: 1, @}}}")},
       {"mesh", field("{mesh: {file: a.stl, @}}")},
       {"grid", field("{grid: {file: a.vdb, @}}")},
+      {"mask", field("{mask: {file: a.vdb, @}}")},
       {"baked", field("{baked: {field: {sphere: {center: [0, 0, 0], radius: 1}}, @}}")},
       {"material", "materials: {m: {@}}\n"},
       {"friction", "materials: {m: {friction: {static: 1, @}}}\n"},
@@ -80,6 +81,8 @@ const std::vector<Probe>& probes() {
       {"wall", layers + "walls:\n  - {between: [a, outside], wall: absent, @}\n"},
       {"sheet", "sheets:\n  - {name: s, on: " + ball + ", @}\n"},
       {"port", layers + "ports:\n  - {name: p, between: [a, outside], @}\n"},
+      {"device", "device: {scale: 1, @}\n"},
+      {"grids", layers + "grids: {tolerance: 1, @}\n"},
       {"hole", layers +
                    "ports:\n  - {name: p, between: [a, outside], opens_at: 1 N, hole: {radius: "
                    "1, @}}\n"},

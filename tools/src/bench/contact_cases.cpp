@@ -196,8 +196,31 @@ ContactCase saddle() {
                judgeByOracle(testing::FeasibleSet::outside(field), 16));
 }
 
-/// Into the paper's container by its mouth, round its wall from within, out again, and round it from outside.
-ContactCase container() {
+/// Adds balls with an opening each, in rows well away from the container, until the scene has `count` ports.
+void addPortsElsewhere(SceneDescription& scene, std::size_t count) {
+  const auto source = [](FieldPtr field) {
+    return std::make_shared<FieldSource>(std::move(field));
+  };
+  for (std::size_t i = 1; i < count; ++i) {
+    const Vec3 center =
+        Vec3(0.2) + 0.01 * Vec3(static_cast<double>(i % 10), static_cast<double>(i / 10 % 10),
+                                static_cast<double>(i / 100));
+    LayerDescription layer;
+    layer.name = "ball " + std::to_string(i);
+    layer.inside = source(sphere(center, 4e-3));
+    PortDescription port;
+    port.name = "port " + std::to_string(i);
+    port.from = "outside";
+    port.to = layer.name;
+    port.where = source(sphere(center + Vec3(0.0, 0.0, 4e-3), 2e-3));
+    scene.layers.push_back(std::move(layer));
+    scene.ports.push_back(std::move(port));
+  }
+}
+
+/// Into the paper's container by its mouth, round its wall from within, out again, and round it from outside; in a
+/// scene of so many ports.
+ContactCase container(std::size_t ports) {
   const double radius = 0.04;
   PathMaker maker(Vec3(0.0, 0.0, 0.03));
   maker.go(Vec3(0.0, 0.0, -0.005), kApproach);
@@ -222,13 +245,15 @@ ContactCase container() {
   maker.follow(round(radius - kDepth), 0.0, 5.0 * kTurn, kStroke);
   out.end = maker.size();
   out.path = maker.take();
-  out.scene = compile(parseScene(R"({palpate: 1, length: mm,
+  SceneDescription scene = parseScene(R"({palpate: 1, length: mm,
     fields: {bowl: {sphere: {center: [0, 0, 0], radius: 40}},
              brim: {half_space: {point: [0, 0, 15], normal: [0, 0, 1]}}},
     materials: {glass: {stiffness: 1000 N/m}},
     layers: [{name: liquid, inside: {intersection: [bowl, brim]}, wall: glass}],
     ports: [{name: mouth, between: [outside, liquid], on: brim}]})",
-                                 "container"));
+                                      "container");
+  addPortsElsewhere(scene, ports);
+  out.scene = compile(scene);
   out.judge = [=](std::span<const Vec3> path, std::span<const TickResult>, const Progress&) {
     Truth truth(path.size());
     for (std::size_t i = 0; i < path.size(); ++i) {
@@ -285,7 +310,10 @@ const std::vector<CaseEntry>& contactCases() {
       {"crease", "between two balls of 30 mm", crease},
       {"groove", "a groove of 10 degrees", groove},
       {"saddle", "the waist of two metaballs", saddle},
-      {"container", "the paper's: in by the mouth, out, around", container},
+      {"container", "the paper's: in by the mouth, out, around", [] { return container(1); }},
+      {"ports-10", "the same, with 9 ports elsewhere", [] { return container(10); }},
+      {"ports-100", "with 99 ports elsewhere", [] { return container(100); }},
+      {"ports-1000", "with 999 ports elsewhere", [] { return container(1000); }},
       {"balls-1", "a ball of 5 mm, 0.5 mm deep", [] { return manyBalls(1); }},
       {"balls-1000", "one of 1000 balls", [] { return manyBalls(1000); }},
       {"balls-10000", "one of 10 000 balls", [] { return manyBalls(10000); }},

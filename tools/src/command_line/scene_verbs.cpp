@@ -80,7 +80,10 @@ void defineRender(CLI::App& app, Invocation& invocation) {
 }
 
 void defineExplain(CLI::App& app, Invocation& invocation) {
-  app.add_option("scene", choose<ExplainOptions>(invocation).scene);
+  auto& o = choose<ExplainOptions>(invocation);
+  app.add_option("scene", o.scene);
+  add(app, "Output files", "--svg", "FILE.svg", o.svg,
+      "draw the table of transitions: regions, and the ports between them");
 }
 
 }  // namespace
@@ -130,12 +133,13 @@ Verb queryVerb() {
 Verb explainVerb() {
   return {"explain",
           "Show what a scene means: regions, walls, ports, what can be reached",
-          "palpate explain data/scenes/container.yaml",
+          "palpate explain data/scenes/container.yaml --svg ports.svg",
           "palpate explain SCENE [OPTIONS]",
           "",
           {},
           defineExplain,
-          [](const Invocation& i) { need(!chosen<ExplainOptions>(i).scene.empty(), "SCENE"); }};
+          [](const Invocation& i) { need(!chosen<ExplainOptions>(i).scene.empty(), "SCENE"); },
+          true};
 }
 
 Verb renderVerb() {

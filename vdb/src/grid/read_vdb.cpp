@@ -36,7 +36,8 @@ void requireLevelSet(const openvdb::GridBase& grid, UnknownClass unknown_class,
     throw inputError(
         "vdb.class", name + " is a fog volume: it holds densities, not signed distances",
         "palpate convert FILE.vdb -o OTHER.vdb --above DENSITY puts a surface where the "
-        "density passes a value; or export it as a level set (Blender, Houdini: SDF)",
+        "density passes a value, and in a scene mask: {file: ...}; or export it as a level set "
+        "(Blender, Houdini: SDF)",
         path);
   }
   const bool says_nothing = grid.getGridClass() == openvdb::GRID_UNKNOWN;

@@ -79,7 +79,7 @@ class Partition {
  public:
   /// Takes each layer's field apart along its CSG structure, and each mask's likewise. A mask is the
   /// extent of a port or sheet: its leaves cut cells, but it holds no region. A leaf that several of
-  /// them use (the same field at the same place) is one leaf. @throws Error (kInput) for more
+  /// them use (the same field at the same place) is one leaf. A layer without field (null) holds nothing. @throws Error (kInput) for more
   /// leaves or layers than the id types hold.
   explicit Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr> masks = {},
                      std::span<const LeafBetween> between = {});

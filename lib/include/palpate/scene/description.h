@@ -13,6 +13,7 @@
 #include "palpate/fields/field.h"
 #include "palpate/interior/port.h"
 #include "palpate/materials/material.h"
+#include "palpate/scene/device_mapping.h"
 
 namespace palpate {
 
@@ -34,12 +35,17 @@ class FieldSource {
  public:
   using Maker = std::function<FieldPtr(const Progress&)>;
 
+  /// [m] A box around what will be made, much cheaper than making it.
+  using Measurer = std::function<Box3(const Progress&)>;
+
   explicit FieldSource(FieldPtr ready) : made_(std::move(ready)) {}
-  FieldSource(std::string summary, Maker maker)
-      : summary_(std::move(summary)), maker_(std::move(maker)) {}
+  FieldSource(std::string summary, Maker maker, Measurer measurer = {})
+      : summary_(std::move(summary)), maker_(std::move(maker)), measurer_(std::move(measurer)) {}
 
   /// The field, made now if need be. The same pointer every time.
   [[nodiscard]] const FieldPtr& get(const Progress& progress = {}) const;
+  /// [m] A box around the field; none if only making it would tell.
+  [[nodiscard]] std::optional<Box3> bounds(const Progress& progress = {}) const;
   [[nodiscard]] bool isMade() const noexcept { return made_ != nullptr; }
   /// What it is made from ("mesh bone.stl"); empty for analytic fields.
   [[nodiscard]] const std::string& summary() const noexcept { return summary_; }
@@ -47,6 +53,7 @@ class FieldSource {
  private:
   std::string summary_;
   Maker maker_;
+  Measurer measurer_;
   mutable FieldPtr made_;
 };
 using FieldSourcePtr = std::shared_ptr<const FieldSource>;
@@ -129,6 +136,7 @@ struct SceneDescription {
   SourcePlace start_place = {};
   bool keep_memory = false;  ///< `memory: keep`: reaching outside does not clear the passed ports
   RendererKind renderer = RendererKind::kConstraint;
+  DeviceMapping device = {};
 };
 
 }  // namespace palpate

@@ -20,8 +20,12 @@ struct Region {
   int wall = -1;     ///< own wall's material; -1 where absent (and for outside)
   bool wall_absent = false;
   bool reachable = true;  ///< by ports and absent walls from the start region
-  FieldPtr field;         ///< the layer's whole field (label group share applied); null for outside
-  std::string source;     ///< what it was made from; empty if analytic
+  FieldPtr
+      field;  ///< the layer's whole field (label group share applied); null for outside and for
+              ///< what was left out
+  std::string
+      left_out;  ///< why the layer was not made: its place belongs to what is around; else empty
+  std::string source;        ///< what it was made from; empty if analytic
   Vec3 seed{0.0, 0.0, 0.0};  ///< [m] a point of the region; meaningless unless has_seed
   bool has_seed = false;     ///< false: no point of it was found (an empty or dropped region)
 };
@@ -40,6 +44,7 @@ class Scene {
   [[nodiscard]] RegionId startRegion() const noexcept { return start_; }
   [[nodiscard]] bool keepsMemory() const noexcept { return keep_memory_; }
   [[nodiscard]] RendererKind renderer() const noexcept { return renderer_; }
+  [[nodiscard]] const DeviceMapping& device() const noexcept { return device_; }
   [[nodiscard]] const std::string& lengthUnit() const noexcept { return length_unit_; }
   [[nodiscard]] double metresPerUnit() const noexcept { return metres_per_unit_; }
   /// The named fields of the description that were made, with their names, for `query`.
@@ -66,17 +71,25 @@ class Scene {
   RegionId start_ = kOutside;
   bool keep_memory_ = false;
   RendererKind renderer_ = RendererKind::kConstraint;
+  DeviceMapping device_;
   std::string length_unit_ = "m";
   double metres_per_unit_ = 1.0;
 };
 
 using ScenePtr = std::shared_ptr<const Scene>;
 
-/// Checks a description against itself and its geometry, makes the fields that the start region can
-/// reach through the ports, and builds the scene. Layers that can never be entered keep their walls
-/// only where these can be touched.
+/// What a scene is compiled for.
+enum class Purpose {
+  kTouch,  ///< to be felt: costly layers that the probe can certainly not feel are left out (Region::left_out)
+  kShow,  ///< to be looked at: with all of its layers
+};
+
+/// Checks a description against itself and its geometry, makes its fields, and builds the scene. To be
+/// touched, a layer that costs work is left out if it lies beyond the device's workspace, or if no way leads into
+/// it and nothing that the probe can enter comes near it; ports into it lead nowhere then.
 /// @throws Error (kInput) pointing at the offending place: unknown layer or material, a port between
 /// regions that do not touch, `on` not a leaf of either region, a cycle in `after`, ...
-[[nodiscard]] ScenePtr compile(const SceneDescription& description, const Progress& progress = {});
+[[nodiscard]] ScenePtr compile(const SceneDescription& description, const Progress& progress = {},
+                               Purpose purpose = Purpose::kTouch);
 
 }  // namespace palpate

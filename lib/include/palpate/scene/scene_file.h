@@ -84,9 +84,23 @@ struct SceneRegistry {
   };
   using LayerKind = std::function<LayerSurface(MapReader&, const std::string& layer_name)>;
 
+  /// `grids: {tolerance, voxel}`: what a layer made of formulas is asked to become.
+  struct GridChoice {
+    std::string layer;
+    std::string length_unit;
+    double tolerance = 0.0;           ///< [m] by how much a grid may be off
+    double voxel_size = 0.0;          ///< [m] 0: not said
+    std::vector<FieldPtr> keep = {};  ///< these stay as they are, as ports name them
+    SourcePlace place = {};
+  };
+  /// The same field, of which the parts that a grid holds within the tolerance and answers faster are grids; made when
+  /// it is asked for.
+  using GridChooser = std::function<FieldSourcePtr(const FieldSourcePtr&, const GridChoice&)>;
+
   std::map<std::string, FieldKind> fields = {};
   std::map<std::string, LayerKind> layers = {};
   ImageKind image = {};
+  GridChooser choose_grids = {};
 };
 
 /// @throws Error (kInput) for the first problem found, with file:line:column, the line and a remedy.

@@ -1,0 +1,23 @@
+#pragma once
+/// The table of states and transitions that a scene comes to (DESIGN.md section 2, "State").
+
+#include <optional>
+#include <vector>
+
+#include "palpate/scene/scene.h"
+
+namespace palpate {
+
+/// One row: from a region, by a port or where there is no wall, to a region that it touches.
+struct Transition {
+  RegionId from = kOutside;
+  RegionId to = kOutside;
+  std::optional<PortId> port = {};  ///< none: no wall is there
+  Parameter force = 0.0;            ///< [N] at which the port opens this way; 0: it is open
+};
+
+/// All rows, by regions and then in the author's order of ports. Which of them a probe can ever take, from the
+/// start and by ports after ports, says Region::reachable. Set-up thread.
+[[nodiscard]] std::vector<Transition> transitions(const Scene& scene);
+
+}  // namespace palpate

@@ -1,0 +1,27 @@
+#include "scene/device_reader.h"
+
+#include "scene/values.h"
+
+namespace palpate {
+
+DeviceMapping readDevice(const SceneLoader& loader, const Node& node) {
+  MapReader reader(loader, node, "'device'");
+  DeviceMapping device;
+  if (reader.optional("offset") != nullptr) device.offset = reader.requirePoint("offset");
+  device.scale = reader.numberOr("scale", 1.0);
+  if (!(device.scale > 0.0)) {
+    throw reader.errorAt("scale", "scene.range", "'scale' must be more than 0");
+  }
+  device.clutch = reader.boolOr("clutch", false);
+  if (const Node* workspace = reader.optional("workspace")) {
+    device.workspace = loader.field(*workspace)->get()->bounds();
+    if (!device.workspace.isBounded()) {
+      throw reader.errorAt("workspace", "scene.range", "'workspace' has no end",
+                           "give a box or a sphere, in the device's own coordinates");
+    }
+  }
+  reader.finish();
+  return device;
+}
+
+}  // namespace palpate

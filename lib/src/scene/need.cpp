@@ -1,0 +1,185 @@
+#include "need.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "palpate/scene/scene_file.h"
+
+namespace palpate {
+namespace {
+
+/// Boxes are grown by this share of their size, so that what touches overlaps.
+constexpr double kMargin = 1e-3;
+/// A hand at the border of its workspace still feels what lies this share of the workspace beyond it.
+constexpr double kBeyond = 0.05;
+/// Looks at a field, at most, to prove that it holds a box.
+constexpr int kMostLooks = 200'000;
+constexpr int kMostHalvings = 12;
+
+bool overlap(const Box3& a, const Box3& b) { return !a.intersectedWith(b).isEmpty(); }
+
+/// Whether `box` lies inside `field`, proven by its Lipschitz bound cell by cell.
+bool isInside(const Field& field, const Box3& box, int halvings, int& looks) {
+  const Box3 domain = field.lipschitzDomain();
+  if (--looks < 0 || !domain.contains(box.lo) || !domain.contains(box.hi)) return false;
+  const double value = field.value(box.center());
+  if (!(value < 0.0)) return false;
+  if (value + field.lipschitz() * 0.5 * glm::length(box.size()) < 0.0) return true;
+  if (halvings == 0) return false;
+  // Halve the longest side.
+  const Vec3 size = box.size();
+  int axis = size.y > size.x ? 1 : 0;
+  if (size.z > size[axis]) axis = 2;
+  Box3 low = box;
+  Box3 high = box;
+  low.hi[axis] = high.lo[axis] = box.center()[axis];
+  return isInside(field, low, halvings - 1, looks) && isInside(field, high, halvings - 1, looks);
+}
+
+class Needs {
+ public:
+  Needs(const SceneDescription& description, const Progress& progress)
+      : scene_(description), progress_(progress), reasons_(description.layers.size()) {
+    names_.emplace_back("outside");
+    for (const LayerDescription& layer : scene_.layers) names_.push_back(layer.name);
+    boxes_.resize(names_.size());
+  }
+
+  std::vector<std::string> reasons() {
+    leaveOutBeyondWorkspace();
+    follow();
+    // Costly ones that nothing leads into; measured only if something may lie around them.
+    const auto shut = std::count(entered_.begin() + 1, entered_.end(), false);
+    if (entered_[kOutside] && shut < 2) return std::move(reasons_);
+    std::vector<std::size_t> order;
+    for (std::size_t i = 1; i < names_.size(); ++i) {
+      if (!entered_[i] && reasons_[i - 1].empty() && canBeLeftOut(i)) order.push_back(i);
+    }
+    // The largest first: what lies around others is looked at before them.
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return glm::length(boxOf(a)->size()) > glm::length(boxOf(b)->size());
+    });
+    for (const std::size_t i : order) reasons_[i - 1] = whyUntouchable(i);
+    return std::move(reasons_);
+  }
+
+ private:
+  /// [m] Around a layer, a little larger than it; none where only making it would tell. Measured once, as that may
+  /// mean to read a file.
+  const std::optional<Box3>& boxOf(std::size_t region) {
+    Measured& known = boxes_[region];
+    if (!known.is_measured) {
+      const FieldSourcePtr& source = scene_.layers[region - 1].inside;
+      if (source) known.box = source->bounds(progress_);
+      if (known.box && known.box->isBounded()) {
+        known.box = known.box->grownBy(kMargin * glm::length(known.box->size()));
+      }
+      known.is_measured = true;
+    }
+    return known.box;
+  }
+
+  bool canBeLeftOut(std::size_t region) {
+    const FieldSourcePtr& source = scene_.layers[region - 1].inside;
+    return source && !source->isMade() && boxOf(region) && boxOf(region)->isBounded();
+  }
+
+  void leaveOutBeyondWorkspace() {
+    Box3 reach = scene_.device.reach();
+    if (!reach.isBounded()) return;
+    reach = reach.grownBy(kBeyond * glm::length(reach.size()));
+    for (std::size_t i = 1; i < names_.size(); ++i) {
+      if (canBeLeftOut(i) && names_[i] != scene_.start_region && !overlap(*boxOf(i), reach)) {
+        reasons_[i - 1] = "beyond the device's workspace";
+      }
+    }
+  }
+
+  [[nodiscard]] bool isAbsent(std::size_t a, std::size_t b) const {
+    bool absent = scene_.layers[std::max(a, b) - 1].wall.absent;
+    for (const WallOverride& wall : scene_.walls) {
+      const bool forth = matchesGlob(wall.a, names_[a]) && matchesGlob(wall.b, names_[b]);
+      const bool back = matchesGlob(wall.a, names_[b]) && matchesGlob(wall.b, names_[a]);
+      if (!forth && !back) continue;
+      if (wall.felt_from.empty() || matchesGlob(wall.felt_from, names_[a])) {
+        absent = wall.wall.absent;
+      }
+    }
+    return absent;
+  }
+
+  [[nodiscard]] bool leads(const PortDescription& port, std::size_t a, std::size_t b) const {
+    const auto joins = [&](const std::string& from, const std::string& to) {
+      return matchesGlob(from, names_[a]) && matchesGlob(to, names_[b]);
+    };
+    return (port.direction != PortDirection::kOut && joins(port.from, port.to)) ||
+           (port.direction != PortDirection::kIn && joins(port.to, port.from));
+  }
+
+  /// Which regions the names of ports and walls let the probe into, whatever touches what; ports before others
+  /// are taken to be passed.
+  void follow() {
+    entered_.assign(names_.size(), false);
+    std::vector<std::size_t> next;
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      if (names_[i] != scene_.start_region) continue;
+      entered_[i] = true;
+      next.push_back(i);
+    }
+    while (!next.empty()) {
+      const std::size_t a = next.back();
+      next.pop_back();
+      for (std::size_t b = 0; b < names_.size(); ++b) {
+        if (entered_[b] || a == b) continue;
+        const bool is_open = isAbsent(a, b) || std::any_of(scene_.ports.begin(), scene_.ports.end(),
+                                                           [&](const PortDescription& port) {
+                                                             return leads(port, a, b);
+                                                           });
+        if (!is_open) continue;
+        entered_[b] = true;
+        next.push_back(b);
+      }
+    }
+  }
+
+  /// Empty if it may be touched.
+  std::string whyUntouchable(std::size_t region) {
+    const Box3 box = *boxOf(region);
+    for (std::size_t other = 1; other < names_.size(); ++other) {
+      if (other == region || !entered_[other]) continue;
+      if (!boxOf(other) || overlap(box, *boxOf(other))) return {};
+    }
+    if (!entered_[kOutside]) return "nothing that the probe can enter comes near it";
+    for (std::size_t other = 1; other < names_.size(); ++other) {
+      if (other == region || entered_[other] || !reasons_[other - 1].empty()) continue;
+      const std::optional<Box3>& around = boxOf(other);
+      if (!around || !around->contains(box.lo) || !around->contains(box.hi)) continue;
+      const FieldPtr& field = scene_.layers[other - 1].inside->get(progress_);
+      int looks = kMostLooks;
+      if (isInside(*field, box, 3 * kMostHalvings, looks)) {
+        return "all around it is " + names_[other] + ", which cannot be entered";
+      }
+    }
+    return {};
+  }
+
+  const SceneDescription& scene_;
+  const Progress& progress_;
+  std::vector<std::string> names_;  // by region: outside, then the layers
+  struct Measured {
+    std::optional<Box3> box = {};
+    bool is_measured = false;
+  };
+  std::vector<Measured> boxes_;       // by region
+  std::vector<bool> entered_;         // by region
+  std::vector<std::string> reasons_;  // by layer
+};
+
+}  // namespace
+
+std::vector<std::string> reasonsToLeaveOut(const SceneDescription& description,
+                                           const Progress& progress) {
+  return Needs(description, progress).reasons();
+}
+
+}  // namespace palpate

@@ -1,0 +1,191 @@
+// What a scene does not need is not made: beyond the device's workspace, and where no probe ever comes.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "palpate/core/error.h"
+#include "palpate/fields/primitives.h"
+#include "palpate/render/haptic_renderer.h"
+#include "palpate/scene/scene_file.h"
+
+namespace palpate {
+namespace {
+
+/// A registry whose `costly: {center, radius}` is a ball that takes work, and counts how often it is made.
+class Need : public ::testing::Test {
+ protected:
+  Need() {
+    registry_.fields["costly"] = [this](MapReader& reader) {
+      const Vec3 center = reader.requirePoint("center");
+      const double radius = reader.requireLength("radius");
+      return std::make_shared<FieldSource>(
+          "costly",
+          [this, center, radius](const Progress&) {
+            ++made_;
+            return sphere(center, radius);
+          },
+          [center, radius](const Progress&) {
+            return Box3{center - Vec3(radius), center + Vec3(radius)};
+          });
+    };
+  }
+  SceneDescription read(const std::string& body) {
+    return parseScene("palpate: 1\nlength: mm\n" + body, "test.yaml", registry_);
+  }
+  /// Names of the layers that were left out.
+  static std::string leftOut(const Scene& scene) {
+    std::string names;
+    for (const Region& region : scene.regions()) {
+      if (!region.left_out.empty()) names += (names.empty() ? "" : " ") + region.name;
+    }
+    return names;
+  }
+
+  SceneRegistry registry_;
+  int made_ = 0;
+};
+
+/// Bone with marrow and a nail in it; both are closed in unless a port leads there.
+std::string bone(const std::string& more = {}) {
+  return "layers:\n"
+         "  - {name: bone, inside: {costly: {center: [0, 0, 0], radius: 40}}}\n"
+         "  - {name: marrow, inside: {costly: {center: [0, 0, 0], radius: 20}}}\n"
+         "  - {name: nail, inside: {sphere: {center: [0, 0, 0], radius: 3}}}\n" +
+         more;
+}
+
+TEST_F(Need, WhatIsClosedInByWhatCannotBeEnteredIsNotMade) {
+  const SceneDescription description = read(bone());
+  const ScenePtr scene = compile(description);
+  EXPECT_EQ(leftOut(*scene), "marrow");
+  EXPECT_EQ(made_, 1);
+  EXPECT_NE(scene->regions()[2].left_out.find("bone"), std::string::npos);
+  EXPECT_EQ(scene->regions()[2].field, nullptr);
+  EXPECT_FALSE(scene->regions()[2].reachable);
+  EXPECT_EQ(scene->regionAt({0.01, 0.0, 0.0}), 1) << "its place belongs to what is around";
+  EXPECT_EQ(scene->regionAt({0.0, 0.0, 0.0}), 3) << "what costs nothing stays";
+}
+
+TEST_F(Need, APortOrAnAbsentWallIntoItMakesIt) {
+  for (const char* way :
+       {"ports: [{name: p, between: [outside, bone]}]\n",
+        "ports: [{name: p, between: [outside, \"*\"]}]\n",
+        "walls: [{between: [outside, bone], wall: absent}]\n", "start: {region: bone}\n"}) {
+    made_ = 0;
+    EXPECT_EQ(leftOut(*compile(read(bone(way)))), "") << way;
+    EXPECT_EQ(made_, 2) << way;
+  }
+  // One way only, and that the wrong one: it still cannot be entered.
+  made_ = 0;
+  const SceneDescription one_way =
+      read(bone("ports: [{name: p, between: [outside, bone], direction: out}]\n"));
+  EXPECT_EQ(leftOut(*compile(one_way)), "marrow");
+}
+
+TEST_F(Need, WhatSticksOutIsMade) {
+  for (const double x : {19.0, 21.0, 100.0}) {
+    made_ = 0;
+    const ScenePtr scene =
+        compile(read("layers:\n"
+                     "  - {name: bone, inside: {costly: {center: [0, 0, 0], radius: 40}}}\n"
+                     "  - {name: marrow, inside: {costly: {center: [" +
+                     std::to_string(x) + ", 0, 0], radius: 20}}}\n"));
+    // Its box's corners reach sqrt(20^2 + 20^2 + (x + 20)^2) from the middle: 48 mm for x = 19.
+    EXPECT_EQ(leftOut(*scene), "") << x;
+  }
+  made_ = 0;
+  const ScenePtr scene =
+      compile(read("layers:\n"
+                   "  - {name: bone, inside: {costly: {center: [0, 0, 0], radius: 40}}}\n"
+                   "  - {name: marrow, inside: {costly: {center: [9, 0, 0], radius: 10}}}\n"));
+  EXPECT_EQ(leftOut(*scene), "marrow") << "corners at 24 mm";
+}
+
+TEST_F(Need, ATunnelThatComesNearItMakesIt) {
+  const std::string tunnel =
+      "  - {name: tunnel, inside: {cylinder: {center: [0, 0, 30], axis: [0, 0, 1], radius: 5, "
+      "height: 60}}}\n";
+  EXPECT_EQ(leftOut(*compile(read(bone(tunnel)))), "marrow") << "shut";
+  EXPECT_EQ(
+      leftOut(*compile(read(bone(tunnel + "ports: [{name: p, between: [outside, tunnel]}]\n")))),
+      "")
+      << "its wall is touched from the tunnel";
+}
+
+TEST_F(Need, FromWithinOnlyWhatIsNearCounts) {
+  // Started in a closed room, the probe never feels the house next door.
+  const ScenePtr scene =
+      compile(read("layers:\n"
+                   "  - {name: room, inside: {costly: {center: [0, 0, 0], radius: 40}}}\n"
+                   "  - {name: stove, inside: {costly: {center: [10, 0, 0], radius: 5}}}\n"
+                   "  - {name: neighbour, inside: {costly: {center: [100, 0, 0], radius: 40}}}\n"
+                   "start: {region: room}\n"));
+  EXPECT_EQ(leftOut(*scene), "neighbour");
+  EXPECT_EQ(made_, 2);
+}
+
+TEST_F(Need, BeyondTheDevicesWorkspaceNothingIsMade) {
+  const auto scene = [&](const std::string& device) {
+    made_ = 0;
+    return compile(
+        read("layers:\n"
+             "  - {name: near, inside: {costly: {center: [0, 0, 0], radius: 40}}}\n"
+             "  - {name: far, inside: {costly: {center: [300, 0, 0], radius: 40}}}\n"
+             "ports: [{name: p, between: [outside, far]}, {name: q, between: [outside, near]}]\n" +
+             device));
+  };
+  const std::string box = "workspace: {box: {center: [0, 0, 0], size: [100, 100, 100]}}";
+  EXPECT_EQ(leftOut(*scene("")), "");
+  EXPECT_EQ(leftOut(*scene("device: {" + box + "}\n")), "far");
+  EXPECT_EQ(made_, 1);
+  EXPECT_EQ(leftOut(*scene("device: {scale: 6, " + box + "}\n")), "");
+  EXPECT_EQ(leftOut(*scene("device: {offset: [300, 0, 0], " + box + "}\n")), "near");
+  EXPECT_EQ(leftOut(*scene("device: {clutch: true, " + box + "}\n")), "");
+  // The port into what was left out leads nowhere; the other one keeps its number.
+  const ScenePtr made = scene("device: {" + box + "}\n");
+  ASSERT_EQ(made->ports().size(), 2U);
+  EXPECT_TRUE(made->passages().portsOf(kOutside).size() == 1);
+  EXPECT_EQ(made->passages().portsOf(kOutside)[0], 1);
+  EXPECT_EQ(made->device().reach().hi.x, 0.05);
+}
+
+TEST_F(Need, ToBeShownAllIsMade) {
+  EXPECT_EQ(leftOut(*compile(read(bone()), {}, Purpose::kShow)), "");
+  EXPECT_EQ(made_, 2);
+}
+
+// What is felt is the same, bit for bit, with and without what was left out.
+TEST_F(Need, TheForceIsTheSame) {
+  const ScenePtr felt = compile(read(bone()));
+  const ScenePtr all = compile(read(bone()), {}, Purpose::kShow);
+  ASSERT_EQ(leftOut(*felt), "marrow");
+  const auto a = makeRenderer(felt);
+  const auto b = makeRenderer(all);
+  for (int i = 0; i < 3000; ++i) {
+    const double t = 0.003 * i;
+    const HipState hip{{0.06 * std::sin(3.0 * t), 0.05 * std::cos(2.0 * t), 0.05 * std::sin(t)},
+                       Vec3(0.0)};
+    const TickResult one = a->update(hip);
+    const TickResult two = b->update(hip);
+    ASSERT_EQ(one.force, two.force) << i;
+    ASSERT_EQ(one.proxy, two.proxy) << i;
+    ASSERT_EQ(one.region, two.region) << i;
+  }
+}
+
+TEST_F(Need, ThePapersRendererWantsThemAll) {
+  const ScenePtr scene = compile(read(bone()));
+  RendererSettings settings;
+  settings.kind = RendererKind::kPaper;
+  try {
+    (void)makeRenderer(scene, settings);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.problem().code, "render.paper_left_out");
+  }
+  EXPECT_NO_THROW((void)makeRenderer(compile(read(bone()), {}, Purpose::kShow), settings));
+}
+
+}  // namespace
+}  // namespace palpate
