@@ -40,6 +40,13 @@ TEST(SceneVocabulary, KindsOfVdbAndTheSchemaKnowTheSameKeys) {
       schemaKeys("baked"));
   EXPECT_EQ(keys_in("fields: {f: {@}}\n"), schemaKeys("field_kind"));
   EXPECT_EQ(keys_in("images: {i: {file: i.nii, @}}\n"), schemaKeys("image"));
+  EXPECT_EQ(keys_in("materials: {m: {stiffness: {grid: {file: g.vdb, @}}}}\n"),
+            schemaKeys("material_grid"));
+  EXPECT_EQ(keys_in("materials: {m: {viscosity: {grid: {file: g.vdb}, @}}}\n"),
+            schemaKeys("map_of_grid"));
+  EXPECT_EQ(keys_in("images: {i: {file: i.nii}}\nmaterials: {m: {damping: {image: i, transfer: "
+                    "[[0, 1 N.s/m]], @}}}\n"),
+            schemaKeys("map_of_image"));
   const std::string layer = "images: {i: {file: i.nii}}\nlayers:\n  - {name: a, ";
   EXPECT_EQ(keys_in(layer + "labels: {image: i, match: [1], @}}\n"), schemaKeys("labels"));
   EXPECT_EQ(keys_in(layer + "threshold: {image: i, above: 0, @}}\n"), schemaKeys("threshold"));

@@ -15,6 +15,7 @@
 #include "palpate/vdb/scan_surface.h"
 #include "scan_options.h"
 #include "scene_baking.h"
+#include "scene_parameters.h"
 #include "text.h"
 
 namespace palpate::tools {
@@ -66,11 +67,29 @@ SceneDescription neededFor(const BakeOptions& options, SceneDescription descript
   return description;
 }
 
-std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console) {
+/// The maps of the layers asked for, and, where all are, of the ports.
+void addMaterials(const BakeOptions& options, const SceneDescription& description,
+                  std::vector<vdb::NamedMaterialGrid>& materials) {
+  for (const SceneParameter& found : sceneParameters(description)) {
+    const vdb::MaterialGridPtr grid = found.grid();
+    if (!grid || !isAskedFor(options, found.owner)) continue;
+    materials.push_back({found.name(),
+                         grid,
+                         found.unit,
+                         description.length_unit,
+                         {{"layer", found.owner},
+                          {"parameter", found.parameter},
+                          {"source", options.input + ": " + grid->info().source}}});
+  }
+}
+
+std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console,
+                                 std::vector<vdb::NamedMaterialGrid>* materials) {
   LoadedScene loaded(options.input, console, memoryLeft(options));
   const SceneDescription& description = loaded.description();
   checkSceneOptions(options, description);
   refuseScanOptions(options.scan, false);
+  if (materials != nullptr) addMaterials(options, description, *materials);
   const LengthUnit unit = loaded.unit();
   const double asked = askedVoxel(options, unit);
   const ScenePtr scene = palpate::compile(neededFor(options, description), console.progress());
@@ -215,10 +234,11 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   return grids;
 }
 
-std::vector<BakedGrid> baked(const BakeOptions& options, Console& console) {
+std::vector<BakedGrid> baked(const BakeOptions& options, Console& console,
+                             std::vector<vdb::NamedMaterialGrid>* materials) {
   switch (inputKind(options.input)) {
     case InputKind::kScene:
-      return bakeScene(options, console);
+      return bakeScene(options, console, materials);
     case InputKind::kMesh:
       return bakeMeshFile(options, console);
     case InputKind::kImage:
@@ -235,8 +255,9 @@ std::vector<BakedGrid> baked(const BakeOptions& options, Console& console) {
 
 }  // namespace
 
-std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console) try {
-  std::vector<BakedGrid> grids = baked(options, console);
+std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console,
+                                 std::vector<vdb::NamedMaterialGrid>* materials) try {
+  std::vector<BakedGrid> grids = baked(options, console, materials);
   for (const BakedGrid& one : grids) {
     const vdb::LevelSetInfo& info = one.grid.info();
     const auto lost = info.metadata.find("lost_parts");

@@ -6,6 +6,7 @@
 #include "console.h"
 #include "options.h"
 #include "palpate/vdb/level_set.h"
+#include "palpate/vdb/material_grid.h"
 
 namespace palpate::tools {
 
@@ -17,6 +18,9 @@ struct BakedGrid {
 
 /// One grid for each layer of a scene, for a mesh, for an image's threshold, or for each of its labels.
 /// @throws Error: kUsage for options that do not apply to this kind of input.
-[[nodiscard]] std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console);
+/// A scene's maps of parameters are added to `materials`, if that is given.
+[[nodiscard]] std::vector<BakedGrid> bakeInput(
+    const BakeOptions& options, Console& console,
+    std::vector<vdb::NamedMaterialGrid>* materials = nullptr);
 
 }  // namespace palpate::tools

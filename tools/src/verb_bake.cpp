@@ -42,13 +42,30 @@ class GridList {
     return json_.back();
   }
 
+  void add(const vdb::NamedMaterialGrid& material) {
+    const vdb::MaterialGridInfo& info = material.grid->info();
+    const double unit = lengthUnit(material.length_unit).metres;
+    const auto voxels = static_cast<std::uint64_t>(info.size[0]) *
+                        static_cast<std::uint64_t>(info.size[1]) *
+                        static_cast<std::uint64_t>(info.size[2]);
+    table_.add({material.name, formatNumber(info.voxel_size / unit, 3) + " " + material.length_unit,
+                formatCount(voxels), formatBytes(info.memory), "-",
+                formatVector(info.bounds.lo / unit) + " to " + formatVector(info.bounds.hi / unit) +
+                    " " + material.length_unit});
+    Json json = mapJson(*material.grid);
+    json["name"] = material.name;
+    json["unit"] = material.unit;
+    materials_.push_back(std::move(json));
+  }
+
   [[nodiscard]] const std::vector<vdb::LevelSet>& grids() const noexcept { return grids_; }
   [[nodiscard]] Report report(const BakeOptions& options, const std::string& written) const {
     Report report;
     report.json = {{"schema", "palpate.bake/1"},
                    {"input", options.input},
                    {"output", options.output},
-                   {"grids", json_}};
+                   {"grids", json_},
+                   {"material_grids", materials_}};
     report.text = table_.text("") + "\nWrote " + written + "\n";
     return report;
   }
@@ -56,6 +73,7 @@ class GridList {
  private:
   Table table_{{"grid", "voxel", "active voxels", "memory", "made in", "bounds"}};
   Json json_ = Json::array();
+  Json materials_ = Json::array();
   std::vector<vdb::LevelSet> grids_;
 };
 
@@ -109,10 +127,12 @@ Report run(const BakeOptions& options, const GeneralOptions& general, Console& c
   GridList list;
   Json parts = Json::array();
   std::string written = options.output;
+  std::vector<vdb::NamedMaterialGrid> materials;
   if (options.parts.empty()) {
-    for (const BakedGrid& baked : bakeInput(options, console)) {
+    for (const BakedGrid& baked : bakeInput(options, console, &materials)) {
       tellError(baked, list.add(baked.grid, baked.seconds), console);
     }
+    for (const vdb::NamedMaterialGrid& material : materials) list.add(material);
   } else {
     const BakedParts baked = bakeParts(options, console);
     for (const LayerParts& layer : baked.layers) {
@@ -126,7 +146,7 @@ Report run(const BakeOptions& options, const GeneralOptions& general, Console& c
     written += " and " + options.parts;
   }
   checkStop();
-  vdb::writeVdb(files.temporary(options.output), list.grids(), true);
+  vdb::writeVdb(files.temporary(options.output), list.grids(), true, materials);
   checkStop();
   files.commit();
 

@@ -5,6 +5,7 @@
 #include "output_files.h"
 #include "palpate/scene/transitions.h"
 #include "saving.h"
+#include "scene_parameters.h"
 #include "text.h"
 #include "transition_graph.h"
 #include "verbs.h"
@@ -267,6 +268,26 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
   }
   report.text += "\nTransitions\n" +
                  (move_table.empty() ? "  none: every wall is closed\n" : move_table.text("  "));
+
+  report.json["maps"] = Json::array();
+  Table map_table({"parameter", "values", "from", "stored in", "off by at most"});
+  for (const SceneParameter& found : sceneParameters(description)) {
+    const std::string values_unit = found.unit == "1" ? "" : " " + found.unit;
+    const vdb::MaterialGridPtr grid = found.grid();
+    map_table.add({found.name(), formatParameter(found.map) + values_unit,
+                   grid ? grid->info().source : "-",
+                   grid ? std::to_string(grid->info().quantisation.bits) + " bits, " +
+                              formatBytes(grid->info().memory)
+                        : "-",
+                   grid ? formatNumber(grid->info().quantisation.error, 2) + values_unit : "-"});
+    Json json = grid ? mapJson(*grid) : parameterJson(found.map);
+    json["name"] = found.name();
+    json["unit"] = found.unit;
+    report.json["maps"].push_back(std::move(json));
+  }
+  if (!map_table.empty()) {
+    report.text += "\nParameters that differ from place to place\n" + map_table.text("  ");
+  }
 
   report.json["sources"] = Json::array();
   Table source_table({"field or layer", "made from", "made"});

@@ -8,6 +8,7 @@
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/mesh.h"
 #include "scan_options.h"
+#include "scene_parameters.h"
 #include "text.h"
 #include "verbs.h"
 
@@ -56,6 +57,16 @@ FileReport sceneInfo(const std::string& file, Console& console) {
     out.json["ports"].push_back(
         {{"name", port.name}, {"between", Json::array({port.from, port.to})}});
   }
+  out.json["maps"] = Json::array();
+  for (const SceneParameter& found : sceneParameters(d)) {
+    const std::string values =
+        formatParameter(found.map) + (found.unit == "1" ? "" : " " + found.unit);
+    out.text += "  map " + found.name() + ": " + values + "\n";
+    Json json = parameterJson(found.map);
+    json["name"] = found.name();
+    json["unit"] = found.unit;
+    out.json["maps"].push_back(std::move(json));
+  }
   out.json["images"] = Json::array();
   for (const auto& image : loaded.images()) {
     out.text += "  image " + image.name + ": " + image.file + "\n";
@@ -87,6 +98,10 @@ FileReport gridInfo(const std::string& file) {
         out.text += "; cubic sampling widens it to " + formatNumber(vdb::kCubicHalfWidth);
       }
       out.text += "\n";
+    }
+    if (const auto value_unit = info.metadata.find("unit");
+        grid.grid_class == "fog volume" && value_unit != info.metadata.end()) {
+      out.text += "    a map for materials, in " + value_unit->second + "\n";
     }
     Json metadata = Json::object();
     for (const auto& [key, value] : info.metadata) {

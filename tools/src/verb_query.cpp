@@ -54,9 +54,9 @@ Report queryImage(const QueryOptions& options, Console& console) {
   return report;
 }
 
-Json contentJson(const Scene& scene, const Region& region) {
+Json contentJson(const Scene& scene, const Region& region, const Vec3& p) {
   if (region.content < 0) return {};
-  return materialJson(scene.materials()[static_cast<std::size_t>(region.content)]);
+  return materialJson(scene.materials()[static_cast<std::size_t>(region.content)], &p);
 }
 
 Json sampleJson(const AskedField& asked, const FieldSample& s, double unit) {
@@ -86,10 +86,10 @@ Report queryScene(const QueryOptions& options, Console& console) {
     Json json = {
         {"at", vectorJson(p / unit.metres)},
         {"region", region.name},
-        {"content", contentJson(*scene, region)},
+        {"content", contentJson(*scene, region, p)},
         {"wall", region.wall < 0
                      ? Json()
-                     : materialJson(scene->materials()[static_cast<std::size_t>(region.wall)])},
+                     : materialJson(scene->materials()[static_cast<std::size_t>(region.wall)], &p)},
         {"fields", Json::array()}};
     report.text += "at " + formatVector(p / unit.metres, 6) + " " + unit.name + ": " + region.name;
     if (region.content >= 0) {

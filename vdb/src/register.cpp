@@ -17,6 +17,7 @@
 #include "scene_baked.h"
 #include "scene_grid.h"
 #include "scene_image.h"
+#include "scene_map.h"
 #include "scene_mask.h"
 #include "voxel_box.h"
 
@@ -326,6 +327,12 @@ void registerKinds(SceneRegistry& registry, RegisterOptions options) {
   registry.choose_grids = [common](const FieldSourcePtr& field,
                                    const SceneRegistry::GridChoice& choice) {
     return chooseGrids(field, choice, common->options);
+  };
+  registry.maps["grid"] = [common](MapReader& reader, const ParameterKind& of) {
+    return readGridMap(reader, of, common->options);
+  };
+  registry.maps["image"] = [common](MapReader& reader, const ParameterKind& of) {
+    return readImageMap(reader, of, common->options);
   };
   registry.layers["labels"] = [common](MapReader& reader, const std::string& layer) {
     return labelsLayer(common, reader, layer);

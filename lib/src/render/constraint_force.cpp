@@ -52,7 +52,20 @@ void ConstraintRenderer::relax(double dt) noexcept {
   if (stiffness > 0.0) branch_.state.keepAbove(-springOf(most).force(depth) / stiffness);
 }
 
-Vec3 ConstraintRenderer::wallForce(const Vec3& velocity) const noexcept {
+/// [N/m] What the held wall is pressed against, by the place of the proxy: its material's, or that of the
+/// layers behind it.
+MaterialMap::Sample ConstraintRenderer::stiffnessOf(std::size_t held) noexcept {
+  const std::size_t plane = contact_.index[held];
+  const Facet& facet = contact_.facet[plane];
+  const Material& wall = wallMaterial(facet);
+  if (wall.composite.radius > 0.0 && facet.beyond != walker_.region()) {
+    return beneath_.stiffness(contact_.leaf[plane], walker_.position(), contact_.held[held], facet,
+                              wall);
+  }
+  return wall.stiffness.sample(walker_.position());
+}
+
+Vec3 ConstraintRenderer::wallForce(const Vec3& velocity) noexcept {
   const Contact& c = contact_;
   Vec3 force(0.0);
   if (c.count == 0) return force;
@@ -75,7 +88,7 @@ Vec3 ConstraintRenderer::wallForce(const Vec3& velocity) const noexcept {
     const Material& wall = wallMaterial(c.facet[c.index[i]]);
     const HeldWall& held = c.held[i];
     const double multiplier = held.multiplier;
-    const MaterialMap::Sample linear = wall.stiffness.sample(x);
+    const MaterialMap::Sample linear = stiffnessOf(i);
     const MaterialMap::Sample stiffening = wall.curve.stiffening.sample(x);
     const WallSpring spring{linear.value, stiffening.value, wall.curve.exponent,
                             wall.curve.reference};

@@ -17,7 +17,10 @@ constexpr int kPatience = 5;
 }  // namespace
 
 ConstraintRenderer::ConstraintRenderer(ScenePtr scene, const RendererSettings& settings)
-    : HapticRenderer(*scene, settings.limits), scene_(std::move(scene)), walker_(*scene_) {}
+    : HapticRenderer(*scene, settings.limits),
+      scene_(std::move(scene)),
+      walker_(*scene_),
+      beneath_(*scene_) {}
 
 void ConstraintRenderer::forget() noexcept {
   started_ = false;

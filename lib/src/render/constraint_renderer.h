@@ -6,6 +6,7 @@
 
 #include "cell_walker.h"
 #include "insertion.h"
+#include "layers_beneath.h"
 #include "palpate/contact/maxwell_branch.h"
 #include "palpate/contact/planes.h"
 #include "palpate/contact/slide.h"
@@ -80,23 +81,25 @@ class ConstraintRenderer final : public HapticRenderer {
   [[nodiscard]] bool isOnWalls() const noexcept;
   [[nodiscard]] Vec3 shaded(const HeldWall& held, const Facet& facet, double radius) const noexcept;
   void relax(double dt) noexcept;
-  [[nodiscard]] Vec3 wallForce(const Vec3& velocity) const noexcept;
+  [[nodiscard]] Vec3 wallForce(const Vec3& velocity) noexcept;
   [[nodiscard]] Vec3 contentForce(const HipState& hip) noexcept;
+  [[nodiscard]] MaterialMap::Sample stiffnessOf(std::size_t held) noexcept;
   [[nodiscard]] double contentShare() noexcept;
   void fadeContent(const Vec3& hip) noexcept;
   [[nodiscard]] const Material& wallMaterial(const Facet& facet) const noexcept {
     return scene_->materials()[static_cast<std::size_t>(facet.material)];
   }
   /// The spring of a held wall at the proxy.
-  [[nodiscard]] WallSpring springOf(std::size_t held) const noexcept {
+  [[nodiscard]] WallSpring springOf(std::size_t held) noexcept {
     const Material& wall = wallMaterial(contact_.facet[contact_.index[held]]);
     const Vec3& x = walker_.position();
-    return {wall.stiffness.at(x), wall.curve.stiffening.at(x), wall.curve.exponent,
+    return {stiffnessOf(held).value, wall.curve.stiffening.at(x), wall.curve.exponent,
             wall.curve.reference};
   }
 
   ScenePtr scene_;
   CellWalker walker_;
+  LayersBeneath beneath_;
   Contact contact_;
   std::array<Piece, kMaxPieces> pieces_{};
   std::size_t piece_count_ = 0;

@@ -22,6 +22,7 @@ class FileLoader final : public SceneLoader {
   [[nodiscard]] std::string resolvePath(const std::string& path) const override;
   [[nodiscard]] FieldSourcePtr field(const Node& node) const override { return fields_.read(node); }
   [[nodiscard]] std::shared_ptr<void> image(const std::string& name, Mark place) const override;
+  [[nodiscard]] MaterialMapPtr map(const Node& node, const ParameterKind& of) const override;
 
   /// The whole scene. Called once.
   [[nodiscard]] SceneDescription read();

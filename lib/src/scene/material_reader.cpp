@@ -1,6 +1,7 @@
 #include "scene/material_reader.h"
 
 #include "scene/messages.h"
+#include "scene/parameter_reader.h"
 #include "scene/shape_reader.h"
 #include "scene/tissue_reader.h"
 #include "scene/values.h"
@@ -8,37 +9,31 @@
 namespace palpate {
 namespace {
 
-double notNegative(MapReader& reader, std::string_view key, Dimension dimension) {
-  const double value = reader.quantityOr(key, dimension, 0.0);
-  if (value < 0.0) throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be 0 or more");
-  return value;
-}
-
 Friction readFriction(const SceneLoader& loader, const Node& node) {
   MapReader reader(loader, node, "'friction'");
-  const double held = reader.requireNumber("static");
-  const double slides = reader.numberOr("kinetic", held);
+  Friction friction;
+  friction.static_ratio = requireParameter(reader, "static", {});
+  friction.kinetic_ratio = readParameter(reader, "kinetic", {}, friction.static_ratio);
   reader.finish();
-  if (held < 0.0) {
-    throw reader.errorAt("static", "scene.range", "'static' must be 0 or more");
-  }
-  if (slides < 0.0) {
-    throw reader.errorAt("kinetic", "scene.range", "'kinetic' must be 0 or more");
-  }
-  if (slides > held) {
+  const MaterialMap::Range held = friction.static_ratio.range();
+  const MaterialMap::Range slides = friction.kinetic_ratio.range();
+  if (slides.most > held.most || slides.least > held.least) {
     throw reader.errorAt("kinetic", "scene.range", "'kinetic' must not be more than 'static'",
                          "what slides is held less than what sticks");
   }
-  return {held, slides};
+  return friction;
 }
 
 Texture readTexture(const SceneLoader& loader, const Node& node) {
   MapReader reader(loader, node, "'texture'");
-  const double amplitude = positiveLength(reader, "amplitude");
+  const Parameter amplitude = requireParameter(reader, "amplitude", Dimension::kLength);
+  if (!(amplitude.range().most > 0.0)) {
+    throw reader.errorAt("amplitude", "scene.range", "'amplitude' must be more than 0");
+  }
   const double wavelength = positiveLength(reader, "wavelength");
   reader.finish();
   const double highest = Texture::highestAmplitude(wavelength);
-  if (amplitude > highest) {
+  if (amplitude.range().most > highest) {
     throw reader.errorAt(
         "amplitude", "scene.range",
         "'amplitude' must not be more than 'wavelength' / 2 pi, here " + inUnitOf(loader, highest),
@@ -48,24 +43,36 @@ Texture readTexture(const SceneLoader& loader, const Node& node) {
   return {amplitude, wavelength};
 }
 
+Composite readComposite(const SceneLoader& loader, const Node& node) {
+  MapReader reader(loader, node, "'composite'");
+  Composite composite;
+  composite.radius = positiveLength(reader, "radius");
+  composite.depth = positiveLength(reader, "depth");
+  reader.finish();
+  return composite;
+}
+
 Material readMaterial(const SceneLoader& loader, const Node::Entry& entry) {
   const Document& document = loader.document();
   MapReader reader(loader, entry.value, "the material " + inQuotes(entry.key));
   Material material;
   material.name = entry.key;
-  material.stiffness = notNegative(reader, "stiffness", Dimension::kStiffness);
-  material.damping = notNegative(reader, "damping", Dimension::kDamping);
+  material.stiffness = readParameter(reader, "stiffness", Dimension::kStiffness, {});
+  material.damping = readParameter(reader, "damping", Dimension::kDamping, {});
   if (const Node* friction = reader.optional("friction")) {
     material.friction = readFriction(loader, *friction);
   }
   if (const Node* texture = reader.optional("texture")) {
     material.texture = readTexture(loader, *texture);
   }
+  if (const Node* composite = reader.optional("composite")) {
+    material.composite = readComposite(loader, *composite);
+  }
   material.shading = reader.lengthOr("shading", 0.0);
   if (material.shading < 0.0) {
     throw reader.errorAt("shading", "scene.range", "'shading' must be 0 or more");
   }
-  material.viscosity = notNegative(reader, "viscosity", Dimension::kDamping);
+  material.viscosity = readParameter(reader, "viscosity", Dimension::kDamping, {});
   if (const Node* flow = reader.optional("flow")) {
     const auto& items = readList(document, *flow, "'flow'", 3, 3);
     for (int i = 0; i < 3; ++i) {

@@ -4,6 +4,7 @@
 
 #include "scene/messages.h"
 #include "scene/named_items.h"
+#include "scene/parameter_reader.h"
 #include "scene/region_reader.h"
 #include "scene/values.h"
 
@@ -50,8 +51,10 @@ void RegionReader::readPorts(const Node& ports) {
           kDirections[readChoice(document, *direction, "'direction'", {"both", "in", "out"})];
     }
     (void)reader.optional("after");  // when all ports are known
-    port.opens_at = readForce(reader, "opens_at", 0.0);
-    if (reader.optional("back") != nullptr) port.back = readForce(reader, "back", 0.0);
+    port.opens_at = readParameter(reader, "opens_at", Dimension::kForce, {});
+    if (reader.optional("back") != nullptr) {
+      port.back = readParameter(reader, "back", Dimension::kForce, {});
+    }
     readPuncture(reader, port);
     reader.finish();
     scene_.ports.push_back(std::move(port));

@@ -63,7 +63,14 @@ const Material& RegionReader::material(const Node& node, const std::string& what
 WallDescription RegionReader::readWall(const Node& node) const {
   if (node.kind == Node::Kind::kScalar && node.text == kAbsent) return {true, {}};
   const Material& wall = material(node, std::string(kWallKey));
-  if (!(wall.stiffness.range().most > 0.0)) {
+  const MaterialMap::Range stiffness = wall.stiffness.range();
+  if (!(stiffness.least > 0.0) && stiffness.most > 0.0) {
+    throw loader_.document().error(node.mark, "scene.range",
+                                   "the material " + inQuotes(wall.name) +
+                                       " has no stiffness in some places, and cannot be a wall",
+                                   "let the map of its stiffness be more than 0 N/m everywhere");
+  }
+  if (!(stiffness.least > 0.0)) {
     throw loader_.document().error(node.mark, "scene.range",
                                    "the material " + inQuotes(wall.name) + " cannot be a wall",
                                    "give it a stiffness, such as 1000 N/m, or write wall: absent");

@@ -39,6 +39,25 @@ std::shared_ptr<void> FileLoader::image(const std::string& name, Mark place) con
                         std::move(hint));
 }
 
+MaterialMapPtr FileLoader::map(const Node& node, const ParameterKind& of) const {
+  const std::string what = "the map of " + inQuotes(of.key);
+  MapReader reader(*this, node, what);
+  for (const auto& [kind, read] : registry_.maps) {
+    if (!reader.has(kind)) continue;
+    MaterialMapPtr map = read(reader, of);
+    reader.finish();
+    return map;
+  }
+  if (registry_.maps.empty()) {
+    throw document_.error(node.mark, "scene.no_reader", "this program reads no maps of parameters",
+                          "palpate::vdb reads them, and is not part of this program");
+  }
+  for (const auto& [kind, read] : registry_.maps) (void)reader.optional(kind);
+  reader.finish();
+  throw document_.error(node.mark, "scene.missing_key", what + " is empty",
+                        "write {grid: {file: NAME.vdb, name: LAYER/" + of.key + "}}");
+}
+
 // Before all else: a later format may change what everything below means.
 void FileLoader::readVersion(const Node& root) const {
   if (root.kind != Node::Kind::kMap) {

@@ -412,6 +412,13 @@ TEST(SceneWithoutReaders, SaysThatItReadsNoImages) {
   expectRefusal({"", "", 6, 15, "scene.no_reader", "'labels'", "palpate::vdb"}, labels);
 }
 
+TEST(SceneWithoutReaders, SaysThatItReadsNoMaps) {
+  const Problem problem = problemOf([] {
+    (void)parseScene(scene("materials: {skin: {stiffness: {grid: {file: a.vdb}}}}\n"), "test.yaml");
+  });
+  expectRefusal({"", "", 3, 31, "scene.no_reader", "maps of parameters", "palpate::vdb"}, problem);
+}
+
 // A chain of names costs stack when it is read and when it is felt; doubling names cost time.
 TEST(SceneBombs, LongChainsOfNamesAreRefusedInEitherOrder) {
   const auto chain = [](bool forward) {

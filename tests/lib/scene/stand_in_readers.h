@@ -7,6 +7,7 @@
 
 #include "palpate/fields/primitives.h"
 #include "palpate/scene/scene_file.h"
+#include "support/test_maps.h"
 
 namespace palpate {
 
@@ -83,6 +84,20 @@ inline SceneRegistry standInReaders() {
     (void)reader.boolOr("fill", false);
     return SceneRegistry::LayerSurface{later("threshold of " + file, reader.lengthOr("voxel", 1.0)),
                                        ""};
+  };
+  // Low enough for the height of a texture.
+  registry.maps["grid"] = [](MapReader& outer, const ParameterKind&) {
+    MapReader reader(outer.loader(), outer.require("grid"), "'grid'");
+    (void)reader.requireText("file");
+    for (const char* key : {"name", "unit", "units", "tolerance"}) (void)reader.optional(key);
+    reader.finish();
+    return testing::flatMap(1e-4);
+  };
+  registry.maps["image"] = [image](MapReader& reader, const ParameterKind&) {
+    (void)image(reader);
+    (void)reader.require("transfer");
+    (void)reader.optional("tolerance");
+    return testing::flatMap(1e-4);
   };
   return registry;
 }

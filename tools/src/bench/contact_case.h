@@ -42,6 +42,10 @@ struct CaseEntry {
 /// Every case, in the order in which they are shown.
 [[nodiscard]] const std::vector<CaseEntry>& contactCases();
 
+/// Five nested layers out of grids of 1 mm, every parameter of their materials a grid of 2 mm: a needle goes
+/// through three of them to the bone, along it, out, and along the skin. Not judged.
+[[nodiscard]] ContactCase fiveLayers();
+
 enum class StartIn { kOutside, kSolid };
 
 /// A scene of one layer `solid` with a wall of kWallStiffness, without friction and damping.

@@ -317,6 +317,8 @@ const std::vector<CaseEntry>& contactCases() {
       {"balls-1", "a ball of 5 mm, 0.5 mm deep", [] { return manyBalls(1); }},
       {"balls-1000", "one of 1000 balls", [] { return manyBalls(1000); }},
       {"balls-10000", "one of 10 000 balls", [] { return manyBalls(10000); }},
+      {"five-layers", "grids for shapes and materials; a needle to the bone, not judged",
+       fiveLayers},
   };
   return all;
 }

@@ -243,7 +243,7 @@ Verb benchVerb() {
       "ellipsoid,\n"
       "quadric, torus, box-edge, box-room, crease, groove, saddle, container, balls-1, "
       "balls-1000,\n"
-      "balls-10000.",
+      "balls-10000, five-layers (not judged).",
       {},
       defineBench,
       [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact"); },

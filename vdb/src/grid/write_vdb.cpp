@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "grid/vdb_archive.h"
+#include "material/material_file.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/openvdb_access.h"
@@ -69,7 +70,8 @@ class TemporaryFile {
 
 }  // namespace
 
-void writeVdb(const std::string& path, std::span<const LevelSet> grids, bool overwrite) {
+void writeVdb(const std::string& path, std::span<const LevelSet> grids, bool overwrite,
+              std::span<const NamedMaterialGrid> materials) {
   std::error_code error;
   if (!overwrite && std::filesystem::exists(path, error)) {
     throw Error(ErrorKind::kOperation, {"file.exists", "the file exists already",
@@ -77,6 +79,7 @@ void writeVdb(const std::string& path, std::span<const LevelSet> grids, bool ove
   }
   openvdb::GridCPtrVec pointers;
   for (const LevelSet& grid : grids) pointers.push_back(grid.impl().grid);
+  for (const NamedMaterialGrid& material : materials) pointers.push_back(toOpenVdb(material));
   TemporaryFile file(path);
   try {
     std::ofstream stream(file.path(), std::ios::binary | std::ios::trunc);

@@ -31,8 +31,16 @@ struct Texture {
   }
 };
 
-/// One named material of a scene. A wall uses stiffness, damping, friction, texture and shading; a
-/// content uses viscosity and flow. A material may serve as both. What is a Parameter may differ from place
+/// What lies beneath a wall, felt through it (contact/layered.h): a stiff lump, a hard ground. Off where the
+/// radius is 0.
+struct Composite {
+  double radius = 0.0;  ///< [m] of the patch that is pressed on
+  double depth =
+      0.0;  ///< [m] how far along the inward normal is looked; more than 0 if there is a radius
+};
+
+/// One named material of a scene. A wall uses stiffness, damping, friction, texture, composite and
+/// shading; a content uses viscosity and flow. A material may serve as both. What is a Parameter may differ from place
 /// to place: it is asked for at the proxy. Where a wall's stiffness K does, the spring of
 /// length d has the energy K d^2 / 2, and the force the term -d^2 / 2 grad K that goes with it, by the chain
 /// rule from the proxy to the hand; without it a way there and back would gain energy. While friction holds
@@ -44,6 +52,7 @@ struct Material {
   Parameter damping;    ///< [N s/m] against the probe's velocity while a wall is touched
   Friction friction = {};
   Texture texture = {};
+  Composite composite = {};
   double shading =
       0.0;              ///< [m] the force follows the normal averaged over this radius, so that the
                         ///< facets of a coarse mesh feel round; 0: off

@@ -5,11 +5,13 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "palpate/materials/parameter.h"
 #include "palpate/scene/document.h"
 #include "palpate/scene/units.h"
 
@@ -56,6 +58,12 @@ class MapReader {
   std::vector<std::string> known_;
 };
 
+/// What a map is of.
+struct ParameterKind {
+  std::string key;                          ///< "stiffness"
+  std::optional<Dimension> dimension = {};  ///< none: a ratio
+};
+
 /// What a loader extension needs to know of the file that is being read.
 class SceneLoader {
  public:
@@ -69,6 +77,8 @@ class SceneLoader {
   [[nodiscard]] virtual FieldSourcePtr field(const Node& node) const = 0;
   /// What the registry's image reader made of images.<name>; error at `place` if there is none.
   [[nodiscard]] virtual std::shared_ptr<void> image(const std::string& name, Mark place) const = 0;
+  /// The map of a parameter, written as {grid: {...}} or whatever kinds the registry has.
+  [[nodiscard]] virtual MaterialMapPtr map(const Node& node, const ParameterKind& of) const = 0;
 };
 
 /// Kinds that other modules add. Names are the YAML keys.
@@ -83,6 +93,9 @@ struct SceneRegistry {
     std::string label_group = {};
   };
   using LayerKind = std::function<LayerSurface(MapReader&, const std::string& layer_name)>;
+  /// `stiffness: {image: ct, transfer: [...]}`: reads the map whose keys include the kind's name. It is
+  /// made at once, as its range decides whether it may stand there.
+  using ParameterMapKind = std::function<MaterialMapPtr(MapReader&, const ParameterKind&)>;
 
   /// `grids: {tolerance, voxel}`: what a layer made of formulas is asked to become.
   struct GridChoice {
@@ -99,6 +112,7 @@ struct SceneRegistry {
 
   std::map<std::string, FieldKind> fields = {};
   std::map<std::string, LayerKind> layers = {};
+  std::map<std::string, ParameterMapKind> maps = {};
   ImageKind image = {};
   GridChooser choose_grids = {};
 };

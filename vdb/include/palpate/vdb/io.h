@@ -6,12 +6,15 @@
 #include <vector>
 
 #include "palpate/vdb/level_set.h"
+#include "palpate/vdb/material_grid.h"
 
 namespace palpate::vdb {
 
 /// Writes beside `path` and renames; nothing is left behind on failure. Replaces an existing file only if
-/// `overwrite`. @throws Error (kOperation).
-void writeVdb(const std::string& path, std::span<const LevelSet> grids, bool overwrite);
+/// `overwrite`. The grids of materials come after the others, with the voxels as their maps store them.
+/// @throws Error (kOperation).
+void writeVdb(const std::string& path, std::span<const LevelSet> grids, bool overwrite,
+              std::span<const NamedMaterialGrid> materials = {});
 
 /// One grid of a file as `info` reports it; level sets and others alike.
 struct VdbGridSummary {

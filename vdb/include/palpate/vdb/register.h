@@ -44,6 +44,9 @@ struct RegisterOptions {
 ///   images  NAME: {file, names, affine, space, frame, series}
 ///   layers  labels: {image, match: [..], voxel, sampler}      its label group is the image's name
 ///           threshold: {image, above, keep: largest | all, fill, voxel, sampler}
+///   parameters of materials and opening forces (material_grid.h); made when the scene is read
+///           grid: {file, name, unit, units, tolerance}        unit, units: only if the file does not say
+///           image, transfer: [[value, quantity], ..], tolerance    of the image; stored in 16 or 8 bits
 ///   sampler: cubic (the default) | trilinear | accessor. Notes tell of a band too narrow for cubic, and of
 ///   thin parts that a grid has lost.
 /// Reading a scene looks at files only as far as it is quick: that they are there, image headers,

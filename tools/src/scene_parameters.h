@@ -1,0 +1,28 @@
+#pragma once
+/// The parameters of a scene that differ from place to place, by the names they have in files.
+
+#include <string>
+#include <vector>
+
+#include "palpate/scene/description.h"
+#include "palpate/vdb/material_grid.h"
+
+namespace palpate::tools {
+
+struct SceneParameter {
+  std::string owner;      ///< the layer, or the port
+  std::string parameter;  ///< "stiffness", "opens_at", ...
+  std::string unit;       ///< SI: "N/m"; "1" for a ratio
+  MaterialMapPtr map;
+
+  [[nodiscard]] std::string name() const { return owner + "/" + parameter; }
+  /// Null if the map is none of voxels.
+  [[nodiscard]] vdb::MaterialGridPtr grid() const {
+    return std::dynamic_pointer_cast<const vdb::MaterialGrid>(map);
+  }
+};
+
+/// Of each layer's wall and content, and of each port; a map that several use is listed for each.
+[[nodiscard]] std::vector<SceneParameter> sceneParameters(const SceneDescription& description);
+
+}  // namespace palpate::tools

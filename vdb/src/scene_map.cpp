@@ -1,0 +1,161 @@
+#include "scene_map.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "palpate/vdb/material_grid.h"
+#include "scene_grid.h"
+#include "scene_image.h"
+
+namespace palpate::vdb {
+namespace {
+
+/// Of the span between the least and the most value of a transfer function: far below what a hand can tell
+/// apart (some percent), and met by 16 bits.
+constexpr double kDefaultTolerance = 1e-5;
+
+/// A quantity of `kind` [SI unit], a length in the scene's unit too, or a number for a ratio; nothing if it is none.
+std::optional<double> quantityOf(const SceneLoader& loader, const Node& node,
+                                 std::optional<Dimension> dimension) {
+  if (node.kind != Node::Kind::kScalar || node.quoted) return {};
+  if (!dimension || *dimension == Dimension::kLength) {
+    if (const auto number = parseNumber(node.text)) {
+      return dimension ? *number * loader.metresPerUnit() : *number;
+    }
+    if (!dimension) return {};
+  }
+  const Quantity quantity = parseQuantity(node.text, *dimension);
+  if (quantity.status != Quantity::Status::kOk) return {};
+  return quantity.si;
+}
+
+std::string unitsOf(std::optional<Dimension> dimension) {
+  return dimension ? "a number with its unit: " + std::string(unitHelp(*dimension))
+                   : std::string("a number without a unit");
+}
+
+/// [SI unit] -1 if it is not given.
+double readTolerance(MapReader& reader, const ParameterKind& of) {
+  const Node* node = reader.optional("tolerance");
+  if (node == nullptr) return -1.0;
+  const auto value = quantityOf(reader.loader(), *node, of.dimension);
+  if (!value || !(*value > 0.0)) {
+    throw reader.errorAt("tolerance", "scene.range",
+                         "'tolerance' must be more than 0, in the unit of '" + of.key + "'",
+                         "write " + unitsOf(of.dimension));
+  }
+  return *value;
+}
+
+Transfer readTransfer(MapReader& reader, const ParameterKind& of) {
+  const Node& list = reader.require("transfer");
+  const Document& document = reader.loader().document();
+  const std::string form = of.dimension ? "transfer: [[-100, 200 " : "transfer: [[-100, 0.2";
+  const std::string unit =
+      of.dimension
+          ? std::string(unitHelp(*of.dimension)).substr(0, unitHelp(*of.dimension).find(' '))
+          : "";
+  const std::string hint =
+      of.dimension ? form + unit + "], [300, 2000 " + unit + "]]" : form + "], [300, 0.6]]";
+  if (list.kind != Node::Kind::kSequence || list.items.empty()) {
+    throw document.error(list.mark, "scene.kind", "'transfer' must be a list of points", hint);
+  }
+  Transfer transfer;
+  for (const Node& item : list.items) {
+    if (item.kind != Node::Kind::kSequence || item.items.size() != 2) {
+      throw document.error(
+          item.mark, "scene.kind",
+          "a point of 'transfer' is a pair: an image's value, and '" + of.key + "' there", hint);
+    }
+    const Node& from = item.items[0];
+    const auto value = from.kind == Node::Kind::kScalar && !from.quoted ? parseNumber(from.text)
+                                                                        : std::optional<double>();
+    if (!value) {
+      throw document.error(from.mark, "scene.kind", "an image's value is a number", hint);
+    }
+    const auto to = quantityOf(reader.loader(), item.items[1], of.dimension);
+    if (!to || *to < 0.0) {
+      throw document.error(item.items[1].mark, "scene.quantity",
+                           "this is no '" + of.key + "' of 0 or more",
+                           "write " + unitsOf(of.dimension));
+    }
+    if (!transfer.empty() && !(*value > transfer.back().first)) {
+      throw document.error(from.mark, "scene.range",
+                           "the points of 'transfer' must go from smaller to larger image values",
+                           "sort them, and give each value once");
+    }
+    transfer.emplace_back(*value, *to);
+  }
+  return transfer;
+}
+
+/// Told as a note: what the reader decided.
+void tell(const RegisterOptions& options, const ParameterKind& of, const MaterialGrid& grid) {
+  if (!options.on_note) return;
+  const Quantisation& how = grid.info().quantisation;
+  if (how.bits == 32) return;
+  const std::string unit =
+      of.dimension
+          ? ' ' + std::string(unitHelp(*of.dimension)).substr(0, unitHelp(*of.dimension).find(' '))
+          : "";
+  char text[96];
+  std::snprintf(text, sizeof text, "%d bits a voxel, off by %.2g%s at most", how.bits, how.error,
+                unit.c_str());
+  options.on_note(of.key + " from " + grid.info().source + ": " + text);
+}
+
+template <typename Make>
+MaterialGridPtr madeAt(MapReader& reader, std::string_view key, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kInput) throw;
+    throw atKey(reader, key, error);
+  }
+}
+
+}  // namespace
+
+MaterialMapPtr readGridMap(MapReader& reader, const ParameterKind& of,
+                           const RegisterOptions& options) {
+  MapReader inner(reader.loader(), reader.require("grid"), "'grid'");
+  const std::string path = readExistingFile(inner, "file");
+  MaterialGridRequest request;
+  request.name = inner.textOr("name", "");
+  request.dimension = of.dimension;
+  request.unit_if_missing = inner.textOr("unit", "");
+  request.length_unit_if_missing = inner.textOr("units", "");
+  request.tolerance = std::max(0.0, readTolerance(inner, of));
+  request.max_memory = options.max_memory;
+  inner.finish();
+  reader.finish();
+  const MaterialGridPtr grid =
+      madeAt(inner, "file", [&] { return readMaterialGrid(path, request); });
+  tell(options, of, *grid);
+  return grid;
+}
+
+MaterialMapPtr readImageMap(MapReader& reader, const ParameterKind& of,
+                            const RegisterOptions& options) {
+  const auto image = std::static_pointer_cast<SceneImage>(
+      reader.loader().image(reader.requireText("image"), reader.require("image").mark));
+  const Transfer transfer = readTransfer(reader, of);
+  double tolerance = readTolerance(reader, of);
+  if (tolerance < 0.0) {
+    const auto [low, high] =
+        std::minmax_element(transfer.begin(), transfer.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; });
+    tolerance = kDefaultTolerance * (high->second - low->second);
+  }
+  reader.finish();
+  const MaterialGridPtr grid = madeAt(reader, "image", [&] {
+    return materialFromImage(image->file->image(), transfer, tolerance, options.max_memory);
+  });
+  tell(options, of, *grid);
+  return grid;
+}
+
+}  // namespace palpate::vdb
