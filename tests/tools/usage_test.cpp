@@ -5,7 +5,7 @@
 namespace palpate::testing {
 namespace {
 
-const std::vector<std::string> kVerbs = {"touch", "bake",    "info",   "check",
+const std::vector<std::string> kVerbs = {"touch", "import",  "bake",   "info", "check",
                                          "query", "explain", "render", "bench"};
 
 TEST(Usage, HelpListsEveryVerbWithAnExample) {

@@ -9,8 +9,12 @@ namespace palpate::vdb::test {
 
 std::vector<std::vector<double>> askPython(const std::string& command,
                                            const std::vector<std::string>& arguments) {
-  std::string line =
-      "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/vdb/nifti_oracle.py' " + command;
+  return askScript("vdb/nifti_oracle.py", command, arguments);
+}
+
+std::vector<std::vector<double>> askScript(const std::string& script, const std::string& command,
+                                           const std::vector<std::string>& arguments) {
+  std::string line = "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/" + script + "' " + command;
   for (const std::string& argument : arguments) line += " '" + argument + "'";
   FILE* pipe = popen(line.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot start: " + line);

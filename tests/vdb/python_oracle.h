@@ -1,13 +1,17 @@
 #pragma once
-/// Runs tests/vdb/nifti_oracle.py with Debian's Python.
+/// Runs the tests' Python programs with Debian's Python.
 
 #include <string>
 #include <vector>
 
 namespace palpate::vdb::test {
 
-/// The numbers that `nifti_oracle.py command arguments...` prints, a row for each line.
+/// The numbers that `script command arguments...` prints, a row for each line; `script` is below tests.
 /// @throws std::runtime_error if it fails; python3-nibabel and python3-scipy are test dependencies.
+[[nodiscard]] std::vector<std::vector<double>> askScript(const std::string& script,
+                                                         const std::string& command,
+                                                         const std::vector<std::string>& arguments);
+/// The same of vdb/nifti_oracle.py.
 [[nodiscard]] std::vector<std::vector<double>> askPython(const std::string& command,
                                                          const std::vector<std::string>& arguments);
 

@@ -81,6 +81,22 @@ struct ConvertOptions {
   std::string to_units;  ///< mesh; empty: the input's
 };
 
+struct ImportOptions {
+  std::string scan;  ///< the label image
+  std::string output;
+  bool dry_run = false;
+  std::vector<std::string> labels;   ///< values, ranges, names, globs; empty: all
+  std::vector<std::string> regions;  ///< NAME=LABELS
+  std::string names;
+  std::string image;              ///< grey values
+  std::optional<double> skin;     ///< the body is where `image` is brighter
+  std::string body;               ///< mask of the body
+  std::optional<int> min_island;  ///< [voxels]
+  std::string islands;            ///< "merge" or "drop"; empty: merge
+  std::string materials;          ///< table of tissues; empty: the project's
+  std::string voxel;
+};
+
 struct InfoOptions {
   std::vector<std::string> files;
   std::string units;
@@ -147,8 +163,8 @@ struct HelpOptions {
   bool markdown = false;
 };
 
-using VerbOptions =
-    std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions, InfoOptions, CheckOptions,
-                 QueryOptions, ExplainOptions, RenderOptions, BenchOptions, AccuracyOptions>;
+using VerbOptions = std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions,
+                                 ImportOptions, InfoOptions, CheckOptions, QueryOptions,
+                                 ExplainOptions, RenderOptions, BenchOptions, AccuracyOptions>;
 
 }  // namespace palpate::tools

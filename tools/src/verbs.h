@@ -13,6 +13,8 @@ namespace palpate::tools {
                          Console& console);
 [[nodiscard]] Report run(const ConvertOptions& options, const GeneralOptions& general,
                          Console& console);
+[[nodiscard]] Report run(const ImportOptions& options, const GeneralOptions& general,
+                         Console& console);
 [[nodiscard]] Report run(const InfoOptions& options, const GeneralOptions& general,
                          Console& console);
 [[nodiscard]] Report run(const CheckOptions& options, const GeneralOptions& general,

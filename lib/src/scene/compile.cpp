@@ -11,6 +11,17 @@ namespace {
 /// Where a layer names no wall (documented in tools/docs/scene.md).
 constexpr double kDefaultStiffness = 1000.0;  // [N/m]
 
+/// The globs of a list that is written "a, b".
+std::vector<std::string> globsIn(const std::string& list) {
+  std::vector<std::string> globs;
+  for (std::size_t at = 0; at < list.size();) {
+    const std::size_t end = std::min(list.find(", ", at), list.size());
+    globs.push_back(list.substr(at, end - at));
+    at = end + 2;
+  }
+  return globs;
+}
+
 std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress,
                                   const std::vector<std::string>& left_out,
                                   std::vector<LeafBetween>& between) {
@@ -166,23 +177,31 @@ void SceneCompiler::materials() {
   }
 }
 
-bool SceneCompiler::isNowhere(const std::string& glob) const {
+bool SceneCompiler::isNowhere(const std::string& globs) const {
   bool is_any = false;
-  for (std::size_t i = 0; i <= description_.layers.size(); ++i) {
-    const std::string& name = i == 0 ? std::string("outside") : description_.layers[i - 1].name;
-    if (!matchesGlob(glob, name)) continue;
-    if (!isLeftOut(static_cast<RegionId>(i))) return false;
-    is_any = true;
+  for (const std::string& glob : globsIn(globs)) {
+    for (std::size_t i = 0; i <= description_.layers.size(); ++i) {
+      const std::string& name = i == 0 ? std::string("outside") : description_.layers[i - 1].name;
+      if (!matchesGlob(glob, name)) continue;
+      if (!isLeftOut(static_cast<RegionId>(i))) return false;
+      is_any = true;
+    }
   }
   return is_any;
 }
 
-std::vector<RegionId> SceneCompiler::matching(const std::string& glob, const SourcePlace& place) {
+std::vector<RegionId> SceneCompiler::matching(const std::string& globs, const SourcePlace& place) {
   std::vector<RegionId> out;
-  for (std::size_t i = 0; i < count(); ++i) {
-    if (matchesGlob(glob, scene_->regions_[i].name)) out.push_back(static_cast<RegionId>(i));
+  for (const std::string& glob : globsIn(globs)) {
+    const std::size_t before = out.size();
+    for (std::size_t i = 0; i < count(); ++i) {
+      if (matchesGlob(glob, scene_->regions_[i].name)) out.push_back(static_cast<RegionId>(i));
+    }
+    if (out.size() == before) throw unknownRegion(glob, place);
   }
-  if (out.empty()) throw unknownRegion(glob, place);
+  if (out.empty()) throw unknownRegion(globs, place);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 

@@ -169,14 +169,28 @@ void RegionReader::requireRegion(const Node& node, bool globs) const {
   }
 }
 
+/// A region, a glob, or a list of these: told apart by commas, which no name has.
+std::string RegionReader::readSide(const Node& node) const {
+  const Document& document = loader_.document();
+  if (node.kind != Node::Kind::kSequence) {
+    const std::string name = readText(document, node, "a region");
+    requireRegion(node, true);
+    return name;
+  }
+  std::string names;
+  for (const Node& item : readList(document, node, "a list of regions", 1, 0)) {
+    const std::string name = readText(document, item, "a region");
+    requireRegion(item, true);
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
+}
+
 RegionReader::Between RegionReader::readBetween(MapReader& reader) const {
   const Document& document = loader_.document();
   const Node& node = reader.require("between");
   const auto& items = readList(document, node, "'between'", 2, 2);
-  Between between{readText(document, items[0], "a region"),
-                  readText(document, items[1], "a region")};
-  requireRegion(items[0], true);
-  requireRegion(items[1], true);
+  const Between between{readSide(items[0]), readSide(items[1])};
   if (between.a == between.b && !isGlob(between.a)) {
     throw document.error(items[1].mark, "scene.kind",
                          "between " + inQuotes(between.a) + " and itself there is no wall");

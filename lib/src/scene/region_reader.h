@@ -30,6 +30,7 @@ class RegionReader {
   void readSurface(MapReader& reader, LayerDescription& layer) const;
   [[nodiscard]] const Material& material(const Node& node, const std::string& what) const;
   [[nodiscard]] WallDescription readWall(const Node& node) const;
+  [[nodiscard]] std::string readSide(const Node& node) const;
   [[nodiscard]] Between readBetween(MapReader& reader) const;
   void requireRegion(const Node& node, bool globs) const;
   static void requireOpeningForce(const MapReader& reader, std::string_view key,

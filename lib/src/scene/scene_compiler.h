@@ -30,7 +30,7 @@ class SceneCompiler {
   int material(const std::string& name, const SourcePlace& place);
   Wall wall(const WallDescription& given, const SourcePlace& place);
   void materials();
-  std::vector<RegionId> matching(const std::string& glob, const SourcePlace& place);
+  std::vector<RegionId> matching(const std::string& globs, const SourcePlace& place);
   Error unknownRegion(const std::string& name, const SourcePlace& place);
   std::vector<Wall> makeWalls();
 

@@ -9,6 +9,7 @@
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/scene/scene.h"
+#include "support/error_of.h"
 #include "support/field_contract.h"
 
 namespace palpate::test {
@@ -242,6 +243,22 @@ TEST(Compile, TouchAndReachability) {
     ASSERT_TRUE(region.has_seed) << region.name;
     EXPECT_EQ(open->regions()[open->regionAt(region.seed)].name, region.name);
   }
+}
+
+TEST(Compile, APortMayLeadInFromSeveralRegions) {
+  // Beside one another on the x axis: a, b and c; b touches both, and outside.
+  SceneDescription s;
+  s.layers = {layer("a", ball(0, 0.5)), layer("c", ball(1.6, 0.5)), layer("b", ball(0.8, 0.5))};
+  s.ports = {port("in", "a, c", "b"), port("all", "a, o*", "b, c")};
+  const ScenePtr scene = compile(s);
+  EXPECT_EQ(scene->ports()[0].from, (std::vector<RegionId>{1, 2}));
+  EXPECT_EQ(scene->ports()[1].from, (std::vector<RegionId>{0, 1}));
+  EXPECT_EQ(scene->ports()[1].to, (std::vector<RegionId>{2, 3}));
+  // One pair that touches is enough, but each must be there.
+  s.ports = {port("in", "a, b", "c")};
+  EXPECT_NO_THROW((void)compile(s));
+  s.ports = {port("in", "a, d", "b")};
+  EXPECT_EQ(errorOf([&] { (void)compile(s); }).problem().code, "scene.unknown_layer");
 }
 
 TEST(Compile, SmallAndThinNeighboursAreStillFound) {

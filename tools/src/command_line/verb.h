@@ -50,6 +50,9 @@ struct Verb {
 /// What a scan or, if `meshes`, a mesh leaves open.
 void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes);
 
+// import_verb.cpp
+[[nodiscard]] Verb importVerb();
+
 // accuracy_verb.cpp
 [[nodiscard]] Verb accuracyVerb();
 

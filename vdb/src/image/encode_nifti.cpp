@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "palpate/core/error.h"
 #include "palpate/vdb/image.h"
@@ -44,9 +47,8 @@ std::string gzipped(const std::string& bytes) {
   return out;
 }
 
-}  // namespace
-
-std::string encodeNifti(const Image& image, bool gzip) {
+/// All but what its numbers are.
+nifti_1_header headerOf(const Image& image) {
   nifti_1_header header{};
   header.sizeof_hdr = sizeof header;
   header.regular = 'r';
@@ -72,8 +74,6 @@ std::string encodeNifti(const Image& image, bool gzip) {
                          std::to_string(count) + " voxels",
                      "", image.source);
   }
-  header.datatype = DT_FLOAT32;
-  header.bitpix = 32;
   header.vox_offset = kVoxelsAt;
   header.scl_slope = 1.0F;
   header.xyzt_units = NIFTI_UNITS_MM;
@@ -87,11 +87,48 @@ std::string encodeNifti(const Image& image, bool gzip) {
   }
   std::memcpy(header.magic, "n+1", 4);
   std::memcpy(header.descrip, "palpate", 7);
+  return header;
+}
 
-  std::string bytes(kVoxelsAt + count * sizeof(float), '\0');
+template <class Number>
+std::string bytesOf(const Image& image, nifti_1_header header, short datatype, bool gzip) {
+  header.datatype = datatype;
+  header.bitpix = 8 * sizeof(Number);
+  std::string bytes(kVoxelsAt + image.values.size() * sizeof(Number), '\0');
   std::memcpy(bytes.data(), &header, sizeof header);
-  std::memcpy(bytes.data() + kVoxelsAt, image.values.data(), count * sizeof(float));
+  if constexpr (std::is_same_v<Number, float>) {
+    std::memcpy(bytes.data() + kVoxelsAt, image.values.data(), bytes.size() - kVoxelsAt);
+  } else {
+    char* at = bytes.data() + kVoxelsAt;
+    for (const float value : image.values) {
+      const auto number = static_cast<Number>(value);
+      std::memcpy(at, &number, sizeof number);
+      at += sizeof number;
+    }
+  }
   return gzip ? gzipped(bytes) : bytes;
+}
+
+}  // namespace
+
+std::string encodeNifti(const Image& image, bool gzip) {
+  return bytesOf<float>(image, headerOf(image), DT_FLOAT32, gzip);
+}
+
+std::string encodeLabels(const Image& image, bool gzip) {
+  nifti_1_header header = headerOf(image);
+  header.intent_code = NIFTI_INTENT_LABEL;
+  float most = 0.0F;
+  for (const float value : image.values) {
+    // Written so that NaN fails too.
+    if (!(value >= 0.0F && value <= 65535.0F && std::floor(value) == value)) {
+      throw inputError("nifti.label", "a voxel is " + std::to_string(value),
+                       "labels are whole numbers from 0 to 65535", image.source);
+    }
+    most = std::max(most, value);
+  }
+  return most > 255.0F ? bytesOf<std::uint16_t>(image, header, DT_UINT16, gzip)
+                       : bytesOf<std::uint8_t>(image, header, DT_UINT8, gzip);
 }
 
 }  // namespace palpate::vdb

@@ -91,8 +91,8 @@ struct WallOverride {
 
 struct PortDescription {
   std::string name;
-  std::string from;          ///< region name or glob
-  std::string to;            ///< region name or glob
+  std::string from;          ///< region names and globs, with ", " between them
+  std::string to;            ///< the same
   FieldSourcePtr on = {};    ///< null: any facet
   std::string on_name = {};  ///< how the author called it
   /// Why `on` may be no face though the scene uses it (it went into a blend), for compile() to say

@@ -114,6 +114,10 @@ struct ImageInfo {
 /// @throws Error (kInput) for an empty image or one longer than 32767 voxels (the format's limit).
 [[nodiscard]] std::string encodeNifti(const Image& image, bool gzip);
 
+/// The same for labels: voxels of 8 bits without sign, or of 16 where labels go beyond 255.
+/// @throws Error (kInput, "nifti.label") for a value that is no whole number from 0 to 65535.
+[[nodiscard]] std::string encodeLabels(const Image& image, bool gzip);
+
 /// A table of label names, and colours if it has some:
 ///   `index name [code]`, `index name R G B [A]` (Slicer .ctbl and .txt, FreeSurfer LUT; 0 to 255), separated by
 ///       blanks, or by tabs if names hold blanks

@@ -1,0 +1,443 @@
+// palpate import: scenes of label images that the tests write.
+
+#include <cmath>
+#include <functional>
+
+#include "tools/helpers.h"
+#include "vdb/nifti_writer.h"
+
+namespace palpate::testing {
+namespace {
+
+using vdb::test::bytesOf;
+using vdb::test::gzipped;
+using vdb::test::NiftiFile;
+
+/// A label image in `folder`, voxels of 1 mm with the middle one at the origin.
+std::string writeLabels(const TempFolder& folder, const std::string& name, int size,
+                        const std::function<double(int, int, int)>& label) {
+  NiftiFile file;
+  file.dim = {size, size, size};
+  const int middle = (size - 1) / 2;
+  const double first = -middle;
+  file.sform = {{{1, 0, 0, first}, {0, 1, 0, first}, {0, 0, 1, first}}};
+  file.pixdim = {1, 1, 1, 1};
+  file.datatype = 16;  // float
+  for (int k = 0; k < size; ++k) {
+    for (int j = 0; j < size; ++j) {
+      for (int i = 0; i < size; ++i) {
+        file.values.push_back(label(i - middle, j - middle, k - middle));
+      }
+    }
+  }
+  const auto bytes = gzipped(bytesOf(file));
+  return folder.file(name,
+                     std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+/// A leg: body of radius 18 mm, muscle from 13 mm, bone from 6 mm, all along z; 41 voxels long.
+void writeLeg(const TempFolder& folder) {
+  (void)writeLabels(folder, "leg.nii.gz", 41, [](int x, int y, int) {
+    const double r = std::hypot(x, y);
+    return r < 6 ? 2 : r < 13 ? 1 : 0;
+  });
+  (void)writeLabels(folder, "body.nii.gz", 41,
+                    [](int x, int y, int) { return std::hypot(x, y) < 18 ? 1 : 0; });
+  (void)folder.file("names.csv", "value,name\n0,background\n1,vastus muscle\n2,femur\n3,none\n");
+}
+
+const Json* find(const Json& list, const std::string& name) {
+  for (const Json& one : list) {
+    if (one["name"] == name) return &one;
+  }
+  ADD_FAILURE() << "no " << name;
+  return nullptr;
+}
+
+Json imported(const TempFolder& folder, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "import");
+  arguments.emplace_back("--json");
+  const CommandResult result = runPalpate(arguments, folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+  return parseOnly(result);
+}
+
+TEST(Import, AProbeGoesThroughSkinFatAndMuscleAndStopsAtTheBone) {
+  const TempFolder folder;
+  writeLeg(folder);
+  const Json json = imported(
+      folder, {"leg.nii.gz", "--names", "names.csv", "--body", "body.nii.gz", "-o", "leg.yaml"});
+  EXPECT_EQ(json["schema"], "palpate.import/1");
+  EXPECT_EQ(filesIn(folder.path()),
+            (std::vector<std::string>{"body.nii.gz", "leg.nii.gz", "leg.yaml", "names.csv"}));
+  const Json muscle = *find(json["regions"], "vastus muscle");
+  EXPECT_EQ(muscle["tissue"], "muscle");
+  EXPECT_EQ(muscle["labels"], Json::array({1}));
+  EXPECT_EQ(find(json["regions"], "femur")->at("tissue"), "bone");
+  EXPECT_EQ(find(json["regions"], "soft_tissue")->at("tissue"), "skin, fat");
+  EXPECT_EQ(json["ports"], 2);  // into the skin and the muscle, none into the bone
+
+  // Along y at 10 mm/s: slower than any damping matters, so that a wall opens at its force.
+  const CommandResult touch = runPalpate({"touch", "leg.yaml", "--insert", "0,30,0", "0,-9,0",
+                                          "--speed", "10mm/s", "--trace", "t.csv", "--json"},
+                                         folder.path());
+  ASSERT_EQ(touch.exit_code, 0) << touch.err;
+  std::vector<std::string> order;
+  std::vector<double> entered;  // [mm] y of the proxy at each first tick of a region
+  double last_y = 0.0;
+  double hip = 0.0;
+  const std::vector<std::string> rows = linesOf(textOf(folder.path("t.csv")));
+  for (std::size_t row = 1; row < rows.size(); ++row) {
+    const std::vector<std::string> cells = cellsOf(rows[row]);
+    last_y = std::stod(cells[5]) * 1e3;
+    hip = std::stod(cells[2]) * 1e3;
+    const std::string& region = cells[10];
+    if (!order.empty() && order.back() == region) continue;
+    order.push_back(region);
+    entered.push_back(last_y);
+  }
+  ASSERT_EQ(order, (std::vector<std::string>{"outside", "soft_tissue", "vastus muscle"}));
+  EXPECT_NEAR(hip, -9.0, 0.1);
+  // It stands on the bone: its surface is between the centres at 5 and 6 mm.
+  EXPECT_NEAR(last_y, 5.5, 0.5);
+
+  // The peak in front of each wall is what its port opens at; friction acts along the wall only.
+  const Json told = parseOnly(touch);
+  const std::map<std::string, double> peak = [&] {
+    std::map<std::string, double> of;
+    for (const Json& region : told["regions"]) of[region["region"]] = region["peak_force_N"];
+    return of;
+  }();
+  EXPECT_NEAR(peak.at("outside"), 2.78, 0.03);
+  EXPECT_NEAR(peak.at("soft_tissue"), 1.5, 0.05);
+}
+
+TEST(Import, LabelsBecomeRegionsByValueRangeNameAndPattern) {
+  const TempFolder folder;
+  (void)writeLabels(folder, "l.nii.gz", 21,
+                    [](int x, int, int) { return (x + 10) / 3; });  // 0 to 6
+  (void)folder.file("n.csv",
+                    "value,name\n1,rib_1\n2,rib_2\n3,liver\n4,spleen\n5,5-6\n6,odd; \"name\"\n");
+  const auto regions = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"l.nii.gz", "--names", "n.csv", "--dry-run"});
+    std::map<std::string, Json> of;
+    const Json json = imported(folder, arguments);
+    for (const Json& region : json["regions"]) {
+      of[region["name"]] = region["labels"];
+    }
+    return of;
+  };
+  using Regions = std::map<std::string, Json>;
+  EXPECT_EQ(regions({}), (Regions{{"rib_1", {1}},
+                                  {"rib_2", {2}},
+                                  {"liver", {3}},
+                                  {"spleen", {4}},
+                                  {"5-6", {5}},
+                                  {"odd_ _name_", {6}}}));
+  EXPECT_EQ(regions({"--labels", "liver,6"}), (Regions{{"liver", {3}}, {"odd_ _name_", {6}}}));
+  EXPECT_EQ(regions({"--labels", "2-4"}),
+            (Regions{{"rib_2", {2}}, {"liver", {3}}, {"spleen", {4}}}));
+  EXPECT_EQ(regions({"--labels", "3", "--region", "ribs=rib_*", "--region", "rest=5-6,spleen"}),
+            (Regions{{"liver", {3}}, {"ribs", {1, 2}}, {"rest", {4, 5, 6}}}));
+  EXPECT_EQ(filesIn(folder.path()), (std::vector<std::string>{"l.nii.gz", "n.csv"}));
+}
+
+TEST(Import, NestingIsFoundAndShown) {
+  const TempFolder folder;
+  (void)writeLabels(folder, "v.nii.gz", 25, [](int x, int y, int z) {
+    const double r = std::hypot(x, y, z);
+    return r < 5 ? 50 : r < 8 ? 49 : 0;
+  });
+  const Json json = imported(folder, {"v.nii.gz", "--dry-run"});
+  EXPECT_TRUE(json["output"].is_null());
+  EXPECT_EQ(find(json["regions"], "label_50")->at("within"), "label_49");
+  EXPECT_TRUE(find(json["regions"], "label_49")->at("within").is_null());
+  const CommandResult text = runPalpate({"import", "v.nii.gz", "--dry-run"}, folder.path());
+  EXPECT_NE(text.out.find("label_49 100 %"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("Nothing was written"), std::string::npos) << text.out;
+}
+
+TEST(Import, IslandsAreToldAndChangedOnRequest) {
+  const TempFolder folder;
+  const auto label = [](int x, int y, int z) {
+    if (x == 0 && y == 0 && z == 0) return 0;   // a cavity
+    if (x == -9 && y == 9 && z == 9) return 1;  // a speck in the air
+    return std::hypot(x, y, z) < 6 ? 1 : 0;
+  };
+  (void)writeLabels(folder, "l.nii.gz", 21, label);
+  const Json told = imported(folder, {"l.nii.gz", "-o", "told.yaml"});
+  ASSERT_EQ(told["islands"].size(), 2U);
+  EXPECT_TRUE(told["changed"].empty());
+  EXPECT_EQ(told["islands"][0]["region"], "label_1");
+  EXPECT_NEAR(told["islands"][0]["place_m"][0].get<double>(), -9e-3, 1e-9);
+  EXPECT_NE(textOf(folder.path("told.yaml")).find("\"l.nii.gz\""), std::string::npos);
+
+  const Json changed = imported(folder, {"l.nii.gz", "--min-island", "2", "-o", "new.yaml"});
+  EXPECT_EQ(changed["changed"].size(), 2U);
+  EXPECT_TRUE(changed["islands"].empty());
+  EXPECT_EQ(find(changed["regions"], "label_1")->at("pieces"), 1);
+  EXPECT_NE(textOf(folder.path("new.yaml")).find("\"new.labels.nii.gz\""), std::string::npos);
+  // What was written is a label image with the same voxels, but for the two.
+  const Json again = imported(folder, {"new.labels.nii.gz", "--dry-run"});
+  EXPECT_EQ(again["size"], changed["size"]);
+  EXPECT_EQ(find(again["regions"], "label_1")->at("voxels"),
+            find(told["regions"], "label_1")->at("voxels"));
+  EXPECT_EQ(find(again["regions"], "label_1")->at("bounds_m"),
+            find(changed["regions"], "label_1")->at("bounds_m"));
+
+  const Json dropped =
+      imported(folder, {"l.nii.gz", "--min-island", "2", "--islands", "drop", "--dry-run"});
+  ASSERT_EQ(dropped["changed"].size(), 1U);
+  EXPECT_EQ(dropped["changed"][0]["to"], "unlabelled");
+}
+
+TEST(Import, TheSkinIsFoundInGreyValues) {
+  const TempFolder folder;
+  (void)writeLabels(folder, "l.nii.gz", 31,
+                    [](int x, int y, int z) { return std::hypot(x, y, z) < 5 ? 1 : 0; });
+  // A CT: air, a body with an air-filled cavity, and a table beside it.
+  (void)writeLabels(folder, "ct.nii.gz", 31, [](int x, int y, int z) {
+    const double r = std::hypot(x, y, z);
+    if (y < -13) return 200.0;
+    return r < 11 && std::hypot(x - 7, y, z) > 2 ? 40.0 : -1000.0;
+  });
+  const Json json =
+      imported(folder, {"l.nii.gz", "--image", "ct.nii.gz", "--skin", "-300", "-o", "s.yaml"});
+  const Json gap = *find(json["regions"], "soft_tissue");
+  const Json label = *find(json["regions"], "label_1");
+  // The ball of 11, its cavity filled, without the ball of 5 and without the table.
+  std::uint64_t expected = 0;
+  for (int x = -15; x <= 15; ++x) {
+    for (int y = -15; y <= 15; ++y) {
+      for (int z = -15; z <= 15; ++z) {
+        const double r = std::hypot(x, y, z);
+        expected += r < 11 && r >= 5 ? 1U : 0U;
+      }
+    }
+  }
+  EXPECT_EQ(gap["voxels"], expected);
+  EXPECT_EQ(label["within"], "soft_tissue");
+  EXPECT_NE(textOf(folder.path("s.yaml")).find("threshold: {image: body, above: -300"),
+            std::string::npos);
+  // The scene that came of it means the same: what is at these places.
+  const CommandResult query = runPalpate(
+      {"query", "s.yaml", "--json", "--at", "0,0,0", "7,0,0", "0,10,0", "0,12.5,0", "0,-14,0"},
+      folder.path());
+  ASSERT_EQ(query.exit_code, 0) << query.err;
+  std::vector<std::string> regions;
+  const Json points = parseOnly(query)["points"];
+  for (const Json& point : points) regions.push_back(point["region"]);
+  EXPECT_EQ(regions, (std::vector<std::string>{"label_1", "soft_tissue", "soft_tissue", "outside",
+                                               "outside"}));
+}
+
+TEST(Import, MaterialsComeFromTheTableThatIsGiven) {
+  const TempFolder folder;
+  (void)writeLabels(folder, "l.nii.gz", 11,
+                    [](int x, int y, int z) { return std::hypot(x, y, z) < 4 ? 1 : 0; });
+  (void)folder.file("t.yaml", R"(palpate_tissues: 1
+tip_radius: {value: 2 mm, basis: assumed, source: mine}
+stiffest: {value: 1000 N/m, basis: assumed, source: mine}
+tissues:
+  jelly:
+    labels: ["*"]
+    shear: {value: 10 kPa, basis: measured, source: "a rheometer"}
+    poisson: {value: 0.5, basis: assumed, source: water}
+    opens_at: {value: 0.25 N, basis: assumed, source: mine}
+)");
+  ASSERT_EQ(imported(folder, {"l.nii.gz", "--materials", "t.yaml", "-o", "s.yaml"})["ports"], 1);
+  const std::string scene = textOf(folder.path("s.yaml"));
+  // K = 2 a E / (1 - nu^2) with E = 2 G (1 + nu): 2 * 0.002 * 30000 / 0.75.
+  EXPECT_NE(scene.find("jelly: {stiffness: 160 N/m}"), std::string::npos) << scene;
+  EXPECT_NE(scene.find("measured: a rheometer"), std::string::npos) << scene;
+  EXPECT_NE(scene.find("opens_at: 0.25 N}"), std::string::npos) << scene;
+  EXPECT_EQ(runPalpate({"explain", "s.yaml"}, folder.path()).exit_code, 0);
+}
+
+TEST(Import, TheProjectsTableGivesEveryNumberASourceAndFitsTheNamesInUse) {
+  const TempFolder folder;
+  const std::map<std::string, std::string> tissue_of = {{"rib_left_1", "bone"},
+                                                        {"costal_cartilages", "cartilage"},
+                                                        {"vertebrae_L3", "bone"},
+                                                        {"hip_right", "bone"},
+                                                        {"gluteus_maximus_left", "muscle"},
+                                                        {"autochthon_left", "muscle"},
+                                                        {"Tibialis anterior muscle", "muscle"},
+                                                        {"tibia_left", "bone"},
+                                                        {"lung_upper_lobe_left", "lung"},
+                                                        {"pulmonary_vein", "vessel"},
+                                                        {"gallbladder", "gallbladder"},
+                                                        {"urinary_bladder", "hollow_organ"},
+                                                        {"spinal_cord", "nerve"},
+                                                        {"Thalamus_L", "brain"},
+                                                        {"mandible", "bone"},
+                                                        {"submandibular_gland", "soft_tissue"},
+                                                        {"portal_vein_and_splenic_vein", "vessel"},
+                                                        {"Skin", "skin"},
+                                                        {"subcutaneous fat", "fat"},
+                                                        {"trachea", "airway"}};
+  std::string names = "value,name\n";
+  std::vector<std::string> order;
+  for (const auto& [name, tissue] : tissue_of) {
+    order.push_back(name);
+    names += std::to_string(order.size()) + "," + name + "\n";
+  }
+  (void)folder.file("n.csv", names);
+  (void)writeLabels(folder, "l.nii.gz", 21, [&](int x, int, int) {
+    return std::min<int>(x + 11, static_cast<int>(order.size()));
+  });
+  const Json json = imported(folder, {"l.nii.gz", "--names", "n.csv", "-o", "s.yaml"});
+  EXPECT_EQ(json["regions"].size(), order.size());
+  for (const Json& region : json["regions"]) {
+    EXPECT_EQ(region["tissue"], tissue_of.at(region["name"])) << region["name"];
+  }
+  // Each line about a number says what it is based on.
+  for (const std::string& line : linesOf(textOf(folder.path("s.yaml")))) {
+    if (!line.starts_with("  #   ")) continue;
+    const bool is_sourced = line.find(": measured: ") != std::string::npos ||
+                            line.find(": derived: ") != std::string::npos ||
+                            line.find(": assumed: ") != std::string::npos;
+    EXPECT_TRUE(is_sourced) << line;
+  }
+  EXPECT_EQ(runPalpate({"info", "s.yaml"}, folder.path()).exit_code, 0);
+}
+
+TEST(Import, AStopLeavesNothingBehind) {
+  const TempFolder folder;
+  (void)writeLabels(folder, "l.nii.gz", 200,
+                    [](int x, int y, int z) { return (x * y * z) % 97 == 0 ? 1 : 0; });
+  std::filesystem::rename(folder.path("l.nii.gz"), folder.path("big.nii.gz"));
+  // It talks once it has read the image, which has no unit.
+  const CommandResult result = runInterrupted(
+      {"import", "big.nii.gz", "--labels", "1,1", "--min-island", "3", "-o", "s.yaml"},
+      folder.path(), SIGINT);
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(filesIn(folder.path()), std::vector<std::string>{"big.nii.gz"});
+}
+
+struct Bad {
+  std::vector<std::string> arguments;
+  int exit_code;
+  std::string code;
+  std::string says;  // part of what is told
+};
+
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.code << " " << bad.says; }
+
+class ImportRefuses : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(ImportRefuses, WithOneErrorAndNoFile) {
+  const TempFolder folder;
+  writeLeg(folder);
+  (void)writeLabels(folder, "grey.nii.gz", 11, [](int x, int y, int z) { return x * y * z + 0.5; });
+  (void)writeLabels(folder, "zero.nii.gz", 11, [](int, int, int) { return 0; });
+  (void)folder.file("there.yaml", "palpate: 1\n");
+  (void)folder.file("bad_table.yaml",
+                    "palpate_tissues: 1\ntip_radius: {value: 1, basis: guessed}\n");
+  (void)folder.file("no_skin.yaml", R"(palpate_tissues: 1
+tip_radius: {value: 1 mm, basis: assumed, source: x}
+stiffest: {value: 2000 N/m, basis: assumed, source: x}
+tissues:
+  bone: {labels: ["*"], stiffness: {value: 1000 N/m, basis: assumed, source: x}}
+)");
+  (void)folder.file("few.yaml", R"(palpate_tissues: 1
+tip_radius: {value: 1 mm, basis: assumed, source: x}
+stiffest: {value: 2000 N/m, basis: assumed, source: x}
+tissues:
+  bone: {labels: ["femur"], stiffness: {value: 1000 N/m, basis: assumed, source: x}}
+)");
+  const std::vector<std::string> before = filesIn(folder.path());
+  std::vector<std::string> arguments = GetParam().arguments;
+  arguments.insert(arguments.begin(), "import");
+  arguments.emplace_back("--json");
+  const CommandResult result = runPalpate(arguments, folder.path());
+  EXPECT_EQ(result.exit_code, GetParam().exit_code) << result.out << result.err;
+  const Json json = parseOnly(result);
+  EXPECT_EQ(json["error"]["code"], GetParam().code);
+  EXPECT_NE(result.out.find(GetParam().says), std::string::npos) << result.out;
+  EXPECT_EQ(filesIn(folder.path()), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ImportRefuses,
+    ::testing::Values(
+        Bad{{}, 2, "usage.command_line", "SCAN is missing"},
+        Bad{{"leg.nii.gz"}, 2, "usage.command_line", "-o SCENE.yaml is missing"},
+        Bad{{"leg.nii.gz", "-o", "s.vdb"}, 2, "usage.import", "must end in .yaml"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--skin", "3"}, 2, "usage.command_line", "--image"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--image", "grey.nii.gz"},
+            2,
+            "usage.command_line",
+            "--skin"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--image", "grey.nii.gz", "--skin", "3", "--body",
+             "body.nii.gz"},
+            2,
+            "usage.command_line",
+            "both"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--islands", "drop"},
+            2,
+            "usage.command_line",
+            "--min-island"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--min-island", "0"},
+            2,
+            "usage.command_line",
+            "--min-island"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--voxel", "0"}, 2, "usage.import", "--voxel"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--region", "muscle"}, 2, "usage.import", "NAME=LABELS"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--region", "outside=1"},
+            2,
+            "usage.import",
+            "cannot be called"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--region", "a=1", "--region", "b=1-2"},
+            2,
+            "usage.import",
+            "in the regions"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--labels", "9-3"}, 2, "usage.import", "empty"},
+        Bad{{"leg.nii.gz", "-o", "there.yaml"}, 1, "output.exists", "--force"},
+        Bad{{"leg.nii.gz", "-o", "no/s.yaml"}, 1, "output.no_folder", "mkdir"},
+        Bad{{"none.nii.gz", "-o", "s.yaml"}, 3, "file.missing", "none.nii.gz"},
+        Bad{{"names.csv", "-o", "s.yaml"}, 3, "file.unknown_kind", "names.csv"},
+        Bad{{"there.yaml", "-o", "s.yaml"}, 3, "import.kind", "label image"},
+        Bad{{"grey.nii.gz", "-o", "s.yaml"}, 3, "labels.not_labels", "voxel (0, 0, 0)"},
+        Bad{{"zero.nii.gz", "-o", "s.yaml"}, 3, "labels.none", "all of its voxels are 0"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--labels", "7"},
+            3,
+            "labels.no_voxels",
+            "the image holds 1, 2"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--labels", "0"}, 3, "labels.background", "--body"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--labels", "femur"}, 3, "labels.no_names", "names"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--names", "names.csv", "--labels", "fermur"},
+            3,
+            "labels.unknown",
+            "did you mean `femur`"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--names", "names.csv", "--labels", "none"},
+            3,
+            "labels.no_voxels",
+            "none"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--body", "zero.nii.gz"},
+            3,
+            "scan.empty",
+            "0 everywhere"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--body", "grey.nii.gz"},
+            3,
+            "labels.not_labels",
+            "grey.nii.gz"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--image", "grey.nii.gz", "--skin", "1e9"},
+            3,
+            "scan.empty",
+            "lower threshold"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "bad_table.yaml"},
+            3,
+            "tissues.value",
+            "1 mm"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "few.yaml"},
+            3,
+            "tissues.none",
+            "label_1"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "no_skin.yaml", "--body", "body.nii.gz"},
+            3,
+            "tissues.missing",
+            "skin"}));
+
+}  // namespace
+}  // namespace palpate::testing

@@ -1,0 +1,80 @@
+// The verb that makes a scene of a segmented scan.
+
+#include "command_line/verb.h"
+
+namespace palpate::tools {
+namespace {
+
+void defineImport(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<ImportOptions>(invocation);
+  app.add_option("scan", o.scan);
+  const char* g = "Output";
+  add(app, g, "-o,--output", "FILE.yaml", o.output, "where the scene goes (required)");
+  addFlag(app, g, "--dry-run", o.dry_run,
+          "write nothing; show regions, and the voxels, memory and time of their grids");
+  g = "Regions (LABELS: values, ranges 5-28, names, patterns such as 'lung*', with commas)";
+  add(app, g, "--labels", "LABELS", o.labels,
+      "only these labels, each a region of its own (default: all)")
+      ->expected(1)
+      ->delimiter(',')
+      ->take_all()
+      ->allow_extra_args(false);
+  addList(app, g, "--region", "NAME=LABELS", o.regions,
+          "one region of all of these labels, may be repeated");
+  add(app, g, "--names", "FILE", o.names, "name table: lines `index name` or `value,name`");
+  add(app, g, "--min-island", "VOXELS", o.min_island,
+      "change pieces and cavities of less than this; the changed image goes to FILE.labels.nii.gz "
+      "(default: none, they are only told)")
+      ->check(CLI::Range(1, 1000000000));
+  add(app, g, "--islands", "merge|drop", o.islands,
+      "--min-island: they become part of what is around (default), or pieces become unlabelled "
+      "and cavities stay")
+      ->check(CLI::IsMember({"merge", "drop"}));
+  g = "The body, whose unlabelled rest becomes the region soft_tissue";
+  add(app, g, "--image", "FILE", o.image, "grey values of the same scan: CT, MR");
+  add(app, g, "--skin", "VALUE", o.skin,
+      "--image: the body is brighter than this; its largest piece, cavities filled (CT: -300)");
+  add(app, g, "--body", "FILE", o.body, "or a mask of the body: what is not 0");
+  g = "Materials and grids";
+  add(app, g, "--materials", "FILE.yaml", o.materials,
+      "table of tissues (default: the project's data/materials/tissues.yaml)");
+  add(app, g, "--voxel", "LENGTH", o.voxel,
+      "voxel size of the grids, in mm or with a unit (default: of the same volume as the scan's)");
+}
+
+}  // namespace
+
+Verb importVerb() {
+  return {"import",
+          "Turn a segmented scan into a scene: regions, materials, ports",
+          "palpate import labels.nii.gz --names labels.csv --body mask.nii.gz -o scan.yaml",
+          "palpate import SCAN -o SCENE.yaml [OPTIONS]",
+          "SCAN is a label image. Each label becomes a region, with the material of the first "
+          "tissue in the\n"
+          "table that fits its name; stiffer ones come later, so that the wall between two is "
+          "that of the\n"
+          "stiffer. Regions that touch get a port that opens at the tissue's force; bone has "
+          "none. The scene\n"
+          "says of every number whether it was measured, derived or assumed, and by whom. It is "
+          "text to be\n"
+          "edited; grids are made when it is touched or baked.",
+          {},
+          defineImport,
+          [](const Invocation& i) {
+            const auto& o = chosen<ImportOptions>(i);
+            need(!o.scan.empty(), "SCAN");
+            need(o.dry_run || !o.output.empty(), "-o SCENE.yaml");
+            if (o.skin.has_value() != !o.image.empty()) {
+              throw usageError("--image and --skin need each other", "");
+            }
+            if (o.skin && !o.body.empty()) {
+              throw usageError("--skin and --body both say what the body is", "");
+            }
+            if (!o.islands.empty() && !o.min_island) {
+              throw usageError("--islands needs --min-island", "");
+            }
+          },
+          true};
+}
+
+}  // namespace palpate::tools

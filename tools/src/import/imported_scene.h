@@ -1,0 +1,62 @@
+#pragma once
+/// A scanned body as regions, and the scene file made of them.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "import/region_plan.h"
+#include "palpate/vdb/label_survey.h"
+
+namespace palpate::tools {
+
+/// All that the scene is written from.
+struct ImportedScan {
+  vdb::Image labels;  ///< its values may be gone
+  RegionPlan plan;
+  vdb::LabelSurvey survey;  ///< of the plan's regions
+  bool has_body = false;
+  std::vector<int> body_labels;            ///< of its mask, if it is from one
+  double voxel = 0.0;                      ///< [m] of the grids
+  std::vector<vdb::IslandChange> changes;  ///< that were made to the labels
+
+  [[nodiscard]] std::string nameOf(std::size_t region) const;
+  /// What touches a region, with its share of the region's surface, the largest first; what the image's
+  /// border cuts off touches nothing that is known.
+  [[nodiscard]] std::vector<std::pair<std::string, double>> neighborsOf(std::size_t region) const;
+};
+
+/// Of a volume in [m3].
+[[nodiscard]] std::string cubicCentimetres(double volume);
+
+/// What a grid will take, before it is made.
+struct GridEstimate {
+  double active_voxels = 0.0;
+  double memory = 0.0;   ///< [bytes] as it is felt
+  double seconds = 0.0;  ///< with two cores
+};
+/// `area` [m2] of the surface, `volume` [m3] inside, `voxel` [m].
+[[nodiscard]] GridEstimate estimateGrid(double area, double volume, double voxel);
+
+/// What leads into a region from others that touch it, whose wall with them is its own.
+struct Passage {
+  std::vector<std::size_t> outer;
+  std::size_t inner = 0;
+  const Tissue* through = nullptr;
+};
+/// Of all regions whose tissue opens; first that of the skin.
+[[nodiscard]] std::vector<Passage> passages(const ImportedScan& scan, const TissueTable& tissues);
+
+/// Files as the scene names them.
+struct SceneFiles {
+  std::string labels;
+  std::string names;  ///< may be empty
+  std::string body;   ///< mask, or the image with `skin`; empty: no body
+};
+[[nodiscard]] std::string writeScene(const ImportOptions& options, const ImportedScan& scan,
+                                     const TissueTable& tissues, const SceneFiles& files);
+
+/// @throws Error (kInput) if the table has no tissue of this name, which a body needs.
+[[nodiscard]] const Tissue& requireTissue(const TissueTable& tissues, const std::string& name);
+
+}  // namespace palpate::tools

@@ -1,0 +1,188 @@
+#include "import/region_plan.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "palpate/core/error.h"
+#include "palpate/scene/units.h"
+#include "palpate/vdb/scan_surface.h"
+#include "text.h"
+
+namespace palpate::tools {
+namespace {
+
+using Counts = std::map<int, std::uint64_t>;
+
+Error usage(std::string message, std::string hint) {
+  return Error(ErrorKind::kUsage, {"usage.import", std::move(message), std::move(hint)});
+}
+
+std::optional<int> wholeNumber(std::string_view text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (text.empty() || text.size() > 6 || !std::all_of(text.begin(), text.end(), is_digit)) {
+    return std::nullopt;
+  }
+  return std::stoi(std::string(text));
+}
+
+std::string listOf(const Counts& counts) {
+  std::string text;
+  std::size_t told = 0;
+  for (const auto& [label, voxels] : counts) {
+    if (label == 0) continue;
+    if (++told > 20) return text + ", ...";
+    text += (text.empty() ? "" : ", ") + std::to_string(label);
+  }
+  return text.empty() ? "nothing but 0" : text;
+}
+
+/// The labels of the image that `entry` means: 7, 5-28, a name or a pattern.
+std::vector<int> labelsOf(const std::string& entry, const ImportOptions& options,
+                          const Counts& counts, const vdb::NameTable& names) {
+  std::vector<int> wanted;
+  const std::size_t dash = entry.find('-');
+  const auto from = wholeNumber(std::string_view(entry).substr(0, dash));
+  const auto to = dash == std::string::npos ? std::nullopt
+                                            : wholeNumber(std::string_view(entry).substr(dash + 1));
+  if (from && to) {
+    if (*from > *to) throw usage("the range " + entry + " is empty", "write 5-28");
+    for (const auto& [label, voxels] : counts) {
+      if (label >= *from && label <= *to && label != 0) wanted.push_back(label);
+    }
+  } else {
+    wanted = vdb::resolveLabels({entry}, names, options.names);
+    if (wanted == std::vector<int>{0}) {
+      throw inputError("labels.background", "label 0 is what is not labelled, no region",
+                       "--body or --skin makes a region of what in the body is not labelled",
+                       options.scan);
+    }
+    std::erase_if(wanted, [&](int label) { return label == 0 || !counts.contains(label); });
+  }
+  if (wanted.empty()) {
+    throw inputError("labels.no_voxels", "no voxel of the image is of label `" + entry + "`",
+                     "the image holds " + listOf(counts), options.scan);
+  }
+  return wanted;
+}
+
+/// What a layer may be called; characters that mean something in scenes become underscores.
+std::string layerName(std::string name) {
+  for (char& c : name) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7F ||
+        std::string_view("*?;,/\"\\").find(c) != std::string_view::npos) {
+      c = '_';
+    }
+  }
+  return name == "outside" || name == kGapName ? name + "_label" : name;
+}
+
+class Planner {
+ public:
+  Planner(const ImportOptions& options, const Counts& counts, const vdb::NameTable& names,
+          const TissueTable& tissues)
+      : options_(options), counts_(counts), names_(names), tissues_(tissues) {}
+
+  RegionPlan make() {
+    for (const std::string& text : options_.regions) addJoined(text);
+    std::vector<int> single;
+    if (options_.labels.empty()) {
+      for (const auto& [label, voxels] : counts_) {
+        if (label != 0) single.push_back(label);
+      }
+    }
+    for (const std::string& entry : options_.labels) {
+      const std::vector<int> found = labelsOf(entry, options_, counts_, names_);
+      single.insert(single.end(), found.begin(), found.end());
+    }
+    std::sort(single.begin(), single.end());
+    single.erase(std::unique(single.begin(), single.end()), single.end());
+    for (const int label : single) {
+      if (!taken_.contains(label)) addSingle(label);
+    }
+    if (plan_.regions.empty()) {
+      throw inputError("labels.none", "the image holds no label: all of its voxels are 0", "",
+                       options_.scan);
+    }
+    std::stable_sort(plan_.regions.begin(), plan_.regions.end(), [&](const auto& a, const auto& b) {
+      return tissues_.wallStiffness(*a.tissue).value < tissues_.wallStiffness(*b.tissue).value;
+    });
+    return std::move(plan_);
+  }
+
+ private:
+  void addJoined(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    if (equals == std::string::npos || name.empty() || equals + 1 == text.size()) {
+      throw usage("--region " + text + " is not NAME=LABELS",
+                  "write --region muscle=5-28, --region 'bone=femur,rib*'");
+    }
+    if (layerName(name) != name) {
+      throw usage("a region cannot be called '" + name + "'",
+                  "choose a name without * ? ; , / \" \\, not 'outside' and not '" +
+                      std::string(kGapName) + "'");
+    }
+    PlannedRegion region;
+    region.name = name;
+    for (const std::string_view entry : split(std::string_view(text).substr(equals + 1), ',')) {
+      for (const int label : labelsOf(std::string(entry), options_, counts_, names_)) {
+        const auto [at, is_new] = taken_.emplace(label, name);
+        if (!is_new && at->second != name) {
+          throw usage("label " + std::to_string(label) + " is in the regions '" + at->second +
+                          "' and '" + name + "'",
+                      "a label belongs to one region");
+        }
+        if (is_new) region.labels.push_back(label);
+      }
+    }
+    std::sort(region.labels.begin(), region.labels.end());
+    if (region.labels.empty()) throw usage("the region '" + name + "' is given twice", "");
+    add(std::move(region));
+  }
+
+  /// Labels of one name are one region.
+  void addSingle(int label) {
+    const auto named = names_.find(label);
+    if (named == names_.end() && !names_.empty()) {
+      plan_.notes.push_back("label " + std::to_string(label) + " has no name in " + options_.names +
+                            "; it is called label_" + std::to_string(label));
+    }
+    const std::string name =
+        layerName(named == names_.end() ? "label_" + std::to_string(label) : named->second);
+    const auto same = std::find_if(plan_.regions.begin(), plan_.regions.end(),
+                                   [&](const PlannedRegion& r) { return r.name == name; });
+    if (same != plan_.regions.end()) {
+      same->labels.push_back(label);
+      return;
+    }
+    add({name, {label}, nullptr});
+  }
+
+  void add(PlannedRegion region) {
+    region.tissue = tissues_.of(region.name);
+    if (region.tissue == nullptr) {
+      throw inputError("tissues.none", "no tissue fits the region '" + region.name + "'",
+                       "let the last tissue of the table take all: labels: [\"*\"]", tissues_.file);
+    }
+    plan_.regions.push_back(std::move(region));
+  }
+
+  const ImportOptions& options_;
+  const Counts& counts_;
+  const vdb::NameTable& names_;
+  const TissueTable& tissues_;
+  std::map<int, std::string> taken_;  ///< by --region
+  RegionPlan plan_;
+};
+
+}  // namespace
+
+RegionPlan planRegions(const ImportOptions& options, const Counts& counts,
+                       const vdb::NameTable& names, const TissueTable& tissues) {
+  return Planner(options, counts, names, tissues).make();
+}
+
+}  // namespace palpate::tools

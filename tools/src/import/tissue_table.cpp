@@ -1,0 +1,292 @@
+#include "import/tissue_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <string_view>
+#include <utility>
+
+#include "import/own_tissues.h"
+#include "palpate/scene/scene_file.h"
+#include "text.h"
+
+namespace palpate::tools {
+namespace {
+
+/// The same strict reader of maps as scenes have; a table has no fields and no images.
+class TableLoader final : public SceneLoader {
+ public:
+  explicit TableLoader(const Document& document) : document_(document) {}
+  [[nodiscard]] const Document& document() const noexcept override { return document_; }
+  [[nodiscard]] double metresPerUnit() const noexcept override { return 1.0; }
+  [[nodiscard]] std::string lengthUnit() const override { return "m"; }
+  [[nodiscard]] std::string resolvePath(const std::string& path) const override { return path; }
+  [[nodiscard]] FieldSourcePtr field(const Node& node) const override { throw none(node.mark); }
+  [[nodiscard]] std::shared_ptr<void> image(const std::string& /*name*/,
+                                            Mark place) const override {
+    throw none(place);
+  }
+
+ private:
+  [[nodiscard]] Error none(Mark mark) const {
+    return document_.error(mark, "tissues.kind", "a table of tissues has no shapes and no images");
+  }
+  const Document& document_;
+};
+
+enum class NumberKind { kLength, kStiffness, kPressure, kRatio, kDamping, kForce };
+
+std::optional<double> pressure(std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, double>, 4> kUnits = {
+      {{" GPa", 1e9}, {" MPa", 1e6}, {" kPa", 1e3}, {" Pa", 1.0}}};
+  for (const auto& [unit, factor] : kUnits) {
+    if (!text.ends_with(unit)) continue;
+    const auto number = parseNumber(text.substr(0, text.size() - unit.size()));
+    if (!number) return std::nullopt;
+    return *number * factor;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> valueOf(std::string_view text, NumberKind kind) {
+  const auto with_unit = [&](Dimension dimension) -> std::optional<double> {
+    const auto parsed = parseQuantity(text, dimension);
+    if (parsed.status != Quantity::Status::kOk) return std::nullopt;
+    return parsed.si;
+  };
+  switch (kind) {
+    case NumberKind::kLength:
+      return with_unit(Dimension::kLength);
+    case NumberKind::kStiffness:
+      return with_unit(Dimension::kStiffness);
+    case NumberKind::kPressure:
+      return pressure(text);
+    case NumberKind::kRatio:
+      return parseNumber(text);
+    case NumberKind::kDamping:
+      return with_unit(Dimension::kDamping);
+    case NumberKind::kForce:
+      return with_unit(Dimension::kForce);
+  }
+  return std::nullopt;
+}
+
+const char* unitsOf(NumberKind kind) {
+  switch (kind) {
+    case NumberKind::kLength:
+      return "a length with its unit, more than 0: 1 mm";
+    case NumberKind::kStiffness:
+      return "a stiffness, more than 0: 400 N/m";
+    case NumberKind::kPressure:
+      return "a modulus, more than 0, in Pa, kPa, MPa or GPa: 62 kPa";
+    case NumberKind::kRatio:
+      return "a plain number, 0 or more: 0.45";
+    case NumberKind::kDamping:
+      return "a damping, 0 or more: 2 N.s/m";
+    case NumberKind::kForce:
+      return "a force, 0 or more: 2.8 N";
+  }
+  return "";
+}
+
+class TableReader {
+ public:
+  explicit TableReader(const Document& document) : loader_(document) {}
+
+  TissueTable read() {
+    const Document& document = loader_.document();
+    TissueTable table;
+    table.file = document.file;
+    MapReader root(loader_, document.root, "a table of tissues");
+    if (root.requireNumber("palpate_tissues") != 1.0) {
+      throw root.errorAt("palpate_tissues", "tissues.version",
+                         "this is another version of tissue tables", "write palpate_tissues: 1");
+    }
+    table.tip_radius = number(root.require("tip_radius"), "tip_radius", NumberKind::kLength);
+    table.stiffest = number(root.require("stiffest"), "stiffest", NumberKind::kStiffness);
+    const Node& tissues = root.require("tissues");
+    if (tissues.kind != Node::Kind::kMap || tissues.entries.empty()) {
+      throw document.error(tissues.mark, "tissues.kind", "'tissues' wants a map of tissues",
+                           "write tissues: {muscle: {labels: [\"*muscle*\"], ...}}");
+    }
+    root.finish();
+    for (const Node::Entry& entry : tissues.entries) {
+      table.tissues.push_back(tissue(entry));
+    }
+    return table;
+  }
+
+ private:
+  SourcedNumber number(const Node& node, const std::string& what, NumberKind kind) {
+    const Document& document = loader_.document();
+    MapReader reader(loader_, node, what);
+    const Node& value = reader.require("value");
+    const std::optional<double> parsed =
+        value.kind == Node::Kind::kScalar ? valueOf(value.text, kind) : std::nullopt;
+    const bool may_be_zero =
+        kind == NumberKind::kRatio || kind == NumberKind::kDamping || kind == NumberKind::kForce;
+    if (!parsed || *parsed < 0.0 || (*parsed == 0.0 && !may_be_zero)) {
+      throw document.error(value.mark, "tissues.value",
+                           "'" + what + "' wants " + unitsOf(kind) + ", not '" + value.text + "'");
+    }
+    SourcedNumber result = sourced(reader);
+    result.value = *parsed;
+    result.text = value.text;
+    reader.finish();
+    return result;
+  }
+
+  static SourcedNumber sourced(MapReader& reader) {
+    SourcedNumber result;
+    const std::string basis = reader.requireText("basis");
+    if (basis == "measured") {
+      result.basis = Basis::kMeasured;
+    } else if (basis == "derived") {
+      result.basis = Basis::kDerived;
+    } else if (basis != "assumed") {
+      throw reader.errorAt("basis", "tissues.basis", "'basis' is '" + basis + "'",
+                           "write measured, derived or assumed");
+    }
+    result.source = reader.requireText("source");
+    return result;
+  }
+
+  Tissue tissue(const Node::Entry& entry) {
+    const Document& document = loader_.document();
+    Tissue made;
+    made.name = entry.key;
+    MapReader reader(loader_, entry.value, "a tissue");
+    const Node& labels = reader.require("labels");
+    if (labels.kind != Node::Kind::kSequence || labels.items.empty()) {
+      throw document.error(labels.mark, "tissues.kind", "'labels' wants a list of patterns",
+                           "write labels: [\"*muscle*\"]");
+    }
+    for (const Node& item : labels.items) {
+      if (item.kind != Node::Kind::kScalar || item.text.empty()) {
+        throw document.error(item.mark, "tissues.kind", "a pattern of label names is a text");
+      }
+      made.labels.push_back(item.text);
+    }
+    const auto read = [&](const char* key, NumberKind kind) -> std::optional<SourcedNumber> {
+      const Node* node = reader.optional(key);
+      if (node == nullptr) return std::nullopt;
+      return number(*node, key, kind);
+    };
+    made.stiffness = read("stiffness", NumberKind::kStiffness);
+    made.young = read("young", NumberKind::kPressure);
+    made.shear = read("shear", NumberKind::kPressure);
+    made.poisson = read("poisson", NumberKind::kRatio);
+    made.damping = read("damping", NumberKind::kDamping);
+    made.friction = read("friction", NumberKind::kRatio);
+    made.viscosity = read("viscosity", NumberKind::kDamping);
+    made.opens_at = read("opens_at", NumberKind::kForce);
+    made.back = read("back", NumberKind::kForce);
+    reader.finish();
+    check(made, entry.key_mark);
+    return made;
+  }
+
+  void check(const Tissue& tissue, Mark mark) const {
+    const Document& document = loader_.document();
+    const bool from_modulus = tissue.young || tissue.shear;
+    if (!tissue.stiffness && !from_modulus) {
+      throw document.error(mark, "tissues.stiffness",
+                           "'" + tissue.name + "' has no stiffness, and no modulus for one",
+                           "give stiffness, young or shear");
+    }
+    if (!tissue.stiffness && !tissue.poisson) {
+      throw document.error(mark, "tissues.poisson",
+                           "'" + tissue.name + "' has a modulus, but no Poisson's ratio",
+                           "give poisson: {value: 0.45, ...}");
+    }
+    if (tissue.poisson && tissue.poisson->value > 0.5) {
+      throw document.error(mark, "tissues.poisson",
+                           "Poisson's ratio of '" + tissue.name + "' is " + tissue.poisson->text,
+                           "it is from 0 to 0.5");
+    }
+    if (tissue.back && !tissue.opens_at) {
+      throw document.error(mark, "tissues.back",
+                           "'" + tissue.name + "' has 'back', but nothing gets in",
+                           "give opens_at as well");
+    }
+  }
+
+  TableLoader loader_;
+};
+
+/// Blanks and hyphens as underscores, capitals small.
+std::string simplified(std::string_view name) {
+  std::string result(name);
+  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) {
+    return c == ' ' || c == '-' ? '_' : static_cast<char>(std::tolower(c));
+  });
+  return result;
+}
+
+}  // namespace
+
+const char* basisName(Basis basis) {
+  switch (basis) {
+    case Basis::kMeasured:
+      return "measured";
+    case Basis::kDerived:
+      return "derived";
+    case Basis::kAssumed:
+      break;
+  }
+  return "assumed";
+}
+
+const Tissue* TissueTable::of(const std::string& label) const {
+  const std::string name = simplified(label);
+  for (const Tissue& tissue : tissues) {
+    for (const std::string& pattern : tissue.labels) {
+      if (matchesGlob(simplified(pattern), name)) return &tissue;
+    }
+  }
+  return nullptr;
+}
+
+const Tissue* TissueTable::find(const std::string& name) const {
+  const auto at = std::find_if(tissues.begin(), tissues.end(),
+                               [&](const Tissue& tissue) { return tissue.name == name; });
+  return at == tissues.end() ? nullptr : &*at;
+}
+
+SourcedNumber TissueTable::wallStiffness(const Tissue& tissue) const {
+  SourcedNumber result;
+  if (tissue.stiffness) {
+    result = *tissue.stiffness;
+  } else {
+    const double nu = tissue.poisson->value;
+    const double young =
+        tissue.young ? tissue.young->value : 2.0 * tissue.shear->value * (1.0 + nu);
+    const SourcedNumber& modulus = tissue.young ? *tissue.young : *tissue.shear;
+    result.value = 2.0 * tip_radius.value * young / (1.0 - nu * nu);
+    result.basis = Basis::kDerived;
+    result.source =
+        std::string("K = 2 a E / (1 - nu^2), a = ") + tip_radius.text + " (" +
+        basisName(tip_radius.basis) + "), " + (tissue.young ? "E = " : "E = 2 G (1 + nu), G = ") +
+        modulus.text + " (" + basisName(modulus.basis) + ": " + modulus.source +
+        "), nu = " + tissue.poisson->text + " (" + basisName(tissue.poisson->basis) + ")";
+  }
+  if (result.value > stiffest.value) {
+    result.source = "cut to " + stiffest.text + " (" + basisName(stiffest.basis) + ": " +
+                    stiffest.source + ") from " + formatNumber(result.value, 3) +
+                    " N/m: " + result.source;
+    result.value = stiffest.value;
+  }
+  result.text = formatNumber(result.value) + " N/m";
+  return result;
+}
+
+TissueTable readTissueTable(const std::string& path) {
+  return TableReader(*readDocument(path)).read();
+}
+
+TissueTable ownTissueTable() {
+  return TableReader(*parseDocument(kOwnTissues, "tissues.yaml")).read();
+}
+
+}  // namespace palpate::tools
