@@ -236,5 +236,37 @@ tissues:
   }
 }
 
+TEST(ImportScan, OfSegmentsThatOverlapTheLaterHasTheVoxels) {
+  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  const std::string file = kData + "/chest_segnrrd/SegmentationOverlapping.seg.nrrd";
+  const TempFolder folder;
+  const CommandResult result =
+      runPalpate({"import", file, "-o", "chest.yaml", "--json"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("overlap"), std::string::npos) << result.err;
+  const auto expected = vdb::test::askScript(kOracle, "segments", {file});
+  const std::vector<std::string> names = {"ribs",
+                                          "cervical vertebral column",
+                                          "thoracic vertebral column",
+                                          "lumbar vertebral column",
+                                          "right lung",
+                                          "left lung",
+                                          "tissue",
+                                          "overlapping sphere"};
+  ASSERT_EQ(expected.size(), names.size());
+  double shared = 0.0;
+  const Json json = parseOnly(result);
+  ASSERT_EQ(json["regions"].size(), names.size());
+  for (const Json& region : json["regions"]) {
+    const auto at = std::find(names.begin(), names.end(), region["name"].get<std::string>());
+    ASSERT_NE(at, names.end()) << region["name"];
+    const auto& voxels = expected[static_cast<std::size_t>(at - names.begin())];
+    EXPECT_EQ(region["voxels"].get<double>(), voxels[1]) << region["name"];
+    shared += voxels[0] - voxels[1];
+  }
+  EXPECT_EQ(shared, 15514.0);
+  EXPECT_EQ(runPalpate({"info", "chest.yaml"}, folder.path()).exit_code, 0);
+}
+
 }  // namespace
 }  // namespace palpate::testing

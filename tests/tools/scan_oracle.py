@@ -5,10 +5,14 @@ body CT ABOVE LABELS               voxels of the gap: in the largest piece of CT
 rays LABELS BODY ABOVE RAYS SETS   RAYS: lines `x y z dx dy dz` in mm, RAS; SETS: `1,2;5,6`. For each ray, marched in
                                    steps of 0.05 mm through the nearest voxels, the way to the body (BODY > ABOVE) and
                                    from there to each set of labels, in mm; -1 if it is not met
+segments FILE                      FILE: .seg.nrrd with gzip. For each segment, in the file's order: its voxels, and those that
+                                   no later segment has
 
 Images are NIfTI, read by nibabel, or MetaImage with zlib, read here.
 """
+import gzip
 import os
+import re
 import sys
 import zlib
 
@@ -68,5 +72,16 @@ elif command == "rays":
         skin = first(along(mask, mask_affine) > above)
         found = [first(numpy.isin(along(labels, affine), one)) for one in sets]
         print(skin * step, *[(at - skin) * step if at >= 0 else -1 for at in found])
+elif command == "segments":
+    header, data = open(sys.argv[2], "rb").read().split(b"\n\n", 1)
+    header = header.decode()
+    sizes = [int(n) for n in re.search("sizes: (.*)", header).group(1).split()]
+    layers = numpy.frombuffer(gzip.decompress(data), numpy.uint8).reshape(sizes, order="F")
+    value = lambda n, key: int(re.search("Segment%d_%s:=(.*)" % (n, key), header).group(1))
+    count = len(re.findall(r"Segment\d+_LabelValue:=", header))
+    segments = [layers[value(n, "Layer")] == value(n, "LabelValue") for n in range(count)]
+    for n, segment in enumerate(segments):
+        later = numpy.any(segments[n + 1 :], axis=0) if n + 1 < count else numpy.zeros_like(segment)
+        print(int(segment.sum()), int((segment & ~later).sum()))
 else:
     sys.exit("unknown command")

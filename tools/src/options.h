@@ -95,6 +95,7 @@ struct ImportOptions {
   std::string islands;            ///< "merge" or "drop"; empty: merge
   std::string materials;          ///< table of tissues; empty: the project's
   std::string voxel;
+  ScanOptions reading;  ///< of all images
 };
 
 struct InfoOptions {

@@ -1,5 +1,6 @@
 #include "scan_options.h"
 
+#include "input_kind.h"
 #include "palpate/core/error.h"
 
 namespace palpate::tools {
@@ -31,7 +32,8 @@ vdb::Mesh readMeshFile(const std::string& file, const std::string& units,
   refuseScanOptions(options, true);
   if (units.empty()) console.note(file + ": one unit is taken as 1 mm; --units says otherwise");
   vdb::Mesh mesh = vdb::readMesh(file, meshUnit(units).metres, spaceOf(options));
-  if (options.space.empty()) {
+  // Of models of scans it matters; other meshes have no patient.
+  if (options.space.empty() && (mesh.space_is_stated || hasExtension(file, ".vtk"))) {
     console.note(file + ": coordinates are " + spaceText(mesh, options) +
                  "; --space says otherwise");
   }

@@ -25,6 +25,13 @@ const Material* named(const SceneDescription& description, const std::string& na
   return found == description.materials.end() ? nullptr : &*found;
 }
 
+void addShaft(const std::string& layer, const std::string& way, const ShaftFriction::Way& friction,
+              Collector& all) {
+  all.add(layer, "shaft_" + way + "_static", "N/m", friction.static_force);
+  all.add(layer, "shaft_" + way + "_kinetic", "N/m", friction.kinetic_force);
+  all.add(layer, "shaft_" + way + "_damping", "N.s/m^2", friction.damping);
+}
+
 }  // namespace
 
 std::vector<SceneParameter> sceneParameters(const SceneDescription& description) {
@@ -36,9 +43,15 @@ std::vector<SceneParameter> sceneParameters(const SceneDescription& description)
       all.add(layer.name, "static_friction", "1", wall->friction.static_ratio);
       all.add(layer.name, "kinetic_friction", "1", wall->friction.kinetic_ratio);
       all.add(layer.name, "texture_amplitude", "m", wall->texture.amplitude);
+      all.add(layer.name, "stiffening", "N/m^2", wall->curve.stiffening);
+      all.add(layer.name, "maxwell_stiffness", "N/m", wall->maxwell.stiffness);
     }
     if (const Material* content = named(description, layer.content)) {
       all.add(layer.name, "viscosity", "N.s/m", content->viscosity);
+      all.add(layer.name, "lattice_force", "N", content->lattice.force);
+      all.add(layer.name, "cutting", "N", content->cutting);
+      addShaft(layer.name, "in", content->shaft.in, all);
+      addShaft(layer.name, "out", content->shaft.out, all);
     }
   }
   for (const PortDescription& port : description.ports) {

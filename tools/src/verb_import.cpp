@@ -7,6 +7,7 @@
 #include "json_parts.h"
 #include "output_files.h"
 #include "palpate/vdb/scan_surface.h"
+#include "scan_options.h"
 #include "text.h"
 #include "verbs.h"
 
@@ -18,11 +19,14 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostTold = 12;
 constexpr double kIslandShare = 0.1;  // of a region's largest piece
 
-vdb::Image readScan(const std::string& path, Console& console) {
+vdb::Image readScan(const std::string& path, const ImportOptions& options, Console& console) {
   if (inputKind(path) != InputKind::kImage) {
-    throw inputError("import.kind", "this is no image", "give a label image: .nii, .nii.gz", path);
+    throw inputError("import.kind", "this is no image",
+                     std::string("give ") + (path == options.scan ? "a label image" : "an image") +
+                         ": .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd or a folder of DICOM files",
+                     path);
   }
-  vdb::Image image = vdb::readNifti(path);
+  vdb::Image image = vdb::readImage(path, imageOptions(options.reading));
   for (const std::string& note : image.notes) console.note(path + ": " + note);
   return image;
 }
@@ -43,7 +47,7 @@ std::vector<std::vector<int>> labelsOf(const RegionPlan& plan) {
 /// Empty if none is asked for.
 vdb::VoxelMask bodyOf(const ImportOptions& options, ImportedScan& scan, Console& console) {
   if (!options.body.empty()) {
-    const vdb::Image mask = readScan(options.body, console);
+    const vdb::Image mask = readScan(options.body, options, console);
     for (const auto& [label, voxels] : vdb::countLabels(mask)) {
       if (label != 0) scan.body_labels.push_back(label);
     }
@@ -54,14 +58,15 @@ vdb::VoxelMask bodyOf(const ImportOptions& options, ImportedScan& scan, Console&
     return vdb::labelMask(mask, scan.labels);
   }
   if (!options.skin) return {};
-  const vdb::Image image = readScan(options.image, console);
+  const vdb::Image image = readScan(options.image, options, console);
   return vdb::bodyMask(image, *options.skin, scan.labels, console.progress());
 }
 
-ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues,
-                     const vdb::NameTable& names, Console& console) {
+ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, Console& console) {
   ImportedScan scan;
-  scan.labels = readScan(options.scan, console);
+  scan.labels = readScan(options.scan, options, console);
+  const vdb::NameTable names =
+      options.names.empty() ? scan.labels.labels.names : vdb::readLabelTable(options.names).names;
   report(console.progress(), "labels", 0.0);
   scan.plan = planRegions(options, vdb::countLabels(scan.labels), names, tissues);
   const vdb::VoxelMask body = bodyOf(options, scan, console);
@@ -289,9 +294,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
   }
   const TissueTable tissues =
       options.materials.empty() ? ownTissueTable() : readTissueTable(options.materials);
-  const vdb::NameTable names =
-      options.names.empty() ? vdb::NameTable() : vdb::readNameTable(options.names);
-  ImportedScan scan = readAll(options, tissues, names, console);
+  ImportedScan scan = readAll(options, tissues, console);
   for (const std::string& note : scan.plan.notes) console.note(note);
   if (!scan.has_body) {
     console.note("no --skin and no --body: what has no label is outside");

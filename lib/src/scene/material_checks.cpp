@@ -72,6 +72,17 @@ void checkTissue(const Material& material, const std::string& of) {
   }
 }
 
+void checkComposite(const Material& material) {
+  const Composite& composite = material.composite;
+  if (!(composite.radius >= 0.0) || (composite.radius > 0.0 && !(composite.depth > 0.0)) ||
+      !std::isfinite(composite.radius + composite.depth)) {
+    throw inputError(
+        "scene.parameter",
+        "the composite of material " + quoted(material.name) + " has no radius or no depth",
+        "both must be more than 0, or the radius 0 for none");
+  }
+}
+
 }  // namespace
 
 void checkMaterial(const Material& material) {
@@ -89,6 +100,7 @@ void checkMaterial(const Material& material) {
                      "what slides is held less than what sticks");
   }
   checkTexture(material);
+  checkComposite(material);
   checkTissue(material, of);
 }
 

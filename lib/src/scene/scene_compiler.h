@@ -54,7 +54,7 @@ class SceneCompiler {
     return region != kOutside && !left_out_[region - 1U].empty();
   }
   /// Whether the names of regions `glob` stands for are all left out.
-  [[nodiscard]] bool isNowhere(const std::string& glob) const;
+  [[nodiscard]] bool isNowhere(const std::string& globs) const;
 
   const SceneDescription& description_;
   std::vector<std::string> left_out_;  // by layer: why; empty if it is made

@@ -17,8 +17,8 @@ namespace {
 
 // Every key of a scene's top level. The keys of what lies below are where they are read.
 constexpr std::string_view kSections[] = {
-    "palpate", "length", "renderer", "description", "fields", "images", "materials",
-    "layers",  "walls",  "ports",    "sheets",      "start",  "memory", "device"};
+    "palpate", "length", "renderer", "description", "fields", "images", "materials", "layers",
+    "walls",   "ports",  "sheets",   "start",       "memory", "device", "grids"};
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "scene/messages.h"
+#include "scene/parameter_reader.h"
 #include "scene/shape_reader.h"
 #include "scene/values.h"
 
@@ -19,13 +20,6 @@ std::string forceText(double newton) {
   return std::string(std::begin(digits), end.ptr) + " N";
 }
 
-double notNegative(MapReader& reader, std::string_view key, Dimension dimension,
-                   double fallback = 0.0) {
-  const double value = reader.quantityOr(key, dimension, fallback);
-  if (value < 0.0) throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be 0 or more");
-  return value;
-}
-
 double positive(MapReader& reader, std::string_view key, Dimension dimension) {
   (void)reader.require(key);
   const double value = reader.quantityOr(key, dimension, 0.0);
@@ -35,10 +29,19 @@ double positive(MapReader& reader, std::string_view key, Dimension dimension) {
   return value;
 }
 
+/// More than 0 somewhere.
+Parameter positiveParameter(MapReader& reader, std::string_view key, Dimension dimension) {
+  Parameter parameter = requireParameter(reader, key, dimension);
+  if (!(parameter.range().most > 0.0)) {
+    throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be more than 0");
+  }
+  return parameter;
+}
+
 SpringCurve readCurve(const SceneLoader& loader, const Node& node) {
   MapReader reader(loader, node, "'curve'");
   SpringCurve curve;
-  curve.stiffening = notNegative(reader, "stiffening", Dimension::kStiffness2);
+  curve.stiffening = readParameter(reader, "stiffening", Dimension::kStiffness2, {});
   curve.exponent = reader.numberOr("exponent", 1.0);
   const bool has_reference = reader.optional("reference") != nullptr;
   if (has_reference) curve.reference = positiveLength(reader, "reference");
@@ -58,7 +61,7 @@ SpringCurve readCurve(const SceneLoader& loader, const Node& node) {
 Maxwell readMaxwell(const SceneLoader& loader, const Node& node) {
   MapReader reader(loader, node, "'maxwell'");
   Maxwell branch;
-  branch.stiffness = positive(reader, "stiffness", Dimension::kStiffness);
+  branch.stiffness = positiveParameter(reader, "stiffness", Dimension::kStiffness);
   branch.time = positive(reader, "time", Dimension::kTime);
   reader.finish();
   return branch;
@@ -67,7 +70,7 @@ Maxwell readMaxwell(const SceneLoader& loader, const Node& node) {
 Lattice readLattice(const SceneLoader& loader, const Node& node, double stiffness) {
   MapReader reader(loader, node, "'lattice'");
   Lattice lattice;
-  const double force = positive(reader, "force", Dimension::kForce);
+  lattice.force = positiveParameter(reader, "force", Dimension::kForce);
   lattice.wavelength = reader.requirePoint("wavelength");
   if (reader.optional("origin") != nullptr) lattice.origin = reader.requirePoint("origin");
   reader.finish();
@@ -83,7 +86,7 @@ Lattice readLattice(const SceneLoader& loader, const Node& node, double stiffnes
         "it says how stiff the lattice may be at most: 2 pi 'force' / 'wavelength'");
   }
   const double highest = lattice.highestForce(stiffness);
-  if (force > highest) {
+  if (lattice.force.range().most > highest) {
     throw reader.errorAt("force", "scene.range",
                          "'force' must not be more than 'stiffness' times the shortest "
                          "'wavelength' / 2 pi, here " +
@@ -91,18 +94,16 @@ Lattice readLattice(const SceneLoader& loader, const Node& node, double stiffnes
                          "a stronger lattice would be stiffer than its material; make it weaker "
                          "or longer, or the material stiffer");
   }
-  lattice.force = force;
   return lattice;
 }
 
 ShaftFriction::Way readWay(const SceneLoader& loader, const Node& node, const std::string& what) {
   MapReader reader(loader, node, what);
-  (void)reader.require("static");
-  const double held = notNegative(reader, "static", Dimension::kStiffness);
-  const double slides = notNegative(reader, "kinetic", Dimension::kStiffness, held);
-  const double damping = notNegative(reader, "damping", Dimension::kDamping2);
+  const Parameter held = requireParameter(reader, "static", Dimension::kStiffness);
+  const Parameter slides = readParameter(reader, "kinetic", Dimension::kStiffness, held);
+  const Parameter damping = readParameter(reader, "damping", Dimension::kDamping2, {});
   reader.finish();
-  if (slides > held) {
+  if (slides.range().most > held.range().most || slides.range().least > held.range().least) {
     throw reader.errorAt("kinetic", "scene.range", "'kinetic' must not be more than 'static'",
                          "what slides is held less than what sticks");
   }
@@ -136,12 +137,11 @@ void readTissue(MapReader& reader, Material& material) {
   if (const Node* lattice = reader.optional("lattice")) {
     material.lattice = readLattice(loader, *lattice, stiffness);
   }
-  const double cutting = notNegative(reader, "cutting", Dimension::kForce);
-  if (cutting > 0.0 && !(stiffness > 0.0)) {
+  material.cutting = readParameter(reader, "cutting", Dimension::kForce, {});
+  if (material.cutting.range().most > 0.0 && !(stiffness > 0.0)) {
     throw reader.errorAt("cutting", "scene.range", "a material with 'cutting' needs a 'stiffness'",
                          "with it the tip presses until it cuts; give one, such as 300 N/m");
   }
-  material.cutting = cutting;
   if (const Node* shaft = reader.optional("shaft")) material.shaft = readShaft(loader, *shaft);
 }
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <string>
 
 #include "lib/render/figures.h"
 #include "lib/render/shake.h"
@@ -38,6 +40,12 @@ bool isOnWay(const Figure& figure, const PortCrossing& crossing, const Vec3& a, 
     if (figure.region(a + (at + behind) / length * way) == crossing.to) return true;
   }
   return false;
+}
+
+std::size_t countOf(const std::string& events) {
+  return events.empty()
+             ? 0
+             : 1 + static_cast<std::size_t>(std::count(events.begin(), events.end(), ' '));
 }
 
 TEST_P(RandomFigure, CrossesAsItsTableSaysInPathOrderAndThroughNoWall) {
@@ -84,8 +92,9 @@ TEST_P(RandomFigure, CrossesAsItsTableSaysInPathOrderAndThroughNoWall) {
       if (way && (way->events != events || way->region != region || out.proxy != hip)) {
         way = passageOf(figure, 1e3 * last, 1e3 * hip, came_from, before, 5000);
         const auto told = drive.renderer().crossings();
-        if (way && way->events != events &&
-            std::any_of(told.begin(), told.end(), [&](const PortCrossing& crossing) {
+        // Crossings beyond those that the samples see, every one of them one by the formulas: these are too coarse.
+        if (way && told.size() > countOf(way->events) &&
+            std::all_of(told.begin(), told.end(), [&](const PortCrossing& crossing) {
               return isOnWay(figure, crossing, 1e3 * last, 1e3 * hip);
             })) {
           way.reset();

@@ -241,9 +241,9 @@ Verb benchVerb() {
       "true ones\n"
       "beside them. Scenes: sphere, sphere-baked, sphere-deep, sphere-small, sphere-hollow, "
       "ellipsoid,\n"
-      "quadric, torus, box-edge, box-room, crease, groove, saddle, container, balls-1, "
-      "balls-1000,\n"
-      "balls-10000, five-layers (not judged).",
+      "quadric, torus, box-edge, box-room, crease, groove, saddle, container, ports-10, "
+      "ports-100,\n"
+      "ports-1000, balls-1, balls-1000, balls-10000, five-layers (not judged).",
       {},
       defineBench,
       [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact"); },

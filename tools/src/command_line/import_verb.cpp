@@ -21,7 +21,9 @@ void defineImport(CLI::App& app, Invocation& invocation) {
       ->allow_extra_args(false);
   addList(app, g, "--region", "NAME=LABELS", o.regions,
           "one region of all of these labels, may be repeated");
-  add(app, g, "--names", "FILE", o.names, "name table: lines `index name` or `value,name`");
+  add(app, g, "--names", "FILE", o.names,
+      "table of names: `index name`, `value,name`, of Slicer, ITK-SNAP or FreeSurfer (default: the "
+      "image's own)");
   add(app, g, "--min-island", "VOXELS", o.min_island,
       "change pieces and cavities of less than this; the changed image goes to FILE.labels.nii.gz "
       "(default: none, they are only told)")
@@ -40,6 +42,7 @@ void defineImport(CLI::App& app, Invocation& invocation) {
       "table of tissues (default: the project's data/materials/tissues.yaml)");
   add(app, g, "--voxel", "LENGTH", o.voxel,
       "voxel size of the grids, in mm or with a unit (default: of the same volume as the scan's)");
+  addScan(app, "What a scan leaves open", o.reading, false);
 }
 
 }  // namespace

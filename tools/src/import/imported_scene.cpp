@@ -93,11 +93,23 @@ class SceneWriter {
     line("length: mm");
   }
 
+  /// What was asked for where the scan leaves something open; images that are written here leave nothing open.
+  [[nodiscard]] std::string reading() const {
+    const ScanOptions& o = options_.reading;
+    std::string keys;
+    if (!o.affine.empty()) keys += ", affine: " + o.affine;
+    if (!o.space.empty()) keys += ", space: " + o.space;
+    if (o.frame) keys += ", frame: " + std::to_string(*o.frame);
+    if (!o.series.empty()) keys += ", series: " + quoted(o.series);
+    return keys;
+  }
+
   void images() {
     line("images:");
     line("  labels: {file: " + quoted(files_.labels) +
-         (files_.names.empty() ? "" : ", names: " + quoted(files_.names)) + "}");
-    if (!files_.body.empty()) line("  body: {file: " + quoted(files_.body) + "}");
+         (files_.names.empty() ? "" : ", names: " + quoted(files_.names)) +
+         (options_.min_island ? "" : reading()) + "}");
+    if (!files_.body.empty()) line("  body: {file: " + quoted(files_.body) + reading() + "}");
   }
 
   void number(const char* what, const std::optional<SourcedNumber>& n) {

@@ -27,10 +27,14 @@ class TableLoader final : public SceneLoader {
                                             Mark place) const override {
     throw none(place);
   }
+  [[nodiscard]] MaterialMapPtr map(const Node& node, const ParameterKind& /*of*/) const override {
+    throw none(node.mark);
+  }
 
  private:
   [[nodiscard]] Error none(Mark mark) const {
-    return document_.error(mark, "tissues.kind", "a table of tissues has no shapes and no images");
+    return document_.error(mark, "tissues.kind",
+                           "a table of tissues has no shapes, images and maps");
   }
   const Document& document_;
 };
