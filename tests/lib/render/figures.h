@@ -172,13 +172,16 @@ struct Crossing {
   int to = 0;
   Vec3 point{0.0};  ///< [mm]
 };
+/// Seen by equal steps, and at `more` places (0 at a, 1 at b) where steps may pass a corner by.
 inline std::vector<Crossing> crossingsOf(const Figure& figure, const Vec3& a, const Vec3& b,
-                                         int samples) {
+                                         int samples, std::vector<double> more = {}) {
   std::vector<Crossing> all;
   Vec3 last = a;
   int region = figure.region(a);
-  for (int i = 1; i <= samples; ++i) {
-    const Vec3 here = glm::mix(a, b, static_cast<double>(i) / samples);
+  for (int i = 1; i <= samples; ++i) more.push_back(static_cast<double>(i) / samples);
+  std::sort(more.begin(), more.end());
+  for (const double at : more) {
+    const Vec3 here = glm::mix(a, b, at);
     const int now = figure.region(here);
     while (region != now) {
       Vec3 before = last;
@@ -204,10 +207,11 @@ struct Passage {
   PassedNames passed;
 };
 inline std::optional<Passage> passageOf(const Figure& figure, const Vec3& a, const Vec3& b,
-                                        int region, PassedNames passed, int samples) {
+                                        int region, PassedNames passed, int samples,
+                                        const std::vector<double>& more = {}) {
   Passage out{{}, region, std::move(passed)};
   if (figure.region(a) != region) return std::nullopt;
-  for (const Crossing& crossing : crossingsOf(figure, a, b, samples)) {
+  for (const Crossing& crossing : crossingsOf(figure, a, b, samples, more)) {
     const Way way = figure.way(crossing.from, crossing.to, crossing.point, out.passed);
     if (!way) return std::nullopt;
     if (!way->empty()) {
