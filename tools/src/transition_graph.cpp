@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kNodeWidth = 150.0;
 constexpr double kNodeHeight = 46.0;
-constexpr double kColumn = 400.0;  ///< from one column's middle to the next
-constexpr double kRow = 150.0;
+constexpr double kColumn = 460.0;  ///< from one column's middle to the next
+constexpr double kRow = 240.0;
 constexpr double kMargin = 60.0;
 constexpr double kHead = 70.0;  ///< of the page, for the title
 constexpr double kLine = 14.0;  ///< of a label
@@ -88,8 +88,14 @@ Spot borderOf(const Spot& from, const Spot& to) {
   return {from.x + x / share, from.y + y / share};
 }
 
-/// A bent arrow with its label beside its middle; `bend` is how far the middle lies to the left of the way.
-std::string arrowSvg(const GraphArrow& arrow, const Spot& from, const Spot& to, double bend) {
+/// A bent arrow, and its label at `label_at` (0: its begin, 1: its end); `bend` is how far the middle lies to the left
+/// of the way.
+struct ArrowSvg {
+  std::string line;
+  std::string label;
+};
+ArrowSvg arrowSvg(const GraphArrow& arrow, const Spot& from, const Spot& to, double bend,
+                  double label_at) {
   const double length = std::max(std::hypot(to.x - from.x, to.y - from.y), 1.0);
   const Spot left{(to.y - from.y) / length, -(to.x - from.x) / length};
   const Spot control{0.5 * (from.x + to.x) + 2.0 * bend * left.x,
@@ -97,22 +103,28 @@ std::string arrowSvg(const GraphArrow& arrow, const Spot& from, const Spot& to, 
   const Spot a = borderOf(from, control);
   const Spot b = borderOf(to, control);
   const char* color = arrow.is_wall_absent ? kFree : kPort;
-  std::string svg = "<path d='M " + svgNumber(a.x) + " " + svgNumber(a.y) + " Q " +
-                    svgNumber(control.x) + " " + svgNumber(control.y) + " " + svgNumber(b.x) + " " +
-                    svgNumber(b.y) + "' fill='none' stroke='" + color + "' stroke-width='1.6'" +
-                    (arrow.is_wall_absent ? " stroke-dasharray='6 4'" : "") + " marker-end='url(#" +
-                    (arrow.is_wall_absent ? "free" : "port") + ")'/>\n";
-  // The middle of the curve, and there the label on its outer side.
-  const Spot middle{0.25 * (a.x + b.x) + 0.5 * control.x, 0.25 * (a.y + b.y) + 0.5 * control.y};
+  ArrowSvg svg;
+  svg.line = "<path d='M " + svgNumber(a.x) + " " + svgNumber(a.y) + " Q " + svgNumber(control.x) +
+             " " + svgNumber(control.y) + " " + svgNumber(b.x) + " " + svgNumber(b.y) +
+             "' fill='none' stroke='" + color + "' stroke-width='1.6'" +
+             (arrow.is_wall_absent ? " stroke-dasharray='6 4'" : "") + " marker-end='url(#" +
+             (arrow.is_wall_absent ? "free" : "port") + ")'/>\n";
+  // On the outer side of the curve.
+  const double t = label_at;
+  const auto along = [t](double first, double pull, double last) {
+    return (1.0 - t) * (1.0 - t) * first + 2.0 * t * (1.0 - t) * pull + t * t * last;
+  };
+  const Spot place{along(a.x, control.x, b.x), along(a.y, control.y, b.y)};
   const bool is_below = bend * left.y > 0.0;
-  const double lines = static_cast<double>(arrow.label.size());
-  double y = middle.y + (is_below ? kLine : 5.0 - kLine * lines);
+  const auto lines = static_cast<double>(arrow.label.size());
+  double y = place.y + (is_below ? kLine : 5.0 - kLine * lines);
   for (std::size_t i = 0; i < arrow.label.size(); ++i, y += kLine) {
-    svg += svgText(middle.x, y,
-                   std::string("text-anchor='middle' paint-order='stroke' stroke='#ffffff' "
-                               "stroke-width='4' fill='") +
-                       (i == 0 ? color : "#444") + "' font-size='" + (i == 0 ? "12" : "10") + "'",
-                   arrow.label[i]);
+    svg.label +=
+        svgText(place.x, y,
+                std::string("text-anchor='middle' paint-order='stroke' stroke='#ffffff' "
+                            "stroke-width='4' fill='") +
+                    (i == 0 ? color : "#444") + "' font-size='" + (i == 0 ? "12" : "10") + "'",
+                arrow.label[i]);
   }
   return svg;
 }
@@ -154,6 +166,7 @@ std::string transitionSvg(const std::string& title, std::span<const GraphState> 
       svgText(kMargin, 54.0, "font-size='11' fill='#666'",
               "green: ports; dashed grey: no wall; dashed red: cannot be reached; blue: the start");
   std::map<std::pair<std::size_t, std::size_t>, int> drawn;
+  std::string labels;
   for (const GraphArrow& arrow : arrows) {
     // Each way bends to its own left, so that there and back lie apart.
     const int before = drawn[{arrow.from, arrow.to}]++;
@@ -163,8 +176,15 @@ std::string transitionSvg(const std::string& title, std::span<const GraphState> 
     // Over states in between, further out.
     const double over = apart > 1 ? 0.45 * kRow * static_cast<double>(apart - 1) : 0.0;
     const double bend = 0.5 * kBend + over + kBend * before;
-    svg += arrowSvg(arrow, spots[arrow.from], spots[arrow.to], bend);
+    // Nearer the column of more states, where arrows lie apart.
+    const std::size_t begins = heights[columns[arrow.from]];
+    const std::size_t ends = heights[columns[arrow.to]];
+    const double label_at = begins == ends ? 0.5 : begins > ends ? 0.38 : 0.62;
+    const ArrowSvg drawing = arrowSvg(arrow, spots[arrow.from], spots[arrow.to], bend, label_at);
+    svg += drawing.line;
+    labels += drawing.label;
   }
+  svg += labels;
   for (std::size_t i = 0; i < states.size(); ++i) svg += nodeSvg(states[i], spots[i]);
   return svg + "</svg>\n";
 }
