@@ -7,12 +7,16 @@
 #include "palpate/vdb/image.h"
 #include "support/error_of.h"
 #include "support/temp_file.h"
+#include "vdb/header_lines.h"
 
 namespace palpate::vdb {
 namespace {
 
 using palpate::testing::TempFolder;
-using Lines = std::vector<std::pair<std::string, std::string>>;
+using test::apartMm;
+using test::counting;
+using test::Lines;
+using test::set;
 
 Lines plainHeader() {
   return {{"ObjectType", "Image"},     {"NDims", "3"},
@@ -30,25 +34,6 @@ std::string textOf(const Lines& lines, const std::string& data = "LOCAL") {
   return text + "ElementDataFile = " + data + "\n";
 }
 
-void set(Lines& lines, const std::string& key, const std::string& value) {
-  for (auto& line : lines) {
-    if (line.first == key) {
-      line.second = value;
-      return;
-    }
-  }
-  lines.emplace_back(key, value);
-}
-
-std::string counting(int count, bool big = false) {
-  std::string bytes;
-  for (int i = 0; i < count; ++i) {
-    bytes += big ? '\0' : static_cast<char>(i);
-    bytes += big ? static_cast<char>(i) : '\0';
-  }
-  return bytes;
-}
-
 std::string zipped(const std::string& content) {
   uLongf size = compressBound(content.size());
   std::string out(size, '\0');
@@ -58,8 +43,6 @@ std::string zipped(const std::string& content) {
   out.resize(size);
   return out;
 }
-
-double apartMm(const Vec3& a, const Vec3& b) { return glm::length(a - b) * 1e3; }
 
 std::string codeOf(const std::string& file) {
   const Error error = errorOf([&] { (void)readImage(file); });

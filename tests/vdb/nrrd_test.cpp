@@ -7,6 +7,7 @@
 #include "palpate/vdb/image.h"
 #include "support/error_of.h"
 #include "support/temp_file.h"
+#include "vdb/header_lines.h"
 #include "vdb/nifti_writer.h"
 
 namespace palpate::vdb {
@@ -14,8 +15,11 @@ namespace {
 
 using palpate::testing::TempFolder;
 
-/// Lines of a header, changed by `change`, then an empty line.
-using Lines = std::vector<std::pair<std::string, std::string>>;
+using test::apartMm;
+using test::counting;
+using test::expectCounting;
+using test::Lines;
+using test::set;
 
 Lines plainHeader() {
   return {{"type", "short"},
@@ -37,40 +41,10 @@ std::string textOf(const Lines& lines) {
   return text + "\n";
 }
 
-void set(Lines& lines, const std::string& key, const std::string& value) {
-  for (auto& line : lines) {
-    if (line.first == key) {
-      line.second = value;
-      return;
-    }
-  }
-  lines.emplace_back(key, value);
-}
-
-/// 0, 1, 2, ... as shorts, the smaller byte first or last.
-std::string counting(int count, bool big = false) {
-  std::string bytes;
-  for (int i = 0; i < count; ++i) {
-    const char low = static_cast<char>(i & 0xFF);
-    const char high = static_cast<char>(i >> 8);
-    bytes += big ? high : low;
-    bytes += big ? low : high;
-  }
-  return bytes;
-}
-
 std::string zipped(const std::string& content) {
   const test::Bytes bytes = test::gzipped(test::Bytes(content.begin(), content.end()));
   return {bytes.begin(), bytes.end()};
 }
-
-void expectCounting(const Image& image) {
-  for (std::size_t i = 0; i < image.values.size(); ++i) {
-    ASSERT_EQ(image.values[i], static_cast<float>(i));
-  }
-}
-
-double apartMm(const Vec3& a, const Vec3& b) { return glm::length(a - b) * 1e3; }
 
 TEST(Nrrd, EveryEncodingAndByteOrderGivesTheSameVoxels) {
   const TempFolder folder;

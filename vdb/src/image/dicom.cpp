@@ -2,6 +2,7 @@
 
 #include "image/dicom_pixels.h"
 #include "image/dicom_series.h"
+#include "image/image_parts.h"
 #include "image/readers.h"
 #include "palpate/core/error.h"
 
@@ -9,12 +10,7 @@ namespace palpate::vdb {
 
 Image readDicom(const std::string& path, const ImageOptions& options) try {
   const DicomSeries series = findDicomSeries(path, options.series);
-  Image image;
-  image.source = path;
-  image.size = series.size;
-  image.axes = series.place.axes;
-  image.origin = series.place.origin;
-  image.notes = series.notes;
+  Image image = emptyImage(path, series.size, series.place, series.notes);
   for (const DicomElements& slice : series.slices) {
     const auto number = [&](std::uint32_t tag, double otherwise) {
       return slice.text(tag).empty() ? otherwise : slice.numbers(tag, 1).front();
@@ -31,26 +27,19 @@ Image readDicom(const std::string& path, const ImageOptions& options) try {
   }
   return image;
 } catch (const std::bad_alloc&) {
-  throw Error(ErrorKind::kOperation,
-              {"dicom.memory", "there is not enough memory for the image", "crop the image", path});
+  throw notEnoughMemory("dicom", path);
 }
 
 ImageInfo readDicomInfo(const std::string& path, const ImageOptions& options) {
   const DicomSeries series = findDicomSeries(path, options.series);
   const DicomElements& first = series.slices.front();
-  ImageInfo info;
-  info.size = series.size;
-  info.axes = series.place.axes;
-  info.origin = series.place.origin;
+  ImageInfo info = infoOf(series.size, series.place, series.notes);
   info.data_type = (first.shortAt(dicom::kPixelRepresentation).value_or(0) == 1 ? "int" : "uint") +
                    std::to_string(first.shortAt(dicom::kBitsAllocated).value_or(16));
-  info.orientation = orientationCodes(series.place.axes);
-  info.notes = series.notes;
   info.format = "DICOM series";
   if (const std::string modality = first.text(dicom::kModality); !modality.empty()) {
     info.format += ", " + modality;
   }
-  info.length_unit = "mm";
   return info;
 }
 

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "image/header_text.h"
+#include "image/image_parts.h"
 #include "image/meta_image_header.h"
 #include "image/readers.h"
 #include "palpate/core/error.h"
@@ -75,12 +76,7 @@ std::vector<float> readText(const MetaImageHeader& header, const std::string& pa
 
 Image readMetaImage(const std::string& path, const ImageOptions& options) try {
   const MetaImageHeader header = readMetaImageHeader(path, options);
-  Image image;
-  image.source = path;
-  image.size = header.size;
-  image.axes = header.place.axes;
-  image.origin = header.place.origin;
-  image.notes = header.notes;
+  Image image = emptyImage(path, header.size, header.place, header.notes);
   const std::uint64_t passed =
       static_cast<std::uint64_t>(options.frame.value_or(0)) * header.voxelCount();
   const auto stream = openData(header, path);
@@ -108,23 +104,15 @@ Image readMetaImage(const std::string& path, const ImageOptions& options) try {
   odd.tell(image.notes);
   return image;
 } catch (const std::bad_alloc&) {
-  throw Error(
-      ErrorKind::kOperation,
-      {"metaimage.memory", "there is not enough memory for the image", "crop the image", path});
+  throw notEnoughMemory("metaimage", path);
 }
 
 ImageInfo readMetaImageInfo(const std::string& path, const ImageOptions& options) {
   const MetaImageHeader header = readMetaImageHeader(path, options);
   (void)openData(header, path);
-  ImageInfo info;
-  info.size = header.size;
-  info.axes = header.place.axes;
-  info.origin = header.place.origin;
+  ImageInfo info = infoOf(header.size, header.place, header.notes);
   info.data_type = nameOf(header.coding.type);
-  info.orientation = orientationCodes(header.place.axes);
-  info.notes = header.notes;
   info.format = "MetaImage";
-  info.length_unit = "mm";
   return info;
 }
 

@@ -1,5 +1,6 @@
 #include <new>
 
+#include "image/image_parts.h"
 #include "image/nifti_header.h"
 #include "image/nifti_labels.h"
 #include "palpate/core/error.h"
@@ -27,34 +28,23 @@ std::uint64_t readLabels(ByteStream& stream, const NiftiHeader& header, const st
 Image readNifti(const std::string& path, const ImageOptions& options) try {
   ByteStream stream(path, "nifti");
   const NiftiHeader header = readNiftiHeader(stream, path, options);
-  Image image;
+  Image image = emptyImage(path, header.size, header.place, header.notes);
   const std::uint64_t done = header.header_bytes + readLabels(stream, header, path, image.labels);
   skipBytes(stream, header.data_offset - done, header.voxelCount());
-  image.source = path;
-  image.size = header.size;
-  image.axes = header.place.axes;
-  image.origin = header.place.origin;
-  image.notes = header.notes;
   Oddities odd;
   image.values = readVoxels(stream, header.voxelCount(), header.coding, odd);
   stream.verifyEnd();
   odd.tell(image.notes);
   return image;
 } catch (const std::bad_alloc&) {
-  throw Error(ErrorKind::kOperation,
-              {"nifti.memory", "there is not enough memory for the image", "crop the image", path});
+  throw notEnoughMemory("nifti", path);
 }
 
 ImageInfo readNiftiInfo(const std::string& path, const ImageOptions& options) {
   ByteStream stream(path, "nifti");
   const NiftiHeader header = readNiftiHeader(stream, path, options);
-  ImageInfo info;
-  info.size = header.size;
-  info.axes = header.place.axes;
-  info.origin = header.place.origin;
+  ImageInfo info = infoOf(header.size, header.place, header.notes);
   info.data_type = nameOf(header.coding.type);
-  info.orientation = orientationCodes(header.place.axes);
-  info.notes = header.notes;
   info.format = "NIfTI-" + std::to_string(header.version);
   info.length_unit = header.length_unit;
   readLabels(stream, header, path, info.labels);

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "image/header_text.h"
+#include "image/image_parts.h"
 #include "image/nrrd_header.h"
 #include "image/nrrd_segments.h"
 #include "image/readers.h"
@@ -134,12 +135,7 @@ Image readNrrd(const std::string& path, const ImageOptions& options) try {
   const NrrdHeader header = readNrrdHeader(path, options);
   const Segments segments = segmentsOf(header, path, options);
   const int frame = segments.empty() ? chosenFrame(header, path, options) : 0;
-  Image image;
-  image.source = path;
-  image.size = header.size();
-  image.axes = header.place.axes;
-  image.origin = header.place.origin;
-  image.notes = header.notes;
+  Image image = emptyImage(path, header.size(), header.place, header.notes);
   Oddities odd;
   image.values = readAll(header, path, odd);
   if (!segments.empty()) {
@@ -157,8 +153,7 @@ Image readNrrd(const std::string& path, const ImageOptions& options) try {
   odd.tell(image.notes);
   return image;
 } catch (const std::bad_alloc&) {
-  throw Error(ErrorKind::kOperation,
-              {"nrrd.memory", "there is not enough memory for the image", "crop the image", path});
+  throw notEnoughMemory("nrrd", path);
 }
 
 ImageInfo readNrrdInfo(const std::string& path, const ImageOptions& options) {
@@ -166,13 +161,8 @@ ImageInfo readNrrdInfo(const std::string& path, const ImageOptions& options) {
   const Segments segments = segmentsOf(header, path, options);
   if (segments.empty()) (void)chosenFrame(header, path, options);
   if (header.encoding != NrrdEncoding::kText) (void)openData(header, path);
-  ImageInfo info;
-  info.size = header.size();
-  info.axes = header.place.axes;
-  info.origin = header.place.origin;
+  ImageInfo info = infoOf(header.size(), header.place, header.notes);
   info.data_type = nameOf(header.coding.type);
-  info.orientation = orientationCodes(header.place.axes);
-  info.notes = header.notes;
   info.notes.insert(info.notes.end(), segments.notes().begin(), segments.notes().end());
   info.format = segments.empty() ? "NRRD" : "NRRD segmentation";
   info.length_unit = header.length_unit;

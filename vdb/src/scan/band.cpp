@@ -113,7 +113,10 @@ class Finder {
         }
       }
     }
-    const auto [tx, ty, tz] = band_.table_size;
+    // Not bound as one: clang 14 captures no structured bindings.
+    const int tx = band_.table_size[0];
+    const int ty = band_.table_size[1];
+    const int tz = band_.table_size[2];
     band_.table.assign(near.size(), -1);
     forTable([&](int x, int y, int z) {
       bool any = false;

@@ -17,8 +17,8 @@ struct BandBlock {
   using Values = std::array<float, kVoxels>;
 
   alignas(32) Values value;             ///< NaN: not in the band
-  std::array<int, 3> first{};           ///< box index of its first voxel, a multiple of 8
   std::uint64_t rows = 0;               ///< bit 8 i + j: the row has a voxel of the band
+  std::array<int, 3> first{};           ///< box index of its first voxel, a multiple of 8
   std::array<std::int32_t, 27> near{};  ///< blocks around it, 9 di + 3 dj + dk from -1 on; -1: none
 };
 
@@ -42,8 +42,8 @@ struct Band {
 
   /// The block of voxel (i, j, k), or -1.
   [[nodiscard]] std::int32_t blockAt(int i, int j, int k) const noexcept {
-    return table[static_cast<std::size_t>((i >> 3) +
-                                          table_size[0] * ((j >> 3) + table_size[1] * (k >> 3)))];
+    const int place = (i >> 3) + table_size[0] * ((j >> 3) + table_size[1] * (k >> 3));
+    return table[static_cast<std::size_t>(place)];
   }
   /// The value at an index of the image; NaN: not in the band.
   [[nodiscard]] float valueAt(int i, int j, int k) const noexcept;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "scan/for_blocks.h"
 #include "scan/lattice_spline.h"
 #include "scan/relax.h"
 
@@ -68,7 +69,7 @@ class Smoothing {
   }
 
   void run() {
-    forBlocks([&](std::size_t b) {
+    forBlocks(band_.blocks.size(), [&](std::size_t b) {
       work_[b].ahead = band_.blocks[b].value;
       work_[b].next = band_.blocks[b].value;
       work_[b].force.fill(0.0F);
@@ -84,20 +85,13 @@ class Smoothing {
   }
 
  private:
-  template <typename Body>
-  void forBlocks(const Body& body) const {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, band_.blocks.size()),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t b = range.begin(); b != range.end(); ++b) body(b);
-                      });
-  }
-
   /// Block b and what the stencils reach of its neighbors; `of` tells a block's values.
   template <typename Of>
   void gather(std::size_t b, const Of& of, Patch& patch) const noexcept {
     const auto& near = band_.blocks[b].near;
     const auto source = [&](int dx, int dy, int dz) -> const float* {
-      const std::int32_t n = near[static_cast<std::size_t>(9 * dx + 3 * dy + dz + 13)];
+      const int place = 9 * dx + 3 * dy + dz + 13;
+      const std::int32_t n = near[static_cast<std::size_t>(place)];
       return n < 0 ? nullptr : of(static_cast<std::size_t>(n)).data();
     };
     const auto side = [](int x) { return x < 0 ? -1 : x > 7 ? 1 : 0; };
@@ -141,7 +135,8 @@ class Smoothing {
     }
   }
 
-  static constexpr std::ptrdiff_t kStride[3] = {Patch::kSide * Patch::kRow, Patch::kRow, 1};
+  static constexpr std::ptrdiff_t kStride[3] = {std::ptrdiff_t{Patch::kSide} * Patch::kRow,
+                                                Patch::kRow, 1};
 
   [[nodiscard]] float diagonalAt(const float* c) const noexcept {
     const auto in = [&](std::ptrdiff_t s) { return !std::isnan(c[s]); };
@@ -190,7 +185,7 @@ class Smoothing {
       // The two take turns.
       Values Work::*const from_here = step % 2 == 0 ? &Work::ahead : &Work::next;
       Values Work::*const to_there = step % 2 == 0 ? &Work::next : &Work::ahead;
-      forBlocks([&](std::size_t b) {
+      forBlocks(band_.blocks.size(), [&](std::size_t b) {
         Patch patch;
         gather(
             b, [&](std::size_t n) -> const Values& { return work_[n].*from_here; }, patch);
@@ -203,7 +198,7 @@ class Smoothing {
              block.value.data(), (work.*to_there).data(), momentum});
       });
     }
-    forBlocks([&](std::size_t b) { work_[b].ahead = band_.blocks[b].value; });
+    forBlocks(band_.blocks.size(), [&](std::size_t b) { work_[b].ahead = band_.blocks[b].value; });
   }
 
   /// Each voxel its distance to the surface that the values have now, within its bounds. Those by the surface
@@ -212,12 +207,12 @@ class Smoothing {
     report(progress_, "smooth the labels", 0.4);
     const LatticeSpline spline(band_, mask_, axes_, Vec3(0.0));
     const Mat3 back = glm::transpose(glm::inverse(axes_));
-    forBlocks([&](std::size_t b) {
+    forBlocks(band_.blocks.size(), [&](std::size_t b) {
       work_[b].round.fill(kUnknown);
       work_[b].next = band_.blocks[b].value;
     });
     for (int round = 0; round <= Band::kReach + 1; ++round) {
-      forBlocks([&](std::size_t b) {
+      forBlocks(band_.blocks.size(), [&](std::size_t b) {
         Patch patch;
         if (round == 0) {
           gather(
@@ -243,7 +238,7 @@ class Smoothing {
         }
       });
     }
-    forBlocks([&](std::size_t b) {
+    forBlocks(band_.blocks.size(), [&](std::size_t b) {
       band_.blocks[b].value = work_[b].next;
       work_[b].ahead = work_[b].next;
     });
@@ -320,7 +315,7 @@ class Smoothing {
   /// The force on the distances as they are: at the band's edge whole, elsewhere what is left of it when it
   /// has spread along the surface.
   void takeOutForces() {
-    forBlocks([&](std::size_t b) {
+    forBlocks(band_.blocks.size(), [&](std::size_t b) {
       Patch patch;
       gather(
           b, [&](std::size_t n) -> const Values& { return work_[n].ahead; }, patch);
@@ -346,7 +341,7 @@ class Smoothing {
     // `ahead` and `next` take turns.
     for (int step = 0; step < kDiffuseNear + kDiffuseFar; ++step) {
       const int stride = step < kDiffuseNear ? 1 : 2;
-      forBlocks([&](std::size_t b) {
+      forBlocks(band_.blocks.size(), [&](std::size_t b) {
         Patch patch;
         gather(
             b,
@@ -360,7 +355,7 @@ class Smoothing {
       });
     }
     static_assert((kDiffuseNear + kDiffuseFar) % 2 == 0);
-    forBlocks([&](std::size_t b) {
+    forBlocks(band_.blocks.size(), [&](std::size_t b) {
       for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
         if (!std::isnan(work_[b].next[n])) work_[b].force[n] = work_[b].next[n];
       }

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "scan/for_blocks.h"
 #include "scan/lattice_spline.h"
 
 namespace palpate::vdb {
@@ -41,7 +42,7 @@ class Volume {
       if (!(excess.slope > 0.0)) return;
       shift = std::clamp(shift - static_cast<float>(excess.volume / excess.slope), -kMostShift,
                          kMostShift);
-      forBlocks([&](std::size_t b) {
+      forBlocks(band_.blocks.size(), [&](std::size_t b) {
         BandBlock& block = band_.blocks[b];
         const BandBounds& bounds = band_.bounds[b];
         for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
@@ -53,17 +54,9 @@ class Volume {
   }
 
  private:
-  template <typename Body>
-  void forBlocks(const Body& body) const {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, band_.blocks.size()),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t b = range.begin(); b != range.end(); ++b) body(b);
-                      });
-  }
-
   /// Sums of blocks first, so that the order does not depend on the threads.
   Excess find() {
-    forBlocks([&](std::size_t b) {
+    forBlocks(band_.blocks.size(), [&](std::size_t b) {
       Excess& sum = sums_[b];
       sum = {};
       std::size_t crossing = 0;
@@ -83,7 +76,7 @@ class Volume {
   /// leaves that as it is.
   void findBends() {
     const LatticeSpline spline(band_, mask_, Mat3(1.0), Vec3(0.0));
-    forBlocks([&](std::size_t b) {
+    forBlocks(band_.blocks.size(), [&](std::size_t b) {
       forCrossings(band_.blocks[b],
                    [&](const Vec3& at, const Vec3& step, double inside, double outside) {
                      const Vec3 zero = at + step * (inside / (inside - outside));
