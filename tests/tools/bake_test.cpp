@@ -81,6 +81,13 @@ TEST(Bake, AnOpenMeshTakesASignOrAShell) {
   EXPECT_NE(none.err.find("--shell must be greater than 0"), std::string::npos) << none.err;
   EXPECT_EQ(with({"--sign", "winding", "--smooth", "30"}).exit_code, 0);
   EXPECT_EQ(with({"--smooth", "200"}).exit_code, 2);
+
+  EXPECT_EQ(with({"--sign", "unsigned"}).exit_code, 0);
+  const CommandResult refused = runPalpate({"convert", "o.vdb", "-o", "o.stl"}, folder.path());
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("holds distances without sign"), std::string::npos) << refused.err;
+  EXPECT_EQ(with({"--sign", "unsigned", "--shell", "2"}).exit_code, 2);
+
   (void)folder.file("c.yaml", kContainer);
   const CommandResult smooth =
       runPalpate({"bake", "c.yaml", "-o", "c.vdb", "--smooth", "30"}, folder.path());

@@ -16,6 +16,7 @@
 #include "bake/facet.h"
 #include "bake/leaf_distance.h"
 #include "palpate/core/error.h"
+#include "palpate/fields/modify.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/openvdb_access.h"
@@ -139,6 +140,35 @@ TEST(BakeMesh, LargeMeshMatchesBruteForceHereAndThere) {
     const openvdb::Coord at = voxel.getCoord();
     const Vec3 p = Vec3(at.x(), at.y(), at.z()) * set.info().voxel_size;
     ASSERT_NEAR(*voxel * 1e-3, signedDistance(p, mesh), 1e-5 * set.info().voxel_size);
+  }
+}
+
+// Closed or not: the distance to the nearest triangle, and shells of any thickness out of one grid.
+TEST(BakeMesh, UnsignedHasNoInside) {
+  Mesh bowl = ballMesh(Vec3(0.2e-3, 0.1e-3, -0.3e-3), 4e-3, 2);
+  for (const bool is_open : {false, true}) {
+    if (is_open) bowl.triangles.resize(bowl.triangles.size() / 2);
+    BakeOptions options = voxels(0.5e-3, 6.0);
+    options.mesh_sign = MeshSign::kUnsigned;
+    const LevelSet set = bakeMesh(bowl, options);
+    EXPECT_EQ(set.impl().grid->getGridClass(), openvdb::GRID_UNKNOWN);
+    EXPECT_EQ(set.info().metadata.at(kDistanceKey), kUnsignedDistance);
+    const auto distance = [&](const Vec3& p) { return std::abs(signedDistance(p, bowl)); };
+    expectDistances(set, distance);
+    const FieldPtr shell = offset(gridField(set), 1e-3);
+    for (const auto& [a, b, c] : bowl.triangles) {
+      const Vec3 middle = (bowl.vertices[a] + bowl.vertices[b] + bowl.vertices[c]) / 3.0;
+      EXPECT_LT(shell->value(middle), -0.7e-3);
+      for (const double off : {-1e-3, 1e-3}) {
+        const Vec3 p =
+            middle + off * glm::normalize(glm::cross(bowl.vertices[b] - bowl.vertices[a],
+                                                     bowl.vertices[c] - bowl.vertices[a]));
+        // Edges of the distance, of the bowl's facets and of its rim, are rounded within a tenth of a voxel.
+        EXPECT_NEAR(shell->value(p), distance(p) - 1e-3, 0.05e-3);
+      }
+    }
+    options.shell_thickness = 2e-3;
+    EXPECT_THROW((void)bakeMesh(bowl, options), Error);
   }
 }
 

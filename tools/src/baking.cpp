@@ -126,12 +126,16 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
   const std::string layer = onlyLayerName(options);
   const LengthUnit unit = meshUnit(options.units);
   const double asked = askedVoxel(options, unit);
-  const vdb::MeshSign sign = options.sign == "winding" ? vdb::MeshSign::kWinding
-                             : options.sign == "flood" ? vdb::MeshSign::kFlood
-                                                       : vdb::MeshSign::kVote;
+  const vdb::MeshSign sign = options.sign == "winding"    ? vdb::MeshSign::kWinding
+                             : options.sign == "flood"    ? vdb::MeshSign::kFlood
+                             : options.sign == "unsigned" ? vdb::MeshSign::kUnsigned
+                                                          : vdb::MeshSign::kVote;
   const double shell = options.shell.empty() ? 0.0 : parseLength(options.shell, unit, "--shell");
   if (!options.shell.empty() && !(shell > 0.0)) {
     throw bakeUsageError("--shell must be greater than 0");
+  }
+  if (shell > 0.0 && sign == vdb::MeshSign::kUnsigned) {
+    throw bakeUsageError("--shell and --sign unsigned exclude one another");
   }
   const vdb::Mesh mesh = readMeshFile(options.input, options.units, options.scan, console);
   Box3 bounds;

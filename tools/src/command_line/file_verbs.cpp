@@ -39,10 +39,10 @@ void addBaking(CLI::App& app, BakeOptions& o) {
   g = "From a mesh";
   add(app, g, "--units", "UNIT", o.units,
       "what one unit of the mesh is: mm (default), cm, m, um, in");
-  add(app, g, "--sign", "vote|winding|flood", o.sign,
+  add(app, g, "--sign", "vote|winding|flood|unsigned", o.sign,
       "what is inside: where both agree, else refuse (default); by winding number, holes closed by "
-      "flat lids; or what a flood from outside does not reach")
-      ->check(CLI::IsMember({"vote", "winding", "flood"}));
+      "flat lids; what a flood from outside does not reach; or nothing, distances without sign")
+      ->check(CLI::IsMember({"vote", "winding", "flood", "unsigned"}));
   add(app, g, "--shell", "LENGTH", o.shell,
       "not a solid but a wall of this thickness along the triangles");
   add(app, g, "--smooth", "DEGREES", o.smooth,

@@ -18,6 +18,7 @@
 #include "bake/triangle_bins.h"
 #include "bake/walls.h"
 #include "palpate/vdb/bake.h"
+#include "palpate/vdb/openvdb_access.h"
 
 namespace palpate::vdb {
 namespace {
@@ -78,6 +79,16 @@ void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& colum
   }
 }
 
+/// The grid as one of distances without sign.
+LevelSet finishUnsigned(const openvdb::FloatGrid::Ptr& grid, const BakeOptions& options) {
+  auto metadata = options.metadata;
+  metadata.try_emplace("frame", "world");
+  metadata[kDistanceKey] = kUnsignedDistance;
+  LevelSet result = makeLevelSet(grid, options.length_unit, metadata);
+  grid->setGridClass(openvdb::GRID_UNKNOWN);
+  return result;
+}
+
 class MeshBaker {
  public:
   MeshBaker(const Mesh& mesh, const BakeOptions& options, const Progress& progress)
@@ -96,6 +107,11 @@ class MeshBaker {
                        "use voxels of " + inMillimetres(options.shell_thickness / kHeld) +
                            ", or a thicker shell");
     }
+    if (half > 0.0 && options.mesh_sign == MeshSign::kUnsigned) {
+      throw inputError("bake.shell_thickness",
+                       "a shell has an inside, and distances without sign have none",
+                       "leave out one of the two");
+    }
     if (half > 0.0) shell_ = static_cast<float>(half);
     if (!(options.smooth_angle >= 0.0 && options.smooth_angle <= std::numbers::pi)) {
       throw inputError("bake.smooth_angle",
@@ -108,15 +124,16 @@ class MeshBaker {
 
   LevelSet run() {
     report(progress_, "bake mesh: checking", 0.0);
-    solid_ = shell_ ? makeSurface(mesh_, plan_.voxel)
-                    : makeSolid(mesh_, plan_.voxel, options_.mesh_sign);
-    if (options_.smooth_angle > 0.0) smooth();
+    const bool is_solid = !shell_ && options_.mesh_sign != MeshSign::kUnsigned;
+    solid_ = is_solid ? makeSolid(mesh_, plan_.voxel, options_.mesh_sign)
+                      : makeSurface(mesh_, plan_.voxel);
+    if (options_.smooth_angle > 0.0) smooth(is_solid);
     const Box3 bounds = boundsOf(solid_);
     range_ = voxelRange({bounds.lo * plan_.voxel, bounds.hi * plan_.voxel}, search_, options_.name);
     refuseTooLong();
     requireMemory(estimatedArea(solid_), 1.0, search_);
     std::optional<Solid> whole;  // where the walls left do not tell the inside by themselves
-    if (!shell_) {
+    if (is_solid) {
       columns_.emplace(solid_, options_.mesh_sign, progress_);
       if (options_.mesh_sign == MeshSign::kVote) requireAgreement(mesh_, solid_, *columns_, plan_);
       if (columns_->hasIdleWalls() || columns_->isFilled() || !solid_.was_closed) {
@@ -129,6 +146,7 @@ class MeshBaker {
     fillLeaves(bins);
     if (columns_) fillInside();
     report(progress_, "bake mesh", 1.0);
+    if (options_.mesh_sign == MeshSign::kUnsigned) return finishUnsigned(grid_, options_);
     const LevelSet result = finishGrid(grid_, plan_, options_);
     if (!columns_) return result;
     const BakedMesh baked{solid_, bins, faces_itself_, whole ? *whole : solid_, *columns_};
@@ -148,9 +166,8 @@ class MeshBaker {
                  "use larger voxels; also check that the mesh has the length unit it should"});
   }
 
-  void smooth() {
-    // Solids are turned alike already.
-    if (shell_) turnAlike(solid_.vertices, sortedSides(solid_.triangles), solid_.triangles);
+  void smooth(bool is_turned) {
+    if (!is_turned) turnAlike(solid_.vertices, sortedSides(solid_.triangles), solid_.triangles);
     report(progress_, "bake mesh: smoothing", 0.05);
     makeCurved(solid_, options_.smooth_angle, kSmoothSide, plan_.max_memory);
   }

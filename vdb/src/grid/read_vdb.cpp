@@ -6,6 +6,7 @@
 
 #include "grid/vdb_file.h"
 #include "palpate/core/error.h"
+#include "palpate/vdb/bake.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/openvdb_access.h"
 
@@ -21,6 +22,11 @@ std::string typeHint(const std::string& type) {
   }
   return "palpate convert FILE.vdb -o OTHER.vdb puts a surface around its voxels, with --labels "
          "VALUE or --above VALUE";
+}
+
+bool isUnsigned(const openvdb::GridBase& grid) {
+  const auto distance = grid.getMetadata<openvdb::StringMetadata>(kDistanceKey);
+  return distance && distance->value() == kUnsignedDistance;
 }
 
 /// A level set of floats, or why not.
@@ -42,6 +48,13 @@ void requireLevelSet(const openvdb::GridBase& grid, UnknownClass unknown_class,
   }
   const bool says_nothing = grid.getGridClass() == openvdb::GRID_UNKNOWN;
   if (says_nothing && unknown_class == UnknownClass::kLevelSet) return;
+  if (isUnsigned(grid)) {
+    throw inputError(
+        "vdb.class", name + " holds distances without sign: nothing is inside",
+        "bake the mesh again, with --shell or another --sign; in a scene, grid: {file: ..., "
+        "class: level_set} under an offset: {distance: ...} is a shell",
+        path);
+  }
   if (grid.getGridClass() != openvdb::GRID_LEVEL_SET) {
     throw inputError("vdb.class",
                      name + " is of class '" + classOf(grid) +

@@ -14,8 +14,13 @@ namespace palpate::vdb {
 enum class MeshSign : std::uint8_t {
   kVote,     ///< both of the following; where they differ, and for large holes, bakeMesh() throws
   kWinding,  ///< inside: the winding number is not 0. Parts turned against the one around are hollows
-  kFlood     ///< inside: whatever cannot be reached from outside; there are no hollows
+  kFlood,    ///< inside: whatever cannot be reached from outside; there are no hollows
+  kUnsigned  ///< nothing is inside: distances to the closest triangle, of closed and open meshes alike
 };
+
+/// Metadata of a grid made by MeshSign::kUnsigned.
+inline constexpr const char* kDistanceKey = "distance";
+inline constexpr const char* kUnsignedDistance = "unsigned";
 
 struct BakeOptions {
   double voxel_size = 0.0;              ///< [m] must be positive
@@ -57,6 +62,10 @@ struct BakeOptions {
 /// neighbors are; holes get lids of least area. Parts that overlap are one solid, a part within another
 /// one and turned against it is a cavity, a mesh that is inside out is the same mesh.
 /// `lost_parts` as of bake().
+///
+/// By MeshSign::kUnsigned only the checks and the joining of vertices are done, and values are never negative. The
+/// grid's class is OpenVDB's `unknown` and its metadata say `distance: unsigned`: nothing of it can be touched
+/// before it is offset, which makes a shell of any thickness (of two voxels or more: there is a kink in the middle).
 /// @throws Error: kInput, naming a place, for a mesh without faces, with an index out of range, a vertex
 /// that is not finite or a thousand times farther out than the rest, with lids that make up more
 /// than an eighth of a part's surface, about which winding number and flood differ, or with a plate or shell
