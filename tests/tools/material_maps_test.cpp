@@ -43,16 +43,16 @@ const char* const kBall = "sphere: {center: [0, 0, 0], radius: 12}";
 class MaterialMapFiles : public ::testing::Test {
  protected:
   MaterialMapFiles() {
-    (void)greyImage(folder);
-    (void)folder.file("scene.yaml", mapped(kBall));
+    (void)greyImage(folder_);
+    (void)folder_.file("scene.yaml", mapped(kBall));
   }
   Json asked(std::vector<std::string> arguments) {
     arguments.emplace_back("--json");
-    const CommandResult result = runPalpate(arguments, folder.path());
+    const CommandResult result = runPalpate(arguments, folder_.path());
     EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
     return parseOnly(result);
   }
-  TempFolder folder;
+  TempFolder folder_;
 };
 
 TEST_F(MaterialMapFiles, ExplainTellsHowTheyAreStored) {
@@ -68,7 +68,7 @@ TEST_F(MaterialMapFiles, ExplainTellsHowTheyAreStored) {
   EXPECT_GT(maps[1]["error"].get<double>(), 0.0);
   EXPECT_LE(maps[1]["error"].get<double>(), 0.01);
   EXPECT_EQ(maps[2]["name"], "cut/opens_at");
-  const CommandResult text = runPalpate({"explain", "scene.yaml"}, folder.path());
+  const CommandResult text = runPalpate({"explain", "scene.yaml"}, folder_.path());
   EXPECT_NE(text.out.find("16 bits"), std::string::npos) << text.out;
 }
 
@@ -106,15 +106,15 @@ TEST_F(MaterialMapFiles, BakeWritesThemAndASceneReadsThemBackTheSame) {
     return "{grid: {file: body.vdb, name: " + name + "}}";
   };
   const std::string surface = "grid: {file: body.vdb, name: ball/surface}";
-  (void)folder.file("image.yaml", mapped(surface));
-  (void)folder.file("back.yaml", sceneText(surface, grid("ball/stiffness"), grid("ball/viscosity"),
-                                           grid("cut/opens_at")));
+  (void)folder_.file("image.yaml", mapped(surface));
+  (void)folder_.file("back.yaml", sceneText(surface, grid("ball/stiffness"), grid("ball/viscosity"),
+                                            grid("cut/opens_at")));
   const auto trace = [&](const std::string& scene) {
     const CommandResult result = runPalpate({"touch", scene + ".yaml", "--insert", "4,3,16",
                                              "-3,2,-1", "--back", "--trace", scene + ".csv"},
-                                            folder.path());
+                                            folder_.path());
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    return linesOf(textOf(folder.path(scene + ".csv")));
+    return linesOf(textOf(folder_.path(scene + ".csv")));
   };
   const auto image = trace("image");
   const auto back = trace("back");
@@ -140,8 +140,8 @@ TEST_F(MaterialMapFiles, InfoListsTheMapsOfAScene) {
 }
 
 TEST_F(MaterialMapFiles, ABadFileIsNamedWithItsRemedy) {
-  (void)folder.file("bad.yaml", sceneText(kBall, "{grid: {file: scene.yaml}}", "1 N.s/m", "1 N"));
-  const CommandResult result = runPalpate({"explain", "bad.yaml"}, folder.path());
+  (void)folder_.file("bad.yaml", sceneText(kBall, "{grid: {file: scene.yaml}}", "1 N.s/m", "1 N"));
+  const CommandResult result = runPalpate({"explain", "bad.yaml"}, folder_.path());
   EXPECT_EQ(result.exit_code, 3) << result.err;
   EXPECT_NE(result.err.find("bad.yaml:5:"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("not a .vdb file"), std::string::npos) << result.err;

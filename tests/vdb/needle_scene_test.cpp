@@ -26,7 +26,7 @@ TEST(NeedleScene, BrainIsCutAndHoldsTheShaft) {
   const RegionId thalamus = scene->regionNamed("thalamus");
 
   // [m] along the way, by bisection of what region a point is in.
-  const auto entryOf = [&](RegionId region) {
+  const auto entry_of = [&](RegionId region) {
     double outside = 0.0;
     while (scene->regionAt(from + (outside + kMm) * way) != region) outside += kMm;
     double inside = outside + kMm;
@@ -36,8 +36,8 @@ TEST(NeedleScene, BrainIsCutAndHoldsTheShaft) {
     }
     return inside;
   };
-  const double entry = entryOf(brain);
-  const double nucleus = entryOf(thalamus);
+  const double entry = entry_of(brain);
+  const double nucleus = entry_of(thalamus);
   EXPECT_GT(nucleus - entry, 0.03);
 
   const std::unique_ptr<HapticRenderer> renderer = makeRenderer(scene);

@@ -22,7 +22,7 @@ LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_
     image.has_names = record.is_labels;
   };
   options.max_memory = max_memory;
-  vdb::registerKinds(registry, std::move(options));
+  vdb::registerKinds(registry, options);
 
   // Pictures want the scans themselves, so the entries are noted down on their way through.
   registry.image = [this, &image, inner = registry.image](MapReader& reader) {

@@ -313,7 +313,7 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
 
 }  // namespace
 
-void registerKinds(SceneRegistry& registry, RegisterOptions options) {
+void registerKinds(SceneRegistry& registry, const RegisterOptions& options) {
   auto notes = std::make_shared<Notes>(options.on_note);
   const auto common =
       std::make_shared<Common>(Common{options, notes, SceneImages(notes, options.on_image)});

@@ -71,11 +71,11 @@ std::vector<Port> SceneCompiler::makePorts() {
     port.reopens_at = given.reopens_at;
     port.rearm = given.rearm;
     // A port into what was left out leads nowhere; it keeps its place, for those that come after it.
-    const auto leaveOut = [&](std::vector<RegionId>& regions) {
+    const auto leave_out = [&](std::vector<RegionId>& regions) {
       std::erase_if(regions, [&](RegionId region) { return isLeftOut(region); });
     };
-    leaveOut(port.from);
-    leaveOut(port.to);
+    leave_out(port.from);
+    leave_out(port.to);
     const bool is_real = !port.from.empty() && !port.to.empty();
     if (given.on && is_real) port.on = facetLeaves(given, port);
     for (const std::string& before : given.after) port.after.push_back(portNamed(before, given));

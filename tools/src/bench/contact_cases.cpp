@@ -202,9 +202,9 @@ void addPortsElsewhere(SceneDescription& scene, std::size_t count) {
     return std::make_shared<FieldSource>(std::move(field));
   };
   for (std::size_t i = 1; i < count; ++i) {
-    const Vec3 center =
-        Vec3(0.2) + 0.01 * Vec3(static_cast<double>(i % 10), static_cast<double>(i / 10 % 10),
-                                static_cast<double>(i / 100));
+    const std::size_t plane = i / 100;
+    const std::size_t row = i / 10 % 10;
+    const Vec3 center = Vec3(0.2) + 0.01 * Vec3(i % 10, row, plane);
     LayerDescription layer;
     layer.name = "ball " + std::to_string(i);
     layer.inside = source(sphere(center, 4e-3));

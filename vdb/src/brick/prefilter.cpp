@@ -39,7 +39,8 @@ Reach reachOf(const Neighborhood& from) {
   for (int x = 0; x < kRows; ++x) {
     for (int y = 0; y < kRows; ++y) {
       const auto row = [&](int dx, int dy) -> unsigned {
-        return from.known[static_cast<std::size_t>((x + kMargin + dx) * kSide + y + kMargin + dy)];
+        const int at = (x + kMargin + dx) * kSide + y + kMargin + dy;
+        return from.known[static_cast<std::size_t>(at)];
       };
       const auto beside = [](unsigned bits) { return bits << 1 & bits >> 1; };
       const unsigned own = row(0, 0);

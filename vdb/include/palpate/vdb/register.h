@@ -53,6 +53,6 @@ struct RegisterOptions {
 /// name tables. Grids are made when their field is first asked for; an image is then read once for
 /// all its layers. Errors of either point at the scene's file, line and column. The functions in
 /// `options` must stay callable as long as the registry and the fields it made are used.
-void registerKinds(SceneRegistry& registry, RegisterOptions options = {});
+void registerKinds(SceneRegistry& registry, const RegisterOptions& options = {});
 
 }  // namespace palpate::vdb
