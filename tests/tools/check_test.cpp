@@ -152,6 +152,33 @@ TEST(Check, SeveralFilesAndBadOnes) {
   EXPECT_EQ(runPalpate({"check", "good.obj", "--voxel", "-1"}, folder.path()).exit_code, 2);
 }
 
+TEST(Check, PlacesAreInRasWhicheverWayTheAxesOfTheMeshRun) {
+  const TempFolder folder;
+  // A cube about (20, 0, 0) without its last two triangles, whose hole is at y = 5 in the file's own axes.
+  (void)folder.file("open.obj", cube(10.0, 20.0, 1, true, 10));
+  const auto hole = [&](const std::vector<std::string>& arguments) {
+    const Json file = checked(folder, arguments).file;
+    EXPECT_EQ(file["space"], arguments.size() > 1 ? arguments[2] : "RAS");
+    EXPECT_EQ(file["space_stated"], false);
+    for (const Json& finding : file["findings"]) {
+      if (finding["code"] == "mesh.holes") return finding["place_m"];
+    }
+    ADD_FAILURE() << "no hole";
+    return Json();
+  };
+  const Json as_is = hole({"open.obj"});
+  const Json turned = hole({"open.obj", "--space", "LPS"});
+  for (const std::size_t axis : {0U, 1U, 2U}) {
+    const double sign = axis < 2 ? -1.0 : 1.0;
+    EXPECT_NEAR(turned[axis].get<double>(), sign * as_is[axis].get<double>(), 1e-9);
+  }
+  EXPECT_GT(std::abs(as_is[0].get<double>()), 0.01);
+  EXPECT_EQ(hole({"open.obj", "--space", "RAS"}), as_is);
+  EXPECT_NE(checked(folder, {"open.obj", "--space", "LPS"}).text.find("LPS, as asked"),
+            std::string::npos);
+  EXPECT_EQ(runPalpate({"check", "open.obj", "--space", "up"}, folder.path()).exit_code, 2);
+}
+
 TEST(Check, GridsOfOthers) {
   const TempFolder folder;
   const std::string command =

@@ -101,7 +101,8 @@ TEST(Import, AProbeGoesThroughSkinFatAndMuscleAndStopsAtTheBone) {
   // It stands on the bone: its surface is between the centres at 5 and 6 mm.
   EXPECT_NEAR(last_y, 5.5, 0.5);
 
-  // The peak in front of each wall is what its port opens at; friction acts along the wall only.
+  // The peak in front of each wall is what its port opens at; friction acts along the wall only. A needle in the fat
+  // feels its cutting force as well, and friction along the part of its shaft that is in.
   const Json told = parseOnly(touch);
   const std::map<std::string, double> peak = [&] {
     std::map<std::string, double> of;
@@ -109,7 +110,8 @@ TEST(Import, AProbeGoesThroughSkinFatAndMuscleAndStopsAtTheBone) {
     return of;
   }();
   EXPECT_NEAR(peak.at("outside"), 2.78, 0.03);
-  EXPECT_NEAR(peak.at("soft_tissue"), 1.5, 0.05);
+  const double shaft = 35.0 * (entered[1] - entered[2]) * 1e-3;
+  EXPECT_NEAR(peak.at("soft_tissue"), 1.5 + 0.2 + shaft, 0.05);
 }
 
 TEST(Import, LabelsBecomeRegionsByValueRangeNameAndPattern) {
@@ -275,7 +277,10 @@ TEST(Import, TheProjectsTableGivesEveryNumberASourceAndFitsTheNamesInUse) {
                                                         {"portal_vein_and_splenic_vein", "vessel"},
                                                         {"Skin", "skin"},
                                                         {"subcutaneous fat", "fat"},
-                                                        {"trachea", "airway"}};
+                                                        {"trachea", "airway"},
+                                                        {"left_vertebral_artery", "vessel"},
+                                                        {"cranial_nerve", "nerve"},
+                                                        {"rib1", "bone"}};
   std::string names = "value,name\n";
   std::vector<std::string> order;
   for (const auto& [name, tissue] : tissue_of) {
@@ -283,8 +288,8 @@ TEST(Import, TheProjectsTableGivesEveryNumberASourceAndFitsTheNamesInUse) {
     names += std::to_string(order.size()) + "," + name + "\n";
   }
   (void)folder.file("n.csv", names);
-  (void)writeLabels(folder, "l.nii.gz", 21, [&](int x, int, int) {
-    return std::min<int>(x + 11, static_cast<int>(order.size()));
+  (void)writeLabels(folder, "l.nii.gz", 25, [&](int x, int, int) {
+    return std::min<int>(x + 13, static_cast<int>(order.size()));
   });
   const Json json = imported(folder, {"l.nii.gz", "--names", "n.csv", "-o", "s.yaml"});
   EXPECT_EQ(json["regions"].size(), order.size());
@@ -300,6 +305,72 @@ TEST(Import, TheProjectsTableGivesEveryNumberASourceAndFitsTheNamesInUse) {
     EXPECT_TRUE(is_sourced) << line;
   }
   EXPECT_EQ(runPalpate({"info", "s.yaml"}, folder.path()).exit_code, 0);
+}
+
+TEST(Import, StiffnessComesFromCtNumbersOnRequest) {
+  const TempFolder folder;
+  writeLeg(folder);
+  // A CT of it: air, fat, muscle that is dense in front and fatty behind, bone that is softer behind.
+  (void)writeLabels(folder, "ct.nii.gz", 41, [](int x, int y, int) {
+    const double r = std::hypot(x, y);
+    if (r < 6) return y > 0 ? 1500.0 : 100.0;
+    if (r < 13) return y > 0 ? 50.0 : -25.0;
+    return r < 18 ? -100.0 : -1000.0;
+  });
+  const std::vector<std::string> common = {"leg.nii.gz", "--names", "names.csv", "--image",
+                                           "ct.nii.gz"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = common;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  (void)imported(folder, with({"--skin", "-300", "--hounsfield", "-o", "s.yaml"}));
+  (void)imported(folder, with({"--body", "body.nii.gz", "--hounsfield", "-o", "b.yaml"}));
+  const std::string scene = textOf(folder.path("s.yaml"));
+  EXPECT_NE(
+      scene.find("muscle: {stiffness: {image: body, transfer: [[-100, 65.5 N/m], [50, 156 N/m]]}"),
+      std::string::npos)
+      << scene;
+  EXPECT_NE(scene.find("stiffness by CT number [[100, 1000 N/m], [1500, 2000 N/m]]: assumed: "),
+            std::string::npos);
+  EXPECT_NE(textOf(folder.path("b.yaml")).find("bone: {stiffness: {image: ct, transfer: "),
+            std::string::npos);
+
+  // What is felt at places whose neighbors have the same CT number: the transfer function of it.
+  for (const std::string& file : {std::string("s.yaml"), std::string("b.yaml")}) {
+    const CommandResult query = runPalpate(
+        {"query", file, "--json", "--at", "0,9.5,0", "0,-9.5,0", "0,15.5,0", "0,2.5,0", "0,-2.5,0"},
+        folder.path());
+    ASSERT_EQ(query.exit_code, 0) << query.err;
+    const Json points = parseOnly(query)["points"];
+    const auto stiffness = [&](std::size_t n, const char* of) {
+      return points[n][of]["stiffness_N_per_m"].get<double>();
+    };
+    // 16 bits for the whole span of the table's points: far below 0.1 N/m.
+    EXPECT_NEAR(stiffness(0, "content"), 156.0, 0.1);
+    EXPECT_NEAR(stiffness(1, "content"), 65.5 + 75.0 / 150.0 * (156.0 - 65.5), 0.1);
+    EXPECT_NEAR(stiffness(2, "content"), 65.5, 0.1);
+    EXPECT_NEAR(stiffness(3, "wall"), 2000.0, 0.1);
+    EXPECT_NEAR(stiffness(4, "wall"), 1000.0, 0.1);
+  }
+  // An image that is no CT, or does not reach as far as the labels, is told.
+  (void)writeLabels(folder, "mr.nii.gz", 21, [](int x, int y, int z) { return 100 + x + y + z; });
+  const CommandResult told = runPalpate(
+      {"import", "leg.nii.gz", "--image", "mr.nii.gz", "--hounsfield", "--dry-run"}, folder.path());
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_NE(told.err.find("is it a CT?"), std::string::npos) << told.err;
+  EXPECT_NE(told.err.find("reach beyond it"), std::string::npos) << told.err;
+}
+
+TEST(Import, LabelsWithoutNamesAreToldToHaveOneTissue) {
+  const TempFolder folder;
+  writeLeg(folder);
+  const CommandResult bare = runPalpate({"import", "leg.nii.gz", "--dry-run"}, folder.path());
+  EXPECT_NE(bare.err.find("taken for soft_tissue; --names gives them names"), std::string::npos)
+      << bare.err;
+  const CommandResult named =
+      runPalpate({"import", "leg.nii.gz", "--names", "names.csv", "--dry-run"}, folder.path());
+  EXPECT_EQ(named.err.find("taken for"), std::string::npos) << named.err;
 }
 
 TEST(Import, AStopLeavesNothingBehind) {
@@ -331,9 +402,28 @@ TEST_P(ImportRefuses, WithOneErrorAndNoFile) {
   writeLeg(folder);
   (void)writeLabels(folder, "grey.nii.gz", 11, [](int x, int y, int z) { return x * y * z + 0.5; });
   (void)writeLabels(folder, "zero.nii.gz", 11, [](int, int, int) { return 0; });
+  (void)writeLabels(folder, "apart.nii.gz", 41, [](int x, int, int) { return x > 14 ? 1 : 0; });
   (void)folder.file("there.yaml", "palpate: 1\n");
   (void)folder.file("bad_table.yaml",
                     "palpate_tissues: 1\ntip_radius: {value: 1, basis: guessed}\n");
+  for (const auto& [name, more] : std::map<std::string, std::string>{
+           {"transfer.yaml",
+            "stiffness_of_ct: {value: [[50, 100 N/m], [0, 60 N/m]], basis: assumed, source: x}"},
+           {"transfer_0.yaml",
+            "stiffness_of_ct: {value: [[50, 0 N/m]], basis: assumed, source: x}"},
+           {"transfer_1.yaml", "stiffness_of_ct: {value: 100 N/m, basis: assumed, source: x}"},
+           {"spring.yaml", "shaft: {value: 40 N/m, basis: assumed, source: x}"},
+           {"cutting.yaml", "cutting: {value: 0.5, basis: assumed, source: x}"},
+           {"static.yaml", "shaft_static: {value: 40 N/m, basis: assumed, source: x}"}}) {
+    (void)folder.file(name, R"(palpate_tissues: 1
+tip_radius: {value: 1 mm, basis: assumed, source: x}
+stiffest: {value: 2000 N/m, basis: assumed, source: x}
+tissues:
+  all:
+    labels: ["*"]
+    stiffness: {value: 1000 N/m, basis: assumed, source: x}
+    )" + more + "\n");
+  }
   (void)folder.file("no_skin.yaml", R"(palpate_tissues: 1
 tip_radius: {value: 1 mm, basis: assumed, source: x}
 stiffest: {value: 2000 N/m, basis: assumed, source: x}
@@ -422,6 +512,10 @@ INSTANTIATE_TEST_SUITE_P(
             3,
             "labels.not_labels",
             "grey.nii.gz"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--body", "apart.nii.gz"},
+            3,
+            "import.body",
+            "lie apart"},
         Bad{{"leg.nii.gz", "-o", "s.yaml", "--image", "grey.nii.gz", "--skin", "1e9"},
             3,
             "scan.empty",
@@ -430,6 +524,31 @@ INSTANTIATE_TEST_SUITE_P(
             3,
             "tissues.value",
             "1 mm"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--hounsfield"}, 2, "usage.command_line", "--image"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "transfer.yaml"},
+            3,
+            "tissues.transfer",
+            "do not rise"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "transfer_0.yaml"},
+            3,
+            "tissues.transfer",
+            "no stiffness above 0"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "transfer_1.yaml"},
+            3,
+            "tissues.transfer",
+            "list of points"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "spring.yaml"},
+            3,
+            "tissues.shaft",
+            "shaft_spring"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "static.yaml"},
+            3,
+            "tissues.shaft",
+            "less than its 'shaft'"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "cutting.yaml"},
+            3,
+            "tissues.value",
+            "2.8 N"},
         Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "few.yaml"},
             3,
             "tissues.none",

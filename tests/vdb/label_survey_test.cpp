@@ -315,6 +315,10 @@ TEST(LabelSurvey, CountsAndWhatIsNoLabelImage) {
         << error.problem().message;
     EXPECT_EQ(error.problem().file, "labels.nii");
   }
+  // What counts for none, over and over, from the first voxel on.
+  Image below = image;
+  std::fill(below.values.begin(), below.values.begin() + 60, -1.0F);
+  EXPECT_EQ(errorOf([&] { (void)countLabels(below); }).problem().code, "labels.not_labels");
   // Grey values are whole numbers too.
   std::mt19937 random(7);
   const Image grey = imageOf({20, 20, 20}, Vec3(kMm),

@@ -90,6 +90,7 @@ struct ImportOptions {
   std::string names;
   std::string image;              ///< grey values
   std::optional<double> skin;     ///< the body is where `image` is brighter
+  bool hounsfield = false;        ///< `image` is a CT, from which stiffness comes
   std::string body;               ///< mask of the body
   std::optional<int> min_island;  ///< [voxels]
   std::string islands;            ///< "merge" or "drop"; empty: merge
@@ -108,6 +109,7 @@ struct InfoOptions {
 struct CheckOptions {
   std::vector<std::string> files;
   std::string units;  ///< mesh, or grid without a unit
+  ScanOptions scan;   ///< mesh: its space
   std::string voxel;  ///< mesh: of the bake that is tried
   std::string layer;  ///< grid; empty: all of the file
   bool level_set = false;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "import/imported_scene.h"
 #include "input_kind.h"
@@ -44,8 +45,35 @@ std::vector<std::vector<int>> labelsOf(const RegionPlan& plan) {
   return labels;
 }
 
-/// Empty if none is asked for.
-vdb::VoxelMask bodyOf(const ImportOptions& options, ImportedScan& scan, Console& console) {
+/// Stiffness from an image that does not hold what it should is told, not refused: a crop of bone may be
+/// bright all over.
+void tellOfStiffness(const vdb::Image& image, const vdb::Image& labels,
+                     const ImportOptions& options, Console& console) {
+  constexpr float kDarkest = -20.0F;  // [HU] fat is darker
+  if (std::none_of(image.values.begin(), image.values.end(),
+                   [](float value) { return value < kDarkest; })) {
+    console.note(options.image +
+                 ": no voxel is below -20, as fat and air are in Hounsfield units; is it a CT?");
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 index;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int last = labels.size[static_cast<std::size_t>(axis)] - 1;
+      index[axis] = ((corner >> axis) & 1) != 0 ? last : 0;
+    }
+    const Vec3 at = image.toIndex(labels.toWorld(index));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (at[axis] >= -1.0 && at[axis] <= image.size[static_cast<std::size_t>(axis)]) continue;
+      console.note(options.image +
+                   ": the labels reach beyond it; there, stiffness is that of its border");
+      return;
+    }
+  }
+}
+
+/// Empty if none is asked for. `image`: the one with grey values, or null.
+vdb::VoxelMask bodyOf(const ImportOptions& options, const vdb::Image* image, ImportedScan& scan,
+                      Console& console) {
   if (!options.body.empty()) {
     const vdb::Image mask = readScan(options.body, options, console);
     for (const auto& [label, voxels] : vdb::countLabels(mask)) {
@@ -58,8 +86,27 @@ vdb::VoxelMask bodyOf(const ImportOptions& options, ImportedScan& scan, Console&
     return vdb::labelMask(mask, scan.labels);
   }
   if (!options.skin) return {};
-  const vdb::Image image = readScan(options.image, options, console);
-  return vdb::bodyMask(image, *options.skin, scan.labels, console.progress());
+  return vdb::bodyMask(*image, *options.skin, scan.labels, console.progress());
+}
+
+/// A body that lies elsewhere is a mistake; one that some labels stick out of is told of.
+void checkBody(const ImportOptions& options, const vdb::Image& labels, const vdb::VoxelMask& body,
+               Console& console) {
+  std::uint64_t labelled = 0;
+  std::uint64_t outside = 0;
+  for (std::size_t n = 0; n < body.size(); ++n) {
+    if (labels.values[n] == 0.0F) continue;
+    ++labelled;
+    outside += body[n] == 0 ? 1U : 0U;
+  }
+  if (outside == 0) return;
+  const std::string& file = options.skin ? options.image : options.body;
+  if (outside == labelled) {
+    throw inputError("import.body", "no labelled voxel is in the body: the two lie apart",
+                     "give the body of the same scan", file);
+  }
+  console.note(file + ": " + formatCount(outside) + " of " + formatCount(labelled) +
+               " labelled voxels are not in the body");
 }
 
 ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, Console& console) {
@@ -69,7 +116,15 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
       options.names.empty() ? scan.labels.labels.names : vdb::readLabelTable(options.names).names;
   report(console.progress(), "labels", 0.0);
   scan.plan = planRegions(options, vdb::countLabels(scan.labels), names, tissues);
-  const vdb::VoxelMask body = bodyOf(options, scan, console);
+  std::optional<vdb::Image> grey;
+  if (!options.image.empty()) grey = readScan(options.image, options, console);
+  if (options.hounsfield) {
+    tellOfStiffness(*grey, scan.labels, options, console);
+    scan.image_voxels = grey->values.size();
+  }
+  const vdb::VoxelMask body = bodyOf(options, grey ? &*grey : nullptr, scan, console);
+  grey.reset();
+  checkBody(options, scan.labels, body, console);
   scan.has_body = !body.empty();
   const std::vector<std::vector<int>> labels = labelsOf(scan.plan);
   const vdb::VoxelMask* const in_body = scan.has_body ? &body : nullptr;
@@ -254,6 +309,8 @@ class ImportReport {
     }
     // The body's surface is that of the outside, borders and all.
     if (scan_.has_body) add(scan_.survey.regions[scan_.survey.outside()].area, body);
+    const double maps = estimateMaps(scan_, tissues_);
+    sum.memory += maps;
     report_.json["estimate"] = {{"active_voxels", std::llround(sum.active_voxels)},
                                 {"memory_bytes", std::llround(sum.memory)},
                                 {"seconds", sum.seconds}};
@@ -263,6 +320,10 @@ class ImportReport {
         " mm: about " + formatCount(static_cast<std::uint64_t>(std::llround(sum.active_voxels))) +
         " active voxels, " + formatBytes(static_cast<std::uint64_t>(sum.memory)) + ", " +
         formatSeconds(sum.seconds) + " on two cores (estimated from surface areas)\n";
+    if (maps > 0.0) {
+      report_.text += "Of the memory, maps of stiffness have " +
+                      formatBytes(static_cast<std::uint64_t>(maps)) + " at most\n";
+    }
   }
 
   const ImportOptions& options_;
@@ -306,7 +367,8 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
     const SceneFiles seen = {
         is_changed ? fs::path(changed_labels).filename().string() : seenFrom(output, options.scan),
         seenFrom(output, options.names),
-        seenFrom(output, options.skin ? options.image : options.body)};
+        seenFrom(output, options.skin ? options.image : options.body),
+        seenFrom(output, options.image)};
     files.write(output, writeScene(options, scan, tissues, seen));
     written.push_back(output);
     if (is_changed) {

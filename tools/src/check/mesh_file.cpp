@@ -7,6 +7,7 @@
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/grid_check.h"
 #include "palpate/vdb/mesh_defects.h"
+#include "scan_options.h"
 
 namespace palpate::tools {
 namespace {
@@ -122,11 +123,8 @@ Trial tryBake(const Checked& c, Console& console) {
 }  // namespace
 
 FileCheck checkMeshFile(const std::string& file, const CheckOptions& options, Console& console) {
-  if (options.units.empty()) {
-    console.note(file + ": one unit is taken as 1 mm; --units says otherwise");
-  }
-  const LengthUnit unit = lengthUnit(options.units.empty() ? "mm" : options.units);
-  vdb::Mesh mesh = vdb::readMesh(file, unit.metres);
+  const LengthUnit unit = meshUnit(options.units);
+  vdb::Mesh mesh = readMeshFile(file, options.units, options.scan, console);
   vdb::MeshDefects defects = vdb::findDefects(mesh, console.progress());
   Checked c{options, unit, std::move(mesh), std::move(defects)};
   findEdges(c);
@@ -148,6 +146,8 @@ FileCheck checkMeshFile(const std::string& file, const CheckOptions& options, Co
               {"kind", "mesh"},
               {"ok", out.is_yes},
               {"length_unit", unit.name},
+              {"space", c.mesh.space == vdb::Space::kLps ? "LPS" : "RAS"},
+              {"space_stated", c.mesh.space_is_stated},
               {"vertices", c.mesh.vertices.size()},
               {"triangles", c.mesh.triangles.size()},
               {"parts", d.parts},
@@ -183,6 +183,7 @@ FileCheck checkMeshFile(const std::string& file, const CheckOptions& options, Co
               formatNumber(size.z) + " " + unit.name + "; area " +
               formatNumber(d.area / (unit.metres * unit.metres)) + " " + unit.name + "^2" +
               (d.boundary_edges == 0 ? ", encloses " + volumeText(d.volume) : "") + "\n";
+  out.text += "  space   " + spaceText(c.mesh, options.scan) + "\n";
   if (d.hollow_parts > 0) {
     out.text += "  parts   " + countOf(d.hollow_parts, "hollow", "hollows") + " within others\n";
   }

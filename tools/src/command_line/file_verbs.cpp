@@ -109,6 +109,9 @@ void defineCheck(CLI::App& app, Invocation& invocation) {
       "what one unit is, of a mesh or of a grid that does not say: mm (a mesh's default), cm, m, "
       "um, "
       "in");
+  add(app, g, "--space", "RAS|LPS", o.scan.space,
+      "mesh: which way its axes run (default: as the file says, else RAS); places are told in RAS")
+      ->check(CLI::IsMember({"RAS", "LPS"}));
   add(app, g, "--voxel", "LENGTH", o.voxel,
       "mesh: voxel size of the bake that is tried (default: 1/128 of the longest side)");
   add(app, g, "--layer", "NAME", o.layer, "grid: only this one of the file");

@@ -38,6 +38,9 @@ void defineImport(CLI::App& app, Invocation& invocation) {
       "--image: the body is brighter than this; its largest piece, cavities filled (CT: -300)");
   add(app, g, "--body", "FILE", o.body, "or a mask of the body: what is not 0");
   g = "Materials and grids";
+  addFlag(app, g, "--hounsfield", o.hounsfield,
+          "--image is a CT in Hounsfield units: stiffness varies with it, where the table of "
+          "tissues says how");
   add(app, g, "--materials", "FILE.yaml", o.materials,
       "table of tissues (default: the project's data/materials/tissues.yaml)");
   add(app, g, "--voxel", "LENGTH", o.voxel,
@@ -48,36 +51,40 @@ void defineImport(CLI::App& app, Invocation& invocation) {
 }  // namespace
 
 Verb importVerb() {
-  return {"import",
-          "Turn a segmented scan into a scene: regions, materials, ports",
-          "palpate import labels.nii.gz --names labels.csv --body mask.nii.gz -o scan.yaml",
-          "palpate import SCAN -o SCENE.yaml [OPTIONS]",
-          "SCAN is a label image. Each label becomes a region, with the material of the first "
-          "tissue in the\n"
-          "table that fits its name; stiffer ones come later, so that the wall between two is "
-          "that of the\n"
-          "stiffer. Regions that touch get a port that opens at the tissue's force; bone has "
-          "none. The scene\n"
-          "says of every number whether it was measured, derived or assumed, and by whom. It is "
-          "text to be\n"
-          "edited; grids are made when it is touched or baked.",
-          {},
-          defineImport,
-          [](const Invocation& i) {
-            const auto& o = chosen<ImportOptions>(i);
-            need(!o.scan.empty(), "SCAN");
-            need(o.dry_run || !o.output.empty(), "-o SCENE.yaml");
-            if (o.skin.has_value() != !o.image.empty()) {
-              throw usageError("--image and --skin need each other", "");
-            }
-            if (o.skin && !o.body.empty()) {
-              throw usageError("--skin and --body both say what the body is", "");
-            }
-            if (!o.islands.empty() && !o.min_island) {
-              throw usageError("--islands needs --min-island", "");
-            }
-          },
-          true};
+  return {
+      "import",
+      "Turn a segmented scan into a scene: regions, materials, ports",
+      "palpate import labels.nii.gz --names labels.csv --body mask.nii.gz -o scan.yaml",
+      "palpate import SCAN -o SCENE.yaml [OPTIONS]",
+      "SCAN is a label image. Each label becomes a region, with the material of the first "
+      "tissue in the\n"
+      "table that fits its name; stiffer ones come later, so that the wall between two is "
+      "that of the\n"
+      "stiffer. Regions that touch get a port that opens at the tissue's force; bone has "
+      "none. The scene\n"
+      "says of every number whether it was measured, derived or assumed, and by whom. It is "
+      "text to be\n"
+      "edited; grids are made when it is touched or baked.",
+      {},
+      defineImport,
+      [](const Invocation& i) {
+        const auto& o = chosen<ImportOptions>(i);
+        need(!o.scan.empty(), "SCAN");
+        need(o.dry_run || !o.output.empty(), "-o SCENE.yaml");
+        if (o.image.empty() && (o.skin || o.hounsfield)) {
+          throw usageError(std::string(o.skin ? "--skin" : "--hounsfield") + " needs --image", "");
+        }
+        if (!o.image.empty() && !o.skin && !o.hounsfield) {
+          throw usageError("--image needs --skin or --hounsfield, which say what it is for", "");
+        }
+        if (o.skin && !o.body.empty()) {
+          throw usageError("--skin and --body both say what the body is", "");
+        }
+        if (!o.islands.empty() && !o.min_island) {
+          throw usageError("--islands needs --min-island", "");
+        }
+      },
+      true};
 }
 
 }  // namespace palpate::tools

@@ -12,6 +12,8 @@ namespace {
 
 /// [voxels] on each side of a surface, as scenes have it.
 constexpr double kHalfWidth = 6.0;
+/// 16 bits in blocks of 8^3 with a rim; those of one value are not stored.
+constexpr double kBytesPerMapVoxel = 2.0 * (10.0 * 10.0 * 10.0) / (8.0 * 8.0 * 8.0);
 // Measured on a pelvis of 28 labels: grid and bricks together; and processor time, halved for two cores.
 constexpr double kBytesPerVoxel = 44.0;
 constexpr double kSecondsPerVoxel = 7.5e-6;
@@ -110,6 +112,13 @@ class SceneWriter {
          (files_.names.empty() ? "" : ", names: " + quoted(files_.names)) +
          (options_.min_island ? "" : reading()) + "}");
     if (!files_.body.empty()) line("  body: {file: " + quoted(files_.body) + reading() + "}");
+    if (options_.hounsfield && !options_.skin) {
+      line("  ct: {file: " + quoted(files_.image) + reading() + "}");
+    }
+  }
+
+  [[nodiscard]] bool isMapped(const Tissue& tissue) const {
+    return options_.hounsfield && tissue.stiffness_of_ct;
   }
 
   void number(const char* what, const std::optional<SourcedNumber>& n) {
@@ -119,33 +128,49 @@ class SceneWriter {
   }
 
   void materials() {
-    std::vector<const Tissue*> used;
-    const auto use = [&](const Tissue* tissue) {
-      if (std::find(used.begin(), used.end(), tissue) == used.end()) used.push_back(tissue);
-    };
-    if (scan_.has_body) {
-      use(&requireTissue(tissues_, "skin"));
-      use(&requireTissue(tissues_, "fat"));
-    }
-    for (const PlannedRegion& region : scan_.plan.regions) use(region.tissue);
+    const std::vector<const Tissue*> used = tissuesOf(scan_, tissues_);
     line(
         "# measured: the source measured it. derived: computed from what was, as said. assumed: "
         "chosen, for the reason given.");
     line("materials:");
+    const bool has_shaft =
+        std::any_of(used.begin(), used.end(), [](const Tissue* t) { return t->shaft.has_value(); });
+    if (has_shaft) {
+      line("  # of every needle's shaft");
+      number("spring while it sticks", tissues_.shaft_spring);
+    }
     for (const Tissue* tissue : used) {
       const SourcedNumber stiffness = tissues_.wallStiffness(*tissue);
       line("  # " + tissue->name);
-      number("stiffness", stiffness);
+      if (isMapped(*tissue)) {
+        const SourcedTransfer& of_ct = *tissue->stiffness_of_ct;
+        line("  #   stiffness by CT number " + of_ct.text + ": " + basisName(of_ct.basis) + ": " +
+             of_ct.source);
+      } else {
+        number("stiffness", stiffness);
+      }
       number("damping", tissue->damping);
       number("friction", tissue->friction);
       number("viscosity", tissue->viscosity);
-      std::string entry = "  " + word(tissue->name) + ": {stiffness: " + stiffness.text;
+      number("cutting", tissue->cutting);
+      number("shaft, sliding,", tissue->shaft);
+      number("shaft, sticking,", tissue->shaft_static);
+      std::string entry = "  " + word(tissue->name) + ": {stiffness: ";
+      entry += isMapped(*tissue) ? std::string("{image: ") + (options_.skin ? "body" : "ct") +
+                                       ", transfer: " + tissue->stiffness_of_ct->text + "}"
+                                 : stiffness.text;
       if (tissue->damping) entry += ", damping: " + tissue->damping->text;
       if (tissue->friction) {
         entry += ", friction: {static: " + tissue->friction->text +
                  ", kinetic: " + tissue->friction->text + "}";
       }
       if (tissue->viscosity) entry += ", viscosity: " + tissue->viscosity->text;
+      if (tissue->cutting) entry += ", cutting: " + tissue->cutting->text;
+      if (tissue->shaft) {
+        const SourcedNumber& stick = tissue->shaft_static ? *tissue->shaft_static : *tissue->shaft;
+        entry += ", shaft: {stiffness: " + tissues_.shaft_spring->text +
+                 ", in: {static: " + stick.text + ", kinetic: " + tissue->shaft->text + "}}";
+      }
       line(entry + "}");
     }
   }
@@ -182,7 +207,7 @@ class SceneWriter {
       line("  # " + about(r));
       line("  - {name: " + word(region.name) + ", labels: {image: labels, match: " +
            listOf(region.labels) + voxel + "}, wall: " + word(region.tissue->name) +
-           (region.tissue->viscosity ? ", content: " + word(region.tissue->name) : "") + "}");
+           (region.tissue->hasContent() ? ", content: " + word(region.tissue->name) : "") + "}");
     }
   }
 
@@ -193,7 +218,9 @@ class SceneWriter {
         "ports:   # into each region from those that touch it and come before it; `opens_at` on "
         "the "
         "way in, `back` on the way out and in a hole");
-    const std::string hole_at = ", hole: {radius: " + tissues_.tip_radius.text + ", reopens_at: ";
+    // A tip that overlaps a hole of its own size finds it.
+    const std::string hole_at =
+        ", hole: {radius: " + millimetres(2.0 * tissues_.tip_radius.value) + " mm, reopens_at: ";
     std::vector<const Tissue*> told;
     for (const Passage& passage : all) {
       const Tissue& tissue = *passage.through;
@@ -265,6 +292,27 @@ const Tissue& requireTissue(const TissueTable& tissues, const std::string& name)
                      "add it, or leave out --skin and --body", tissues.file);
   }
   return *found;
+}
+
+std::vector<const Tissue*> tissuesOf(const ImportedScan& scan, const TissueTable& tissues) {
+  std::vector<const Tissue*> used;
+  const auto use = [&](const Tissue* tissue) {
+    if (std::find(used.begin(), used.end(), tissue) == used.end()) used.push_back(tissue);
+  };
+  if (scan.has_body) {
+    use(&requireTissue(tissues, "skin"));
+    use(&requireTissue(tissues, "fat"));
+  }
+  for (const PlannedRegion& region : scan.plan.regions) use(region.tissue);
+  return used;
+}
+
+double estimateMaps(const ImportedScan& scan, const TissueTable& tissues) {
+  const std::vector<const Tissue*> used = tissuesOf(scan, tissues);
+  const auto maps = std::count_if(used.begin(), used.end(), [](const Tissue* tissue) {
+    return tissue->stiffness_of_ct.has_value();
+  });
+  return static_cast<double>(maps) * kBytesPerMapVoxel * static_cast<double>(scan.image_voxels);
 }
 
 std::vector<Passage> passages(const ImportedScan& scan, const TissueTable& tissues) {

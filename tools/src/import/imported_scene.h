@@ -1,6 +1,7 @@
 #pragma once
 /// A scanned body as regions, and the scene file made of them.
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@ struct ImportedScan {
   vdb::LabelSurvey survey;  ///< of the plan's regions
   bool has_body = false;
   std::vector<int> body_labels;            ///< of its mask, if it is from one
+  std::uint64_t image_voxels = 0;          ///< of the CT that stiffness comes from; 0: none
   double voxel = 0.0;                      ///< [m] of the grids
   std::vector<vdb::IslandChange> changes;  ///< that were made to the labels
 
@@ -38,6 +40,14 @@ struct GridEstimate {
 /// `area` [m2] of the surface, `volume` [m3] inside, `voxel` [m].
 [[nodiscard]] GridEstimate estimateGrid(double area, double volume, double voxel);
 
+/// Of all regions, those of a body first; each once.
+/// @throws Error (kInput) as requireTissue().
+[[nodiscard]] std::vector<const Tissue*> tissuesOf(const ImportedScan& scan,
+                                                   const TissueTable& tissues);
+
+/// [bytes] At most, of the maps of stiffness that come from the CT.
+[[nodiscard]] double estimateMaps(const ImportedScan& scan, const TissueTable& tissues);
+
 /// What leads into a region from others that touch it, whose wall with them is its own.
 struct Passage {
   std::vector<std::size_t> outer;
@@ -52,6 +62,7 @@ struct SceneFiles {
   std::string labels;
   std::string names;  ///< may be empty
   std::string body;   ///< mask, or the image with `skin`; empty: no body
+  std::string image;  ///< with grey values; may be empty
 };
 [[nodiscard]] std::string writeScene(const ImportOptions& options, const ImportedScan& scan,
                                      const TissueTable& tissues, const SceneFiles& files);

@@ -99,8 +99,14 @@ class Planner {
     }
     std::sort(single.begin(), single.end());
     single.erase(std::unique(single.begin(), single.end()), single.end());
+    const std::size_t joined = plan_.regions.size();
     for (const int label : single) {
       if (!taken_.contains(label)) addSingle(label);
+    }
+    if (names_.empty() && plan_.regions.size() > joined) {
+      plan_.notes.push_back(
+          "the labels have no names, so that nothing tells their tissues: they are taken for " +
+          plan_.regions.back().tissue->name + "; --names gives them names");
     }
     if (plan_.regions.empty()) {
       throw inputError("labels.none", "the image holds no label: all of its voxels are 0", "",
@@ -147,7 +153,8 @@ class Planner {
   void addSingle(int label) {
     const auto named = names_.find(label);
     if (named == names_.end() && !names_.empty()) {
-      plan_.notes.push_back("label " + std::to_string(label) + " has no name in " + options_.names +
+      plan_.notes.push_back("label " + std::to_string(label) + " has no name in " +
+                            (options_.names.empty() ? options_.scan : options_.names) +
                             "; it is called label_" + std::to_string(label));
     }
     const std::string name =

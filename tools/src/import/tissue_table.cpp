@@ -39,7 +39,16 @@ class TableLoader final : public SceneLoader {
   const Document& document_;
 };
 
-enum class NumberKind { kLength, kStiffness, kPressure, kRatio, kDamping, kForce };
+enum class NumberKind {
+  kLength,
+  kStiffness,
+  kPressure,
+  kRatio,
+  kDamping,
+  kForce,
+  kForcePerLength,
+  kStiffnessPerLength
+};
 
 std::optional<double> pressure(std::string_view text) {
   constexpr std::array<std::pair<std::string_view, double>, 4> kUnits = {
@@ -72,6 +81,10 @@ std::optional<double> valueOf(std::string_view text, NumberKind kind) {
       return with_unit(Dimension::kDamping);
     case NumberKind::kForce:
       return with_unit(Dimension::kForce);
+    case NumberKind::kForcePerLength:
+      return with_unit(Dimension::kStiffness);
+    case NumberKind::kStiffnessPerLength:
+      return with_unit(Dimension::kStiffness2);
   }
   return std::nullopt;
 }
@@ -90,6 +103,10 @@ const char* unitsOf(NumberKind kind) {
       return "a damping, 0 or more: 2 N.s/m";
     case NumberKind::kForce:
       return "a force, 0 or more: 2.8 N";
+    case NumberKind::kForcePerLength:
+      return "a friction per length, 0 or more: 40 N/m";
+    case NumberKind::kStiffnessPerLength:
+      return "a stiffness per length, more than 0: 3e4 N/m^2";
   }
   return "";
 }
@@ -109,6 +126,10 @@ class TableReader {
     }
     table.tip_radius = number(root.require("tip_radius"), "tip_radius", NumberKind::kLength);
     table.stiffest = number(root.require("stiffest"), "stiffest", NumberKind::kStiffness);
+    if (const Node* spring = root.optional("shaft_spring")) {
+      table.shaft_spring = number(*spring, "shaft_spring", NumberKind::kStiffnessPerLength);
+    }
+    has_spring_ = table.shaft_spring.has_value();
     const Node& tissues = root.require("tissues");
     if (tissues.kind != Node::Kind::kMap || tissues.entries.empty()) {
       throw document.error(tissues.mark, "tissues.kind", "'tissues' wants a map of tissues",
@@ -128,21 +149,61 @@ class TableReader {
     const Node& value = reader.require("value");
     const std::optional<double> parsed =
         value.kind == Node::Kind::kScalar ? valueOf(value.text, kind) : std::nullopt;
-    const bool may_be_zero =
-        kind == NumberKind::kRatio || kind == NumberKind::kDamping || kind == NumberKind::kForce;
+    const bool may_be_zero = kind == NumberKind::kRatio || kind == NumberKind::kDamping ||
+                             kind == NumberKind::kForce || kind == NumberKind::kForcePerLength;
     if (!parsed || *parsed < 0.0 || (*parsed == 0.0 && !may_be_zero)) {
       throw document.error(value.mark, "tissues.value",
                            "'" + what + "' wants " + unitsOf(kind) + ", not '" + value.text + "'");
     }
-    SourcedNumber result = sourced(reader);
+    SourcedNumber result;
+    readSource(reader, result);
     result.value = *parsed;
     result.text = value.text;
     reader.finish();
     return result;
   }
 
-  static SourcedNumber sourced(MapReader& reader) {
-    SourcedNumber result;
+  SourcedTransfer transfer(const Node& node) {
+    const Document& document = loader_.document();
+    MapReader reader(loader_, node, "stiffness_of_ct");
+    const Node& list = reader.require("value");
+    const auto wrong = [&](Mark mark, const std::string& what) {
+      return document.error(mark, "tissues.transfer", what,
+                            "write value: [[-100, 65 N/m], [50, 156 N/m]]: Hounsfield units, by "
+                            "rising value, and the stiffness there, more than 0");
+    };
+    if (list.kind != Node::Kind::kSequence || list.items.empty()) {
+      throw wrong(list.mark, "'stiffness_of_ct' wants a list of points");
+    }
+    SourcedTransfer result;
+    for (const Node& item : list.items) {
+      const bool is_pair = item.kind == Node::Kind::kSequence && item.items.size() == 2 &&
+                           item.items[0].kind == Node::Kind::kScalar &&
+                           item.items[1].kind == Node::Kind::kScalar;
+      if (!is_pair) throw wrong(item.mark, "a point of 'stiffness_of_ct' is a pair");
+      const std::optional<double> from = parseNumber(item.items[0].text);
+      const std::optional<double> to = valueOf(item.items[1].text, NumberKind::kStiffness);
+      if (!from) {
+        throw wrong(item.items[0].mark, "'" + item.items[0].text + "' is no CT number");
+      }
+      if (!to || !(*to > 0.0)) {
+        throw wrong(item.items[1].mark, "'" + item.items[1].text + "' is no stiffness above 0");
+      }
+      if (!result.points.empty() && !(*from > result.points.back().first)) {
+        throw wrong(item.items[0].mark, "the CT numbers do not rise");
+      }
+      result.points.emplace_back(*from, *to);
+      result.text += (result.text.empty() ? "[[" : ", [") + item.items[0].text + ", " +
+                     item.items[1].text + "]";
+    }
+    result.text += "]";
+    readSource(reader, result);
+    reader.finish();
+    return result;
+  }
+
+  template <typename Sourced>
+  static void readSource(MapReader& reader, Sourced& result) {
     const std::string basis = reader.requireText("basis");
     if (basis == "measured") {
       result.basis = Basis::kMeasured;
@@ -153,7 +214,6 @@ class TableReader {
                            "write measured, derived or assumed");
     }
     result.source = reader.requireText("source");
-    return result;
   }
 
   Tissue tissue(const Node::Entry& entry) {
@@ -186,6 +246,12 @@ class TableReader {
     made.viscosity = read("viscosity", NumberKind::kDamping);
     made.opens_at = read("opens_at", NumberKind::kForce);
     made.back = read("back", NumberKind::kForce);
+    made.cutting = read("cutting", NumberKind::kForce);
+    made.shaft = read("shaft", NumberKind::kForcePerLength);
+    made.shaft_static = read("shaft_static", NumberKind::kForcePerLength);
+    if (const Node* node = reader.optional("stiffness_of_ct")) {
+      made.stiffness_of_ct = transfer(*node);
+    }
     reader.finish();
     check(made, entry.key_mark);
     return made;
@@ -214,9 +280,21 @@ class TableReader {
                            "'" + tissue.name + "' has 'back', but nothing gets in",
                            "give opens_at as well");
     }
+    if (tissue.shaft && !has_spring_) {
+      throw document.error(mark, "tissues.shaft",
+                           "'" + tissue.name + "' has 'shaft', but the table has no 'shaft_spring'",
+                           "give shaft_spring: {value: 3e4 N/m^2, ...} above 'tissues'");
+    }
+    if (tissue.shaft_static &&
+        (!tissue.shaft || tissue.shaft_static->value < tissue.shaft->value)) {
+      throw document.error(mark, "tissues.shaft",
+                           "'shaft_static' of '" + tissue.name + "' is less than its 'shaft'",
+                           "a shaft that slides is held no harder than one that sticks");
+    }
   }
 
   TableLoader loader_;
+  bool has_spring_ = false;
 };
 
 /// Blanks and hyphens as underscores, capitals small.

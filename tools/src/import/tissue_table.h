@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate::tools {
@@ -14,6 +15,14 @@ enum class Basis { kMeasured, kDerived, kAssumed };
 struct SourcedNumber {
   double value = 0.0;
   std::string text = {};
+  Basis basis = Basis::kAssumed;
+  std::string source = {};
+};
+
+/// Stiffness by the CT number of a voxel: [Hounsfield units], [N/m], by rising CT number.
+struct SourcedTransfer {
+  std::vector<std::pair<double, double>> points;
+  std::string text = {};  ///< as a scene has it: [[-100, 65 N/m], [50, 156 N/m]]
   Basis basis = Basis::kAssumed;
   std::string source = {};
 };
@@ -30,12 +39,22 @@ struct Tissue {
   std::optional<SourcedNumber> viscosity;  ///< [N s/m]
   std::optional<SourcedNumber> opens_at;   ///< [N]
   std::optional<SourcedNumber> back;       ///< [N]
+  // Of a needle in it.
+  std::optional<SourcedNumber> cutting;  ///< [N]
+  std::optional<SourcedNumber> shaft;    ///< [N/m] friction on each length of the shaft that slides
+  std::optional<SourcedNumber> shaft_static;       ///< [N/m] and that sticks; no less than `shaft`
+  std::optional<SourcedTransfer> stiffness_of_ct;  ///< where there is a CT image
+
+  /// Whether something is felt inside of it.
+  [[nodiscard]] bool hasContent() const { return viscosity || cutting || shaft; }
 };
 
 struct TissueTable {
   std::string file;
   SourcedNumber tip_radius;  ///< [m]
   SourcedNumber stiffest;    ///< [N/m]
+  std::optional<SourcedNumber>
+      shaft_spring;  ///< [N/m^2] of a shaft that sticks; given if a tissue has `shaft`
   std::vector<Tissue> tissues;
 
   /// The first tissue that fits a label's name, or null.

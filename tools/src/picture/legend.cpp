@@ -1,3 +1,4 @@
+#include <string>
 #include <vector>
 
 #include "picture/palette.h"
@@ -21,6 +22,20 @@ std::string feelOf(const Sheet& s, const Region& region) {
   return text;
 }
 
+/// `text`, or as much of its beginning as is no wider than `room`.
+std::string shortened(Sheet& s, std::string text, const TextStyle& style, double room) {
+  if (s.canvas.textWidth(text, style) <= room) return text;
+  const auto is_middle = [](char byte) {
+    return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U;
+  };
+  while (!text.empty() && s.canvas.textWidth(text + "...", style) > room) {
+    while (!text.empty() && is_middle(text.back()))
+      text.pop_back();  // of a character of several bytes
+    if (!text.empty()) text.pop_back();
+  }
+  return text + "...";
+}
+
 }  // namespace
 
 void drawLegend(Sheet& s, double y) {
@@ -32,10 +47,15 @@ void drawLegend(Sheet& s, double y) {
     if (y > limit) return;
     swatch(y - s.px(5));
     const TextStyle bold = s.font(15);
-    s.canvas.text({x + s.px(46), y}, name, bold);
-    if (!detail.empty()) {
-      s.canvas.text({x + s.px(46) + s.canvas.textWidth(name, bold) + s.px(9), y}, detail,
-                    s.font(13, kFaintInk));
+    const double room = s.options.width - s.px(10) - (x + s.px(46));
+    const std::string fitting = shortened(s, name, bold, room);
+    s.canvas.text({x + s.px(46), y}, fitting, bold);
+    const double begin = s.canvas.textWidth(fitting, bold) + s.px(9);
+    for (const double size : {13.0, 10.5}) {
+      const TextStyle faint = s.font(size, kFaintInk);
+      if (detail.empty() || begin + s.canvas.textWidth(detail, faint) > room) continue;
+      s.canvas.text({x + s.px(46) + begin, y}, detail, faint);
+      break;
     }
     y += row;
   };

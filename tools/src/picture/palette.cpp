@@ -10,7 +10,10 @@ Color regionColor(RegionId region) {
                                                             0xC3B1DA, 0xE3CF80, 0x8CC6C2, 0xDFAFCB,
                                                             0xC9B99A, 0xB4BFCC, 0xD9B38C, 0xBFD08F};
   if (region == kOutside) return kPaper;
-  return rgb(kColors[(region - 1U) % kColors.size()]);
+  const Color color = rgb(kColors[(region - 1U) % kColors.size()]);
+  // More regions than colours: the next ones darker, then lighter, and so on.
+  const std::size_t round = (region - 1U) / kColors.size() % 3U;
+  return round == 0 ? color : round == 1 ? scaled(color, 0.8) : mixed(color, rgb(0xFFFFFF), 0.55);
 }
 
 Color mixed(const Color& a, const Color& b, double share_of_b) {

@@ -1,6 +1,7 @@
 #include "picture/picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "picture/cutaway.h"
@@ -129,21 +130,29 @@ double drawInset(Sheet& s, const Box3& box, Console& console) {
   return y + height;
 }
 
+/// A mask has two values, and no grey ones.
+bool isMask(const vdb::Image& image) {
+  std::array<float, 2> seen{};
+  std::size_t count = 0;
+  for (const float value : image.values) {
+    if (std::find(seen.begin(), seen.begin() + count, value) != seen.begin() + count) continue;
+    if (count == seen.size()) return false;
+    seen[count++] = value;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
                                                const std::string& wanted) {
-  std::string file = wanted;
-  vdb::ImageOptions options;
   for (const SceneImage& image : scene.images()) {
-    if (wanted.empty() ? !image.has_names : image.name == wanted) {
-      file = image.file;
-      options = image.options;
-      break;
-    }
+    if (wanted.empty() ? image.has_names : image.name != wanted) continue;
+    auto read = std::make_shared<const vdb::Image>(vdb::readImage(image.file, image.options));
+    if (!wanted.empty() || !isMask(*read)) return read;
   }
-  if (file.empty()) return nullptr;
-  return std::make_shared<const vdb::Image>(vdb::readImage(file, options));
+  if (wanted.empty()) return nullptr;
+  return std::make_shared<const vdb::Image>(vdb::readImage(wanted, {}));
 }
 
 CutPlane drawPicture(const Scene& scene, const PictureOptions& options, const std::string& file,

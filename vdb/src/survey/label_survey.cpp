@@ -223,7 +223,9 @@ std::map<int, std::uint64_t> countLabels(const Image& image) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.values.size(), 1U << 16U),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       Counts& counts = parts.local();
-                      float last = -1.0F;
+                      // No voxel equals it, whatever the image holds.
+                      constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+                      float last = kNone;
                       std::uint64_t run = 0;
                       const auto end_run = [&] {
                         if (run > 0) counts.of[static_cast<std::size_t>(last)] += run;
@@ -241,7 +243,7 @@ std::map<int, std::uint64_t> countLabels(const Image& image) {
                         if (!(value >= 0.0F && value <= static_cast<float>(kMostLabel) &&
                               std::floor(value) == value)) {
                           counts.wrong = std::min(counts.wrong, n);
-                          last = -1.0F;
+                          last = kNone;
                           continue;
                         }
                         last = value;

@@ -1,0 +1,312 @@
+// A scanned pelvis, imported and touched: its layers are felt where the labels have them, and a needle feels them as
+// its model says.
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "palpate/core/math.h"
+#include "tools/helpers.h"
+#include "vdb/python_oracle.h"
+
+namespace palpate::testing {
+namespace {
+
+const std::string kData = PALPATE_SOURCE_DIR "/../shared/data/pelvis";
+const char* const kOracle = "tools/scan_oracle.py";
+const std::string kMuscles = "5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28";
+const std::string kSets = kMuscles + ";1,2,3,4";
+
+/// The head of a femur.
+constexpr int kSlice = 56;
+
+/// All of it takes minutes, and is felt with PALPATE_SLOW_TESTS=1, each label a region; else 11 slices, all muscles
+/// one region and all bones another.
+struct Pelvis {
+  bool is_whole = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
+  TempFolder folder;
+  std::string labels = kData + "/label.mhd";
+  std::string body = kData + "/mask.mhd";
+  int slice = kSlice;
+
+  Pelvis() {
+    if (is_whole) return;
+    constexpr int kAround = 5;
+    for (std::string* const file : {&labels, &body}) {
+      const std::string slab = folder.path(file == &labels ? "labels.nii.gz" : "body.nii.gz");
+      (void)vdb::test::askScript(
+          kOracle, "slab",
+          {*file, std::to_string(kSlice - kAround), std::to_string(kSlice + kAround), slab});
+      *file = slab;
+    }
+    slice = kAround;
+  }
+};
+
+/// "muscle" for the region of one, and so on.
+std::string kindOf(const std::string& region) {
+  if (region == "pelvis" || region == "femur" || region == "sacrum" || region == "spine")
+    return "bone";
+  return region.find("muscle") != std::string::npos ? "muscle" : region;
+}
+
+/// Skin, muscle and bone, in the order in which a ray meets them.
+using Three = std::array<double, 3>;
+constexpr std::array<const char*, 3> kNames = {"soft_tissue", "muscle", "bone"};
+
+/// A ray through the head of a femur, in its slice, as the labels have it.
+struct Ray {
+  Vec3 from{0.0};      ///< [mm] far outside
+  Vec3 way{0.0};       ///< inwards
+  Three depth{};       ///< [mm] from `from`
+  Three angle{};       ///< [degrees] to the border's normal
+  double voxel = 0.0;  ///< [mm] how far the ray goes through a voxel of 1 x 1 x 3 mm
+};
+
+/// Of twenty rays all around, those that meet each of the three borders at less than 60 degrees. A ray that grazes a
+/// border has no certain place on it: half a voxel across is a whole one along, and more. The femur is the first in the
+/// image; nothing here depends on what is felt.
+std::vector<Ray> raysOf(const Pelvis& pelvis) {
+  std::vector<Ray> rays;
+  for (const std::vector<double>& row : vdb::test::askScript(
+           kOracle, "ring",
+           {pelvis.labels, pelvis.body, "2", std::to_string(pelvis.slice), "20", kSets})) {
+    EXPECT_EQ(row.size(), 13U);
+    const Ray ray{Vec3(row[0], row[1], row[2]),
+                  Vec3(row[3], row[4], row[5]),
+                  {row[6], row[7], row[8]},
+                  {row[9], row[10], row[11]},
+                  row[12]};
+    if (*std::max_element(ray.angle.begin(), ray.angle.end()) < 60.0) rays.push_back(ray);
+  }
+  return rays;
+}
+
+void importPelvis(const Pelvis& pelvis, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {"import", pelvis.labels, "--names", kData + "/labels.csv",
+                                        "--body", pelvis.body,   "-o",      "pelvis.yaml"};
+  if (!pelvis.is_whole) {
+    arguments.insert(arguments.end(), {"--region", "muscle=5-28", "--region", "bone=1-4"});
+  }
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const CommandResult result = runPalpate(arguments, pelvis.folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+}
+
+/// What of a row of a trace is looked at.
+struct Row {
+  Vec3 hand{0.0};      ///< [mm]
+  Vec3 proxy{0.0};     ///< [mm]
+  Vec3 force{0.0};     ///< [N]
+  std::string region;  ///< its kind
+  std::string event;
+};
+
+std::vector<Row> touched(const Pelvis& pelvis, std::vector<std::string> motion) {
+  motion.insert(motion.begin(), {"touch", "pelvis.yaml"});
+  motion.insert(motion.end(), {"--trace", "t.csv", "--json"});
+  const CommandResult result = runPalpate(motion, pelvis.folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::vector<Row> rows;
+  for (const std::string& line : linesOf(textOf(pelvis.folder.path("t.csv")))) {
+    const std::vector<std::string> cells = cellsOf(line);
+    if (cells[0] == "t") continue;
+    const auto vector = [&](std::size_t first) {
+      return Vec3(std::stod(cells[first]), std::stod(cells[first + 1]),
+                  std::stod(cells[first + 2]));
+    };
+    rows.push_back({vector(1) * 1e3, vector(4) * 1e3, vector(7), kindOf(cells[10]), cells[12]});
+  }
+  return rows;
+}
+
+TEST(ImportPelvis, LayersAreFeltAsDeepAsTheLabelsHaveThem) {
+  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  const Pelvis pelvis;
+  const std::vector<Ray> rays = raysOf(pelvis);
+  ASSERT_GE(rays.size(), 10U);
+  // Walls that the lightest touch opens, so that the probe goes where the hand goes, and all that it tells is where
+  // it comes into the next region.
+  (void)pelvis.folder.file("open.yaml", R"(palpate_tissues: 1
+tip_radius: {value: 1 mm, basis: assumed, source: a needle}
+stiffest: {value: 2000 N/m, basis: assumed, source: a device}
+tissues:
+  skin: {labels: ["skin"], stiffness: {value: 400 N/m, basis: assumed, source: round}, opens_at: {value: 0 N, basis: assumed, source: open}}
+  fat: {labels: ["fat"], stiffness: {value: 100 N/m, basis: assumed, source: round}}
+  any: {labels: ["*"], stiffness: {value: 500 N/m, basis: assumed, source: round}, opens_at: {value: 0 N, basis: assumed, source: open}}
+)");
+  importPelvis(pelvis, {"--materials", "open.yaml"});
+
+  constexpr double kFine = 0.05;  // [mm] a tick
+  std::string path = "t,x,y,z\n";
+  std::vector<std::size_t> first_row;
+  std::size_t ticks = 0;
+  const auto go = [&](const Vec3& p) {
+    char line[120];
+    std::snprintf(line, sizeof line, "%.4f,%.9g,%.9g,%.9g\n", 1e-3 * static_cast<double>(ticks++),
+                  p.x * 1e-3, p.y * 1e-3, p.z * 1e-3);
+    path += line;
+  };
+  for (const Ray& ray : rays) {
+    first_row.push_back(ticks);
+    const double near = ray.depth[0] - 5.0;
+    const double end = ray.depth[2] + 5.0;
+    for (double s = 0.0; s < near; s += 1.0) go(ray.from + s * ray.way);
+    for (double s = near; s < end; s += kFine) go(ray.from + s * ray.way);
+    for (double s = end; s > 0.0; s -= 1.0) go(ray.from + s * ray.way);
+  }
+  first_row.push_back(ticks);
+  (void)pelvis.folder.file("path.csv", path);
+  const std::vector<Row> rows = touched(pelvis, {"--path", "path.csv"});
+  ASSERT_EQ(rows.size(), ticks);
+
+  std::string points;  // where each border was felt, for the oracle
+  std::vector<std::string> told;
+  for (std::size_t r = 0; r < rays.size(); ++r) {
+    const Ray& ray = rays[r];
+    Three felt = {-1.0, -1.0, -1.0};
+    std::vector<std::string> order;
+    for (std::size_t n = first_row[r]; n < first_row[r + 1] && felt[2] < 0.0; ++n) {
+      const Row& row = rows[n];
+      if (order.empty() || order.back() != row.region) order.push_back(row.region);
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (felt[k] < 0.0 && row.region == kNames[k]) {
+          felt[k] = glm::dot(row.hand - ray.from, ray.way);
+        }
+      }
+    }
+    // Into the body first, and nowhere past a layer that is listed as touching.
+    ASSERT_GE(order.size(), 4U) << "ray " << r;
+    EXPECT_EQ(order[0], "outside");
+    EXPECT_EQ(order[1], "soft_tissue");
+    EXPECT_EQ(order[2], "muscle");
+    EXPECT_EQ(order.back(), "bone");
+    for (std::size_t k = 0; k < 3; ++k) {
+      // What is felt at once is up to a step further in.
+      const double off = felt[k] - 0.5 * kFine - ray.depth[k];
+      char line[160];
+      std::snprintf(line, sizeof line,
+                    "  ray %zu %-11s %6.2f mm deep by the labels, off %+.2f mm, at %2.0f degrees",
+                    r, kNames[k], ray.depth[k] - ray.depth[0], off, ray.angle[k]);
+      told.emplace_back(line);
+      if (k > 0) {
+        EXPECT_NEAR(felt[k] - felt[0], ray.depth[k] - ray.depth[0], ray.voxel) << line;
+      }
+      const Vec3 p = ray.from + felt[k] * ray.way;
+      std::snprintf(line, sizeof line, "%zu %.6f %.6f %.6f\n", k, p.x, p.y, p.z);
+      points += line;
+    }
+  }
+  for (const std::string& line : told) std::printf("%s\n", line.c_str());
+
+  // Across the border, whatever the angle: within the shorter side of a voxel.
+  double farthest = 0.0;
+  for (const std::vector<double>& row : vdb::test::askScript(
+           kOracle, "borders",
+           {pelvis.labels, pelvis.body, pelvis.folder.file("points.txt", points), kSets})) {
+    farthest = std::max(farthest, row[0]);
+  }
+  std::printf("  farthest from a border of the labels: %.2f mm\n", farthest);
+  EXPECT_LE(farthest, 1.0);
+}
+
+TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
+  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  const Pelvis pelvis;
+  const std::vector<Ray> rays = raysOf(pelvis);
+  // The one that meets skin and muscle most squarely: there no wall is slid along before it gives way.
+  const auto slant = [](const Ray& ray) { return std::max(ray.angle[0], ray.angle[1]); };
+  const Ray ray = *std::min_element(
+      rays.begin(), rays.end(), [&](const Ray& a, const Ray& b) { return slant(a) < slant(b); });
+  importPelvis(pelvis, {});
+
+  const auto text = [](const Vec3& p) {
+    char out[96];
+    std::snprintf(out, sizeof out, "%.6f,%.6f,%.6f", p.x, p.y, p.z);
+    return std::string(out);
+  };
+  constexpr double kSpeed = 0.01;  // [m/s] slow enough for damping to be small
+  const std::vector<Row> rows =
+      touched(pelvis, {"--insert", text(ray.from + (ray.depth[0] - 10.0) * ray.way),
+                       text(ray.from + (ray.depth[2] + 2.0) * ray.way), "--speed", "10mm/s"});
+
+  // As the project's table has them: fat and muscle.
+  struct Tissue {
+    double cutting;    // [N]
+    double shaft;      // [N/m] sliding
+    double viscosity;  // [N s/m]
+    double pressed;    // [mm] before it cuts: cutting / stiffness
+  };
+  constexpr std::array<Tissue, 2> kTissues = {{{0.2, 35.0, 1.5, 3.1}, {0.6, 47.0, 3.0, 3.9}}};
+  const std::vector<std::vector<double>> runs = vdb::test::askScript(
+      kOracle, "runs", {pelvis.labels, pelvis.body, text(ray.from) + "," + text(ray.way), kSets});
+  /// [N] on the way in at `depth` [mm], by the labels, and [mm] since the last border.
+  const auto model = [&](double depth) {
+    double force = 0.0;
+    double since = 0.0;
+    for (std::size_t n = 0; n < runs.size() && runs[n][0] < depth; ++n) {
+      if (runs[n][1] < 1.0 || runs[n][1] > 2.0) continue;
+      const Tissue& tissue = kTissues[static_cast<std::size_t>(runs[n][1]) - 1];
+      const double end = n + 1 < runs.size() ? std::min(runs[n + 1][0], depth) : depth;
+      force += tissue.shaft * (end - runs[n][0]) * 1e-3;
+      since = end - runs[n][0];
+      if (end == depth) force += tissue.cutting + tissue.viscosity * kSpeed;
+    }
+    return std::pair(force, since);
+  };
+
+  std::vector<std::string> order;
+  std::vector<double> before;  // [N] at each border that gave way
+  std::vector<double> after;
+  std::size_t compared = 0;
+  double worst = 0.0;
+  double last = 0.0;
+  std::size_t borders = 0;
+  for (const Row& row : rows) {
+    const double depth = glm::dot(row.hand - ray.from, ray.way);
+    const double force = -glm::dot(row.force, ray.way);
+    if (order.empty() || order.back() != row.region) order.push_back(row.region);
+    if (!row.event.empty()) {
+      before.push_back(last);
+      after.push_back(force);
+      ++borders;
+    }
+    last = force;
+    const bool is_in = row.region == "soft_tissue" || row.region == "muscle";
+    const bool is_held = glm::length(row.hand - row.proxy) > 1e-6;  // by a wall
+    if (!is_in || is_held) continue;
+    const auto [expected, since] = model(depth);
+    if (since < 8.0) continue;  // it presses before it cuts, and the border is a voxel off
+    // Each border is up to a voxel off, and the force by as much of what the friction of its two sides differs by; the
+    // first has nothing on its outer side.
+    const double off = ray.voxel * 1e-3 * (35.0 + 12.0 * static_cast<double>(borders - 1));
+    EXPECT_NEAR(force, expected, off) << "at " << depth << " mm";
+    worst = std::max(worst, std::abs(force - expected));
+    ++compared;
+  }
+  for (std::size_t n = 0; n < before.size(); ++n) {
+    std::printf("  border %zu: %.3f N, then %.3f N\n", n, before[n], after[n]);
+    // The wall is gone; cutting and friction stay.
+    EXPECT_LT(after[n], before[n] - 0.2);
+  }
+  std::printf("  %zu ticks, off by %.4f N at most\n", compared, worst);
+  ASSERT_GE(before.size(), 2U);
+  // The skin gives way at its force, and the muscle at its own with what the needle feels in the fat on top of that; up
+  // to the depth's error, and what a wall that is not met squarely pushes aside.
+  constexpr double kAside = 0.03;
+  const double skin = 2.78;
+  EXPECT_NEAR(before[0], skin, kAside);
+  EXPECT_NEAR(before[1], 1.5 + model(ray.depth[1]).first, kAside + 35.0 * ray.voxel * 1e-3);
+  EXPECT_GT(compared, 500U);
+  ASSERT_GE(order.size(), 3U);
+  EXPECT_EQ(order[0], "outside");
+  EXPECT_EQ(order[1], "soft_tissue");
+  EXPECT_EQ(order[2], "muscle");
+  EXPECT_EQ(std::count(order.begin(), order.end(), "bone"), 0);  // which is stood on, not entered
+  const double stands = glm::dot(rows.back().proxy - ray.from, ray.way);
+  EXPECT_NEAR(stands, ray.depth[2], ray.voxel);
+}
+
+}  // namespace
+}  // namespace palpate::testing
