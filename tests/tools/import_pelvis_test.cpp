@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 
 #include "palpate/core/math.h"
 #include "tools/helpers.h"
@@ -21,8 +22,8 @@ const std::string kSets = kMuscles + ";1,2,3,4";
 /// The head of a femur.
 constexpr int kSlice = 56;
 
-/// All of it takes minutes, and is felt with PALPATE_SLOW_TESTS=1, each label a region; else 11 slices, all muscles
-/// one region and all bones another.
+/// All of it takes minutes, and is felt with PALPATE_SLOW_TESTS=1, each label a region; else one half of 11
+/// slices, all muscles one region and all bones another.
 struct Pelvis {
   bool is_whole = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   TempFolder folder;
@@ -37,7 +38,7 @@ struct Pelvis {
       const std::string slab = folder.path(file == &labels ? "labels.nii.gz" : "body.nii.gz");
       (void)vdb::test::askScript(
           kOracle, "slab",
-          {*file, std::to_string(kSlice - kAround), std::to_string(kSlice + kAround), slab});
+          {*file, "280", std::to_string(kSlice - kAround), std::to_string(kSlice + kAround), slab});
       *file = slab;
     }
     slice = kAround;
@@ -62,11 +63,13 @@ struct Ray {
   Three depth{};       ///< [mm] from `from`
   Three angle{};       ///< [degrees] to the border's normal
   double voxel = 0.0;  ///< [mm] how far the ray goes through a voxel of 1 x 1 x 3 mm
+
+  [[nodiscard]] double steepest() const { return *std::max_element(angle.begin(), angle.end()); }
 };
 
 /// Of twenty rays all around, those that meet each of the three borders at less than 60 degrees. A ray that grazes a
-/// border has no certain place on it: half a voxel across is a whole one along, and more. The femur is the first in the
-/// image; nothing here depends on what is felt.
+/// border has no certain place on it: half a voxel across is a whole one along, and more. The femur is the thicker one of
+/// the slice; nothing here depends on what is felt.
 std::vector<Ray> raysOf(const Pelvis& pelvis) {
   std::vector<Ray> rays;
   for (const std::vector<double>& row : vdb::test::askScript(
@@ -78,7 +81,7 @@ std::vector<Ray> raysOf(const Pelvis& pelvis) {
                   {row[6], row[7], row[8]},
                   {row[9], row[10], row[11]},
                   row[12]};
-    if (*std::max_element(ray.angle.begin(), ray.angle.end()) < 60.0) rays.push_back(ray);
+    if (ray.steepest() < 60.0) rays.push_back(ray);
   }
   return rays;
 }
@@ -163,6 +166,7 @@ tissues:
 
   std::string points;  // where each border was felt, for the oracle
   std::vector<std::string> told;
+  int met_well = 0;
   for (std::size_t r = 0; r < rays.size(); ++r) {
     const Ray& ray = rays[r];
     Three felt = {-1.0, -1.0, -1.0};
@@ -190,8 +194,12 @@ tissues:
                     "  ray %zu %-11s %6.2f mm deep by the labels, off %+.2f mm, at %2.0f degrees",
                     r, kNames[k], ray.depth[k] - ray.depth[0], off, ray.angle[k]);
       told.emplace_back(line);
-      if (k > 0) {
+      EXPECT_NEAR(off, 0.0, ray.voxel) << line;
+      // Depth below the skin is between two borders, so both have to be met well: at less than 45 degrees half a voxel
+      // across is less than one along.
+      if (ray.steepest() < 45.0) {
         EXPECT_NEAR(felt[k] - felt[0], ray.depth[k] - ray.depth[0], ray.voxel) << line;
+        met_well += k == 0 ? 1 : 0;
       }
       const Vec3 p = ray.from + felt[k] * ray.way;
       std::snprintf(line, sizeof line, "%zu %.6f %.6f %.6f\n", k, p.x, p.y, p.z);
@@ -199,6 +207,7 @@ tissues:
     }
   }
   for (const std::string& line : told) std::printf("%s\n", line.c_str());
+  EXPECT_GE(met_well, 10);
 
   // Across the border, whatever the angle: within the shorter side of a voxel.
   double farthest = 0.0;
@@ -236,24 +245,28 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
     double cutting;    // [N]
     double shaft;      // [N/m] sliding
     double viscosity;  // [N s/m]
-    double pressed;    // [mm] before it cuts: cutting / stiffness
   };
-  constexpr std::array<Tissue, 2> kTissues = {{{0.2, 35.0, 1.5, 3.1}, {0.6, 47.0, 3.0, 3.9}}};
+  constexpr std::array<Tissue, 2> kTissues = {{{0.2, 35.0, 1.5}, {0.6, 47.0, 3.0}}};
   const std::vector<std::vector<double>> runs = vdb::test::askScript(
       kOracle, "runs", {pelvis.labels, pelvis.body, text(ray.from) + "," + text(ray.way), kSets});
-  /// [N] on the way in at `depth` [mm], by the labels, and [mm] since the last border.
+  /// On the way in, by the labels.
+  struct Model {
+    double force = 0.0;  ///< [N]
+    double since = 0.0;  ///< [mm] from the last border
+    double until = 0.0;  ///< [mm] to the next
+  };
   const auto model = [&](double depth) {
-    double force = 0.0;
-    double since = 0.0;
-    for (std::size_t n = 0; n < runs.size() && runs[n][0] < depth; ++n) {
+    Model at;
+    for (std::size_t n = 0; n + 1 < runs.size() && runs[n][0] < depth; ++n) {
+      const double end = std::min(runs[n + 1][0], depth);
+      at.since = end - runs[n][0];
+      at.until = runs[n + 1][0] - depth;
       if (runs[n][1] < 1.0 || runs[n][1] > 2.0) continue;
       const Tissue& tissue = kTissues[static_cast<std::size_t>(runs[n][1]) - 1];
-      const double end = n + 1 < runs.size() ? std::min(runs[n + 1][0], depth) : depth;
-      force += tissue.shaft * (end - runs[n][0]) * 1e-3;
-      since = end - runs[n][0];
-      if (end == depth) force += tissue.cutting + tissue.viscosity * kSpeed;
+      at.force += tissue.shaft * at.since * 1e-3;
+      if (end == depth) at.force += tissue.cutting + tissue.viscosity * kSpeed;
     }
-    return std::pair(force, since);
+    return at;
   };
 
   std::vector<std::string> order;
@@ -276,13 +289,14 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
     const bool is_in = row.region == "soft_tissue" || row.region == "muscle";
     const bool is_held = glm::length(row.hand - row.proxy) > 1e-6;  // by a wall
     if (!is_in || is_held) continue;
-    const auto [expected, since] = model(depth);
-    if (since < 8.0) continue;  // it presses before it cuts, and the border is a voxel off
+    const Model by_labels = model(depth);
+    // It presses up to 4 mm before it cuts (0.6 N at 156 N/m), and borders are a voxel off.
+    if (by_labels.since < 8.0 || by_labels.until < ray.voxel) continue;
     // Each border is up to a voxel off, and the force by as much of what the friction of its two sides differs by; the
     // first has nothing on its outer side.
     const double off = ray.voxel * 1e-3 * (35.0 + 12.0 * static_cast<double>(borders - 1));
-    EXPECT_NEAR(force, expected, off) << "at " << depth << " mm";
-    worst = std::max(worst, std::abs(force - expected));
+    EXPECT_NEAR(force, by_labels.force, off) << "at " << depth << " mm";
+    worst = std::max(worst, std::abs(force - by_labels.force));
     ++compared;
   }
   for (std::size_t n = 0; n < before.size(); ++n) {
@@ -293,11 +307,15 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
   std::printf("  %zu ticks, off by %.4f N at most\n", compared, worst);
   ASSERT_GE(before.size(), 2U);
   // The skin gives way at its force, and the muscle at its own with what the needle feels in the fat on top of that; up
-  // to the depth's error, and what a wall that is not met squarely pushes aside.
-  constexpr double kAside = 0.03;
-  const double skin = 2.78;
-  EXPECT_NEAR(before[0], skin, kAside);
-  EXPECT_NEAR(before[1], 1.5 + model(ray.depth[1]).first, kAside + 35.0 * ray.voxel * 1e-3);
+  // to the depth's error, damping at 10 mm/s, and what a wall that is not met squarely adds by its friction: the hand
+  // pushes along the ray, and the wall opens by what is across it. Its normal is known to some 5 degrees.
+  const auto aside = [&](double opens_at, std::size_t border) {
+    constexpr double kDamping = 0.01;
+    return kDamping +
+           opens_at * (1.0 / std::cos((ray.angle[border] + 5.0) * std::numbers::pi / 180.0) - 1.0);
+  };
+  EXPECT_NEAR(before[0], 2.78, aside(2.78, 0));
+  EXPECT_NEAR(before[1], 1.5 + model(ray.depth[1]).force, aside(1.5, 1) + 35.0 * ray.voxel * 1e-3);
   EXPECT_GT(compared, 500U);
   ASSERT_GE(order.size(), 3U);
   EXPECT_EQ(order[0], "outside");

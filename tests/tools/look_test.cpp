@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 
 #include "tools/helpers.h"
 #include "tools/png_pixels.h"
@@ -289,6 +290,35 @@ TEST(Render, APictureOfTheSizeAskedFor) {
 
   EXPECT_EQ(runPalpate({"render", scene, "-o", out}).exit_code, 1);  // it exists
   EXPECT_EQ(textOf(out), png);
+}
+
+TEST(Render, ManyRegionsWithLongNamesCanBeToldApart) {
+  const TempFolder folder;
+  std::string scene = "palpate: 1\nlength: mm\nlayers:\n";
+  constexpr int kRegions = 28;
+  for (int n = 0; n < kRegions; ++n) {
+    const std::string x = std::to_string(10 * n % 140);
+    const std::string y = std::to_string(n / 14 * 30);
+    scene += "  - {name: " + std::string(n % 2 == 0 ? "" : "musculus_with_a_name_as_long_as_") +
+             "region_" + std::to_string(n) + ", inside: {box: {center: [" + x + ", " + y +
+             ", 0], size: [8, 20, 20]}}}\n";
+  }
+  (void)folder.file("many.yaml", scene);
+  const CommandResult drawn =
+      runPalpate({"render", "many.yaml", "-o", "p.png", "--plane", "z=0"}, folder.path());
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  const Pixels pixels = pixelsOf(textOf(folder.path("p.png")));
+  std::map<std::array<std::uint8_t, 3>, int> count;
+  for (const auto& color : pixels.colors) ++count[color];
+  const auto wide =
+      std::count_if(count.begin(), count.end(), [](const auto& c) { return c.second > 400; });
+  EXPECT_GE(wide, kRegions);
+  // The legend keeps off the edge.
+  for (std::size_t y = 0; y < pixels.height; ++y) {
+    for (std::size_t x = pixels.width - 6; x < pixels.width; ++x) {
+      ASSERT_EQ(pixels.at(x, y), (std::array<std::uint8_t, 3>{255, 255, 255})) << x << " " << y;
+    }
+  }
 }
 
 TEST(Render, SheetsStandInSpace) {

@@ -11,7 +11,7 @@ ring LABELS BODY LANDMARK SLICE COUNT SETS
                                    way to the body (BODY > 0) and to each set of labels, in steps of 0.02 mm through the nearest
                                    voxels, -1 if it is not met; the angle in degrees between the ray and the normal of each of these
                                    borders, smoothed over 2 mm; how far the ray goes through one voxel
-slab FILE FIRST LAST OUT           the slices FIRST to LAST of an image, as NIfTI
+slab FILE COLUMNS FIRST LAST OUT   of an image, as NIfTI, the slices FIRST to LAST of the first COLUMNS of voxels
 runs LABELS BODY RAY SETS          RAY: `x,y,z,dx,dy,dz` in mm, RAS. Where what the ray is in changes, in mm, and to what: 0 outside, 1 the body, 2
                                    and so on SETS
 borders LABELS BODY POINTS SETS    POINTS: lines `n x y z`, n is 0 for the body, else of SETS. For each point, how far it is from the border of
@@ -111,7 +111,7 @@ elif command == "ring":
             ndimage.map_coordinates(
                 ndimage.gaussian_filter(part, 2.0 / spacing, order=numpy.eye(3, dtype=int)[axis], mode="nearest"),
                 (index - low)[:, None], order=1)[0] / spacing[axis] for axis in range(3)])
-        return slope / numpy.linalg.norm(slope)
+        return slope / max(numpy.linalg.norm(slope), 1e-9)
 
     step = 0.02
     for n in range(int(sys.argv[6])):
@@ -130,12 +130,12 @@ elif command == "ring":
         turned = affine[:3, :3] / spacing @ way
         print(*nibabel.affines.apply_affine(affine, points[0]), *turned, *found, *angles, 1.0 / numpy.abs(way / spacing).max())
 elif command == "slab":
-    first, last = int(sys.argv[3]), int(sys.argv[4])
     values, affine = read(sys.argv[2])
-    affine = affine @ nibabel.affines.from_matvec(numpy.eye(3), [0, 0, first])
-    slab = nibabel.Nifti1Image(values[:, :, first : last + 1], affine)
+    columns, slices = int(sys.argv[3]), [int(n) for n in sys.argv[4:6]]
+    affine = affine @ nibabel.affines.from_matvec(numpy.eye(3), [0, 0, slices[0]])
+    slab = nibabel.Nifti1Image(values[:columns, :, slices[0] : slices[1] + 1], affine)
     slab.header.set_xyzt_units("mm")
-    nibabel.save(slab, sys.argv[5])
+    nibabel.save(slab, sys.argv[6])
 elif command == "runs":
     labels, affine = read(sys.argv[2])
     masks = label_sets(labels, read(sys.argv[3])[0], sys.argv[5])

@@ -76,6 +76,7 @@ vdb::VoxelMask bodyOf(const ImportOptions& options, const vdb::Image* image, Imp
                       Console& console) {
   if (!options.body.empty()) {
     const vdb::Image mask = readScan(options.body, options, console);
+    scan.image_voxels += mask.values.size();
     for (const auto& [label, voxels] : vdb::countLabels(mask)) {
       if (label != 0) scan.body_labels.push_back(label);
     }
@@ -120,8 +121,9 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
   if (!options.image.empty()) grey = readScan(options.image, options, console);
   if (options.hounsfield) {
     tellOfStiffness(*grey, scan.labels, options, console);
-    scan.image_voxels = grey->values.size();
+    scan.ct_voxels = grey->values.size();
   }
+  scan.image_voxels = scan.labels.values.size() + (grey ? grey->values.size() : 0);
   const vdb::VoxelMask body = bodyOf(options, grey ? &*grey : nullptr, scan, console);
   grey.reset();
   checkBody(options, scan.labels, body, console);
@@ -298,7 +300,6 @@ class ImportReport {
     const auto add = [&](double area, double volume) {
       const GridEstimate one = estimateGrid(area, volume, scan_.voxel);
       sum.active_voxels += one.active_voxels;
-      sum.memory += one.memory;
       sum.seconds += one.seconds;
     };
     double body = scan_.survey.regions[scan_.survey.gap()].volume;
@@ -309,21 +310,16 @@ class ImportReport {
     }
     // The body's surface is that of the outside, borders and all.
     if (scan_.has_body) add(scan_.survey.regions[scan_.survey.outside()].area, body);
-    const double maps = estimateMaps(scan_, tissues_);
-    sum.memory += maps;
+    const double memory = estimateMemory(scan_, tissues_, sum.active_voxels);
     report_.json["estimate"] = {{"active_voxels", std::llround(sum.active_voxels)},
-                                {"memory_bytes", std::llround(sum.memory)},
+                                {"memory_bytes", std::llround(memory)},
                                 {"seconds", sum.seconds}};
     const std::size_t grids = scan_.plan.regions.size() + (scan_.has_body ? 1 : 0);
     report_.text +=
         formatCount(grids) + " grids with voxels of " + formatNumber(scan_.voxel * 1e3, 3) +
         " mm: about " + formatCount(static_cast<std::uint64_t>(std::llround(sum.active_voxels))) +
-        " active voxels, " + formatBytes(static_cast<std::uint64_t>(sum.memory)) + ", " +
-        formatSeconds(sum.seconds) + " on two cores (estimated from surface areas)\n";
-    if (maps > 0.0) {
-      report_.text += "Of the memory, maps of stiffness have " +
-                      formatBytes(static_cast<std::uint64_t>(maps)) + " at most\n";
-    }
+        " active voxels; to touch them takes " + formatBytes(static_cast<std::uint64_t>(memory)) +
+        " and " + formatSeconds(sum.seconds) + " on two cores (estimated from surface areas)\n";
   }
 
   const ImportOptions& options_;

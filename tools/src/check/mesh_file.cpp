@@ -172,7 +172,7 @@ FileCheck checkMeshFile(const std::string& file, const CheckOptions& options, Co
                 {"refused", trial.refused ? problemJson(*trial.refused) : Json()}}}};
 
   const std::string cube = " " + unit.name + "^3";
-  const auto volumeText = [&](double volume) {
+  const auto volume_text = [&](double volume) {
     return formatNumber(volume / std::pow(unit.metres, 3)) + cube;
   };
   const Vec3 size = d.bounds.size() / unit.metres;
@@ -182,7 +182,7 @@ FileCheck checkMeshFile(const std::string& file, const CheckOptions& options, Co
   out.text += "  size    " + formatNumber(size.x) + " x " + formatNumber(size.y) + " x " +
               formatNumber(size.z) + " " + unit.name + "; area " +
               formatNumber(d.area / (unit.metres * unit.metres)) + " " + unit.name + "^2" +
-              (d.boundary_edges == 0 ? ", encloses " + volumeText(d.volume) : "") + "\n";
+              (d.boundary_edges == 0 ? ", encloses " + volume_text(d.volume) : "") + "\n";
   out.text += "  space   " + spaceText(c.mesh, options.scan) + "\n";
   if (d.hollow_parts > 0) {
     out.text += "  parts   " + countOf(d.hollow_parts, "hollow", "hollows") + " within others\n";
@@ -195,7 +195,7 @@ FileCheck checkMeshFile(const std::string& file, const CheckOptions& options, Co
   } else {
     out.text += std::string("  yes: ") +
                 (c.findings.empty() ? "nothing is wrong; a bake " : "a bake ") + voxels +
-                " makes a solid of " + volumeText(trial.volume) + "\n";
+                " makes a solid of " + volume_text(trial.volume) + "\n";
   }
   return out;
 }

@@ -18,7 +18,8 @@ struct ImportedScan {
   vdb::LabelSurvey survey;  ///< of the plan's regions
   bool has_body = false;
   std::vector<int> body_labels;            ///< of its mask, if it is from one
-  std::uint64_t image_voxels = 0;          ///< of the CT that stiffness comes from; 0: none
+  std::uint64_t image_voxels = 0;          ///< of all images that the scene reads
+  std::uint64_t ct_voxels = 0;             ///< of the one that stiffness comes from; 0: none
   double voxel = 0.0;                      ///< [m] of the grids
   std::vector<vdb::IslandChange> changes;  ///< that were made to the labels
 
@@ -34,7 +35,6 @@ struct ImportedScan {
 /// What a grid will take, before it is made.
 struct GridEstimate {
   double active_voxels = 0.0;
-  double memory = 0.0;   ///< [bytes] as it is felt
   double seconds = 0.0;  ///< with two cores
 };
 /// `area` [m2] of the surface, `volume` [m3] inside, `voxel` [m].
@@ -45,8 +45,9 @@ struct GridEstimate {
 [[nodiscard]] std::vector<const Tissue*> tissuesOf(const ImportedScan& scan,
                                                    const TissueTable& tissues);
 
-/// [bytes] At most, of the maps of stiffness that come from the CT.
-[[nodiscard]] double estimateMaps(const ImportedScan& scan, const TissueTable& tissues);
+/// [bytes] The most that `palpate touch` will have at a time, about.
+[[nodiscard]] double estimateMemory(const ImportedScan& scan, const TissueTable& tissues,
+                                    double active_voxels);
 
 /// What leads into a region from others that touch it, whose wall with them is its own.
 struct Passage {
