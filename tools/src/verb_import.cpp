@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "import/import_report.h"
 #include "import/imported_scene.h"
 #include "input_kind.h"
-#include "json_parts.h"
 #include "output_files.h"
 #include "palpate/vdb/scan_surface.h"
 #include "scan_options.h"
@@ -16,9 +16,6 @@ namespace palpate::tools {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMostTold = 12;
-constexpr double kIslandShare = 0.1;  // of a region's largest piece
 
 vdb::Image readScan(const std::string& path, const ImportOptions& options, Console& console) {
   if (inputKind(path) != InputKind::kImage) {
@@ -150,184 +147,6 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
   return scan;
 }
 
-std::string labelList(const std::vector<int>& labels) {
-  std::string text;
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    std::size_t last = i;
-    while (last + 1 < labels.size() && labels[last + 1] == labels[last] + 1) ++last;
-    text += (text.empty() ? "" : ",") + std::to_string(labels[i]);
-    if (last > i) text += (last > i + 1 ? "-" : ",") + std::to_string(labels[last]);
-    i = last;
-  }
-  return text;
-}
-
-class ImportReport {
- public:
-  ImportReport(const ImportOptions& options, const ImportedScan& scan, const TissueTable& tissues)
-      : options_(options), scan_(scan), tissues_(tissues) {}
-
-  Report make(const std::vector<std::string>& written) {
-    const vdb::Image& image = scan_.labels;
-    report_.json = {{"schema", "palpate.import/1"},
-                    {"scan", options_.scan},
-                    {"output", written.empty() ? Json() : Json(written.front())},
-                    {"size", image.size},
-                    {"voxel_size_m", scan_.voxel}};
-    regions();
-    changes();
-    islands();
-    cost();
-    const auto ports = passages(scan_, tissues_).size();
-    report_.json["ports"] = ports;
-    report_.text += formatCount(ports) + " ports into regions from what touches them\n";
-    if (written.empty()) {
-      report_.text += "Nothing was written (--dry-run)\n";
-    } else {
-      std::string names;
-      for (const std::string& file : written) names += (names.empty() ? "" : " and ") + file;
-      report_.text += "Wrote " + names + "\n";
-    }
-    return std::move(report_);
-  }
-
- private:
-  void regions() {
-    Table table({"region", "labels", "tissue", "voxels", "cm^3", "pieces", "within", "touches"});
-    Json json = Json::array();
-    const auto add = [&](std::size_t r, const std::string& labels, const std::string& tissue) {
-      const vdb::LabelSurvey::Region& region = scan_.survey.regions[r];
-      const auto shares = scan_.neighborsOf(r);
-      std::string touches;
-      Json contacts = Json::array();
-      for (std::size_t c = 0; c < shares.size(); ++c) {
-        const auto& [other, share] = shares[c];
-        contacts.push_back({{"region", other}, {"share", share}});
-        if (c < 2) {
-          touches += (touches.empty() ? "" : ", ") + other + " " +
-                     std::to_string(std::lround(100.0 * share)) + " %";
-        }
-      }
-      if (shares.size() > 2) touches += ", " + std::to_string(shares.size() - 2) + " more";
-      table.add({scan_.nameOf(r), labels, tissue, formatCount(region.voxels),
-                 cubicCentimetres(region.volume), formatCount(region.pieces.size()),
-                 region.within ? scan_.nameOf(*region.within) : "-", touches});
-      json.push_back({{"name", scan_.nameOf(r)},
-                      {"tissue", tissue},
-                      {"voxels", region.voxels},
-                      {"volume_m3", region.volume},
-                      {"pieces", region.pieces.size()},
-                      {"within", region.within ? Json(scan_.nameOf(*region.within)) : Json()},
-                      {"touches", contacts},
-                      {"border_share", region.border / region.area},
-                      {"bounds_m", boxJson(region.bounds)}});
-      if (r < scan_.plan.regions.size()) json.back()["labels"] = scan_.plan.regions[r].labels;
-    };
-    if (scan_.has_body) add(scan_.survey.gap(), "-", "skin, fat");
-    for (std::size_t r = 0; r < scan_.plan.regions.size(); ++r) {
-      const PlannedRegion& region = scan_.plan.regions[r];
-      add(r, labelList(region.labels), region.tissue->name);
-    }
-    report_.json["regions"] = json;
-    report_.text += table.text("") + "\n";
-  }
-
-  [[nodiscard]] static std::string placeText(const Vec3& place) {
-    return formatVector(place * 1e3) + " mm";
-  }
-
-  /// Pieces far smaller than the largest of their region, and cavities, with their places.
-  void islands() {
-    Json found = Json::array();
-    std::size_t count = 0;
-    std::string text;
-    const auto add = [&](const std::string& what, const vdb::LabelSurvey::Piece& piece) {
-      const std::string around = scan_.nameOf(piece.around);
-      found.push_back({{"region", what},
-                       {"voxels", piece.voxels},
-                       {"around", around},
-                       {"place_m", vectorJson(piece.place)}});
-      if (count++ >= kMostTold) return;
-      text += "  " + what + ": " + formatCount(piece.voxels) + " at " + placeText(piece.place) +
-              ", in " + around + "\n";
-    };
-    for (std::size_t r = 0; r <= scan_.survey.gap(); ++r) {
-      for (const auto& piece : scan_.survey.regions[r].pieces) {
-        if (static_cast<double>(piece.voxels) <
-            kIslandShare * static_cast<double>(scan_.survey.regions[r].pieces.front().voxels)) {
-          add(scan_.nameOf(r), piece);
-        }
-      }
-    }
-    for (const auto& piece : scan_.survey.regions[scan_.survey.outside()].pieces) {
-      if (!piece.at_border) add("outside", piece);
-    }
-    report_.json["islands"] = std::move(found);
-    if (count == 0) return;
-    report_.text += formatCount(count) +
-                    " islands (pieces of less than a tenth of their region's "
-                    "largest) and cavities are left" +
-                    (options_.min_island ? "" : "; --min-island changes small ones") +
-                    ". Voxels of each:\n" + text;
-    if (count > kMostTold) report_.text += "  and " + formatCount(count - kMostTold) + " more\n";
-  }
-
-  void changes() {
-    Json changed = Json::array();
-    std::string text;
-    for (const vdb::IslandChange& change : scan_.changes) {
-      const std::string to =
-          change.to >= scan_.survey.gap() ? "unlabelled" : scan_.nameOf(change.to);
-      if (changed.size() < kMostTold) {
-        text += "  " + scan_.nameOf(change.from) + ": " + formatCount(change.voxels) + " at " +
-                placeText(change.place) + " became " + to + "\n";
-      }
-      changed.push_back({{"from", scan_.nameOf(change.from)},
-                         {"to", to},
-                         {"voxels", change.voxels},
-                         {"place_m", vectorJson(change.place)}});
-    }
-    const std::size_t count = scan_.changes.size();
-    report_.json["changed"] = std::move(changed);
-    if (count == 0) return;
-    report_.text +=
-        formatCount(count) + " islands and cavities were changed. Voxels of each:\n" + text;
-    if (count > kMostTold) report_.text += "  and " + formatCount(count - kMostTold) + " more\n";
-  }
-
-  void cost() {
-    GridEstimate sum;
-    const auto add = [&](double area, double volume) {
-      const GridEstimate one = estimateGrid(area, volume, scan_.voxel);
-      sum.active_voxels += one.active_voxels;
-      sum.seconds += one.seconds;
-    };
-    double body = scan_.survey.regions[scan_.survey.gap()].volume;
-    for (std::size_t r = 0; r < scan_.plan.regions.size(); ++r) {
-      const vdb::LabelSurvey::Region& region = scan_.survey.regions[r];
-      add(region.area, region.volume);
-      body += region.volume;
-    }
-    // The body's surface is that of the outside, borders and all.
-    if (scan_.has_body) add(scan_.survey.regions[scan_.survey.outside()].area, body);
-    const double memory = estimateMemory(scan_, tissues_, sum.active_voxels);
-    report_.json["estimate"] = {{"active_voxels", std::llround(sum.active_voxels)},
-                                {"memory_bytes", std::llround(memory)},
-                                {"seconds", sum.seconds}};
-    const std::size_t grids = scan_.plan.regions.size() + (scan_.has_body ? 1 : 0);
-    report_.text +=
-        formatCount(grids) + " grids with voxels of " + formatNumber(scan_.voxel * 1e3, 3) +
-        " mm: about " + formatCount(static_cast<std::uint64_t>(std::llround(sum.active_voxels))) +
-        " active voxels; to touch them takes " + formatBytes(static_cast<std::uint64_t>(memory)) +
-        " and " + formatSeconds(sum.seconds) + " on two cores (estimated from surface areas)\n";
-  }
-
-  const ImportOptions& options_;
-  const ImportedScan& scan_;
-  const TissueTable& tissues_;
-  Report report_;
-};
-
 /// "a/scan" for "a/scan.yaml".
 std::string withoutExtension(const std::string& path) {
   return (fs::path(path).parent_path() / fs::path(path).stem()).string();
@@ -375,7 +194,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
     checkStop();
     files.commit();
   }
-  return ImportReport(options, scan, tissues).make(written);
+  return importReport(options, scan, tissues, written);
 }
 
 }  // namespace palpate::tools
