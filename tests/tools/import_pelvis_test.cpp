@@ -64,7 +64,7 @@ struct Ray {
   Three angle{};       ///< [degrees] to the border's normal
   double voxel = 0.0;  ///< [mm] how far the ray goes through a voxel of 1 x 1 x 3 mm
 
-  [[nodiscard]] double steepest() const { return *std::max_element(angle.begin(), angle.end()); }
+  [[nodiscard]] double widestAngle() const { return *std::max_element(angle.begin(), angle.end()); }
 };
 
 /// Of twenty rays all around, those that meet each of the three borders at less than 60 degrees. A ray that grazes a
@@ -81,7 +81,7 @@ std::vector<Ray> raysOf(const Pelvis& pelvis) {
                   {row[6], row[7], row[8]},
                   {row[9], row[10], row[11]},
                   row[12]};
-    if (ray.steepest() < 60.0) rays.push_back(ray);
+    if (ray.widestAngle() < 60.0) rays.push_back(ray);
   }
   return rays;
 }
@@ -197,7 +197,7 @@ tissues:
       EXPECT_NEAR(off, 0.0, ray.voxel) << line;
       // Depth below the skin is between two borders, so both have to be met well: at less than 45 degrees half a voxel
       // across is less than one along.
-      if (ray.steepest() < 45.0) {
+      if (ray.widestAngle() < 45.0) {
         EXPECT_NEAR(felt[k] - felt[0], ray.depth[k] - ray.depth[0], ray.voxel) << line;
         met_well += k == 0 ? 1 : 0;
       }
