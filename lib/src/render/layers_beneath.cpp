@@ -14,20 +14,22 @@ constexpr double kFade = 0.25;
 constexpr int kMostCrossings = 12;
 /// Cosine of the ray and an interface's normal below which the interface's depth has no slope: the ray grazes it.
 constexpr double kGrazing = 0.05;
-/// [-] of a stiffness, to take differences over.
-constexpr double kStep = 1e-4;
 
 /// The part of `v` along a wall.
 Vec3 alongWall(const Vec3& v, const Vec3& normal) noexcept {
   return v - glm::dot(v, normal) * normal;
 }
 
+/// What the wall's normal times `v` changes by, by the place on the wall.
+Vec3 turnOf(const Vec3& v, const HeldWall& held) noexcept {
+  const Vec3 along = alongWall(v, held.normal);
+  return held.side / glm::length(held.jet.gradient) * (held.jet.hessian * along);
+}
+
 /// A gradient at depth `s` along the ray, as one by the place on the wall where the ray begins: it turns with
 /// the wall's normal.
 Vec3 fromWall(const Vec3& gradient, double s, const HeldWall& held) noexcept {
-  const Vec3 bend = held.side / glm::length(held.jet.gradient) *
-                    (held.jet.hessian * alongWall(gradient, held.normal));
-  return alongWall(gradient - s * bend, held.normal);
+  return alongWall(gradient - s * turnOf(gradient, held), held.normal);
 }
 
 }  // namespace
@@ -52,19 +54,11 @@ MaterialMap::Sample LayersBeneath::stiffness(LeafId leaf, const Vec3& x, const H
   for (std::size_t i = 0; i + 1 < layers.size(); ++i) {
     layers[i].thickness = found_.top[i + 1] - found_.top[i];
   }
-  const double radius = material.composite.radius;
-  const StackStiffness all = stackStiffness(layers, radius, true);
-  last_ = {all.stiffness, Vec3(0.0)};
+  const StackStiffness all = stackStiffness(layers, material.composite.radius);
+  last_ = {all.stiffness, all.by_stiffness[0] * found_.rise[0]};
   for (std::size_t i = 0; i + 1 < layers.size(); ++i) {
-    last_.gradient += all.by_thickness[i] * (found_.slope[i + 1] - found_.slope[i]);
-  }
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    if (found_.rise[i] == Vec3(0.0)) continue;
-    const double stiff = layers[i].stiffness;
-    layers[i].stiffness = stiff * (1.0 + kStep);
-    const double more = stackStiffness(layers, radius, false).stiffness;
-    layers[i].stiffness = stiff;
-    last_.gradient += (more - all.stiffness) / (kStep * stiff) * found_.rise[i];
+    last_.gradient += all.by_thickness[i] * (found_.slope[i + 1] - found_.slope[i]) +
+                      all.by_stiffness[i + 1] * found_.rise[i + 1];
   }
   return last_;
 }
@@ -87,36 +81,52 @@ void LayersBeneath::look(const Vec3& x, const HeldWall& held, const Material& ma
       probe_.cross(leaf, probe_.facetAt(leaf));
     }
     if (probe_.region() == kOutside) return;
-    if (probe_.region() != before) add(probe_.region(), leaf, x, held, depth);
+    if (probe_.region() != before) add(before, leaf, x, held, depth);
   }
 }
 
-/// The layer that the probe has just come to, through a facet of `leaf`.
-void LayersBeneath::add(RegionId region, LeafId leaf, const Vec3& x, const HeldWall& held,
+/// The layer that the probe has just come to out of the region `from`, through a facet of `leaf`.
+void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWall& held,
                         double depth) noexcept {
+  const RegionId region = probe_.region();
   const int wall = scene_.regions()[region].wall;
   if (wall < 0) return;
   const Vec3 at = probe_.position();
   const double s = glm::dot(x - at, held.normal);
-  const Vec3 gradient = probe_.leaf(leaf).field->sample(at).gradient;
-  const double slant = glm::dot(gradient, held.normal);
+  const FieldJet jet = probe_.leaf(leaf).field->jet(at);
+  const double steepness = glm::length(jet.gradient);
+  const double slant = glm::dot(jet.gradient, held.normal);
   Vec3 slope(0.0);
-  if (std::fabs(slant) > kGrazing * glm::length(gradient)) {
-    slope = fromWall(gradient, s, held) / slant;
-  }
+  if (std::fabs(slant) > kGrazing * steepness) slope = fromWall(jet.gradient, s, held) / slant;
+  // A gradient at the interface, whose depth changes as well.
+  const auto byPlace = [&](const Vec3& v) {
+    return fromWall(v, s, held) - glm::dot(v, held.normal) * slope;
+  };
   const MaterialMap::Sample own =
       scene_.materials()[static_cast<std::size_t>(wall)].stiffness.sample(at);
   const double left = std::clamp((depth - s) / (kFade * depth), 0.0, 1.0);
-  const double share = left * left * (3.0 - 2.0 * left);
-  const double share_by_depth = -6.0 * left * (1.0 - left) / (kFade * depth);
+  double share = left * left * (3.0 - 2.0 * left);
+  Vec3 share_rise = -6.0 * left * (1.0 - left) / (kFade * depth) * slope;
+  const double cosine = steepness > 0.0 ? std::fabs(slant) / steepness : 1.0;
+  if (region > from && cosine < 1.0) {
+    // A chord through a layer's rim begins with an endless slope. So what is entered counts the less the flatter it is
+    // met: by the quintic step of the cosine.
+    const Vec3 normal = jet.gradient / (slant < 0.0 ? -steepness : steepness);
+    const Vec3 row =
+        jet.hessian * (held.normal - cosine * normal) / (slant < 0.0 ? -steepness : steepness);
+    const Vec3 cosine_rise = alongWall(turnOf(normal, held), held.normal) + byPlace(row);
+    const double square = cosine * cosine;
+    const double weight = cosine * square * (10.0 - 15.0 * cosine + 6.0 * square);
+    const double weight_rise = 30.0 * square * (1.0 - cosine) * (1.0 - cosine);
+    share_rise = weight * share_rise + share * weight_rise * cosine_rise;
+    share *= weight;
+  }
   const std::size_t i = found_.count++;
   const double before = found_.layers[i - 1].stiffness;
-  const Vec3 own_rise = own.gradient == Vec3(0.0) ? Vec3(0.0)
-                                                  : fromWall(own.gradient, s, held) -
-                                                        glm::dot(own.gradient, held.normal) * slope;
+  const Vec3 own_rise = own.gradient == Vec3(0.0) ? Vec3(0.0) : byPlace(own.gradient);
   found_.layers[i] = {before + share * (own.value - before), 0.0};
-  found_.rise[i] = (1.0 - share) * found_.rise[i - 1] + share * own_rise +
-                   share_by_depth * (own.value - before) * slope;
+  found_.rise[i] =
+      (1.0 - share) * found_.rise[i - 1] + share * own_rise + (own.value - before) * share_rise;
   found_.slope[i] = slope;
   found_.top[i] = s;
 }

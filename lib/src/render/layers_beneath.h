@@ -18,7 +18,7 @@ class LayersBeneath {
   ///
   /// A layer is as stiff as its region's own wall; one without a wall, and what is outside, are not looked
   /// into: there the layer before goes on. Towards the end of the depth what differs fades out over its last
-  /// quarter, so that nothing appears at once.
+  /// quarter, and a layer counts the less the flatter the normal meets it, so that nothing appears at once.
   [[nodiscard]] MaterialMap::Sample stiffness(LeafId leaf, const Vec3& x, const HeldWall& held,
                                               const Facet& facet,
                                               const Material& material) noexcept;
@@ -34,8 +34,7 @@ class LayersBeneath {
   };
 
   void look(const Vec3& x, const HeldWall& held, const Material& material) noexcept;
-  void add(RegionId region, LeafId leaf, const Vec3& x, const HeldWall& held,
-           double depth) noexcept;
+  void add(RegionId from, LeafId leaf, const Vec3& x, const HeldWall& held, double depth) noexcept;
 
   const Scene& scene_;
   CellWalker probe_;

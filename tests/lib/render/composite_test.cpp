@@ -38,7 +38,7 @@ TEST(Composite, FeelsTheStackAlongItsNormal) {
   Drive hand(sceneOf(lumpText(kSlabs, kOn)));
   (void)hand.to({0.02, 0.01, 0.005});
   const TickResult out = hand.walk({0.02, 0.01, -kDepth});
-  const double expected = stackStiffness(over, 5e-3, false).stiffness * kDepth;
+  const double expected = stackStiffness(over, 5e-3).stiffness * kDepth;
   EXPECT_TRUE(isNear(out.force, {0, 0, expected}, 1e-6 * expected));
   EXPECT_EQ(hand.region(), "outside") << "nothing was opened";
 }
@@ -149,6 +149,30 @@ TEST(Composite, AcrossTheRimOfALumpLittleIsLeft) {
 )";
   const Loop loop = goRound(sceneOf(lumpText(layers, kOn)), 0.0, 20000);
   EXPECT_LT(std::fabs(loop.felt), 0.02 * loop.stored);
+}
+
+TEST(Composite, TheRimOfALumpIsNoEdge) {
+  Drive hand(sceneOf(lumpText(R"(layers:
+  - {name: tissue, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: skin}
+  - {name: lump, inside: {sphere: {center: [0, 0, -13], radius: 5}}, wall: knot}
+  - {name: ground, inside: {half_space: {point: [0, 0, -40], normal: [0, 0, 1]}}, wall: table}
+)",
+                              kOn)));
+  (void)hand.to({-0.012, 0.001, 0.001});
+  Vec3 last = hand.to({-0.012, 0.001, -kDepth}).force;
+  double sideways = 0.0;
+  double step = 0.0;
+  for (int i = 0; i <= 2400; ++i) {
+    const Vec3 force = hand.to({-0.012 + 1e-5 * i, 0.001, -kDepth}).force;
+    sideways = std::max(sideways, std::hypot(force.x, force.y));
+    step = std::max(step, glm::length(force - last));
+    last = force;
+  }
+  // The stiffness rises by 270 N/m over 5 mm, at most by 2e5 N/m^2, times half the square of the depth. A sharp rim
+  // would have no bound.
+  EXPECT_LT(sideways, 0.1);
+  // 10 um on, less than can be felt (0.04 N).
+  EXPECT_LT(step, 0.02);
 }
 
 TEST(Composite, TheTickAllocatesNothing) {

@@ -46,6 +46,9 @@ struct CaseEntry {
 /// through three of them to the bone, along it, out, and along the skin. Not judged.
 [[nodiscard]] ContactCase fiveLayers();
 
+/// The lump of data/scenes/lump.yaml, stroked over through the closed skin at 0.2 m/s. Not judged.
+[[nodiscard]] ContactCase lumpUnderSkin();
+
 enum class StartIn { kOutside, kSolid };
 
 /// A scene of one layer `solid` with a wall of kWallStiffness, without friction and damping.

@@ -319,6 +319,7 @@ const std::vector<CaseEntry>& contactCases() {
       {"balls-10000", "one of 10 000 balls", [] { return manyBalls(10000); }},
       {"five-layers", "grids for shapes and materials; a needle to the bone, not judged",
        fiveLayers},
+      {"lump", "a lump felt through the skin over it, not judged", lumpUnderSkin},
   };
   return all;
 }

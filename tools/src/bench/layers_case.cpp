@@ -5,6 +5,7 @@
 #include "bench/contact_case.h"
 #include "bench/path.h"
 #include "palpate/fields/primitives.h"
+#include "palpate/scene/scene_file.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/material_grid.h"
 
@@ -81,6 +82,13 @@ ScenePtr fiveLayerScene() {
   return compile(scene);
 }
 
+/// Where stiffness differs from place to place no formula has the force.
+Judge timesOnly() {
+  return [](std::span<const Vec3> path, std::span<const TickResult>, const Progress&) {
+    return Truth(path.size());
+  };
+}
+
 }  // namespace
 
 ContactCase fiveLayers() {
@@ -99,10 +107,34 @@ ContactCase fiveLayers() {
   out.end = maker.size();
   out.path = maker.take();
   out.scene = fiveLayerScene();
-  // Times only: where stiffness and friction differ from place to place no formula has the force.
-  out.judge = [](std::span<const Vec3> path, std::span<const TickResult>, const Progress&) {
-    return Truth(path.size());
+  out.judge = timesOnly();
+  return out;
+}
+
+ContactCase lumpUnderSkin() {
+  const Curve curve = [](double s) {
+    return Vec3(0.02 * std::cos(s), 0.013 * std::sin(1.3 * s), -1e-3);
   };
+  ContactCase out;
+  PathMaker maker(Vec3(0.02, 0.0, 0.01));
+  maker.go(curve(0.0), 0.05);
+  out.first = maker.size();
+  maker.follow(curve, 0.0, 10.0 * kTurn, 0.2);
+  out.end = maker.size();
+  out.path = maker.take();
+  out.scene = compile(parseScene(R"(
+    palpate: 1
+    length: mm
+    materials:
+      skin: {stiffness: 400 N/m, composite: {radius: 5, depth: 120}}
+      knot: {stiffness: 4000 N/m}
+      table: {stiffness: 8000 N/m}
+    layers:
+      - {name: tissue, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: skin}
+      - {name: lump, inside: {sphere: {center: [0, 0, -13], radius: 5}}, wall: knot}
+      - {name: ground, inside: {half_space: {point: [0, 0, -40], normal: [0, 0, 1]}}, wall: table})",
+                                 "lump"));
+  out.judge = timesOnly();
   return out;
 }
 

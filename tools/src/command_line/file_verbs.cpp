@@ -246,7 +246,7 @@ Verb benchVerb() {
       "ellipsoid,\n"
       "quadric, torus, box-edge, box-room, crease, groove, saddle, container, ports-10, "
       "ports-100,\n"
-      "ports-1000, balls-1, balls-1000, balls-10000, five-layers (not judged).",
+      "ports-1000, balls-1, balls-1000, balls-10000, five-layers and lump (not judged).",
       {},
       defineBench,
       [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact"); },
