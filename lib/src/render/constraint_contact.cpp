@@ -164,7 +164,8 @@ void ConstraintRenderer::aimProbes() noexcept {
 }
 
 /// The cone: while it sticks the proxy may lag by static_ratio of the load, else it slides until it lags
-/// by kinetic_ratio of it.
+/// by kinetic_ratio of it. Where stiffness varies, its own lean pulls at the proxy too: the cone is about where the
+/// proxy would rest without friction. So the lean is felt through the lag, the same whether it sticks or slides.
 void ConstraintRenderer::holdByFriction() noexcept {
   Contact& c = contact_;
   const Vec3& x = walker_.position();
@@ -177,10 +178,14 @@ void ConstraintRenderer::holdByFriction() noexcept {
   }
   if (static_ratio <= 0.0 || walker_.isSealed()) {
     sticking_ = false;
+    has_friction_ = false;
     return;
   }
+  has_friction_ = true;
   kinetic_ratio = std::min(kinetic_ratio, static_ratio);
-  const double pull = glm::length(c.pull);
+  const Vec3 rest = tangentialPart(lean_, c.walls());
+  const Vec3 off = c.pull - rest;
+  const double pull = glm::length(off);
   const double load = c.load();
   const double kinetic = kinetic_ratio * load;
   if (sticking_ && pull > static_ratio * load) sticking_ = false;
@@ -188,7 +193,7 @@ void ConstraintRenderer::holdByFriction() noexcept {
   // end of its own slide it is always where the cone just holds it, and a hand that moves on would
   // feel a saw.
   if (!sticking_ && tick_begins_ && pull <= kinetic * (1.0 + kSticksWithin)) sticking_ = true;
-  c.lag = sticking_ || pull <= kinetic ? c.pull : c.pull * (kinetic / pull);
+  c.lag = sticking_ || pull <= kinetic ? c.pull : rest + off * (kinetic / pull);
   c.pull -= c.lag;
 }
 

@@ -68,6 +68,7 @@ MaterialMap::Sample ConstraintRenderer::stiffnessOf(std::size_t held) noexcept {
 Vec3 ConstraintRenderer::wallForce(const Vec3& velocity) noexcept {
   const Contact& c = contact_;
   Vec3 force(0.0);
+  lean_ = Vec3(0.0);
   if (c.count == 0) return force;
   const Vec3& x = walker_.position();
   double total = 0.0;
@@ -120,8 +121,11 @@ Vec3 ConstraintRenderer::wallForce(const Vec3& velocity) noexcept {
     rise += 0.5 * stretch * stretch * own.gradient;
     varies = varies || !branch.stiffness.isConstant();
   }
-  // Held by friction, the proxy stays where it is, whatever the hand does.
-  if (varies && !sticking_) force -= gradientByHand(rise, c.walls());
+  if (has_friction_) {
+    lean_ = rise / stiffness;
+  } else if (varies) {
+    force -= gradientByHand(rise, c.walls());
+  }
   // A wall never pulls the hand towards itself.
   const double along = glm::dot(force, n);
   if (along < 0.0) force -= along * n;

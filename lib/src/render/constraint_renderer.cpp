@@ -26,6 +26,8 @@ void ConstraintRenderer::forget() noexcept {
   started_ = false;
   is_first_ = true;
   sticking_ = false;
+  has_friction_ = false;
+  lean_ = Vec3(0.0);
   walker_.forget();
   contact_ = {};
   piece_count_ = 0;

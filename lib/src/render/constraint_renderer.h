@@ -115,6 +115,10 @@ class ConstraintRenderer final : public HapticRenderer {
   RegionId felt_region_ = kOutside;
   double content_share_ = 1.0;
   bool sticking_ = false;
+  bool has_friction_ = false;  ///< of the walls that hold the proxy
+  /// [m] How far the proxy's springs would draw it along the walls to where they are softer, by the tick before. With
+  /// friction the cone is about there; without, the force has the term for it.
+  Vec3 lean_{0.0, 0.0, 0.0};
   bool tick_begins_ = false;
   struct {
     MaxwellBranch state;

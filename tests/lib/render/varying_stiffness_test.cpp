@@ -151,6 +151,51 @@ TEST(VaryingStiffness, FrictionOnlyTakes) {
   }
 }
 
+TEST(VaryingStiffness, StickingAndSlidingPassIntoEachOtherWithoutAStep) {
+  // A plane, 2 mm deep: 5e4 N/m per m lean with 0.1 N. To and fro, it sticks at every turn and slides between.
+  const MaterialMapPtr map = testing::linearMap(1000.0, {5e4, 0, 0}, {100.0, 1900.0});
+  Drive hand(sceneOf(shapes()[0], map, {0.1, 0.1}));
+  (void)hand.to({0.0, 0.0, 0.001});
+  Vec3 last = hand.walk({0.0, 0.0, -2e-3}).force;
+  const double stride = 5e-6;  // [m]
+  double worst = 0.0;
+  int stuck = 0;
+  int slid = 0;
+  Vec3 proxy = hand.last().proxy;
+  for (int i = 1; i <= 20000; ++i) {
+    const double x = 3e-3 * std::sin(stride / 3e-3 * i);
+    const TickResult out = hand.to({x, 0.0, -2e-3});
+    worst = std::max(worst, glm::length(out.force - last));
+    (out.proxy == proxy ? stuck : slid) += 1;
+    last = out.force;
+    proxy = out.proxy;
+  }
+  EXPECT_GT(stuck, 2000);
+  EXPECT_GT(slid, 2000);
+  // One stride on a spring of at most 1150 N/m, and the height's part of it.
+  EXPECT_LT(worst, 1.2 * 1150.0 * stride);
+}
+
+TEST(VaryingStiffness, WithFrictionTheLeanIsFeltThroughTheLag) {
+  // Drawn up and down the slope of the stiffness, the friction that is felt is the cone's about the lean: its mean over
+  // both ways is that of a wall without friction.
+  const double depth = 2e-3;
+  const double slope = 2e4;
+  const MaterialMapPtr map = testing::linearMap(1000.0, {slope, 0, 0}, {100.0, 1900.0});
+  double sum = 0.0;
+  for (const double way : {1.0, -1.0}) {
+    Drive hand(sceneOf(shapes()[0], map, {0.1, 0.1}));
+    (void)hand.to({-way * 2e-3, 0.0, 0.001});
+    (void)hand.to({-way * 2e-3, 0.0, -depth});
+    TickResult out;
+    for (int i = 0; i <= 1000; ++i) out = hand.to({way * (-2e-3 + 2e-6 * i), 0.0, -depth});
+    // The proxy lags behind the hand by 0.2 mm on either way.
+    sum += out.force.x;
+    EXPECT_NEAR(std::fabs(out.force.x), 0.2, 0.05);
+  }
+  EXPECT_NEAR(0.5 * sum, -0.5 * depth * depth * slope, 2e-3);
+}
+
 TEST(VaryingStiffness, TheTermIsHalfTheSquareOfTheDepthTimesTheSlope) {
   // A plane, 2 mm deep, 2e4 N/m per m: 0.04 N towards the softer side.
   Shape plane = shapes()[0];
