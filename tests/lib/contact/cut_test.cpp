@@ -65,6 +65,22 @@ TEST(Cut, SidesHoldUpToTheCuttingForceAndTheCutSwingsAlong) {
               1.0, 1e-12);
 }
 
+// A tissue may be left beside and behind where it was entered: through a wall that is not square to the needle.
+TEST(Cut, DrawnOutPastItsEntryTheTipIsHeldSidewaysOnly) {
+  Cut cut(kEntry);
+  for (int i = 0; i <= 200; ++i) {
+    (void)cut.step(kEntry + 1e-4 * i * kIn, kStiffness, kCutting);
+  }
+  const Vec3 end = cut.end();
+  const Vec3 across = glm::normalize(glm::cross(kIn, Vec3(0.0, 0.0, 1.0)));
+  EXPECT_NEAR(glm::length(cut.step(kEntry - 0.002 * kIn, kStiffness, kCutting)), 0.0, 1e-12);
+  Vec3 force = cut.step(kEntry - 0.002 * kIn + 0.001 * across, kStiffness, kCutting);
+  EXPECT_NEAR(glm::length(force + 0.3 * across), 0.0, 1e-12);
+  force = cut.step(kEntry - 0.002 * kIn + 0.005 * across, kStiffness, kCutting);
+  EXPECT_NEAR(glm::length(force + kCutting * across), 0.0, 1e-12);
+  EXPECT_EQ(cut.end(), end);
+}
+
 // Whatever the way: all that is given back was stored, and cutting only takes. Trapezoids, as the force is
 // continuous; a tick's way is far below the lag.
 TEST(Cut, NeverGivesEnergy) {

@@ -5,8 +5,8 @@
 
 namespace palpate {
 
-/// A straight cut, from where the tip entered a tissue to the furthest it got. Within the cut the tip moves
-/// freely; against its end and its sides it presses with a spring, and where that would take more than
+/// A straight cut, from where the tip entered a tissue to the furthest it got. Within the cut, and on the straight way out
+/// of it, the tip moves freely; against its end and its sides it presses with a spring, and where that would take more than
 /// the cutting force, it cuts: end or side give way and stay where they are then. So the spring is
 /// never switched off: it is anchored to tissue that moves along with the tip, and only slackens when
 /// the tip is drawn back (the tracking wall of Alamilla Daniel, Moreau and Redarce 2018). A value;
