@@ -213,6 +213,29 @@ layers:
   EXPECT_NE(text.find("no: beyond the device's workspace"), std::string::npos) << text;
 }
 
+TEST(Explain, MeasuresWhatTheWorkspaceSaves) {
+  const TempFolder folder;
+  // A needle's tip of the device at the top of a ball of 60 mm.
+  const std::string scene = folder.file("s.yaml", R"(palpate: 1
+length: mm
+device: {offset: [0, 0, 30], workspace: {box: {center: [0, 0, 0], size: [20, 20, 20]}}}
+layers:
+  - {name: ball, inside: {baked: {field: {sphere: {center: [0, 0, 0], radius: 30}}, voxel: 0.5, parts: whole}}}
+  - {name: far, inside: {baked: {field: {sphere: {center: [0, 0, -60], radius: 20}}, voxel: 0.5, parts: whole}}}
+)");
+  const Json json = jsonOf({"explain", scene, "--measure"});
+  EXPECT_EQ(json["sources"][0]["only_in_reach"], true);
+  EXPECT_EQ(json["sources"][0]["made"], true);
+  EXPECT_EQ(json["sources"][1]["made"], false);
+  const double whole = json["measured"]["whole"]["memory_bytes"].get<double>();
+  const double needed = json["measured"]["needed"]["memory_bytes"].get<double>();
+  EXPECT_GT(needed, 0.0);
+  // A cap of 23.5 mm of the larger ball (area 11310 mm^2, of the other 5027): less than 2000 mm^2.
+  EXPECT_LT(needed, 0.2 * whole);
+  EXPECT_GT(json["measured"]["needed"]["seconds"].get<double>(), 0.0);
+  EXPECT_TRUE(jsonOf({"explain", scene})["measured"].is_null());
+}
+
 TEST(Explain, SheetsAndTheirMaterials) {
   Json json = jsonOf({"explain", scenePath("flag.yaml")});
   ASSERT_EQ(json["sheets"].size(), 2U);

@@ -2,9 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/common.hpp>
+#include <random>
 
 #include "palpate/core/error.h"
+#include "palpate/fields/primitives.h"
+#include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene.h"
+#include "palpate/vdb/bake.h"
 #include "palpate/vdb/hybrid.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/register.h"
@@ -185,6 +190,84 @@ TEST_F(SceneBaked, FieldsInItCountAsNested) {
     ADD_FAILURE() << "read without complaint";
   } catch (const Error& error) {
     EXPECT_EQ(error.problem().code, "scene.depth") << error.what();
+  }
+}
+
+// What the device cannot reach of a grid is not made; within its reach nothing tells the difference.
+TEST_F(SceneBaked, BeyondTheWorkspaceNoGridIsMade) {
+  const std::string scene =
+      "  ring: {torus: {center: [0, 0, 0], axis: [0, 0, 1], radius: 20, tube: 8}}\n"
+      "  turned: {transform: {field: ring, translate: [60, 0, 0], rotate: {axis: [1, 0, 0], "
+      "degrees: 40}}}\n"
+      "layers:\n"
+      "  - {name: ring, inside: {baked: {field: {union: [ring, {cone: {base: [0, 0, -30], axis: "
+      "[0, 0, 1], "
+      "radius: 20, height: 20}}]}, voxel: 1, parts: operands}}}\n"
+      "  - {name: turned, inside: {baked: {field: turned, voxel: 1, parts: whole}}}\n"
+      "device: {workspace: {box: {center: [20, 10, 0], size: [30, 20, 40]}}}\n";
+  const auto bytesOf = [](const Scene& made) {
+    std::uint64_t bytes = 0;
+    for (const Leaf& leaf : made.partition().leaves()) bytes += memoryOf(*leaf.field);
+    return bytes;
+  };
+  const ScenePtr felt = compile(read(scene));
+  const ScenePtr all = compile(read(scene), {}, Purpose::kShow);
+  EXPECT_LT(bytesOf(*felt), bytesOf(*all) / 2);
+  EXPECT_GT(bytesOf(*felt), 0U);
+  const Box3 reach = felt->device().reach();
+  const auto a = makeRenderer(felt);
+  const auto b = makeRenderer(all);
+  int touched = 0;
+  bool is_lost = false;
+  for (int i = 0; i < 60000; ++i) {
+    const double t = 0.001 * i;
+    const Vec3 wave(std::sin(3.1 * t), std::cos(2.3 * t), std::sin(1.7 * t + 1.0));
+    // On the border of the workspace as well, but no deeper in a wall than is kept beyond it: 2.7 mm.
+    const HipState hip{glm::clamp(reach.center() + 0.6 * reach.size() * wave, reach.lo, reach.hi),
+                       Vec3(0.0)};
+    if (is_lost && all->regionAt(hip.position) == kOutside) {
+      a->reset();
+      b->reset();
+      is_lost = false;
+    }
+    const TickResult two = b->update(hip);
+    is_lost = is_lost || glm::distance(two.proxy, hip.position) > 2.6 * kMm;
+    if (is_lost) continue;
+    const TickResult one = a->update(hip);
+    ASSERT_EQ(one.region, two.region) << i;
+    ASSERT_EQ(one.contact, two.contact) << i;
+    // The steepest slope of the bricks made is the bound on all steps: the proxy stops elsewhere within its tolerance of
+    // 1e-9 voxels, and slides by as much of what it has slid.
+    ASSERT_LT(glm::distance(one.proxy, two.proxy), 1e-8 * kMm) << i;
+    touched += one.contact ? 1 : 0;
+  }
+  EXPECT_GT(touched, 1000);
+}
+
+TEST(GridField, OfAPartIsThatOfTheWholeAndKeepsItsSignBeyond) {
+  const LevelSet grid = bake(*torus(Vec3(0.0), Vec3(0, 0, 1), 0.02, 0.008), {.voxel_size = kMm});
+  const Box3 within{Vec3(0.005, -0.012, -0.02), Vec3(0.04, 0.003, 0.004)};
+  for (const Sampler sampler : {Sampler::kCubic, Sampler::kTrilinear}) {
+    const FieldPtr whole = gridField(grid, sampler);
+    const FieldPtr part = gridField(grid, sampler, within);
+    EXPECT_LT(memoryOf(*part), memoryOf(*whole) / 3);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (int i = 0; i < 20000; ++i) {
+      const Vec3 share(unit(random), unit(random), unit(random));
+      const Vec3 p = within.lo + share * within.size();
+      const FieldSample one = part->sample(p);
+      const FieldSample two = whole->sample(p);
+      ASSERT_EQ(one.in_band, two.in_band) << i;
+      ASSERT_EQ(one.gradient, two.gradient) << i;
+      // Far from all bricks the bound is that of those that there are.
+      if (two.in_band) {
+        ASSERT_EQ(one.value, two.value) << i;
+      }
+      ASSERT_GE(one.value * two.value, two.value * two.value) << i;
+      const Vec3 far = -0.06 + 0.12 * share;
+      ASSERT_EQ(part->value(far), part->value(glm::clamp(far, within.lo, within.hi))) << i;
+    }
   }
 }
 

@@ -125,6 +125,7 @@ struct QueryOptions {
 
 struct ExplainOptions {
   std::string scene;
+  bool measure = false;
   std::string svg;
 };
 

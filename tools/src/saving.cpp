@@ -1,5 +1,9 @@
 #include "saving.h"
 
+#include <chrono>
+
+#include "palpate/vdb/level_set.h"
+
 namespace palpate::tools {
 namespace {
 
@@ -9,6 +13,16 @@ double surfaceOf(const Box3& box) {
 }
 
 }  // namespace
+
+Saving costOf(const std::string& file, Purpose purpose, Console& console) {
+  const auto start = std::chrono::steady_clock::now();
+  const LoadedScene loaded(file, console);
+  const ScenePtr scene = loaded.compile(purpose);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  std::uint64_t bytes = 0;
+  for (const Leaf& leaf : scene->partition().leaves()) bytes += vdb::memoryOf(*leaf.field);
+  return {bytes, took.count()};
+}
 
 std::optional<Saving> savingOf(const LoadedScene& loaded, const Scene& scene) {
   double made = 0.0;

@@ -295,11 +295,17 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
                           const std::string& left_out) {
     if (from.summary().empty()) return;
     const std::string why = left_out.empty() ? "nothing needs it" : left_out;
-    source_table.add({name, from.summary(), from.isMade() ? "yes" : "no: " + why});
+    const bool is_made = from.isMade() || from.part();
+    const bool is_cut = !from.isMade() && from.part() && !from.part()->bounds().isBounded();
+    source_table.add({name, from.summary(),
+                      !is_made ? "no: " + why
+                      : is_cut ? "what the device reaches"
+                               : "yes"});
     report.json["sources"].push_back({{"name", name},
                                       {"source", from.summary()},
-                                      {"made", from.isMade()},
-                                      {"why_not", from.isMade() ? Json() : Json(why)}});
+                                      {"made", is_made},
+                                      {"only_in_reach", is_cut},
+                                      {"why_not", is_made ? Json() : Json(why)}});
   };
   for (std::size_t i = 0; i < description.layers.size(); ++i) {
     source(description.layers[i].name, *description.layers[i].inside, regions[i + 1].left_out);
@@ -316,6 +322,19 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
     report.text +=
         "\nSaved by what was left out, estimated from the grids above by the size of its box: " +
         formatBytes(saving->bytes) + ", " + formatSeconds(saving->seconds) + "\n";
+  }
+  report.json["measured"] = Json();
+  if (options.measure) {
+    const Saving whole = costOf(options.scene, Purpose::kShow, console);
+    const Saving needed = costOf(options.scene, Purpose::kTouch, console);
+    const auto json = [](const Saving& cost) {
+      return Json{{"memory_bytes", cost.bytes}, {"seconds", cost.seconds}};
+    };
+    report.json["measured"] = {{"whole", json(whole)}, {"needed", json(needed)}};
+    Table costs({"measured", "grids in the loop", "read and made in"});
+    costs.add({"all of it", formatBytes(whole.bytes), formatSeconds(whole.seconds)});
+    costs.add({"what is needed", formatBytes(needed.bytes), formatSeconds(needed.seconds)});
+    report.text += "\nTo touch it, against all of it\n" + costs.text("  ");
   }
   report.json["svg"] = options.svg.empty() ? Json() : Json(options.svg);
   if (!options.svg.empty()) {

@@ -61,7 +61,7 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     }
   };
   auto maker = [common, what = std::move(what), summary, place = std::move(place), sampler,
-                make = std::move(make)](const Progress& progress) {
+                make = std::move(make)](const Box3& within, const Progress& progress) {
     const Progress named = namedProgress(progress, what);
     const auto start = std::chrono::steady_clock::now();
     LevelSet grid;
@@ -83,7 +83,7 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     if (common->options.on_grid) {
       common->options.on_grid({what + ": " + summary, made, took.count()});
     }
-    return gridField(grid, sampler);
+    return gridField(grid, sampler, within);
   };
   return std::make_shared<FieldSource>(std::move(summary), std::move(maker), std::move(measurer));
 }

@@ -93,7 +93,7 @@ FieldPtr withSaved(const FieldPtr& field, const std::string& path, const HybridO
     throw inputError("bake.no_parts", "no grid in it is called " + name + " or " + name + "/PART",
                      "palpate info lists its grids", path);
   }
-  FieldPtr out = recombined(field, grids, asked.sampler);
+  FieldPtr out = recombined(field, grids, asked.sampler, asked.within);
   for (const auto& [part, grid] : grids) {
     if (!options.on_grid) break;
     options.on_grid({part.empty() ? what : what + ", part " + part, grid.info(), 0.0});
@@ -110,13 +110,15 @@ FieldSourcePtr readBaked(MapReader& reader, const RegisterOptions& options) {
   const std::string file = readFile(reader);
   const SourcePlace place = reader.loader().document().place(reader.node().mark);
   const std::string what = "baked field in line " + std::to_string(place.line);
-  auto make = [field, file, asked, place, what, options](const Progress& progress) {
+  auto make = [field, file, asked, place, what, options](const Box3& within,
+                                                         const Progress& progress) {
     const FieldPtr operand = field->get(progress);
     const auto start = std::chrono::steady_clock::now();
+    HybridOptions hybrid = asked;
+    hybrid.within = within;
     Hybrid made;
     try {
-      if (!file.empty()) return withSaved(operand, file, asked, what, options);
-      HybridOptions hybrid = asked;
+      if (!file.empty()) return withSaved(operand, file, hybrid, what, options);
       if (!(hybrid.bake.voxel_size > 0.0)) {
         hybrid.bake.voxel_size = longestSide(*operand) / kVoxelsAlong;
       }
@@ -147,13 +149,15 @@ FieldSourcePtr chooseGrids(const FieldSourcePtr& field, const SceneRegistry::Gri
   hybrid.bake.voxel_size = choice.voxel_size;
   hybrid.tolerance = choice.tolerance;
   hybrid.keep = choice.keep;
-  auto make = [field, hybrid, what, place = choice.place, options](const Progress& progress) {
+  auto make = [field, hybrid, what, place = choice.place, options](const Box3& within,
+                                                                   const Progress& progress) {
     const FieldPtr operand = field->get(progress);
     if (!operand->bounds().isBounded()) {
       if (options.on_note) options.on_note(what + " stays a formula: it has no end");
       return operand;
     }
     HybridOptions asked = hybrid;
+    asked.within = within;
     if (!(asked.bake.voxel_size > 0.0))
       asked.bake.voxel_size = longestSide(*operand) / kVoxelsAlong;
     const auto start = std::chrono::steady_clock::now();

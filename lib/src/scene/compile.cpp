@@ -22,7 +22,8 @@ std::vector<std::string> globsIn(const std::string& list) {
   return globs;
 }
 
-std::vector<FieldPtr> layerFields(const SceneDescription& description, const Progress& progress,
+std::vector<FieldPtr> layerFields(const SceneDescription& description, const Box3& needed,
+                                  const Progress& progress,
                                   const std::vector<std::string>& left_out,
                                   std::vector<LeafBetween>& between) {
   std::vector<FieldPtr> fields;
@@ -39,7 +40,7 @@ std::vector<FieldPtr> layerFields(const SceneDescription& description, const Pro
       continue;
     }
     report(progress, "layer " + layer.name, static_cast<double>(i) / static_cast<double>(count));
-    fields.push_back(layer.inside->get(progress));
+    fields.push_back(layer.inside->get(needed, progress));
     if (!layer.label_group.empty()) groups[layer.label_group].push_back(i);
   }
   for (const auto& [group, members] : groups) {
@@ -57,11 +58,12 @@ std::vector<FieldPtr> layerFields(const SceneDescription& description, const Pro
 SceneCompiler::SceneCompiler(const SceneDescription& description, const Progress& progress,
                              Purpose purpose)
     : description_(description),
+      needed_(purpose == Purpose::kTouch ? neededBox(description) : Box3::everything()),
       // The paper's table has a row for every layer.
       left_out_(purpose == Purpose::kTouch && description.renderer != RendererKind::kPaper
                     ? reasonsToLeaveOut(description, progress)
                     : std::vector<std::string>(description.layers.size())),
-      layers_(layerFields(description, progress, left_out_, between_)),
+      layers_(layerFields(description, needed_, progress, left_out_, between_)),
       scene_(new Scene(makePartition(progress))) {}
 
 ScenePtr SceneCompiler::build() {
@@ -90,7 +92,7 @@ Partition SceneCompiler::makePartition(const Progress& progress) {
   for (const PortDescription& port : description_.ports) {
     const bool is_limited = port.where && !isNowhere(port.from) && !isNowhere(port.to);
     mask_of_.push_back(is_limited ? static_cast<int>(masks.size()) : -1);
-    if (is_limited) masks.push_back(port.where->get(progress));
+    if (is_limited) masks.push_back(made(port.where, progress));
   }
   for (const SheetDescription& sheet : description_.sheets) {
     if (!sheet.on) {
@@ -98,9 +100,9 @@ Partition SceneCompiler::makePartition(const Progress& progress) {
                     "sheet " + quoted(sheet.name) + " has no field that it is on");
     }
     sheet_mask_of_.push_back(sheet.where ? static_cast<int>(masks.size()) : -1);
-    if (sheet.where) masks.push_back(sheet.where->get(progress));
+    if (sheet.where) masks.push_back(made(sheet.where, progress));
     sheet_solid_of_.push_back(static_cast<int>(masks.size()));
-    masks.push_back(sheet.on->get(progress));
+    masks.push_back(made(sheet.on, progress));
   }
   return Partition(layers_, masks, between_);
 }

@@ -25,7 +25,7 @@ PortId SceneCompiler::portNamed(const std::string& name, const PortDescription& 
 }
 
 std::vector<LeafId> SceneCompiler::facetLeaves(const PortDescription& given, const Port& port) {
-  std::vector<LeafId> leaves = scene_->partition_.leavesOf(given.on->get().get());
+  std::vector<LeafId> leaves = scene_->partition_.leavesOf(made(given.on).get());
   const auto bounds = [&](const std::vector<RegionId>& sides) {
     return std::any_of(sides.begin(), sides.end(), [&](RegionId region) {
       const auto own = scene_->partition_.leavesOfRegion(region);
@@ -92,12 +92,12 @@ std::vector<Sheet> SceneCompiler::makeSheets() {
     const SheetDescription& given = description_.sheets[i];
     Sheet sheet;
     sheet.name = given.name;
-    sheet.leaves = scene_->partition_.leavesOf(given.on->get().get());
+    sheet.leaves = scene_->partition_.leavesOf(made(given.on).get());
     sheet.solid = sheet_solid_of_[i];
     sheet.mask = sheet_mask_of_[i];
     sheet.material = wall({false, given.material}, given.place).material;
-    Box3 box = given.on->get()->bounds();
-    if (given.where) box = box.intersectedWith(given.where->get()->bounds());
+    Box3 box = made(given.on)->bounds();
+    if (given.where) box = box.intersectedWith(made(given.where)->bounds());
     if (box.isBounded()) scene_->sheet_bounds_ = scene_->sheet_bounds_.unitedWith(box);
     sheets.push_back(std::move(sheet));
   }
@@ -119,6 +119,17 @@ void SceneCompiler::requireTouching(const PortDescription& given, const Port& po
     patient_ = true;
     survey_ = survey(scene_->partition_, boxes_, kPatientSurveyLines);
     if (touching()) return;
+  }
+  // They may touch where nothing of them was made.
+  const auto isCut = [&](RegionId region) {
+    if (region == kOutside || !needed_.isBounded()) return false;
+    const Box3 bounds = layers_[region - 1U]->bounds();
+    return !scene_->regions_[region].source.empty() &&
+           !(needed_.contains(bounds.lo) && needed_.contains(bounds.hi));
+  };
+  if (std::any_of(port.from.begin(), port.from.end(), isCut) ||
+      std::any_of(port.to.begin(), port.to.end(), isCut)) {
+    return;
   }
   throw errorAt(given.place, "scene.regions_do_not_touch",
                 "port " + quoted(given.name) + " joins " + quoted(given.from) + " and " +

@@ -11,10 +11,13 @@ namespace {
 constexpr std::size_t kSurveyLines = 192;
 
 /// The layer boxes to look at, unbounded ones cut to what the others span.
-std::vector<Box3> surveyBoxes(std::span<const FieldPtr> layers) {
+std::vector<Box3> surveyBoxes(std::span<const FieldPtr> layers, const Box3& needed) {
   Box3 all;
   for (const FieldPtr& field : layers) {
-    if (field && field->bounds().isBounded()) all = all.unitedWith(field->bounds());
+    if (!field) continue;
+    Box3 box = field->bounds();
+    if (!box.isBounded()) box = box.intersectedWith(needed);  // cut off there
+    if (box.isBounded()) all = all.unitedWith(box);
   }
   if (all.isEmpty()) all = {Vec3(-0.1), Vec3(0.1)};
   all = all.grownBy(0.25 * glm::length(all.size()));
@@ -30,7 +33,7 @@ std::vector<Box3> surveyBoxes(std::span<const FieldPtr> layers) {
 }  // namespace
 
 void SceneCompiler::lookAround() {
-  boxes_ = surveyBoxes(layers_);
+  boxes_ = surveyBoxes(layers_, needed_);
   survey_ = survey(scene_->partition_, boxes_, kSurveyLines);
 }
 

@@ -18,8 +18,12 @@
 namespace palpate {
 namespace {
 
+/// Whether an operation asks its operands only where it is asked itself. Those of the others are made whole: so a field
+/// that is used twice is asked for one box, and is one leaf.
+enum class Asks { kThere, kElsewhere };
+
 // `make` over operands: done at once if they are all there, else when the result is asked for.
-FieldSourcePtr deferred(std::vector<FieldSourcePtr> operands, SourcePlace place,
+FieldSourcePtr deferred(std::vector<FieldSourcePtr> operands, Asks asks, SourcePlace place,
                         std::function<FieldPtr(std::vector<FieldPtr>)> make) {
   std::string summary;
   bool ready = true;
@@ -28,14 +32,17 @@ FieldSourcePtr deferred(std::vector<FieldSourcePtr> operands, SourcePlace place,
     const std::string& part = operand->summary();
     if (!part.empty()) summary += (summary.empty() ? "" : ", ") + part;
   }
-  auto maker = [operands = std::move(operands), place = std::move(place),
-                make = std::move(make)](const Progress& progress) {
+  auto maker = [operands = std::move(operands), asks, place = std::move(place),
+                make = std::move(make)](const Box3& within, const Progress& progress) {
+    const Box3 needed = asks == Asks::kThere ? within : Box3::everything();
     std::vector<FieldPtr> fields;
     fields.reserve(operands.size());
-    for (const FieldSourcePtr& operand : operands) fields.push_back(operand->get(progress));
+    for (const FieldSourcePtr& operand : operands) fields.push_back(operand->get(needed, progress));
     return madeAt(place, [&] { return make(std::move(fields)); });
   };
-  if (ready && summary.empty()) return std::make_shared<FieldSource>(maker({}));
+  if (ready && summary.empty()) {
+    return std::make_shared<FieldSource>(maker(Box3::everything(), {}));
+  }
   return std::make_shared<FieldSource>(std::move(summary), std::move(maker));
 }
 
@@ -46,7 +53,12 @@ FieldReader::Built FieldReader::buildOperation(const Node::Entry& kind) {
   if (kind.key == "intersection") return combine(kind, kind.value, intersect);
   if (kind.key == "difference") return combine(kind, kind.value, subtract);
   if (kind.key == "complement") {
-    return modify(kind, kind.value, [](FieldPtr field) { return complement(std::move(field)); });
+    const auto invert = [](const std::vector<FieldPtr>& fields) { return complement(fields[0]); };
+    Built built = build(kind.value);
+    ++built.height;
+    built.source =
+        deferred({built.source}, Asks::kThere, loader_.document().place(kind.key_mark), invert);
+    return built;
   }
   if (kind.key == "transform") return buildTransform(kind);
 
@@ -110,8 +122,8 @@ FieldReader::Built FieldReader::combine(const Node::Entry& kind, const Node& ope
     built.height = std::max(built.height, part.height);
   }
   ++built.height;
-  built.source =
-      deferred(std::move(sources), loader_.document().place(kind.key_mark), std::move(operation));
+  built.source = deferred(std::move(sources), Asks::kThere, loader_.document().place(kind.key_mark),
+                          std::move(operation));
   return built;
 }
 
@@ -120,7 +132,7 @@ FieldReader::Built FieldReader::modify(const Node::Entry& kind, const Node& oper
   Built built = build(operand);
   ++built.height;
   built.source =
-      deferred({built.source}, loader_.document().place(kind.key_mark),
+      deferred({built.source}, Asks::kElsewhere, loader_.document().place(kind.key_mark),
                [=](const std::vector<FieldPtr>& fields) { return operation(fields[0]); });
   return built;
 }

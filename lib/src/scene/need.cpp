@@ -16,6 +16,15 @@ constexpr double kBeyond = 0.05;
 constexpr int kMostLooks = 200'000;
 constexpr int kMostHalvings = 12;
 
+/// [m] How far below a closed wall the scene is felt through it.
+double deepestFelt(const SceneDescription& scene) {
+  double deepest = 0.0;
+  for (const Material& material : scene.materials) {
+    if (material.composite.radius > 0.0) deepest = std::max(deepest, material.composite.depth);
+  }
+  return deepest;
+}
+
 bool overlap(const Box3& a, const Box3& b) { return !a.intersectedWith(b).isEmpty(); }
 
 /// Whether `box` lies inside `field`, proven by its Lipschitz bound cell by cell.
@@ -39,7 +48,11 @@ bool isInside(const Field& field, const Box3& box, int halvings, int& looks) {
 class Needs {
  public:
   Needs(const SceneDescription& description, const Progress& progress)
-      : scene_(description), progress_(progress), reasons_(description.layers.size()) {
+      : scene_(description),
+        progress_(progress),
+        needed_(neededBox(description)),
+        felt_(deepestFelt(description)),
+        reasons_(description.layers.size()) {
     names_.emplace_back("outside");
     for (const LayerDescription& layer : scene_.layers) names_.push_back(layer.name);
     boxes_.resize(names_.size());
@@ -85,11 +98,9 @@ class Needs {
   }
 
   void leaveOutBeyondWorkspace() {
-    Box3 reach = scene_.device.reach();
-    if (!reach.isBounded()) return;
-    reach = reach.grownBy(kBeyond * glm::length(reach.size()));
+    if (!needed_.isBounded()) return;
     for (std::size_t i = 1; i < names_.size(); ++i) {
-      if (canBeLeftOut(i) && names_[i] != scene_.start_region && !overlap(*boxOf(i), reach)) {
+      if (canBeLeftOut(i) && names_[i] != scene_.start_region && !overlap(*boxOf(i), needed_)) {
         reasons_[i - 1] = "beyond the device's workspace";
       }
     }
@@ -144,7 +155,8 @@ class Needs {
 
   /// Empty if it may be touched.
   std::string whyUntouchable(std::size_t region) {
-    const Box3 box = *boxOf(region);
+    // What it is felt through may be that thick.
+    const Box3 box = boxOf(region)->grownBy(felt_).intersectedWith(needed_);
     for (std::size_t other = 1; other < names_.size(); ++other) {
       if (other == region || !entered_[other]) continue;
       if (!boxOf(other) || overlap(box, *boxOf(other))) return {};
@@ -154,7 +166,7 @@ class Needs {
       if (other == region || entered_[other] || !reasons_[other - 1].empty()) continue;
       const std::optional<Box3>& around = boxOf(other);
       if (!around || !around->contains(box.lo) || !around->contains(box.hi)) continue;
-      const FieldPtr& field = scene_.layers[other - 1].inside->get(progress_);
+      const FieldPtr& field = scene_.layers[other - 1].inside->get(needed_, progress_);
       int looks = kMostLooks;
       if (isInside(*field, box, 3 * kMostHalvings, looks)) {
         return "all around it is " + names_[other] + ", which cannot be entered";
@@ -165,6 +177,8 @@ class Needs {
 
   const SceneDescription& scene_;
   const Progress& progress_;
+  const Box3 needed_;               // [m]
+  const double felt_;               // [m]
   std::vector<std::string> names_;  // by region: outside, then the layers
   struct Measured {
     std::optional<Box3> box = {};
@@ -176,6 +190,14 @@ class Needs {
 };
 
 }  // namespace
+
+Box3 neededBox(const SceneDescription& description) {
+  const Box3 reach = description.device.reach();
+  if (!reach.isBounded() || description.renderer == RendererKind::kPaper) {
+    return Box3::everything();
+  }
+  return reach.grownBy(kBeyond * glm::length(reach.size()) + deepestFelt(description));
+}
 
 std::vector<std::string> reasonsToLeaveOut(const SceneDescription& description,
                                            const Progress& progress) {

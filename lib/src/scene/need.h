@@ -8,6 +8,10 @@
 
 namespace palpate {
 
+/// [m] What of the world can matter to the probe: what the device reaches, grown by how far contact looks
+/// beyond it. Everything if that has no bounds, and for the paper's renderer.
+[[nodiscard]] Box3 neededBox(const SceneDescription& description);
+
 /// By layer: why it need not be made; empty if it is needed. Only layers that cost work are ever left out, and
 /// only where it is certain that the probe cannot feel the difference:
 /// - its box lies beyond the device's workspace; or

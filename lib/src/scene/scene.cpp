@@ -24,9 +24,11 @@ RegionId Scene::regionNamed(const std::string& name) const {
 Box3 Scene::bounds() const {
   Box3 all = sheet_bounds_;
   for (const Region& region : regions_) {
-    if (region.field && region.field->bounds().isBounded()) {
-      all = all.unitedWith(region.field->bounds());
-    }
+    if (!region.field) continue;
+    Box3 box = region.field->bounds();
+    // A grid of which only a part was made goes on for ever beyond it.
+    if (!box.isBounded() && !region.source.empty()) box = box.intersectedWith(device_.reach());
+    if (box.isBounded()) all = all.unitedWith(box);
   }
   return all;
 }

@@ -56,7 +56,14 @@ class SceneCompiler {
   /// Whether the names of regions `glob` stands for are all left out.
   [[nodiscard]] bool isNowhere(const std::string& globs) const;
 
+  /// What is needed of the field, made if need be.
+  [[nodiscard]] const FieldPtr& made(const FieldSourcePtr& source,
+                                     const Progress& progress = {}) const {
+    return source->get(needed_, progress);
+  }
+
   const SceneDescription& description_;
+  const Box3 needed_;                  // [m] nothing beyond it matters
   std::vector<std::string> left_out_;  // by layer: why; empty if it is made
   std::vector<LeafBetween> between_;   // filled with the layers
   std::vector<FieldPtr> layers_;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
+#include "palpate/fields/known_within.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene_file.h"
@@ -148,6 +149,123 @@ TEST_F(Need, BeyondTheDevicesWorkspaceNothingIsMade) {
   EXPECT_TRUE(made->passages().portsOf(kOutside).size() == 1);
   EXPECT_EQ(made->passages().portsOf(kOutside)[0], 1);
   EXPECT_EQ(made->device().reach().hi.x, 0.05);
+}
+
+TEST_F(Need, WhatIsFeltThroughAClosedWallIsMade) {
+  // The skin cannot be entered, and the marrow is 20 mm below it.
+  const auto body = [](double depth) {
+    return "materials:\n  skin: {stiffness: 400 N/m, composite: {radius: 2, depth: " +
+           std::to_string(depth) +
+           "}}\n"
+           "layers:\n"
+           "  - {name: bone, inside: {costly: {center: [0, 0, 0], radius: 40}}, wall: skin}\n"
+           "  - {name: marrow, inside: {costly: {center: [0, 0, 0], radius: 10}}}\n";
+  };
+  EXPECT_EQ(leftOut(*compile(read(body(35.0)))), "");
+  EXPECT_EQ(leftOut(*compile(read(body(5.0)))), "marrow");
+  // Nor is it left out beyond the workspace, if that is reached through the wall.
+  const std::string device =
+      "device: {workspace: {box: {center: [0, 0, 55], size: [10, 10, 40]}}}\n";
+  EXPECT_EQ(leftOut(*compile(read(body(35.0) + device))), "");
+}
+
+/// A registry whose `parts: {center, radius}` is a ball that can be made in part, and tells of which box.
+class NeedInPart : public ::testing::Test {
+ protected:
+  NeedInPart() {
+    registry_.fields["parts"] = [this](MapReader& reader) {
+      const Vec3 center = reader.requirePoint("center");
+      const double radius = reader.requireLength("radius");
+      return std::make_shared<FieldSource>(
+          "parts",
+          [this, center, radius](const Box3& within, const Progress&) {
+            asked_.push_back(within);
+            const FieldPtr whole = sphere(center, radius);
+            return within.isBounded() ? knownWithin(whole, within) : whole;
+          },
+          [center, radius](const Progress&) {
+            return Box3{center - Vec3(radius), center + Vec3(radius)};
+          });
+    };
+  }
+  SceneDescription read(const std::string& body) {
+    return parseScene("palpate: 1\nlength: mm\n" + body, "test.yaml", registry_);
+  }
+  SceneRegistry registry_;
+  std::vector<Box3> asked_;
+};
+
+const char* const kHalfInReach =
+    "fields:\n"
+    "  bowl: {parts: {center: [0, 0, 0], radius: 40}}\n"
+    "  brim: {half_space: {point: [0, 0, 15], normal: [0, 0, 1]}}\n"
+    "layers:\n"
+    "  - {name: liquid, inside: {intersection: [bowl, brim]}}\n"
+    "  - {name: ball, inside: {parts: {center: [10, 0, 0], radius: 8}}}\n"
+    "ports: [{name: mouth, between: [outside, liquid], on: brim}]\n"
+    "device: {workspace: {box: {center: [30, 0, 10], size: [60, 50, 40]}}}\n";
+
+TEST_F(NeedInPart, OnlyWhatTheDeviceReachesIsAskedFor) {
+  const ScenePtr scene = compile(read(kHalfInReach));
+  ASSERT_EQ(asked_.size(), 2U);
+  const double more = 0.05 * std::sqrt(0.06 * 0.06 + 0.05 * 0.05 + 0.04 * 0.04);
+  EXPECT_NEAR(asked_[0].lo.x, -more, 1e-12);
+  EXPECT_NEAR(asked_[0].hi.x, 0.06 + more, 1e-12);
+  EXPECT_EQ(scene->ports().size(), 1U);
+  EXPECT_TRUE(scene->regions()[1].reachable);
+  EXPECT_TRUE(scene->bounds().isBounded());
+  asked_.clear();
+  (void)compile(read(kHalfInReach), {}, Purpose::kShow);
+  ASSERT_EQ(asked_.size(), 2U);
+  EXPECT_FALSE(asked_[0].isBounded());
+}
+
+// In the workspace the force is the same, bit for bit; on its border too, for a hand that presses no deeper than is kept
+// beyond it: 4.4 mm here.
+TEST_F(NeedInPart, TheTraceIsThatOfTheWhole) {
+  const ScenePtr felt = compile(read(kHalfInReach));
+  const ScenePtr all = compile(read(kHalfInReach), {}, Purpose::kShow);
+  const Box3 reach = felt->device().reach();
+  const auto a = makeRenderer(felt);
+  const auto b = makeRenderer(all);
+  int touched = 0;
+  int within = 0;
+  bool is_lost = false;
+  for (int i = 0; i < 60000; ++i) {
+    const double t = 0.001 * i;
+    const Vec3 wave(std::sin(3.1 * t), std::cos(2.3 * t), std::sin(1.7 * t + 1.0));
+    const HipState hip{glm::clamp(reach.center() + 0.6 * reach.size() * wave, reach.lo, reach.hi),
+                       Vec3(0.0)};
+    if (is_lost && all->regionAt(hip.position) == kOutside) {
+      a->reset();
+      b->reset();
+      is_lost = false;
+    }
+    const TickResult two = b->update(hip);
+    is_lost = is_lost || glm::distance(two.proxy, hip.position) > 0.0043;
+    if (is_lost) continue;
+    const TickResult one = a->update(hip);
+    ASSERT_EQ(one.force, two.force) << i;
+    ASSERT_EQ(one.proxy, two.proxy) << i;
+    ASSERT_EQ(one.region, two.region) << i;
+    touched += one.contact ? 1 : 0;
+    within += one.region == 1 ? 1 : 0;
+  }
+  EXPECT_GT(touched, 1000);
+  EXPECT_GT(within, 1000);
+}
+
+TEST_F(NeedInPart, BeyondItTheForceStaysFinite) {
+  const auto renderer = makeRenderer(compile(read(kHalfInReach)));
+  int touched = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double t = 0.001 * i;
+    const Vec3 hip(0.1 * std::sin(3.1 * t), 0.09 * std::cos(2.3 * t), 0.1 * std::sin(1.7 * t));
+    const TickResult out = renderer->update({hip, Vec3(0.0)});
+    ASSERT_TRUE(isFinite(out.force) && isFinite(out.proxy)) << i;
+    touched += out.contact ? 1 : 0;
+  }
+  EXPECT_GT(touched, 1000);
 }
 
 TEST_F(Need, ToBeShownAllIsMade) {

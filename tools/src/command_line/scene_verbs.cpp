@@ -82,6 +82,8 @@ void defineRender(CLI::App& app, Invocation& invocation) {
 void defineExplain(CLI::App& app, Invocation& invocation) {
   auto& o = choose<ExplainOptions>(invocation);
   app.add_option("scene", o.scene);
+  addFlag(app, "What to look at", "--measure", o.measure,
+          "make all of it, and what is needed, and tell memory and time");
   add(app, "Output files", "--svg", "FILE.svg", o.svg,
       "draw the table of transitions: regions, and the ports between them");
 }

@@ -80,7 +80,7 @@ class HybridBaker {
         progress_(progress) {}
 
   Hybrid run() {
-    collect(root_, root_->bounds(), "", false);
+    collect(root_, root_->bounds(), options_.within, "", false);
     for (const FieldPtr& field : options_.keep) keepLeavesOf(field);
     Hybrid out;
     for (Part& part : parts_) {
@@ -93,7 +93,7 @@ class HybridBaker {
 
   /// Of grids made before.
   FieldPtr runOn(const std::map<std::string, LevelSet>& grids) {
-    collect(root_, root_->bounds(), "", false);
+    collect(root_, root_->bounds(), options_.within, "", false);
     for (const auto& [name, grid] : grids) {
       const auto part = std::find_if(parts_.begin(), parts_.end(),
                                      [&, &name = name](const Part& p) { return p.name == name; });
@@ -107,6 +107,7 @@ class HybridBaker {
                                 : grid;
       part->made = gridField(wide, options_.sampler);
       refuseOther(*part, wide);
+      if (part->within.isBounded()) part->made = gridField(wide, options_.sampler, part->within);
       made_.emplace(part->field.get(), part->made);
     }
     return rebuilt(root_);
@@ -114,10 +115,13 @@ class HybridBaker {
 
   /// One grid of everything.
   Hybrid runWhole() {
-    const LevelSet grid = bake(*root_, options_.bake, progress_);
+    BakeOptions bake_options = options_.bake;
+    if (options_.within.isBounded()) setBox(bake_options, options_.within, root_->bounds());
+    const LevelSet grid = bake(*root_, bake_options, progress_);
     Hybrid out;
-    out.field = gridField(grid, options_.sampler);
-    const GridError error = gridError(*root_, grid, *out.field, root_->bounds());
+    out.field = gridField(grid, options_.sampler, options_.within);
+    const GridError error =
+        gridError(*root_, grid, *out.field, root_->bounds().intersectedWith(options_.within));
     HybridPart part;
     part.grid = grid;
     part.off = error.off;
@@ -132,6 +136,7 @@ class HybridBaker {
     FieldPtr field;
     std::string name;
     Box3 needed;         ///< [m] in its frame: where its surface can be one of the whole's
+    Box3 within;         ///< [m] in its frame: HybridOptions::within
     bool is_placed;      ///< its frame is not the whole's
     FieldPtr made = {};  ///< the grid that takes its place; null: none does
   };
@@ -143,7 +148,8 @@ class HybridBaker {
     return intersect({palpate::box(bake.box->center(), bake.box->size()), std::move(field)});
   }
 
-  void collect(const FieldPtr& field, const Box3& needed, const std::string& name, bool is_placed) {
+  void collect(const FieldPtr& field, const Box3& needed, const Box3& within,
+               const std::string& name, bool is_placed) {
     const FieldStructure structure = field->structure();
     // Out of its bounds it is outside, whatever its parts are there.
     const Box3 here = needed.intersectedWith(field->bounds());
@@ -151,15 +157,16 @@ class HybridBaker {
       case Kind::kUnion:
       case Kind::kIntersection:
         for (std::size_t i = 0; i < structure.operands.size(); ++i) {
-          collect(structure.operands[i], here,
+          collect(structure.operands[i], here, within,
                   (name.empty() ? "" : name + ".") + std::to_string(i + 1), is_placed);
         }
         return;
       case Kind::kComplement:
-        collect(structure.operands.front(), here, name, is_placed);
+        collect(structure.operands.front(), here, within, name, is_placed);
         return;
       case Kind::kTransform:
-        collect(structure.operands.front(), inverse(structure.pose).apply(here), name, true);
+        collect(structure.operands.front(), inverse(structure.pose).apply(here),
+                inverse(structure.pose).apply(within), name, true);
         return;
       case Kind::kFaces:
       case Kind::kLeaf:
@@ -167,10 +174,11 @@ class HybridBaker {
     }
     const auto [known, is_new] = index_.emplace(field.get(), parts_.size());
     if (is_new) {
-      parts_.push_back({field, name, needed, is_placed});
+      parts_.push_back({field, name, needed.intersectedWith(within), within, is_placed});
     } else {
-      Box3& all = parts_[known->second].needed;
-      all = all.unitedWith(needed);
+      Part& all = parts_[known->second];
+      all.needed = all.needed.unitedWith(needed.intersectedWith(within));
+      all.within = all.within.unitedWith(within);
     }
   }
 
@@ -222,6 +230,16 @@ class HybridBaker {
     return out;
   }
 
+  /// Where to bake what lies within `bounds`, so that it is right where it is needed.
+  static void setBox(BakeOptions& bake_options, const Box3& needed, const Box3& bounds) {
+    const double band = bake_options.half_width * bake_options.voxel_size;
+    // Twice the band around what is needed: the cuts are then out of the band there.
+    const Box3 around = needed.grownBy(2.0 * band + 2.0 * bake_options.voxel_size);
+    bake_options.box.reset();
+    if (around.contains(bounds.lo) && around.contains(bounds.hi)) return;
+    bake_options.box = around.intersectedWith(bounds.grownBy(2.0 * band));
+  }
+
   bool isFastEnough(const Part& part, const Box3& domain, HybridPart& out) {
     if (options_.parts != Parts::kAuto) return false;
     // Contact asks the face of a solid that has one.
@@ -253,14 +271,7 @@ class HybridBaker {
     if (part.is_placed) bake_options.metadata["frame"] = "part";
     if (options_.tolerance > 0.0)
       bake_options.metadata[kTolerance] = text("%.17g", options_.tolerance);
-    const double band = bake_options.half_width * bake_options.voxel_size;
-    // Twice the band around what is needed: the cuts are then out of the band there.
-    const Box3 needed = part.needed.grownBy(2.0 * band + 2.0 * bake_options.voxel_size);
-    const Box3 bounds = part.field->bounds();
-    bake_options.box.reset();
-    if (!needed.contains(bounds.lo) || !needed.contains(bounds.hi)) {
-      bake_options.box = needed.intersectedWith(bounds.grownBy(2.0 * band));
-    }
+    setBox(bake_options, part.needed, part.field->bounds());
     LevelSet grid;
     try {
       grid = bake(*part.field, bake_options, named(part));
@@ -270,9 +281,10 @@ class HybridBaker {
       out.reason = "stays analytic: " + error.problem().message;
       return;
     }
-    FieldPtr made = gridField(grid, options_.sampler);
+    FieldPtr made = gridField(grid, options_.sampler, part.within);
     const GridError error =
-        gridError(*part.field, grid, *made, part.needed.grownBy(bake_options.voxel_size));
+        gridError(*part.field, grid, *made,
+                  part.needed.grownBy(bake_options.voxel_size).intersectedWith(part.within));
     out.off = error.off;
     out.turn = error.turn / kDegree;
     const GridError limit = allowed(bake_options.voxel_size);
@@ -354,10 +366,11 @@ Hybrid bakeHybrid(const FieldPtr& field, const HybridOptions& options, const Pro
 }
 
 FieldPtr recombined(const FieldPtr& field, const std::map<std::string, LevelSet>& grids,
-                    Sampler sampler) {
+                    Sampler sampler, const Box3& within) {
   if (!field) throw inputError("bake.null_field", "there is no field to put grids into");
   HybridOptions options;
   options.sampler = sampler;
+  options.within = within;
   const Progress silent;
   return HybridBaker(field, options, silent).runOn(grids);
 }

@@ -7,6 +7,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "brick/brick_view.h"
@@ -186,6 +187,19 @@ BlockMap mapBlocks(const Tree& tree) {
   }
   if (map.box.empty()) map.box = CoordBBox(Coord(0), Coord(0));
   return map;
+}
+
+BlockMap cutTo(const CoordBBox& voxels, const BlockMap& map) {
+  BlockMap out;
+  const CoordBBox blocks(blockOf(voxels.min()), blockOf(voxels.max()));
+  std::copy_if(map.bricks.begin(), map.bricks.end(), std::back_inserter(out.bricks),
+               [&](const Coord& block) { return blocks.isInside(block); });
+  out.inside_tiles = map.inside_tiles;
+  out.inside_tiles.intersect(voxels);
+  out.box = map.box;
+  out.box.intersect(blocks);
+  if (out.box.empty()) out.box = CoordBBox(blocks.min(), blocks.min());
+  return out;
 }
 
 BlockTable makeTable(const Tree& tree, const BlockMap& map) {

@@ -19,6 +19,9 @@ struct BlockMap {
 /// cells: everywhere else the sampled function is flat, so that it has no jump where bricks end.
 [[nodiscard]] BlockMap mapBlocks(const openvdb::FloatTree& tree);
 
+/// Only what lies within `voxels`; what the tables say beyond means nothing.
+[[nodiscard]] BlockMap cutTo(const openvdb::CoordBBox& voxels, const BlockMap& map);
+
 /// Of all blocks of a box: where the brick is, in units of BrickView::kUnit, or BrickView's words.
 struct BlockTable {
   std::vector<std::uint32_t> blocks;

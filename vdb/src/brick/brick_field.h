@@ -10,9 +10,11 @@ namespace palpate::vdb {
 /// kernel of the instruction set.
 class BrickField final : public Field {
  public:
-  /// `sampler` is kCubic or kTrilinear. The grid is taken as it is, not widened.
+  /// `sampler` is kCubic or kTrilinear. The grid is taken as it is, not widened. Must not be asked out of the box
+  /// `within` [m].
   explicit BrickField(const LevelSet& grid, Sampler sampler = Sampler::kCubic,
-                      InstructionSet set = chosenInstructionSet());
+                      InstructionSet set = chosenInstructionSet(),
+                      const Box3& within = Box3::everything());
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
     return sample_(view_, p);

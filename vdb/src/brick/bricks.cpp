@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <glm/common.hpp>
 #include <new>
 #include <utility>
 
@@ -151,6 +152,19 @@ std::byte* allocateBricks(std::size_t bytes) {
   return static_cast<std::byte*>(memory);
 }
 
+/// The voxels of all cells in the box; numbers of voxels that 32 bits hold.
+CoordBBox voxelsOf(const Box3& box, const LevelSet& grid) {
+  constexpr double kFarthest = 1 << 29;
+  const auto at = [&](const Vec3& p, double by) {
+    const Vec3 q = glm::clamp((p - grid.impl().origin) / grid.info().voxel_size + by,
+                              Vec3(-kFarthest), Vec3(kFarthest));
+    return Coord(static_cast<int>(std::floor(q.x)), static_cast<int>(std::floor(q.y)),
+                 static_cast<int>(std::floor(q.z)));
+  };
+  // The margin is for the rounding of places.
+  return {at(box.lo, -1.0), at(box.hi, 1.0)};
+}
+
 }  // namespace
 
 void Bricks::Release::operator()(std::byte* memory) const noexcept { std::free(memory); }
@@ -159,7 +173,7 @@ std::uint64_t Bricks::memory() const noexcept {
   return count_ * sizeof(Brick) + (blocks_.size() + coarse_.size()) * sizeof(std::uint32_t);
 }
 
-Bricks::Bricks(const LevelSet& grid, Sampler sampler) {
+Bricks::Bricks(const LevelSet& grid, Sampler sampler, const Box3& within) {
   const LevelSetInfo& info = grid.info();
   const bool cubic = sampler == Sampler::kCubic;
   const float plateau = plateauOf(info, sampler);
@@ -171,7 +185,8 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler) {
     tree = copy;
   }
 
-  const BlockMap map = mapBlocks(*tree);
+  BlockMap map = mapBlocks(*tree);
+  if (within.isBounded()) map = cutTo(voxelsOf(within, grid), map);
   BlockTable table = makeTable(*tree, map);
   count_ = map.bricks.size();
   bricks_.reset(allocateBricks(count_ * sizeof(Brick)));

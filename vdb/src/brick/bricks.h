@@ -16,7 +16,8 @@ class Bricks {
  public:
   /// Copies `grid`, in parallel. `sampler` is kCubic or kTrilinear. The band is taken as it is: too
   /// narrow a one leaves no cell known.
-  Bricks(const LevelSet& grid, Sampler sampler);
+  /// Right within the box `within` [m] only.
+  Bricks(const LevelSet& grid, Sampler sampler, const Box3& within = Box3::everything());
 
   [[nodiscard]] const BrickView& view() const noexcept { return view_; }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }

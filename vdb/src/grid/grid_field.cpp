@@ -8,6 +8,7 @@
 
 #include "brick/brick_field.h"
 #include "grid/survey.h"
+#include "palpate/fields/known_within.h"
 #include "palpate/vdb/level_set.h"
 #include "palpate/vdb/openvdb_access.h"
 
@@ -146,20 +147,31 @@ class AccessorField final : public Field {
   Box3 reach_;  ///< [m] every cell beyond it is unknown and outside
 };
 
+/// Bricks of what lies in the box; all of them if nothing lies out of it.
+FieldPtr brickField(const LevelSet& grid, Sampler sampler, const Box3& within) {
+  const Box3 bounds = grid.info().bounds;
+  if (!within.isBounded() || (within.contains(bounds.lo) && within.contains(bounds.hi))) {
+    return std::make_shared<BrickField>(grid, sampler);
+  }
+  auto part = std::make_shared<BrickField>(grid, sampler, chosenInstructionSet(), within);
+  return knownWithin(std::move(part), within);
+}
+
 }  // namespace
 
-FieldPtr gridField(const LevelSet& grid, Sampler sampler) {
+FieldPtr gridField(const LevelSet& grid, Sampler sampler, const Box3& within) {
   if (sampler == Sampler::kAccessor) return std::make_shared<AccessorField>(grid);
-  if (sampler == Sampler::kTrilinear) return std::make_shared<BrickField>(grid, sampler);
-  return std::make_shared<BrickField>(
-      isTooNarrow(grid.info()) ? widened(grid, kCubicHalfWidth) : grid, sampler);
+  const bool is_narrow = sampler == Sampler::kCubic && isTooNarrow(grid.info());
+  const LevelSet wide = is_narrow ? widened(grid, kCubicHalfWidth) : grid;
+  return brickField(wide, sampler, within);
 }
 
 std::uint64_t memoryOf(const Field& grid_field) noexcept {
-  if (const auto* bricks = dynamic_cast<const BrickField*>(&grid_field)) {
+  const Field& field = knownField(grid_field);
+  if (const auto* bricks = dynamic_cast<const BrickField*>(&field)) {
     return bricks->bricks().memory();
   }
-  const auto* accessor = dynamic_cast<const AccessorField*>(&grid_field);
+  const auto* accessor = dynamic_cast<const AccessorField*>(&field);
   return accessor != nullptr ? accessor->grid().info().memory : 0;
 }
 

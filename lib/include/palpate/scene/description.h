@@ -35,26 +35,42 @@ class FieldSource {
  public:
   using Maker = std::function<FieldPtr(const Progress&)>;
 
+  /// Makes what is right within the box [m], and beyond has the sign of its faces (knownWithin()).
+  using PartMaker = std::function<FieldPtr(const Box3& within, const Progress&)>;
+
   /// [m] A box around what will be made, much cheaper than making it.
   using Measurer = std::function<Box3(const Progress&)>;
 
   explicit FieldSource(FieldPtr ready) : made_(std::move(ready)) {}
   FieldSource(std::string summary, Maker maker, Measurer measurer = {})
       : summary_(std::move(summary)), maker_(std::move(maker)), measurer_(std::move(measurer)) {}
+  /// `maker` is asked for all with a box that is everything.
+  FieldSource(std::string summary, PartMaker maker, Measurer measurer = {})
+      : summary_(std::move(summary)),
+        part_maker_(std::move(maker)),
+        measurer_(std::move(measurer)) {}
 
   /// The field, made now if need be. The same pointer every time.
   [[nodiscard]] const FieldPtr& get(const Progress& progress = {}) const;
+  /// What is needed of it where only `within` [m] matters: the field itself if it is made, or cannot be made
+  /// in part. The same pointer every time for the same box.
+  [[nodiscard]] const FieldPtr& get(const Box3& within, const Progress& progress = {}) const;
   /// [m] A box around the field; none if only making it would tell.
   [[nodiscard]] std::optional<Box3> bounds(const Progress& progress = {}) const;
   [[nodiscard]] bool isMade() const noexcept { return made_ != nullptr; }
+  /// What was made for a box last; null if nothing was.
+  [[nodiscard]] const FieldPtr& part() const noexcept { return part_; }
   /// What it is made from ("mesh bone.stl"); empty for analytic fields.
   [[nodiscard]] const std::string& summary() const noexcept { return summary_; }
 
  private:
   std::string summary_;
   Maker maker_;
+  PartMaker part_maker_;
   Measurer measurer_;
   mutable FieldPtr made_;
+  mutable FieldPtr part_;
+  mutable Box3 part_within_;
 };
 using FieldSourcePtr = std::shared_ptr<const FieldSource>;
 

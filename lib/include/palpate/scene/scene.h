@@ -80,13 +80,15 @@ using ScenePtr = std::shared_ptr<const Scene>;
 
 /// What a scene is compiled for.
 enum class Purpose {
-  kTouch,  ///< to be felt: costly layers that the probe can certainly not feel are left out (Region::left_out)
+  kTouch,  ///< to be felt: what costs work and the probe can certainly not feel is left out (Region::left_out)
   kShow,  ///< to be looked at: with all of its layers
 };
 
 /// Checks a description against itself and its geometry, makes its fields, and builds the scene. To be
 /// touched, a layer that costs work is left out if it lies beyond the device's workspace, or if no way leads into
-/// it and nothing that the probe can enter comes near it; ports into it lead nowhere then.
+/// it and nothing that the probe can enter comes near it; ports into it lead nowhere then. Of the others only what lies
+/// within the workspace and somewhat beyond is made: 5 % of its diagonal, and as deep as a wall is felt through
+/// (`composite`). A probe that presses no deeper than that feels the whole; further off a cut shape goes on as it is at the cut.
 /// @throws Error (kInput) pointing at the offending place: unknown layer or material, a port between
 /// regions that do not touch, `on` not a leaf of either region, a cycle in `after`, ...
 [[nodiscard]] ScenePtr compile(const SceneDescription& description, const Progress& progress = {},

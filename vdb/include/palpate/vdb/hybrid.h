@@ -28,6 +28,8 @@ struct HybridOptions {
   /// tenth for the others. Independent of it, a normal that is off by more than 1 degree (others:
   /// 10) tells an edge. Not for kWhole.
   double tolerance = 0.0;
+  /// [m] Grids are made only where this box needs them, and are knownWithin() it.
+  Box3 within = Box3::everything();
   /// Fields whose leaves stay analytic whatever else holds, such as those that ports are on. Not for kWhole.
   std::vector<FieldPtr> keep = {};
 };
@@ -63,7 +65,9 @@ struct Hybrid {
 /// map names it by; all else stays analytic.
 /// @throws Error (kInput) if there is no such part, or a grid is off its part by more than smoothGridError()
 /// says and the tolerance it was made with: it was made of another field. A hundred blocks of it are looked at.
+/// `within` as in HybridOptions.
 [[nodiscard]] FieldPtr recombined(const FieldPtr& field,
-                                  const std::map<std::string, LevelSet>& grids, Sampler sampler);
+                                  const std::map<std::string, LevelSet>& grids, Sampler sampler,
+                                  const Box3& within = Box3::everything());
 
 }  // namespace palpate::vdb

@@ -77,7 +77,11 @@ inline constexpr double kCubicHalfWidth = 6.0;
 /// the curvatures; cubic: by the fourth power of voxel times curvature), and its gradient's length
 /// differs from 1. lipschitz() is measured from the voxels, and holds everywhere, across the band's
 /// rim too.
-[[nodiscard]] FieldPtr gridField(const LevelSet& grid, Sampler sampler = Sampler::kCubic);
+///
+/// Of a grid that reaches out of the bounded box `within` [m] only the bricks that samples there need are made, and the field
+/// is knownWithin() it; kAccessor keeps the grid as it is.
+[[nodiscard]] FieldPtr gridField(const LevelSet& grid, Sampler sampler = Sampler::kCubic,
+                                 const Box3& within = Box3::everything());
 
 /// [bytes] What the samples of a field by gridField() are read from: its bricks with their tables, or
 /// the grid for kAccessor. 0 for any other field.

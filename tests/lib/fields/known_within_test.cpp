@@ -1,0 +1,78 @@
+// A field of which only a box is kept.
+
+#include "palpate/fields/known_within.h"
+
+#include <gtest/gtest.h>
+
+#include "palpate/fields/csg.h"
+#include "palpate/fields/primitives.h"
+#include "support/error_of.h"
+#include "support/field_contract.h"
+
+namespace palpate::test {
+namespace {
+
+const Box3 kBox{Vec3(-0.06, -0.02, -0.06), Vec3(0.01, 0.03, 0.06)};
+
+/// A ball that must not be asked out of the box.
+class Guarded final : public Field {
+ public:
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    EXPECT_TRUE(!isFinite(p) || kBox.contains(p)) << p.x << " " << p.y << " " << p.z;
+    return ball_->sample(p);
+  }
+  [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
+    EXPECT_TRUE(!isFinite(p) || kBox.contains(p));
+    return ball_->jet(p);
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return ball_->bounds(); }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kExact; }
+  [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
+  [[nodiscard]] double featureSize() const noexcept override { return 0.04; }
+
+ private:
+  FieldPtr ball_ = sphere(Vec3(0.0), 0.04);
+};
+
+std::vector<FieldCase> knownCases() {
+  FieldCase ball;
+  ball.name = "ball";
+  ball.make = [] { return knownWithin(std::make_shared<Guarded>(), kBox); };
+  ball.region = {Vec3(-0.08), Vec3(0.08)};
+  ball.inside = [](const Vec3& p) { return glm::length(glm::clamp(p, kBox.lo, kBox.hi)) < 0.04; };
+  // The gradient jumps on the box's faces.
+  ball.crease_share = 0.2;
+  return {ball};
+}
+
+INSTANTIATE_TEST_SUITE_P(KnownWithin, FieldContract, testing::ValuesIn(knownCases()),
+                         testing::PrintToStringParamName());
+
+TEST(KnownWithin, IsTheFieldInTheBoxAndGoesOnBeyondIt) {
+  const FieldPtr ball = sphere(Vec3(0.0), 0.04);
+  const FieldPtr known = knownWithin(ball, kBox);
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 p = random.in(kBox);
+    ASSERT_EQ(known->value(p), ball->value(p));
+    ASSERT_EQ(known->sample(p).gradient, ball->sample(p).gradient);
+    const Vec3 far = p + Vec3(1.0, 0.0, 0.0);
+    ASSERT_EQ(known->value(far), ball->value({kBox.hi.x, p.y, p.z}));
+    ASSERT_EQ(known->sample(far).gradient.x, 0.0);
+  }
+  const Box3 bounds = known->bounds();
+  EXPECT_EQ(bounds.lo, Vec3(-0.04, -kInfinity, -0.04));
+  EXPECT_EQ(bounds.hi, Vec3(kInfinity, kInfinity, 0.04));
+  EXPECT_EQ(&knownField(*known), ball.get());
+  EXPECT_EQ(&knownField(*ball), ball.get());
+}
+
+TEST(KnownWithin, RefusesNothingAndAnEmptyBox) {
+  EXPECT_EQ(errorOf([] { (void)knownWithin(nullptr, kBox); }).problem().code,
+            errorOf([] { (void)complement(nullptr); }).problem().code);
+  EXPECT_EQ(errorOf([] { (void)knownWithin(sphere(Vec3(0.0), 1.0), Box3{}); }).problem().code,
+            "field.empty_box");
+}
+
+}  // namespace
+}  // namespace palpate::test
