@@ -99,7 +99,7 @@ void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWal
   Vec3 slope(0.0);
   if (std::fabs(slant) > kGrazing * steepness) slope = fromWall(jet.gradient, s, held) / slant;
   // A gradient at the interface, whose depth changes as well.
-  const auto byPlace = [&](const Vec3& v) {
+  const auto by_place = [&](const Vec3& v) {
     return fromWall(v, s, held) - glm::dot(v, held.normal) * slope;
   };
   const MaterialMap::Sample own =
@@ -114,7 +114,7 @@ void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWal
     const Vec3 normal = jet.gradient / (slant < 0.0 ? -steepness : steepness);
     const Vec3 row =
         jet.hessian * (held.normal - cosine * normal) / (slant < 0.0 ? -steepness : steepness);
-    const Vec3 cosine_rise = alongWall(turnOf(normal, held), held.normal) + byPlace(row);
+    const Vec3 cosine_rise = alongWall(turnOf(normal, held), held.normal) + by_place(row);
     const double square = cosine * cosine;
     const double weight = cosine * square * (10.0 - 15.0 * cosine + 6.0 * square);
     const double weight_rise = 30.0 * square * (1.0 - cosine) * (1.0 - cosine);
@@ -123,7 +123,7 @@ void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWal
   }
   const std::size_t i = found_.count++;
   const double before = found_.layers[i - 1].stiffness;
-  const Vec3 own_rise = own.gradient == Vec3(0.0) ? Vec3(0.0) : byPlace(own.gradient);
+  const Vec3 own_rise = own.gradient == Vec3(0.0) ? Vec3(0.0) : by_place(own.gradient);
   found_.layers[i] = {before + share * (own.value - before), 0.0};
   found_.rise[i] =
       (1.0 - share) * found_.rise[i - 1] + share * own_rise + (own.value - before) * share_rise;

@@ -121,14 +121,14 @@ void SceneCompiler::requireTouching(const PortDescription& given, const Port& po
     if (touching()) return;
   }
   // They may touch where nothing of them was made.
-  const auto isCut = [&](RegionId region) {
+  const auto is_cut = [&](RegionId region) {
     if (region == kOutside || !needed_.isBounded()) return false;
     const Box3 bounds = layers_[region - 1U]->bounds();
     return !scene_->regions_[region].source.empty() &&
            !(needed_.contains(bounds.lo) && needed_.contains(bounds.hi));
   };
-  if (std::any_of(port.from.begin(), port.from.end(), isCut) ||
-      std::any_of(port.to.begin(), port.to.end(), isCut)) {
+  if (std::any_of(port.from.begin(), port.from.end(), is_cut) ||
+      std::any_of(port.to.begin(), port.to.end(), is_cut)) {
     return;
   }
   throw errorAt(given.place, "scene.regions_do_not_touch",
