@@ -127,7 +127,7 @@ TEST(Check, SeveralFilesAndBadOnes) {
   (void)folder.file("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   (void)folder.file("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
   (void)folder.file("bad.vdb", "this is none");
-  (void)folder.file("scene.yaml", kContainer);
+  (void)folder.file("scan.nii", "an image");
   const CommandResult both = runPalpate({"check", "good.obj", "open.obj", "--json"}, folder.path());
   EXPECT_EQ(both.exit_code, 1);
   const Json json = parseOnly(both);
@@ -141,7 +141,7 @@ TEST(Check, SeveralFilesAndBadOnes) {
              {"index.obj", 3, "mesh.index"},
              {"bad.vdb", 3, "vdb.unreadable"},
              {"none.stl", 3, "file.missing"},
-             {"scene.yaml", 3, "check.kind"}};
+             {"scan.nii", 3, "check.kind"}};
   for (const auto& b : bad) {
     const CommandResult result = runPalpate({"check", b.file, "--json"}, folder.path());
     EXPECT_EQ(result.exit_code, b.exit_code) << b.file;

@@ -132,7 +132,8 @@ TEST(ConvertFiles, ALabelScanBecomesAGridForEachLabel) {
   (void)folder.file("names.txt", "3 left\n7 right\n");
   (void)converted(folder,
                   {"labels.nii", "-o", "l.vdb", "--labels", "left,right", "--names", "names.txt"});
-  EXPECT_EQ(gridsOf(folder, "l.vdb"), (std::vector<std::string>{"left/surface", "right/surface"}));
+  EXPECT_EQ(gridsOf(folder, "l.vdb"),
+            (std::vector<std::string>{"left/surface", "right/surface", "united"}));
   double sum = 0.0;
   for (const std::string layer : {"left", "right"}) {
     (void)converted(folder, {"l.vdb", "--layer", layer, "-o", layer + ".ply"});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "tools/helpers.h"
 #include "tools/png_pixels.h"
@@ -87,14 +88,66 @@ TEST(Scan, SegmentsAreBakedByTheirNames) {
       {"bake", "s.seg.nrrd", "-o", "s.vdb", "--labels", "* part", "--json"}, folder.path());
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   const Json grids = infoOf({folder.path("s.vdb")})["grids"];
-  ASSERT_EQ(grids.size(), 2U);
+  ASSERT_EQ(grids.size(), 3U);
   EXPECT_EQ(grids[0]["name"], "left part/surface");
+  EXPECT_EQ(grids[2]["name"], "united") << "they touch";
   // Left is at negative x of RAS: index 6 to 9, half a voxel more on each side.
   const Json ask = parseOnly(
       runPalpate({"convert", "s.vdb", "-o", "left.stl", "--layer", "left part/surface", "--json"},
                  folder.path()));
   EXPECT_NEAR(ask["bounds_m"]["lo"][0], -0.004, 3e-4);
   EXPECT_NEAR(ask["bounds_m"]["hi"][0], 0.0, 3e-4);
+}
+
+// Voxels of 5 mm cannot hold a plate of 1 mm beside a block: every verb that makes the scene's grids says so, and where.
+TEST(Scan, WhatAScenesGridsLoseIsTold) {
+  const TempFolder folder;
+  std::string voxels = segmentation();
+  const std::size_t data = voxels.size() - std::size_t{12} * 12 * 12;
+  for (std::size_t n = 0; n < std::size_t{12} * 12 * 12; ++n) {
+    // The plate is half-way between two planes of voxels.
+    const std::size_t i = n % 12, j = n / 12 % 12, k = n / 144;
+    const bool inside = (i == 3 || i >= 7) && j >= 2 && j < 10 && k >= 2 && k < 10;
+    voxels[data + n] = inside ? 7 : 0;
+  }
+  (void)folder.file("s.seg.nrrd", voxels);
+  const auto scene = [&](const char* voxel) {
+    return folder.file("scene.yaml",
+                       std::string("palpate: 1\nlength: mm\nimages: {s: {file: s.seg.nrrd}}\n"
+                                   "layers:\n  - {name: block, labels: {image: s, match: [7], "
+                                   "voxel: ") +
+                           voxel + "}}\n");
+  };
+  const std::string coarse = scene("5");
+  const CommandResult checked = runPalpate({"check", coarse, "--json"});
+  ASSERT_EQ(checked.exit_code, 0) << checked.err << checked.out;
+  const Json file = parseOnly(checked)["files"][0];
+  EXPECT_EQ(file["kind"], "scene");
+  EXPECT_EQ(file["layers"], 1);
+  ASSERT_EQ(file["findings"].size(), 1U) << file;
+  const Json& finding = file["findings"][0];
+  EXPECT_EQ(finding["code"], "scene.scan_loss");
+  EXPECT_GT(finding["count"], 5);
+  ASSERT_TRUE(finding["place_m"].is_array());
+  for (const Json& at : finding["place_m"]) EXPECT_LT(std::abs(at.get<double>()), 7e-3);
+  const Json grid = file["grids"][0];
+  EXPECT_EQ(grid["lost_voxels"].get<int>() + grid["filled_voxels"].get<int>(), finding["count"]);
+  EXPECT_EQ(grid["lost_at_m"], finding["place_m"]);
+  EXPECT_NE(runPalpate({"check", coarse}).out.find("of the scan"), std::string::npos);
+
+  const CommandResult drawn = runPalpate(
+      {"render", coarse, "-o", folder.path("p.png"), "--plane", "z=0", "--size", "640x400"});
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_NE(drawn.out.find("of the scan"), std::string::npos) << drawn.out;
+  const CommandResult touched =
+      runPalpate({"touch", coarse, "--insert", "9,0,0", "5,0,0", "--json"});
+  ASSERT_EQ(touched.exit_code, 0) << touched.err;
+  EXPECT_EQ(parseOnly(touched)["grids"][0]["lost_voxels"], grid["lost_voxels"]);
+
+  const CommandResult fine = runPalpate({"check", scene("1"), "--json"});
+  const Json whole = parseOnly(fine)["files"][0];
+  // Four at the plate's corners, which are rounded off.
+  EXPECT_LE(whole["grids"][0]["lost_voxels"], 4) << whole;
 }
 
 TEST(Scan, PicturesHaveTheColorsOfTheTable) {

@@ -391,6 +391,29 @@ void checkScan(const std::string& file) {
       }
     }
   }
+  // Of grids by themselves, too, one has each point, if what is in no label counts: the smallest.
+  const FieldPtr united = gridField(surfaces.united(0.0, {}).value());
+  std::size_t inner = 0;
+  for (int k = 1; k + 2 < image.size[2]; ++k) {
+    for (int j = 1; j + 2 < image.size[1]; ++j) {
+      for (int i = 1; i + 2 < image.size[0]; ++i) {
+        std::map<int, int> near;
+        for (int n = 0; n < 64; ++n)
+          ++near[at(Vec3(i - 1 + n % 4, j - 1 + n / 4 % 4, k - 1 + n / 16))];
+        if (near.size() < 2 || near.contains(0)) continue;
+        for (int n = 0; n < 27; ++n) {
+          const Vec3 p = image.toWorld(Vec3(i, j, k) + 0.5 * Vec3(n % 3, n / 3 % 3, n / 9));
+          bool is_held = false;
+          for (const auto& [label, count] : near) {
+            is_held = is_held || fields[label]->value(p) <= -united->value(p);
+          }
+          ASSERT_TRUE(is_held) << i << " " << j << " " << k << ", point " << n;
+        }
+        ++inner;
+      }
+    }
+  }
+  EXPECT_GT(inner, 1000U);
   std::printf(
       "  %zu faces between two labels alone: fields differ by %.2e voxel; everywhere: gap %.3f, "
       "overlap %.3f\n",

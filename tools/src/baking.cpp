@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "grid_baking.h"
@@ -235,6 +236,17 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
     }));
     tellLoss(options, grids.back().grid, console);
   }
+  if (layers.size() < 2) return grids;
+  // Where labels meet, what is in none of them is told by the one grid of all.
+  vdb::BakeOptions whole =
+      gridOptions(options, "united", voxel, unit, options.input, memoryOf(grids));
+  whole.name = kUnitedGrid;
+  std::optional<vdb::LevelSet> united;
+  BakedGrid last = timed([&] {
+    united = surfaces.united(asked, whole, console.progress());
+    return united.value_or(vdb::LevelSet());
+  });
+  if (united) grids.push_back(std::move(last));
   return grids;
 }
 

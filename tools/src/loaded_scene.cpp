@@ -2,7 +2,9 @@
 
 #include <utility>
 
+#include "json_parts.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/vdb/scan_surface.h"
 
 namespace palpate::tools {
 
@@ -51,13 +53,27 @@ ScenePtr LoadedScene::compile(Purpose purpose) const {
 Json LoadedScene::gridsJson() const {
   Json list = Json::array();
   for (const auto& grid : grids_) {
+    const vdb::ScanLoss loss = vdb::scanLoss(grid.info);
+    const bool is_whole = loss.lost + loss.filled == 0;
     list.push_back({{"what", grid.what},
                     {"voxel_size_m", grid.info.voxel_size},
                     {"active_voxels", grid.info.active_voxels},
                     {"memory_bytes", grid.info.memory},
-                    {"seconds", grid.seconds}});
+                    {"seconds", grid.seconds},
+                    {"lost_voxels", loss.lost},
+                    {"filled_voxels", loss.filled},
+                    {"lost_at_m", is_whole ? Json() : vectorJson(loss.place)}});
   }
   return list;
+}
+
+std::string LoadedScene::lossText() const {
+  std::string text;
+  for (const auto& grid : grids_) {
+    const std::string note = vdb::scanLossNote(grid.info);
+    if (!note.empty()) text += "  " + grid.what + ": " + note + "\n";
+  }
+  return text;
 }
 
 std::string LoadedScene::gridsText() const {
@@ -70,7 +86,7 @@ std::string LoadedScene::gridsText() const {
                formatCount(grid.info.active_voxels), formatBytes(grid.info.memory),
                formatSeconds(grid.seconds)});
   }
-  return table.text("  ");
+  return table.text("  ") + lossText();
 }
 
 }  // namespace palpate::tools

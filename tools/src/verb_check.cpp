@@ -13,12 +13,11 @@ FileCheck checkFile(const std::string& file, const CheckOptions& options, Consol
     case InputKind::kGrid:
       return checkGridFile(file, options, console);
     case InputKind::kScene:
-      throw inputError("check.kind", "this is a scene; check looks at meshes and grids",
-                       "palpate explain says what a scene means", file);
+      return checkSceneFile(file, console);
     case InputKind::kImage:
       break;
   }
-  throw inputError("check.kind", "this is an image; check looks at meshes and grids",
+  throw inputError("check.kind", "this is an image; check looks at meshes, grids and scenes",
                    "palpate info says what it is; palpate bake makes a grid of it", file);
 }
 

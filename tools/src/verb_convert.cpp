@@ -46,7 +46,8 @@ vdb::LevelSet onlyGrid(const ConvertOptions& options, Console& console) {
   if (isTakenAsItIs(bake)) {
     if (vdb::LevelSet grid = takenAsItIs(bake, console)) return grid;
   }
-  const std::vector<BakedGrid> baked = bakeInput(bake, console);
+  std::vector<BakedGrid> baked = bakeInput(bake, console);
+  std::erase_if(baked, [](const BakedGrid& one) { return one.grid.info().name == kUnitedGrid; });
   if (baked.size() == 1) return baked.front().grid;
   std::string names;
   for (const BakedGrid& one : baked) names += (names.empty() ? "" : ", ") + one.grid.info().name;

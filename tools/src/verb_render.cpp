@@ -68,8 +68,11 @@ Report run(const RenderOptions& options, const GeneralOptions& general, Console&
       {"output", options.output},
       {"width", picture.width},
       {"height", picture.height},
-      {"plane", {{"point_m", vectorJson(plane.point)}, {"normal", vectorJson(plane.normal())}}}};
-  report.text = "Cut " + plane.name + "\nWrote " + options.output + "\n";
+      {"plane", {{"point_m", vectorJson(plane.point)}, {"normal", vectorJson(plane.normal())}}},
+      {"grids", loaded.gridsJson()}};
+  const std::string lost = loaded.lossText();
+  report.text = "Cut " + plane.name + "\nWrote " + options.output + "\n" +
+                (lost.empty() ? "" : "\nGrids\n" + lost);
   return report;
 }
 

@@ -274,7 +274,8 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
   return {lazyField(
               common, layer, std::move(summary), from.place, from.sampler,
               [image = from.image, index, voxel_size, bake = from.bake](const Progress& progress) {
-                return image->surfaces().surface(index, voxel_size, bake, progress);
+                return image->surfaces().surface(index, voxel_size, bake, progress,
+                                                 LabelEdge::kLapped);
               },
               [image = from.image, values](const Progress&) {
                 return boxWhere(image->file->image(), [&](float value) {
@@ -282,7 +283,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
                                      [&](int label) { return value == static_cast<float>(label); });
                 });
               }),
-          from.name};
+          from.name, values};
 }
 
 SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& reader,

@@ -44,8 +44,8 @@ std::vector<FieldPtr> layerFields(const SceneDescription& description, const Box
     if (!layer.label_group.empty()) groups[layer.label_group].push_back(i);
   }
   for (const auto& [group, members] : groups) {
-    std::vector<FieldPtr> own;
-    for (const std::size_t i : members) own.push_back(fields[i]);
+    std::vector<LabelField> own;
+    for (const std::size_t i : members) own.push_back({fields[i], description.layers[i].labels});
     const SharedLabels shared = shareLabels(own);
     for (std::size_t k = 0; k < members.size(); ++k) fields[members[k]] = shared.fields[k];
     between.insert(between.end(), shared.walls.begin(), shared.walls.end());

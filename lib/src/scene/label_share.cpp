@@ -142,16 +142,22 @@ class LabelShare final : public Field {
   Box3 domain_;
 };
 
+bool haveCommon(const std::vector<int>& a, const std::vector<int>& b) {
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+}
+
 }  // namespace
 
-SharedLabels shareLabels(const std::vector<FieldPtr>& fields) {
-  if (fields.size() < 2) return {fields, {}};
+SharedLabels shareLabels(const std::vector<LabelField>& layers) {
   SharedLabels out;
-  const std::size_t count = fields.size();
+  const std::size_t count = layers.size();
+  std::vector<FieldPtr> fields;
+  for (const LabelField& layer : layers) fields.push_back(layer.field);
   std::vector<std::vector<FieldPtr>> others(count);
   std::vector<std::vector<FieldPtr>> faces(count);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = i + 1; j < count; ++j) {
+      if (haveCommon(layers[i].labels, layers[j].labels)) continue;
       // Labels whose boxes stay apart cannot meet.
       const double reach = fields[i]->featureSize() + fields[j]->featureSize();
       const Box3 box =

@@ -8,13 +8,21 @@
 
 namespace palpate {
 
+/// A layer of the image.
+struct LabelField {
+  FieldPtr field;
+  /// Ascending. Layers that have one in common do not limit each other.
+  std::vector<int> labels = {};
+};
+
 struct SharedLabels {
-  /// For every field f_i of one image: max(f_i, max over j of (f_i - f_j) / 2). Negative where f_i is
+  /// For every field f_i of one image: max(f_i, max over j of (f_i - f_j) / 2), j being the layers
+  /// that limit it. Negative where f_i is
   /// negative and smallest; two neighbors' results are exact negatives of each other at their wall. Its
   /// structure tells f_i and one smooth wall to each neighbor, which both share.
   std::vector<FieldPtr> fields;
   std::vector<LeafBetween> walls;
 };
-[[nodiscard]] SharedLabels shareLabels(const std::vector<FieldPtr>& fields);
+[[nodiscard]] SharedLabels shareLabels(const std::vector<LabelField>& layers);
 
 }  // namespace palpate

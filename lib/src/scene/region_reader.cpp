@@ -121,6 +121,7 @@ void RegionReader::readSurface(MapReader& reader, LayerDescription& layer) const
   }
   layer.inside = std::move(made.inside);
   layer.label_group = std::move(made.label_group);
+  layer.labels = std::move(made.labels);
 }
 
 void RegionReader::readLayers(const Node& layers) {

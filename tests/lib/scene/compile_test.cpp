@@ -397,6 +397,22 @@ TEST(LabelGroup, ThatIsOneOrApartIsLeftAlone) {
   EXPECT_EQ(scene->regionAt(Vec3(0.0)), 2) << "another layer still wins by its order";
 }
 
+TEST(LabelGroup, LayersWithALabelInCommonDoNotLimitEachOther) {
+  // A part within the whole it belongs to: it is later and has its points, though the whole is deeper there.
+  SceneDescription s;
+  s.layers = {layer("whole", ball(0, 0.03)), layer("part", ball(0.005, 0.01)),
+              layer("next", ball(0.05, 0.025))};
+  for (LayerDescription& l : s.layers) l.label_group = "scan";
+  s.layers[0].labels = {1, 2};
+  s.layers[1].labels = {2};
+  s.layers[2].labels = {3};
+  const ScenePtr scene = compile(s);
+  EXPECT_EQ(scene->regionAt(Vec3(0.0)), 2);
+  EXPECT_EQ(scene->regionAt(Vec3(-0.01, 0, 0)), 1);
+  EXPECT_EQ(scene->regionAt(Vec3(0.027, 0, 0)), 1) << "both have it: the nearer to its middle";
+  EXPECT_EQ(scene->regionAt(Vec3(0.029, 0, 0)), 3);
+}
+
 std::vector<FieldCase> sharedCases() {
   // The share of one label, put through the contract of all fields.
   const auto made = [] {

@@ -35,6 +35,10 @@ struct FileCheck {
 [[nodiscard]] FileCheck checkGridFile(const std::string& file, const CheckOptions& options,
                                       Console& console);
 
+/// Makes all of it; what its grids could not hold of meshes and scans is told, and is no no. @throws Error, if it
+/// cannot be made.
+[[nodiscard]] FileCheck checkSceneFile(const std::string& file, Console& console);
+
 [[nodiscard]] Json findingsJson(const std::vector<Finding>& findings);
 /// A line for each.
 [[nodiscard]] std::string findingsText(const std::vector<Finding>& findings, const char* indent);

@@ -150,7 +150,11 @@ Verb bakeVerb() {
       "INPUT is a scene file, a mesh (.stl .obj .ply .vtk .gltf .glb) or an image (.nii .nii.gz "
       ".nrrd\n"
       ".nhdr .mha .mhd, or a folder with a DICOM series). Each layer\n"
-      "becomes a grid `<layer>/surface`. An image needs --above or --labels.\n"
+      "becomes a grid `<layer>/surface`. An image needs --above or --labels; labels that touch are "
+      "also\n"
+      "written as one grid, `united`: a point belongs to the label whose value is smallest, or to "
+      "none if\n"
+      "the opposite of `united` is smaller still.\n"
       "\n"
       "No grid holds an edge: its normal is some ten degrees off there, however small the voxels "
       "are.\n"
@@ -214,7 +218,7 @@ Verb infoVerb() {
 Verb checkVerb() {
   return {
       "check",
-      "Say whether meshes and grids can be touched, and what is wrong with them",
+      "Say whether meshes, grids and scenes can be touched, and what is wrong with them",
       "palpate check organ.stl --units mm",
       "palpate check FILE... [OPTIONS]",
       "A mesh: holes, edges with three triangles or more, triangles turned, doubled, without area "
@@ -223,7 +227,10 @@ Verb checkVerb() {
       "that\n"
       "tells what is solid. A grid (.vdb): class, unit, band, |gradient| (1 for distances), "
       "voxels that\n"
-      "are no numbers, holes in the band, and an inside that is not marked as such.\n"
+      "are no numbers, holes in the band, and an inside that is not marked as such. A scene: all "
+      "of it "
+      "is\n"
+      "made, and what grids could not hold of its meshes and scans is told, with a place.\n"
       "Exit code 0 if all can be touched, baking mending what is wrong; 1 if one cannot.",
       {},
       defineCheck,

@@ -1,11 +1,12 @@
 #include "scan/label_partition.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
+#include "scan/for_blocks.h"
 #include "scan/smooth_mask.h"
 #include "scan/volume.h"
 
@@ -35,22 +36,86 @@ bool haveCommonVoxel(const Band& a, const Band& b) {
   return false;
 }
 
+/// [steps] How far a lapped layer reaches into its neighbors, for each step of the longest spacing: more than the grids
+/// of two layers differ at their wall, and at most half a step. More of it would blur that wall near edges.
+constexpr double kLap = 0.2;
+constexpr double kMostLap = 0.5;
+/// [steps] How deep below the skin of all layers the outer wall of a lapped layer may lie where it meets another.
+constexpr float kMostGroove = 0.5F;
+
+/// Whether a voxel of one has one of the other beside it, across a face, an edge or a corner.
+bool meet(const Mask& a, const Mask& b) {
+  std::array<int, 3> lo{}, hi{};  // of a's voxels that may have one of b's beside them
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lo[axis] = std::max(a.first[axis], b.first[axis] - 1);
+    hi[axis] = std::min(a.first[axis] + a.box[axis], b.first[axis] + b.box[axis] + 1);
+  }
+  for (int k = lo[2]; k < hi[2]; ++k) {
+    for (int j = lo[1]; j < hi[1]; ++j) {
+      for (int i = lo[0]; i < hi[0]; ++i) {
+        if (!a.holds(i, j, k)) continue;
+        for (int n = 0; n < 27; ++n) {
+          if (b.holds(i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1)) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+/// Of a layer that has `own`, the smallest of its neighbors `least` (NaN: none near), all layers together `united`
+/// (NaN: deep within them).
+float shared(float own, float least, float united) {
+  const float other = std::fmin(least, -united);
+  return std::isnan(other) ? own : 0.5F * (own - other);
+}
+
+float lapped(float own, float least, float united, float lap) {
+  if (std::isnan(least)) return shared(own, least, united);
+  const float wall = 0.5F * (own - least) - lap;
+  if (std::isnan(united)) return wall;
+  return std::max(std::min(0.5F * (own + united), united + kMostGroove), wall);
+}
+
+/// [m] Of a voxel.
+Vec3 lengthsOf(const Image& image) {
+  return {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])};
+}
+
+std::vector<int> together(const std::vector<int>& a, const std::vector<int>& b) {
+  std::vector<int> result;
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
+  return result;
+}
+
+bool haveCommonLabel(const std::vector<int>& a, const std::vector<int>& b) {
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+}
+
+/// visit(voxel's place in its block, box index) for each voxel of the band in a block.
+template <typename Visit>
+void forVoxels(const BandBlock& block, const Visit& visit) {
+  for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+    if (std::isnan(block.value[n])) continue;
+    const auto place = static_cast<int>(n);
+    visit(n, std::array{block.first[0] + (place >> 6), block.first[1] + (place >> 3 & 7),
+                        block.first[2] + (place & 7)});
+  }
+}
+
+/// On the side of the mask.
+float onSide(float value, bool inside) {
+  return inside ? std::min(value, -kLeastValue) : std::max(value, kLeastValue);
+}
+
 }  // namespace
 
 LabelPartition::LabelPartition(const Image& image, std::vector<std::vector<int>> layers)
     : image_(image), layers_(std::move(layers)) {
-  std::vector<int> all;
-  for (std::vector<int>& layer : layers_) {
-    std::sort(layer.begin(), layer.end());
-    all.insert(all.end(), layer.begin(), layer.end());
-  }
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  layers_.push_back(std::move(all));
-  made_.resize(layers_.size());
+  for (Labels& layer : layers_) std::sort(layer.begin(), layer.end());
 }
 
-std::shared_ptr<const MaskedBand> LabelPartition::smoothed(const std::vector<int>& labels,
+std::shared_ptr<const MaskedBand> LabelPartition::smoothed(const Labels& labels,
                                                            const Progress& progress) const {
   auto result = std::make_shared<MaskedBand>();
   const auto is_label = [&](float value) {
@@ -59,8 +124,7 @@ std::shared_ptr<const MaskedBand> LabelPartition::smoothed(const std::vector<int
   };
   result->mask = maskOf(image_, is_label, kBandMargin);
   if (result->mask.inside.empty()) return result;
-  const Vec3 lengths(glm::length(image_.axes[0]), glm::length(image_.axes[1]),
-                     glm::length(image_.axes[2]));
+  const Vec3 lengths = lengthsOf(image_);
   const double smallest = std::min({lengths.x, lengths.y, lengths.z});
   result->band = bandOf(result->mask, lengths / smallest);
   smoothBand(result->band, result->mask, image_.axes / smallest, progress);
@@ -69,63 +133,108 @@ std::shared_ptr<const MaskedBand> LabelPartition::smoothed(const std::vector<int
   return result;
 }
 
-std::shared_ptr<const MaskedBand> LabelPartition::cached(std::size_t index,
-                                                         const Progress& progress) {
-  if (!made_[index]) made_[index] = smoothed(layers_[index], progress);
-  return made_[index];
+const MaskedBand& LabelPartition::cached(const Labels& labels, const Progress& progress) {
+  auto& made = made_[labels];
+  if (!made) made = smoothed(labels, progress);
+  return *made;
 }
 
-bool LabelPartition::haveCommonLabel(std::size_t a, std::size_t b) const {
-  std::vector<int> common;
-  std::set_intersection(layers_[a].begin(), layers_[a].end(), layers_[b].begin(), layers_[b].end(),
-                        std::back_inserter(common));
-  return !common.empty();
-}
-
-MaskedBand LabelPartition::layer(std::size_t index, const Progress& progress) {
-  const std::lock_guard lock(mutex_);
-  const std::size_t all = layers_.size() - 1;
-  MaskedBand own = *cached(index, progress);
-  if (own.mask.inside.empty()) return own;
-  std::vector<const Band*> others;
-  for (std::size_t n = 0; n < all; ++n) {
-    if (n == index || haveCommonLabel(n, index)) continue;
-    const auto other = cached(n, progress);
-    if (!other->mask.inside.empty() && touch(own.mask, other->mask) &&
-        haveCommonVoxel(own.band, other->band)) {
-      others.push_back(&other->band);
+std::vector<std::size_t> LabelPartition::neighborsOf(std::size_t index, const Progress& progress) {
+  std::vector<std::size_t> result;
+  const MaskedBand& own = cached(layers_[index], progress);
+  if (own.mask.inside.empty()) return result;
+  for (std::size_t n = 0; n < layers_.size(); ++n) {
+    if (haveCommonLabel(layers_[n], layers_[index])) continue;
+    const MaskedBand& other = cached(layers_[n], progress);
+    if (!other.mask.inside.empty() && touch(own.mask, other.mask) &&
+        haveCommonVoxel(own.band, other.band)) {
+      result.push_back(n);
     }
   }
-  const Band* const whole = others.empty() ? nullptr : &cached(all, progress)->band;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, own.band.blocks.size()),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t b = range.begin(); b != range.end(); ++b) {
-                        BandBlock& block = own.band.blocks[b];
-                        for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
-                          float& value = block.value[n];
-                          if (std::isnan(value)) continue;
-                          const auto place = static_cast<int>(n);
-                          const int i = block.first[0] + (place >> 6);
-                          const int j = block.first[1] + (place >> 3 & 7);
-                          const int k = block.first[2] + (place & 7);
-                          if (whole != nullptr) {
-                            const int x = own.band.first[0] + i;
-                            const int y = own.band.first[1] + j;
-                            const int z = own.band.first[2] + k;
-                            // What is in no layer; NaN is less than nothing.
-                            float least = -whole->valueAt(x, y, z);
-                            for (const Band* const other : others)
-                              least = std::fmin(least, other->valueAt(x, y, z));
-                            if (!std::isnan(least)) value = 0.5F * (value - least);
-                          }
-                          const bool inside =
-                              own.mask.inside[static_cast<std::size_t>(own.mask.at(i, j, k))] != 0;
-                          value =
-                              inside ? std::min(value, -kLeastValue) : std::max(value, kLeastValue);
-                        }
-                      }
-                    });
+  return result;
+}
+
+MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progress& progress) {
+  const std::lock_guard lock(mutex_);
+  const std::vector<std::size_t> neighbors = neighborsOf(index, progress);
+  MaskedBand own = cached(layers_[index], progress);
+  if (neighbors.empty()) return own;
+  // What has labels in common with the layer is no part of the rest, unless something else is.
+  Labels labels = layers_[index];
+  for (const Labels& other : layers_) {
+    if (!haveCommonLabel(other, layers_[index])) labels = together(labels, other);
+  }
+  const MaskedBand& whole = cached(labels, progress);
+  std::vector<const Band*> others;
+  for (const std::size_t n : neighbors) others.push_back(&cached(layers_[n], progress).band);
+  const bool is_lapped = edge == LabelEdge::kLapped;
+  const Vec3 lengths = lengthsOf(image_);
+  const auto lap =
+      static_cast<float>(std::min(kMostLap, kLap * std::max({lengths.x, lengths.y, lengths.z}) /
+                                                std::min({lengths.x, lengths.y, lengths.z})));
+  if (is_lapped) {
+    own.neighbors = own.mask;
+    std::fill(own.neighbors.inside.begin(), own.neighbors.inside.end(), std::uint8_t{0});
+  }
+  forBlocks(own.band.blocks.size(), [&](std::size_t b) {
+    BandBlock& block = own.band.blocks[b];
+    forVoxels(block, [&](std::size_t n, const std::array<int, 3>& at) {
+      const int x = own.band.first[0] + at[0];
+      const int y = own.band.first[1] + at[1];
+      const int z = own.band.first[2] + at[2];
+      float least = std::numeric_limits<float>::quiet_NaN();
+      for (const Band* const other : others) least = std::fmin(least, other->valueAt(x, y, z));
+      const float united = whole.band.valueAt(x, y, z);
+      float& value = block.value[n];
+      value = is_lapped ? lapped(value, least, united, lap) : shared(value, least, united);
+      const auto here = static_cast<std::size_t>(own.mask.at(at[0], at[1], at[2]));
+      std::uint8_t& inside = own.mask.inside[here];
+      if (is_lapped && inside == 0 && whole.mask.holds(x, y, z)) {
+        own.neighbors.inside[here] = 1;
+        inside = value < 0.0F ? 1 : 0;
+      }
+      value = onSide(value, inside != 0);
+    });
+  });
   return own;
+}
+
+std::optional<MaskedBand> LabelPartition::unite(const Progress& progress) {
+  const std::lock_guard lock(mutex_);
+  Labels all;
+  bool any = false;
+  for (std::size_t n = 0; n < layers_.size(); ++n) {
+    all = together(all, layers_[n]);
+    if (any) continue;
+    const std::vector<std::size_t> neighbors = neighborsOf(n, progress);
+    any = std::any_of(neighbors.begin(), neighbors.end(), [&](std::size_t other) {
+      return other > n &&
+             meet(cached(layers_[n], progress).mask, cached(layers_[other], progress).mask);
+    });
+  }
+  if (!any) return {};
+  std::vector<const Band*> members;
+  for (const Labels& layer : layers_) {
+    const MaskedBand& member = cached(layer, progress);
+    if (!member.mask.inside.empty()) members.push_back(&member.band);
+  }
+  MaskedBand result = cached(all, progress);
+  forBlocks(result.band.blocks.size(), [&](std::size_t b) {
+    BandBlock& block = result.band.blocks[b];
+    forVoxels(block, [&](std::size_t n, const std::array<int, 3>& at) {
+      float least = std::numeric_limits<float>::quiet_NaN();
+      for (const Band* const member : members) {
+        least = std::fmin(
+            least, member->valueAt(result.band.first[0] + at[0], result.band.first[1] + at[1],
+                                   result.band.first[2] + at[2]));
+      }
+      // The rest's own value is the opposite of that of all together.
+      const float value = std::isnan(least) ? block.value[n] : 0.5F * (block.value[n] + least);
+      const auto here = static_cast<std::size_t>(result.mask.at(at[0], at[1], at[2]));
+      block.value[n] = onSide(value, result.mask.inside[here] != 0);
+    });
+  });
+  return result;
 }
 
 }  // namespace palpate::vdb

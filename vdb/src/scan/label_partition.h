@@ -1,12 +1,15 @@
 #pragma once
 /// One smooth surface for each of several sets of labels, with one wall between neighbors.
 
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "palpate/core/progress.h"
 #include "palpate/vdb/image.h"
+#include "palpate/vdb/scan_surface.h"
 #include "scan/band.h"
 
 namespace palpate::vdb {
@@ -15,32 +18,46 @@ namespace palpate::vdb {
 struct MaskedBand {
   Mask mask;
   Band band;
+  /// Of lapped layers: voxels of other layers, which the mask may or may not hold. Else empty.
+  Mask neighbors = {};
 };
 
-/// Every layer, and all of them together, is smoothed by itself, u_i, and then takes
+/// Every layer, and all of them together, is smoothed by itself, u_i and u_all, and then takes
 ///   f_i = (u_i - min over all others of u_j) / 2,
-/// what is in no layer being one of the others. Where only two meet u_j is -u_i and f_i is u_i; where more do,
-/// the layers share the walls u_i = u_j, and any two have f_i = -f_j there: no gap, no overlap. Layers that
-/// have a label in common do not limit each other.
-/// Values are about distances, in steps of the image's smallest spacing.
+/// what is in no layer, u_0 = -u_all, being one of the others. Where only two meet u_j is -u_i and f_i is u_i; where
+/// more do, the layers share the walls u_i = u_j, and any two have f_i = -f_j there: no gap, no overlap. But a
+/// grid rounds off edges, and walls of three that meet form one: there grids of f_i leave gaps.
+///
+/// Lapped layers reach over that, into each other but not into what is in no layer:
+///   e_i = max(min((u_i + u_all) / 2, u_all + groove), (u_i - min over the other layers of u_j) / 2 - lap)
+/// The wall between two of them is where e_i = e_j, which is where u_i = u_j, and wherever
+/// u_all is below -groove, one of them is negative. Far from others e_i is f_i.
+///
+/// Layers that have a label in common do not limit each other. Values are about distances, in steps of the
+/// image's smallest spacing.
 class LabelPartition {
  public:
   /// `image` must outlive it. `layers`: the labels of each.
   LabelPartition(const Image& image, std::vector<std::vector<int>> layers);
 
   /// The mask is empty if no voxel has one of the layer's labels. Any thread.
-  [[nodiscard]] MaskedBand layer(std::size_t index, const Progress& progress);
+  [[nodiscard]] MaskedBand layer(std::size_t index, LabelEdge edge, const Progress& progress);
+
+  /// -f_0: all layers together; none if no voxels of two layers lie beside each other. Any thread.
+  [[nodiscard]] std::optional<MaskedBand> unite(const Progress& progress);
 
  private:
-  [[nodiscard]] std::shared_ptr<const MaskedBand> smoothed(const std::vector<int>& labels,
+  using Labels = std::vector<int>;  ///< sorted
+
+  [[nodiscard]] std::shared_ptr<const MaskedBand> smoothed(const Labels& labels,
                                                            const Progress& progress) const;
-  [[nodiscard]] bool haveCommonLabel(std::size_t a, std::size_t b) const;
-  [[nodiscard]] std::shared_ptr<const MaskedBand> cached(std::size_t index,
-                                                         const Progress& progress);
+  [[nodiscard]] const MaskedBand& cached(const Labels& labels, const Progress& progress);
+  /// The layers that come near this one, and have no label in common with it.
+  [[nodiscard]] std::vector<std::size_t> neighborsOf(std::size_t index, const Progress& progress);
 
   const Image& image_;
-  std::vector<std::vector<int>> layers_;  ///< sorted; the last: all labels of the others
-  std::vector<std::shared_ptr<const MaskedBand>> made_;
+  std::vector<Labels> layers_;
+  std::map<Labels, std::shared_ptr<const MaskedBand>> made_;
   std::mutex mutex_;
 };
 

@@ -27,6 +27,14 @@ struct Mask {
     const auto s = strides();
     return (i + 1) + s[1] * (j + 1) + s[2] * (k + 1);
   }
+  /// Whether it holds the voxel at an index of the image.
+  [[nodiscard]] bool holds(int i, int j, int k) const noexcept {
+    const std::array<int, 3> local = {i - first[0], j - first[1], k - first[2]};
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (local[a] < 0 || local[a] >= box[a]) return false;
+    }
+    return inside[static_cast<std::size_t>(at(local[0], local[1], local[2]))] != 0;
+  }
 };
 
 /// The voxels whose value passes `test`, in the smallest box of the image that holds them and

@@ -17,7 +17,6 @@
 #include "bake/bake_plan.h"
 #include "brick/brick_field.h"
 #include "palpate/vdb/openvdb_access.h"
-#include "scan/scan_loss.h"
 
 namespace palpate::vdb {
 namespace {
@@ -403,12 +402,9 @@ class Redistance {
       if (leaf) grid->tree().addLeaf(leaf.release());
     }
     openvdb::tools::signedFloodFill(grid->tree());
-    BakeOptions with_loss = options_;
-    with_loss.metadata.merge(
-        metadataOf(findLoss(makeLevelSet(grid, options_.length_unit), band_, mask_, image_)));
     for (int round = 0; round < kFits && options_.half_width > kFitWidth; ++round) fit(grid);
     report(progress_, "distances", 1.0);
-    return finishGrid(grid, plan_, with_loss);
+    return finishGrid(grid, plan_, options_);
   }
 
   /// Beside creases, distances bend more than a spline through them can follow. Voxels by the surface move by what

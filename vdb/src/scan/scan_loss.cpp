@@ -31,34 +31,36 @@ std::uint64_t countAt(const LevelSetInfo& info, const char* key) {
 
 }  // namespace
 
-ScanLoss findLoss(const LevelSet& grid, const Band& band, const Mask& mask, const Image& image) {
+ScanLoss findLoss(const LevelSet& grid, const Band& band, const Mask& mask, const Mask& apart,
+                  const Image& image) {
   const FieldPtr field = gridField(grid, Sampler::kAccessor);
   const double enough = kLost * grid.info().voxel_size;
   std::vector<Found> found(band.blocks.size());
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, found.size()),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t b = range.begin(); b != range.end(); ++b) {
-          const BandBlock& block = band.blocks[b];
-          for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
-            if (std::isnan(block.value[n])) continue;
-            const auto place = static_cast<int>(n);
-            const int i = block.first[0] + (place >> 6);
-            const int j = block.first[1] + (place >> 3 & 7);
-            const int k = block.first[2] + (place & 7);
-            const bool inside = mask.inside[static_cast<std::size_t>(mask.at(i, j, k))] != 0;
-            const Vec3 p =
-                image.toWorld(Vec3(mask.first[0] + i, mask.first[1] + j, mask.first[2] + k));
-            const double depth = field->value(p) * (inside ? 1.0 : -1.0);
-            if (!(depth > enough)) continue;
-            Found& here = found[b];
-            ++(inside ? here.loss.lost : here.loss.filled);
-            if (depth <= here.depth) continue;
-            here.depth = depth;
-            here.loss.place = p;
-          }
-        }
-      });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, found.size()),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t b = range.begin(); b != range.end(); ++b) {
+                        const BandBlock& block = band.blocks[b];
+                        for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+                          if (std::isnan(block.value[n])) continue;
+                          const auto place = static_cast<int>(n);
+                          const int i = block.first[0] + (place >> 6);
+                          const int j = block.first[1] + (place >> 3 & 7);
+                          const int k = block.first[2] + (place & 7);
+                          const auto here = static_cast<std::size_t>(mask.at(i, j, k));
+                          if (!apart.inside.empty() && apart.inside[here] != 0) continue;
+                          const bool inside = mask.inside[here] != 0;
+                          const Vec3 p = image.toWorld(
+                              Vec3(mask.first[0] + i, mask.first[1] + j, mask.first[2] + k));
+                          const double depth = field->value(p) * (inside ? 1.0 : -1.0);
+                          if (!(depth > enough)) continue;
+                          Found& block_found = found[b];
+                          ++(inside ? block_found.loss.lost : block_found.loss.filled);
+                          if (depth <= block_found.depth) continue;
+                          block_found.depth = depth;
+                          block_found.loss.place = p;
+                        }
+                      }
+                    });
   Found all;
   for (const Found& one : found) {
     all.loss.lost += one.loss.lost;

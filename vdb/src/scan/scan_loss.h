@@ -10,9 +10,10 @@
 
 namespace palpate::vdb {
 
-/// Looks at every voxel of the band, by trilinear interpolation of the grid at its center.
+/// Looks at every voxel of the band, by trilinear interpolation of the grid at its center; not at those that
+/// `apart` holds (nothing, or of the mask's box).
 [[nodiscard]] ScanLoss findLoss(const LevelSet& grid, const Band& band, const Mask& mask,
-                                const Image& image);
+                                const Mask& apart, const Image& image);
 
 /// As metadata, for scanLoss() to read; none if nothing was lost.
 [[nodiscard]] std::map<std::string, std::string> metadataOf(const ScanLoss& loss);

@@ -32,8 +32,10 @@ double smallestSpacing(const Image& image) {
 }
 
 /// The surface of a band of values, which has the mask's sign everywhere.
-LevelSet bakeBand(const Band& band, const Mask& mask, const Image& image, double voxel_size,
-                  BakeOptions bake, const Progress& progress) {
+LevelSet bakeBand(const MaskedBand& of, const Image& image, double voxel_size, BakeOptions bake,
+                  const Progress& progress) {
+  const Band& band = of.band;
+  const Mask& mask = of.mask;
   if (voxel_size > 0.0) {
     bake.voxel_size = voxel_size;
   } else if (!(bake.voxel_size > 0.0)) {
@@ -51,13 +53,14 @@ LevelSet bakeBand(const Band& band, const Mask& mask, const Image& image, double
   }
   const std::optional<Box3> box = bake.box;
   bake.box.reset();
-  if (!box) return bakeSpline(spline, band, mask, image, bake, rest);
-  // What a box cuts off has flat faces: those of the baked field.
   BakeOptions wide = bake;
-  wide.half_width += kCubicHalfWidth;
+  if (box) wide.half_width += kCubicHalfWidth;
   const LevelSet whole = bakeSpline(spline, band, mask, image, wide, rest);
+  const auto lost = metadataOf(findLoss(whole, band, mask, of.neighbors, image));
+  if (!box) return whole.named(whole.info().name, lost);
+  // What a box cuts off has flat faces: those of the baked field.
   bake.box = box;
-  bake.metadata.merge(metadataOf(scanLoss(whole.info())));
+  bake.metadata.insert(lost.begin(), lost.end());
   return palpate::vdb::bake(*gridField(whole), bake, {});
 }
 
@@ -89,8 +92,9 @@ LevelSet surfaceFromThreshold(const Image& image, const ThresholdOptions& option
                                       (options.fill ? ", filled" : "");
   const Vec3 lengths(glm::length(image.axes[0]), glm::length(image.axes[1]),
                      glm::length(image.axes[2]));
-  const Band band = bandOfThreshold(image, options.above, mask, lengths / smallestSpacing(image));
-  return bakeBand(band, mask, image, options.voxel_size, std::move(with_source), progress);
+  Band band = bandOfThreshold(image, options.above, mask, lengths / smallestSpacing(image));
+  return bakeBand({std::move(mask), std::move(band)}, image, options.voxel_size,
+                  std::move(with_source), progress);
 }
 
 struct LabelSurfaces::Impl {
@@ -106,33 +110,55 @@ LabelSurfaces::LabelSurfaces(const Image& image, std::vector<std::vector<int>> l
 
 LabelSurfaces::~LabelSurfaces() = default;
 
-LevelSet LabelSurfaces::surface(std::size_t layer, double voxel_size, const BakeOptions& bake,
-                                const Progress& progress) {
-  report(progress, "labels", 0.0);
-  const Image& image = impl_->image;
-  Progress smoothing;
-  double last = 0.0;
-  if (progress) {
-    // Neighbors are smoothed too, one after the other.
-    smoothing = [&](std::string_view what, double fraction) {
-      last = std::max(last, kBandDone * fraction);
-      return progress(what, last);
-    };
-  }
-  const MaskedBand found = impl_->partition.layer(layer, smoothing);
+namespace {
+
+/// Of several smoothings, one after the other, as the first part of the whole.
+Progress smoothingOf(const Progress& progress) {
+  if (!progress) return {};
+  return [&progress, last = 0.0](std::string_view what, double fraction) mutable {
+    last = std::max(last, kBandDone * fraction);
+    return progress(what, last);
+  };
+}
+
+std::string listOf(const std::vector<int>& labels) {
   std::string list;
-  for (const int label : impl_->layers[layer]) {
-    list += (list.empty() ? "" : ", ") + std::to_string(label);
-  }
+  for (const int label : labels) list += (list.empty() ? "" : ", ") + std::to_string(label);
+  return list;
+}
+
+}  // namespace
+
+LevelSet LabelSurfaces::surface(std::size_t layer, double voxel_size, const BakeOptions& bake,
+                                const Progress& progress, LabelEdge edge) {
+  report(progress, "labels", 0.0);
+  const MaskedBand found = impl_->partition.layer(layer, edge, smoothingOf(progress));
+  const std::string list = listOf(impl_->layers[layer]);
   if (found.mask.inside.empty()) {
     throw inputError(
         "scan.empty",
         list.empty() ? "no label is asked for" : "no voxel of the image has the label " + list,
-        "name labels that the image holds", image.source);
+        "name labels that the image holds", impl_->image.source);
   }
   BakeOptions with_source = bake;
   with_source.metadata["labels"] = list;
-  return bakeBand(found.band, found.mask, image, voxel_size, std::move(with_source), progress);
+  return bakeBand(found, impl_->image, voxel_size, std::move(with_source), progress);
+}
+
+std::optional<LevelSet> LabelSurfaces::united(double voxel_size, const BakeOptions& bake,
+                                              const Progress& progress) {
+  report(progress, "labels", 0.0);
+  const std::optional<MaskedBand> found = impl_->partition.unite(smoothingOf(progress));
+  if (!found) return {};
+  std::vector<int> all;
+  for (const std::vector<int>& layer : impl_->layers) {
+    all.insert(all.end(), layer.begin(), layer.end());
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  BakeOptions with_source = bake;
+  with_source.metadata["labels"] = listOf(all);
+  return bakeBand(*found, impl_->image, voxel_size, std::move(with_source), progress);
 }
 
 LevelSet surfaceFromLabels(const Image& image, const LabelOptions& options, const BakeOptions& bake,

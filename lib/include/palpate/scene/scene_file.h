@@ -87,10 +87,12 @@ struct SceneRegistry {
   using FieldKind = std::function<FieldSourcePtr(MapReader&)>;
   /// One entry of `images:`; opaque to lib.
   using ImageKind = std::function<std::shared_ptr<void>(MapReader&)>;
-  /// `layers: [{name, labels: {...}}]`: what the layer's field comes from, and its label group.
+  /// `layers: [{name, labels: {...}}]`: what the layer's field comes from, and its label group
+  /// with the labels, ascending, that it has of it.
   struct LayerSurface {
     FieldSourcePtr inside;
     std::string label_group = {};
+    std::vector<int> labels = {};
   };
   using LayerKind = std::function<LayerSurface(MapReader&, const std::string& layer_name)>;
   /// `stiffness: {image: ct, transfer: [...]}`: reads the map whose keys include the kind's name. It is

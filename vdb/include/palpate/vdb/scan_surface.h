@@ -50,12 +50,22 @@ struct LabelOptions {
 [[nodiscard]] LevelSet surfaceFromLabels(const Image& image, const LabelOptions& options,
                                          const BakeOptions& bake, const Progress& progress = {});
 
-/// Surfaces of several layers of one label image, with one wall between neighbors: where two layers
-/// meet, both take the distance to the same wall, each in its own grid, so that away from others they fit
-/// within a tenth of a voxel or two.
-/// Where three or more meet (what is in no layer counts) their walls meet in an edge, which grids
-/// round off within about a voxel: gaps of up to half a voxel. Layers that have a label in common do not
-/// limit each other.
+/// How the surface of a layer ends where another begins.
+enum class LabelEdge : std::uint8_t {
+  /// At one wall for both: each encloses its own voxels. Each grid has its own distances to that wall, which
+  /// fit within a hundredth of a voxel (a tenth or two in stretched voxels). Where three or more meet (what is
+  /// in no layer counts) their walls meet in an edge, which grids round off: if a field below 0 is asked for, gaps of
+  /// up to half a voxel are left.
+  kShared,
+  /// A fifth of a voxel of the image (in stretched ones up to half their smallest spacing) beyond that wall, within
+  /// the neighbor, so that nothing is left between them; the smaller field tells which of them has a point, as
+  /// the layers of a scene do (LayerDescription::label_group).
+  kLapped,
+};
+
+/// Surfaces of several layers of one label image, with one wall between neighbors. Every point is in exactly
+/// one of the layers or in the surroundings: in that whose field is smallest, that of the surroundings
+/// being -united(). Layers that have a label in common do not limit each other.
 class LabelSurfaces {
  public:
   /// `image` must outlive it. `layers`: the labels of each.
@@ -64,9 +74,16 @@ class LabelSurfaces {
   LabelSurfaces(const LabelSurfaces&) = delete;
   LabelSurfaces& operator=(const LabelSurfaces&) = delete;
 
-  /// As surfaceFromLabels(). What is smoothed for one layer is kept for its neighbors.
+  /// As surfaceFromLabels(). What is smoothed for one layer is kept for its neighbors. Of lapped layers, voxels of
+  /// neighbors are not counted as filled.
   [[nodiscard]] LevelSet surface(std::size_t layer, double voxel_size, const BakeOptions& bake,
-                                 const Progress& progress = {});
+                                 const Progress& progress = {},
+                                 LabelEdge edge = LabelEdge::kShared);
+
+  /// All layers together; nothing if no voxels of two layers lie beside each other: then there is nothing between them
+  /// that could be lost.
+  [[nodiscard]] std::optional<LevelSet> united(double voxel_size, const BakeOptions& bake,
+                                               const Progress& progress = {});
 
  private:
   struct Impl;

@@ -1,0 +1,44 @@
+#include "check/file_check.h"
+#include "loaded_scene.h"
+#include "palpate/vdb/scan_surface.h"
+
+namespace palpate::tools {
+namespace {
+
+/// Nothing of a scan that a grid could not hold keeps the scene from being touched.
+void findLoss(const vdb::GridRecord& grid, std::vector<Finding>& findings) {
+  const vdb::ScanLoss loss = vdb::scanLoss(grid.info);
+  if (loss.lost + loss.filled > 0) {
+    findings.push_back({"scene.scan_loss", grid.what + ": " + vdb::scanLossNote(grid.info),
+                        loss.lost + loss.filled, loss.place});
+  }
+  const auto parts = grid.info.metadata.find("lost_parts");
+  if (parts != grid.info.metadata.end()) {
+    findings.push_back({"scene.lost_parts", grid.what + ": not in the grid: " + parts->second});
+  }
+}
+
+}  // namespace
+
+FileCheck checkSceneFile(const std::string& file, Console& console) {
+  const LoadedScene loaded(file, console);
+  const ScenePtr scene = loaded.compile();
+  std::vector<Finding> findings;
+  for (const vdb::GridRecord& grid : loaded.grids()) findLoss(grid, findings);
+  const std::size_t layers = scene->regions().size() - 1;
+  FileCheck out;
+  out.json = {{"file", file},
+              {"kind", "scene"},
+              {"ok", true},
+              {"layers", layers},
+              {"ports", scene->ports().size()},
+              {"grids", loaded.gridsJson()},
+              {"findings", findingsJson(findings)}};
+  out.text = file + ": a scene, " + countOf(layers, "layer", "layers") + ", " +
+             countOf(scene->ports().size(), "port", "ports") + ", " +
+             countOf(loaded.grids().size(), "grid", "grids") + "\n" + findingsText(findings, "  ") +
+             "  yes\n";
+  return out;
+}
+
+}  // namespace palpate::tools
