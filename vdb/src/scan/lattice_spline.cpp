@@ -13,8 +13,23 @@ using openvdb::Coord;
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
 constexpr int kNewtonSteps = 12;
+// In steps of the shortest axis.
+constexpr double kLongest = 0.5;
+constexpr double kEnough = 1e-6;
+/// What a step of Newton's method leaves is about its square.
+constexpr double kEnoughByNewton = 1e-3;
+constexpr double kLeastBent = 1e-3;
 /// Layers beyond the border that a spline at the surface depends on.
 constexpr int kMirrored = 4;
+
+/// Some vector at right angles to `v`.
+Vec3 across(const Vec3& v) noexcept {
+  const Vec3 size = glm::abs(v);
+  const bool by_x = size.x <= size.y && size.x <= size.z;
+  return by_x               ? Vec3(0.0, v.z, -v.y)
+         : size.y <= size.z ? Vec3(-v.z, 0.0, v.x)
+                            : Vec3(v.y, -v.x, 0.0);
+}
 
 /// Places along one axis where a voxel is seen: itself, and its images beyond the borders.
 struct Images {
@@ -98,6 +113,9 @@ LatticeSpline::LatticeSpline(const Band& band, const Mask& mask, const Mat3& axe
     : spline_(std::make_unique<BrickField>(gridOf(band, mask), Sampler::kCubic)),
       axes_(axes),
       to_index_(glm::inverse(axes)),
+      metric_(glm::transpose(axes) * axes),
+      inverse_metric_(to_index_ * glm::transpose(to_index_)),
+      metric_size_(glm::determinant(metric_)),
       origin_(origin),
       shortest_(std::min({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])})) {}
 
@@ -111,39 +129,51 @@ std::optional<double> LatticeSpline::valueAt(const Vec3& index) const noexcept {
 
 std::optional<LatticeSpline::Foot> LatticeSpline::foot(const Vec3& p,
                                                        const Vec3& start) const noexcept {
-  const Mat3 back = glm::transpose(to_index_);
-  const double enough = 1e-6 * shortest_;
-  const double longest = 0.5 * shortest_;
-  Vec3 q = start;
+  // By index throughout: the axes enter by their metric alone.
+  const Vec3 target = to_index_ * (p - origin_);
+  Vec3 q = to_index_ * (start - origin_);
   for (int step = 0; step < kNewtonSteps; ++step) {
-    const FieldJet jet = spline_->jet(to_index_ * (q - origin_));
+    const FieldJet jet = spline_->jet(q);
     if (!jet.in_band) return std::nullopt;
-    const Vec3 gradient = back * jet.gradient;
-    const Mat3 hessian = back * jet.hessian * to_index_;
-    const double square = glm::dot(gradient, gradient);
+    const Vec3 gradient = jet.gradient;
+    const Vec3 uphill = inverse_metric_ * gradient;
+    const double square = glm::dot(gradient, uphill);
     if (!(square > 0.0)) return std::nullopt;
-    const Vec3 apart = p - q;
-    const double m = glm::dot(apart, gradient) / square;
-    // Beyond the centre of curvature the matrix turns singular; there the point on the tangent plane leads.
-    const Mat3 bent = Mat3(1.0) + m * hessian;
-    Vec3 move = apart - (m + jet.value / square) * gradient;
-    if (const double size = glm::determinant(bent); size > 1e-3) {
-      const Mat3 inverse = glm::inverse(bent);
-      const Vec3 rest = inverse * (apart - m * gradient);
-      const Vec3 along = inverse * gradient;
-      const double slope = glm::dot(gradient, along);
-      if (slope > 1e-3 * square) {
-        move = rest - along * ((jet.value + glm::dot(gradient, rest)) / slope);
-      }
+    const Vec3 apart = target - q;
+    const double side = glm::dot(apart, gradient);
+    const double m = side / square;
+    // To the surface, and along its tangents; how S bends across it is of no account.
+    const Vec3 down = (-jet.value / square) * uphill;
+    const Mat3 bent = metric_ + m * jet.hessian;
+    const Vec3 u = across(gradient);
+    const Vec3 v = glm::cross(gradient, u);
+    const Vec3 bent_u = bent * u;
+    const Vec3 bent_v = bent * v;
+    const double uu = glm::dot(u, bent_u);
+    const double uv = glm::dot(u, bent_v);
+    const double vv = glm::dot(v, bent_v);
+    const double size = uu * vv - uv * uv;
+    // Of the metric alone that would be:
+    const double flat = metric_size_ * square * glm::dot(u, u) * glm::dot(u, u);
+    // Beyond a centre of curvature the matrix turns indefinite; there the point on the tangent plane leads.
+    Vec3 move = apart - m * uphill + down;
+    double enough = kEnough;
+    if (uu > 0.0 && size > kLeastBent * flat) {
+      const Vec3 pull = metric_ * apart - bent * down;
+      const double a = glm::dot(u, pull);
+      const double b = glm::dot(v, pull);
+      move = down + ((vv * a - uv * b) / size) * u + ((uu * b - uv * a) / size) * v;
+      enough = kEnoughByNewton;
     }
-    const double length = glm::length(move);
+    const double length = std::sqrt(glm::dot(move, metric_ * move));
     if (!std::isfinite(length)) return std::nullopt;
-    if (length < enough) {
-      const double side = glm::dot(apart, gradient);
-      const double distance = glm::length(p - q - move);
-      return Foot{q + move, gradient / std::sqrt(square), side < 0.0 ? -distance : distance};
+    if (length < enough * shortest_) {
+      const Vec3 point = axes_ * (q + move) + origin_;
+      const double distance = glm::length(p - point);
+      return Foot{point, glm::normalize(glm::transpose(to_index_) * gradient),
+                  side < 0.0 ? -distance : distance};
     }
-    q += move * std::min(1.0, longest / length);
+    q += move * std::min(1.0, kLongest * shortest_ / length);
   }
   return std::nullopt;
 }

@@ -38,6 +38,9 @@ class LatticeSpline {
   std::unique_ptr<const BrickField> spline_;  ///< by voxels
   Mat3 axes_;
   Mat3 to_index_;
+  Mat3 metric_;  ///< products of the axes
+  Mat3 inverse_metric_;
+  double metric_size_;  ///< its determinant
   Vec3 origin_;
   double shortest_;  ///< of the axes
 };
