@@ -1,7 +1,6 @@
 #include "brick/bricks.h"
 
 #include <openvdb/tree/ValueAccessor.h>
-#include <sys/mman.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -11,13 +10,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <glm/common.hpp>
-#include <new>
 #include <utility>
 
 #include "brick/block_map.h"
 #include "brick/prefilter.h"
 #include "brick/slopes.h"
+#include "huge_vector.h"
 #include "palpate/vdb/openvdb_access.h"
 
 namespace palpate::vdb {
@@ -28,12 +26,6 @@ using openvdb::CoordBBox;
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 using Accessor = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
-
-constexpr std::size_t kHugePage = std::size_t{2} << 20;
-
-/// [bytes] From this size on, memory is asked for in huge pages: a cold look at a brick then costs
-/// no walk through page tables on top.
-constexpr std::size_t kWorthHugePages = 2 * kHugePage;
 
 /// [units] What a voxel out of the band counts: its distance is at least the half width, but between
 /// such voxels the surface can be nearer than the mean of them says. A distance to something rho away
@@ -138,33 +130,6 @@ double steepestSquareIn(const Brick& brick, bool cubic) noexcept {
                         {Brick::kSlab, Brick::kRow});
 }
 
-std::byte* allocateBricks(std::size_t bytes) {
-  const bool huge = bytes >= kWorthHugePages;
-  const std::size_t alignment = huge ? kHugePage : alignof(Brick);
-  const std::size_t size =
-      (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
-  void* const memory = std::aligned_alloc(alignment, size);
-  if (memory == nullptr) throw std::bad_alloc();
-#if defined(MADV_HUGEPAGE)
-  // A wish: without huge pages all works, with slower cold looks.
-  if (huge) static_cast<void>(::madvise(memory, size, MADV_HUGEPAGE));
-#endif
-  return static_cast<std::byte*>(memory);
-}
-
-/// The voxels of all cells in the box; numbers of voxels that 32 bits hold.
-CoordBBox voxelsOf(const Box3& box, const LevelSet& grid) {
-  constexpr double kFarthest = 1 << 29;
-  const auto at = [&](const Vec3& p, double by) {
-    const Vec3 q = glm::clamp((p - grid.impl().origin) / grid.info().voxel_size + by,
-                              Vec3(-kFarthest), Vec3(kFarthest));
-    return Coord(static_cast<int>(std::floor(q.x)), static_cast<int>(std::floor(q.y)),
-                 static_cast<int>(std::floor(q.z)));
-  };
-  // The margin is for the rounding of places.
-  return {at(box.lo, -1.0), at(box.hi, 1.0)};
-}
-
 }  // namespace
 
 void Bricks::Release::operator()(std::byte* memory) const noexcept { std::free(memory); }
@@ -189,7 +154,8 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler, const Box3& within) {
   if (within.isBounded()) map = cutTo(voxelsOf(within, grid), map);
   BlockTable table = makeTable(*tree, map);
   count_ = map.bricks.size();
-  bricks_.reset(allocateBricks(count_ * sizeof(Brick)));
+  // A cold look at a brick then costs no walk through page tables on top.
+  bricks_.reset(static_cast<std::byte*>(allocateHuge(count_ * sizeof(Brick), alignof(Brick))));
   tbb::enumerable_thread_specific<Part> parts;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count_), [&](const auto& range) {
     Part& part = parts.local();

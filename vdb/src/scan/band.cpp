@@ -1,15 +1,14 @@
 #include "scan/band.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "scan/for_blocks.h"
 #include "scan/opposite.h"
 #include "scan/slices.h"
+#include "scan/thin_parts.h"
 
 namespace palpate::vdb {
 namespace {
@@ -47,12 +46,7 @@ class Finder {
 
   Band run() {
     makeBlocks();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, band_.blocks.size()),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t b = range.begin(); b != range.end(); ++b) {
-                          fill(band_.blocks[b], band_.bounds[b]);
-                        }
-                      });
+    forBlocks(band_.blocks.size(), [&](std::size_t b) { fill(band_.blocks[b], band_.bounds[b]); });
     dropEmpty();
     linkBlocks();
     return std::move(band_);
@@ -118,6 +112,7 @@ class Finder {
     const int ty = band_.table_size[1];
     const int tz = band_.table_size[2];
     band_.table.assign(near.size(), -1);
+    std::vector<std::array<int, 3>> firsts;
     forTable([&](int x, int y, int z) {
       bool any = false;
       for (int n = 0; n < 27 && !any; ++n) {
@@ -127,10 +122,10 @@ class Finder {
         any =
             a >= 0 && b >= 0 && c >= 0 && a < tx && b < ty && c < tz && near[tableAt(a, b, c)] != 0;
       }
-      if (!any) return;
-      band_.blocks.emplace_back();
-      band_.blocks.back().first = {8 * x, 8 * y, 8 * z};
+      if (any) firsts.push_back({8 * x, 8 * y, 8 * z});
     });
+    band_.blocks.resize(firsts.size());
+    for (std::size_t b = 0; b < firsts.size(); ++b) band_.blocks[b].first = firsts[b];
     band_.bounds.resize(band_.blocks.size());
   }
 
@@ -199,9 +194,7 @@ class Finder {
     }
     if (is_inside) size = std::min(size, borderDistance(at));
     if (!(size < kInfinity)) return false;
-    if (other.steps < kBeside && (isThin(at, is_inside) || facesThin(at, is_inside))) {
-      lower = std::max(lower, kHold);
-    }
+    if (other.steps < kBeside && isAtThinPart(mask_, at)) lower = std::max(lower, kHold);
     size = std::clamp(size, lower, upper);
     const std::size_t place = Band::placeOf(at[0], at[1], at[2]);
     block.value[place] = static_cast<float>(is_inside ? -size : size);
@@ -216,7 +209,7 @@ class Finder {
       const std::array<int, 3> there = {at[0] + offset.step[0], at[1] + offset.step[1],
                                         at[2] + offset.step[2]};
       // What lies beyond the image is unknown, and no outside.
-      if (isIn(there) && inside(mask_.at(there[0], there[1], there[2])) != side) {
+      if (isIn(mask_, there) && inside(mask_.at(there[0], there[1], there[2])) != side) {
         return {offset.steps, offset.distance};
       }
     }
@@ -235,71 +228,6 @@ class Finder {
     return nearest;
   }
 
-  /// Whether the cube of 2^3 voxels from `low` on is on one side; what lies beyond the image goes with it.
-  [[nodiscard]] bool isCube(const std::array<int, 3>& low, bool side) const noexcept {
-    for (int corner = 0; corner < 8; ++corner) {
-      const std::array<int, 3> at = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
-                                     low[2] + (corner >> 2)};
-      if (isIn(at) && inside(mask_.at(at[0], at[1], at[2])) != side) return false;
-    }
-    return true;
-  }
-
-  [[nodiscard]] bool isIn(const std::array<int, 3>& at) const noexcept {
-    bool in = true;
-    for (std::size_t a = 0; a < 3; ++a) in = in && at[a] >= 0 && at[a] < mask_.box[a];
-    return in;
-  }
-
-  /// Whether no such cube holds it or one of the 26 voxels around it. A lone voxel on a body is none, nor the
-  /// tip of a ball.
-  [[nodiscard]] bool isThin(const std::array<int, 3>& at, bool side) const noexcept {
-    // Nearest cubes first: nearly always one of them is whole.
-    for (const int reach : {1, 2}) {
-      for (int n = 0; n < 64; ++n) {
-        const std::array<int, 3> step = {n & 3, n >> 2 & 3, n >> 4};
-        std::array<int, 3> low{};
-        bool near = true;
-        for (std::size_t a = 0; a < 3; ++a) {
-          low[a] = at[a] + step[a] - 2;
-          near = near && (step[a] == 1 || step[a] == 2);
-        }
-        if (near != (reach == 1)) continue;
-        if (isCube(low, side) && holdsSide(low, at, side)) return false;
-      }
-    }
-    return true;
-  }
-
-  /// Whether a thin part of the other side begins across one of its faces: held off both ways, it keeps its
-  /// volume.
-  [[nodiscard]] bool facesThin(const std::array<int, 3>& at, bool side) const noexcept {
-    for (std::size_t a = 0; a < 3; ++a) {
-      for (const int step : {-1, 1}) {
-        std::array<int, 3> next = at;
-        next[a] += step;
-        if (isIn(next) && inside(mask_.at(next[0], next[1], next[2])) != side &&
-            isThin(next, !side)) {
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
-  /// Whether a cube holds a voxel of that side next to `at`: not only what lies beyond the image.
-  [[nodiscard]] bool holdsSide(const std::array<int, 3>& low, const std::array<int, 3>& at,
-                               bool side) const noexcept {
-    for (int corner = 0; corner < 8; ++corner) {
-      const std::array<int, 3> voxel = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
-                                        low[2] + (corner >> 2)};
-      bool next = isIn(voxel);
-      for (std::size_t a = 0; a < 3; ++a) next = next && std::abs(voxel[a] - at[a]) <= 1;
-      if (next && inside(mask_.at(voxel[0], voxel[1], voxel[2])) == side) return true;
-    }
-    return false;
-  }
-
   void dropEmpty() {
     std::size_t kept = 0;
     for (std::size_t b = 0; b < band_.blocks.size(); ++b) {
@@ -312,6 +240,8 @@ class Finder {
     }
     band_.blocks.resize(kept);
     band_.bounds.resize(kept);
+    band_.blocks.shrink_to_fit();
+    band_.bounds.shrink_to_fit();
     for (std::size_t b = 0; b < band_.blocks.size(); ++b) {
       const auto [x, y, z] = band_.blocks[b].first;
       band_.table[tableAt(x >> 3, y >> 3, z >> 3)] = static_cast<std::int32_t>(b);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "huge_vector.h"
 #include "palpate/core/math.h"
 #include "scan/mask.h"
 
@@ -37,9 +38,11 @@ struct Band {
   std::array<int, 3> box{};         ///< as in Mask
   std::array<int, 3> table_size{};  ///< blocks along each axis
   std::vector<std::int32_t> table;  ///< place of each block in `blocks`, or -1; first axis fastest
-  std::vector<BandBlock> blocks;
-  std::vector<BandBounds> bounds;  ///< one for each block
+  HugeVector<BandBlock> blocks;
+  HugeVector<BandBounds> bounds;  ///< one for each block
 
+  /// Gives their memory back: `bounds = {}` would keep it.
+  void dropBounds() noexcept { bounds = HugeVector<BandBounds>(); }
   /// The block of voxel (i, j, k), or -1.
   [[nodiscard]] std::int32_t blockAt(int i, int j, int k) const noexcept {
     const int place = (i >> 3) + table_size[0] * ((j >> 3) + table_size[1] * (k >> 3));

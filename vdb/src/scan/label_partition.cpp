@@ -129,7 +129,7 @@ std::shared_ptr<const MaskedBand> LabelPartition::smoothed(const Labels& labels,
   result->band = bandOf(result->mask, lengths / smallest);
   smoothBand(result->band, result->mask, image_.axes / smallest, progress);
   keepVolume(result->band, result->mask);
-  result->band.bounds = {};
+  result->band.dropBounds();
   return result;
 }
 

@@ -13,7 +13,7 @@ constexpr float kSmallest = 1e-30F;
 
 Band bandOfThreshold(const Image& image, double above, const Mask& mask, const Vec3& spacing) {
   Band band = bandOf(mask, spacing);
-  band.bounds = {};
+  band.dropBounds();
   float largest = 0.0F;
   for (BandBlock& block : band.blocks) {
     for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {

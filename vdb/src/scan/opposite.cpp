@@ -15,8 +15,14 @@ struct Row {
   alignas(32) float voxels[8];
 };
 
+/// kCubic: both are the same, and square is enough.
+template <bool kCubic>
 inline void takeLess(Row& best, const Row& other, float square, float voxels) noexcept {
   for (int n = 0; n < 8; ++n) {
+    if constexpr (kCubic) {
+      best.square[n] = std::min(best.square[n], other.square[n] + square);
+      continue;
+    }
     const float s = other.square[n] + square;
     const float v = other.voxels[n] + voxels;
     const bool less = s < best.square[n] || (s == best.square[n] && v < best.voxels[n]);
@@ -27,7 +33,8 @@ inline void takeLess(Row& best, const Row& other, float square, float voxels) no
 
 }  // namespace
 
-Opposite::Opposite(const Vec3& spacing) : nearest_(std::size_t{1} << kWindow, 255) {
+Opposite::Opposite(const Vec3& spacing)
+    : is_cubic_(spacing == Vec3(1.0)), nearest_(std::size_t{1} << kWindow, 255) {
   for (int a = 0; a < 3; ++a) {
     for (int n = 0; n <= kReach; ++n) {
       const double length = n * spacing[a];
@@ -45,6 +52,12 @@ Opposite::Opposite(const Vec3& spacing) : nearest_(std::size_t{1} << kWindow, 25
 
 bool Opposite::find(const Mask& mask, const std::array<int, 3>& first,
                     Found& found) const noexcept {
+  return is_cubic_ ? findIn<true>(mask, first, found) : findIn<false>(mask, first, found);
+}
+
+template <bool kCubic>
+bool Opposite::findIn(const Mask& mask, const std::array<int, 3>& first,
+                      Found& found) const noexcept {
   // Bit n of a row: voxel first[0] - kReach + n is on that side.
   std::uint32_t rows[2][kWide][kWide];
   std::uint32_t any[2] = {0, 0};
@@ -88,7 +101,8 @@ bool Opposite::find(const Mask& mask, const std::array<int, 3>& first,
         for (int d = -kReach; d <= kReach; ++d) {
           const auto n = static_cast<std::size_t>(std::abs(d));
           if (d != 0)
-            takeLess(best, along_x[z][y + kReach + d], squares_[1][n], static_cast<float>(d * d));
+            takeLess<kCubic>(best, along_x[z][y + kReach + d], squares_[1][n],
+                             static_cast<float>(d * d));
         }
       }
     }
@@ -98,7 +112,8 @@ bool Opposite::find(const Mask& mask, const std::array<int, 3>& first,
         for (int d = -kReach; d <= kReach; ++d) {
           const auto n = static_cast<std::size_t>(std::abs(d));
           if (d != 0)
-            takeLess(best, along_y[z + kReach + d][y], squares_[2][n], static_cast<float>(d * d));
+            takeLess<kCubic>(best, along_y[z + kReach + d][y], squares_[2][n],
+                             static_cast<float>(d * d));
         }
         // Of voxels on the other side only: its own distance is 0.
         const std::uint32_t other = rows[1 - side][z + kReach][y + kReach] >> kReach;
@@ -108,7 +123,7 @@ bool Opposite::find(const Mask& mask, const std::array<int, 3>& first,
           const bool is_other = (other >> x & 1U) != 0;
           if (is_other || side == 0) {
             found.square[place] = is_other ? best.square[x] : kNone;
-            found.voxels[place] = is_other ? best.voxels[x] : kNone;
+            found.voxels[place] = is_other ? (kCubic ? best.square[x] : best.voxels[x]) : kNone;
           }
         }
       }

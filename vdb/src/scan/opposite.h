@@ -32,6 +32,10 @@ class Opposite {
   bool find(const Mask& mask, const std::array<int, 3>& first, Found& found) const noexcept;
 
  private:
+  template <bool kCubic>
+  bool findIn(const Mask& mask, const std::array<int, 3>& first, Found& found) const noexcept;
+
+  bool is_cubic_;
   std::array<std::array<float, kReach + 1>, 3>
       squares_{};  ///< [steps^2] of so many voxels along each axis
   /// Steps to the nearest of eleven voxels that has a bit; 255: none has.

@@ -45,37 +45,91 @@ inline Eight twist(const float* c, std::ptrdiff_t u, std::ptrdiff_t v) noexcept 
   return known(at(c) - at(c + u) - at(c + v) + at(c + u + v));
 }
 
-inline Eight alongAxis(const float* c, std::ptrdiff_t s) noexcept {
-  return bend(c - s, s) - 2.0F * bend(c, s) + bend(c + s, s);
-}
-
-inline Eight inPlane(const float* c, std::ptrdiff_t u, std::ptrdiff_t v) noexcept {
-  return twist(c, u, v) - twist(c - u, u, v) - twist(c - v, u, v) + twist(c - u - v, u, v);
-}
-
-inline Eight forceAt(const float* c, const RelaxWeights& w) noexcept {
-  return w.axis[0] * alongAxis(c, kStepX) + w.axis[1] * alongAxis(c, kStepY) +
-         w.axis[2] * alongAxis(c, kStepZ) + w.plane[0] * inPlane(c, kStepY, kStepZ) +
-         w.plane[1] * inPlane(c, kStepZ, kStepX) + w.plane[2] * inPlane(c, kStepX, kStepY);
+/// The sum over the squares that share a row of voxels and its neighbor u away, by their places along the row: what
+/// the later of two such sums has more than the one before it is the force.
+inline Eight twistAlongRow(const float* c, std::ptrdiff_t u) noexcept {
+  return twist(c, u, kStepZ) - twist(c - kStepZ, u, kStepZ);
 }
 
 inline void put(const Eight& a, float* to) noexcept { __builtin_memcpy(to, &a, sizeof a); }
 
+/// take(row, its first voxel, the force on its eight voxels) for each row that `rows` has a bit for. Differences that
+/// rows side by side share are worked out once. Those that touch a row without voxels are none, so nothing is
+/// carried across one.
+template <typename Take>
+inline void forForces(const Patch& patch, std::uint64_t rows, const RelaxWeights& w,
+                      const Take& take) {
+  const Eight none{};
+  // For each y, of the slabs x before and here.
+  Eight bend_before[8];
+  Eight bend_here[8];
+  Eight twist_before[8];
+  for (int y = 0; y < 8; ++y) {
+    bend_before[y] = bend_here[y] = twist_before[y] = none;
+    if ((rows >> y & 1U) == 0) continue;
+    const float* const c = rowOf(patch, y) - kStepX;
+    bend_before[y] = bend(c, kStepX);
+    bend_here[y] = bend(c + kStepX, kStepX);
+    twist_before[y] = w.plane[2] * (twist(c, kStepX, kStepY) - twist(c - kStepY, kStepX, kStepY)) +
+                      w.plane[1] * twistAlongRow(c, kStepX);
+  }
+  for (int x = 0; x < 8; ++x) {
+    // The same of the rows y before and here.
+    Eight y_bend_before = none;
+    Eight y_bend_here = none;
+    Eight xy_before = none;
+    Eight yz_before = none;
+    if ((rows >> (8 * x) & 1U) != 0) {
+      const float* const c = rowOf(patch, 8 * x) - kStepY;
+      y_bend_before = bend(c, kStepY);
+      y_bend_here = bend(c + kStepY, kStepY);
+      xy_before = twist(c, kStepX, kStepY);
+      yz_before = twistAlongRow(c, kStepY);
+    }
+    for (int y = 0; y < 8; ++y) {
+      const int row = 8 * x + y;
+      if ((rows >> row & 1U) == 0) {
+        bend_before[y] = bend_here[y] = twist_before[y] = none;
+        y_bend_before = y_bend_here = xy_before = yz_before = none;
+        continue;
+      }
+      const float* const c = rowOf(patch, row);
+      const Eight bend_next = bend(c + kStepX, kStepX);
+      const Eight y_bend_next = bend(c + kStepY, kStepY);
+      const Eight z_bends =
+          bend(c - kStepZ, kStepZ) - 2.0F * bend(c, kStepZ) + bend(c + kStepZ, kStepZ);
+      const Eight xy = twist(c, kStepX, kStepY);
+      const Eight yz = twistAlongRow(c, kStepY);
+      const Eight twist_here =
+          w.plane[2] * (xy - xy_before) + w.plane[1] * twistAlongRow(c, kStepX);
+      take(row, c,
+           w.axis[0] * (bend_before[y] - 2.0F * bend_here[y] + bend_next) +
+               w.axis[1] * (y_bend_before - 2.0F * y_bend_here + y_bend_next) +
+               w.axis[2] * z_bends + w.plane[0] * (yz - yz_before) +
+               (twist_here - twist_before[y]));
+      bend_before[y] = bend_here[y];
+      bend_here[y] = bend_next;
+      twist_before[y] = twist_here;
+      y_bend_before = y_bend_here;
+      y_bend_here = y_bend_next;
+      xy_before = xy;
+      yz_before = yz;
+    }
+  }
+}
+
 inline void forceOf(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
                     float* out) {
-  for (; rows != 0; rows &= rows - 1) {
-    const int row = __builtin_ctzll(rows);
-    put(forceAt(rowOf(patch, row), weights), out + std::ptrdiff_t{8} * row);
-  }
+  forForces(patch, rows, weights, [&](int row, const float*, const Eight& force) {
+    put(force, out + std::ptrdiff_t{8} * row);
+  });
 }
 
 inline void relaxRows(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
                       const RelaxStep& step) {
-  for (; rows != 0; rows &= rows - 1) {
-    const int row = __builtin_ctzll(rows);
+  forForces(patch, rows, weights, [&](int row, const float* c, const Eight& whole) {
     const std::ptrdiff_t n = std::ptrdiff_t{8} * row;
-    const float* const c = rowOf(patch, row);
-    const Eight force = forceAt(c, weights) - at(step.bias + n);
+    const Eight force = whole - at(step.bias + n);
     const Eight lower = at(step.lower + n);
     const Eight upper = at(step.upper + n);
     // NaN is neither less nor more, and stays.
@@ -85,7 +139,7 @@ inline void relaxRows(const Patch& patch, std::uint64_t rows, const RelaxWeights
     const Eight before = at(step.value + n);
     put(value + step.momentum * (value - before), step.ahead + n);
     put(value, step.value + n);
-  }
+  });
 }
 
 inline void diffuseRows(const Patch& patch, std::uint64_t rows, int stride, const float* share,

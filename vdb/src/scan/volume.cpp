@@ -1,13 +1,11 @@
 #include "scan/volume.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "scan/crossings.h"
 #include "scan/for_blocks.h"
 #include "scan/lattice_spline.h"
 
@@ -60,7 +58,7 @@ class Volume {
       Excess& sum = sums_[b];
       sum = {};
       std::size_t crossing = 0;
-      forCrossings(band_.blocks[b], [&](const Vec3&, const Vec3&, double inside, double outside) {
+      forPairs(band_.blocks[b], [&](const Vec3&, const Vec3&, double inside, double outside) {
         const double rise = outside - inside;
         const double share = (-inside - bends_[b][crossing++]) / rise;
         sum.volume += (std::clamp(share, 0.0, 1.0) - 0.5) / 3.0;
@@ -77,49 +75,34 @@ class Volume {
   void findBends() {
     const LatticeSpline spline(band_, mask_, Mat3(1.0), Vec3(0.0));
     forBlocks(band_.blocks.size(), [&](std::size_t b) {
-      forCrossings(band_.blocks[b],
-                   [&](const Vec3& at, const Vec3& step, double inside, double outside) {
-                     const Vec3 zero = at + step * (inside / (inside - outside));
-                     bends_[b].push_back(static_cast<float>(spline.valueAt(zero).value_or(0.0)));
-                   });
+      forPairs(band_.blocks[b],
+               [&](const Vec3& at, const Vec3& step, double inside, double outside) {
+                 const Vec3 zero = at + step * (inside / (inside - outside));
+                 bends_[b].push_back(static_cast<float>(spline.valueAt(zero).value_or(0.0)));
+               });
     });
   }
 
   /// visit(voxel, step to its neighbor outside, both values) for each inside voxel of a block that has one; not
   /// beyond the image's border.
   template <typename Visit>
-  void forCrossings(const BandBlock& block, const Visit& visit) const {
-    const auto strides = mask_.strides();
-    for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
-      if (std::isnan(block.value[n])) continue;
-      const auto place = static_cast<int>(n);
-      const std::array<int, 3> at = {block.first[0] + (place >> 6),
-                                     block.first[1] + (place >> 3 & 7),
-                                     block.first[2] + (place & 7)};
-      const std::ptrdiff_t here = mask_.at(at[0], at[1], at[2]);
-      if (mask_.inside[static_cast<std::size_t>(here)] == 0) continue;
-      const double inside = std::min(static_cast<double>(block.value[n]), -kLeastValue);
-      for (std::size_t a = 0; a < 3; ++a) {
-        for (const int side : {-1, 1}) {
-          if (mask_.inside[static_cast<std::size_t>(here + side * strides[a])] != 0) continue;
-          std::array<int, 3> step{};
-          step[a] = side;
-          const float outside =
-              band_.valueAt(band_.first[0] + at[0] + step[0], band_.first[1] + at[1] + step[1],
-                            band_.first[2] + at[2] + step[2]);
-          if (std::isnan(outside)) continue;
-          visit(Vec3(at[0], at[1], at[2]), Vec3(step[0], step[1], step[2]), inside,
+  void forPairs(const BandBlock& block, const Visit& visit) const {
+    forCrossings(
+        band_, mask_, block,
+        [&](const std::array<int, 3>& at, int axis, int side, float inside, float outside) {
+          if (std::isnan(outside)) return;
+          Vec3 step(0.0);
+          step[axis] = side;
+          visit(Vec3(at[0], at[1], at[2]), step,
+                std::min(static_cast<double>(inside), -kLeastValue),
                 std::max(static_cast<double>(outside), kLeastValue));
-        }
-      }
-    }
+        });
   }
 
   Band& band_;
   const Mask& mask_;
   std::vector<Excess> sums_;
-  std::vector<std::vector<float>>
-      bends_;  ///< [steps] for each block, in the order of forCrossings()
+  std::vector<std::vector<float>> bends_;  ///< [steps] for each block, in the order of forPairs()
 };
 
 }  // namespace
