@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <glm/common.hpp>
 #include <utility>
 
 #include "brick/block_map.h"
@@ -128,6 +129,19 @@ double steepestSquareIn(const Brick& brick, bool cubic) noexcept {
   const std::size_t side = cubic ? 11 : 9;
   return steepestSquare(brick.values + Brick::at(first, first, first), side,
                         {Brick::kSlab, Brick::kRow});
+}
+
+/// The voxels of all cells in the box; numbers of voxels that 32 bits hold.
+CoordBBox voxelsOf(const Box3& box, const LevelSet& grid) {
+  constexpr double kFarthest = 1 << 29;
+  const auto at = [&](const Vec3& p, double by) {
+    const Vec3 q = glm::clamp((p - grid.impl().origin) / grid.info().voxel_size + by,
+                              Vec3(-kFarthest), Vec3(kFarthest));
+    return Coord(static_cast<int>(std::floor(q.x)), static_cast<int>(std::floor(q.y)),
+                 static_cast<int>(std::floor(q.z)));
+  };
+  // The margin is for the rounding of places.
+  return {at(box.lo, -1.0), at(box.hi, 1.0)};
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "scan/distance_grid.h"
 #include "scan/distance_leaves.h"
 #include "scan/for_blocks.h"
-#include "scan/scan_loss.h"
 
 namespace palpate::vdb {
 namespace {
@@ -252,12 +251,9 @@ LevelSet bakeSpline(const LatticeSpline& spline, const Band& band, const Mask& m
   const DistanceLeaves& leaves = redistance.run();
   const BakePlan& plan = redistance.plan();
   const openvdb::FloatGrid::Ptr grid = gridOf(leaves, plan, options);
-  BakeOptions with_loss = options;
-  with_loss.metadata.merge(
-      metadataOf(findLoss(makeLevelSet(grid, options.length_unit), band, mask, image)));
   fitToSpline(grid, leaves, plan, options);
   report(progress, "distances", 1.0);
-  return finishGrid(grid, plan, with_loss);
+  return finishGrid(grid, plan, options);
 }
 
 }  // namespace palpate::vdb
