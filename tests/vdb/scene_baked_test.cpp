@@ -205,15 +205,15 @@ TEST_F(SceneBaked, BeyondTheWorkspaceNoGridIsMade) {
       "radius: 20, height: 20}}]}, voxel: 1, parts: operands}}}\n"
       "  - {name: turned, inside: {baked: {field: turned, voxel: 1, parts: whole}}}\n"
       "device: {workspace: {box: {center: [20, 10, 0], size: [30, 20, 40]}}}\n";
-  const auto bytesOf = [](const Scene& made) {
+  const auto bytes_of = [](const Scene& made) {
     std::uint64_t bytes = 0;
     for (const Leaf& leaf : made.partition().leaves()) bytes += memoryOf(*leaf.field);
     return bytes;
   };
   const ScenePtr felt = compile(read(scene));
   const ScenePtr all = compile(read(scene), {}, Purpose::kShow);
-  EXPECT_LT(bytesOf(*felt), bytesOf(*all) / 2);
-  EXPECT_GT(bytesOf(*felt), 0U);
+  EXPECT_LT(bytes_of(*felt), bytes_of(*all) / 2);
+  EXPECT_GT(bytes_of(*felt), 0U);
   const Box3 reach = felt->device().reach();
   const auto a = makeRenderer(felt);
   const auto b = makeRenderer(all);

@@ -108,10 +108,20 @@ float onSide(float value, bool inside) {
   return inside ? std::min(value, -kLeastValue) : std::max(value, kLeastValue);
 }
 
+void keepSides(MaskedBand& layer) {
+  forBlocks(layer.band.blocks.size(), [&](std::size_t b) {
+    BandBlock& block = layer.band.blocks[b];
+    forVoxels(block, [&](std::size_t n, const std::array<int, 3>& at) {
+      const auto here = static_cast<std::size_t>(layer.mask.at(at[0], at[1], at[2]));
+      block.value[n] = onSide(block.value[n], layer.mask.inside[here] != 0);
+    });
+  });
+}
+
 }  // namespace
 
 LabelPartition::LabelPartition(const Image& image, std::vector<std::vector<int>> layers)
-    : image_(image), layers_(std::move(layers)) {
+    : image_(image), layers_(std::move(layers)), shifts_(layers_.size()) {
   for (Labels& layer : layers_) std::sort(layer.begin(), layer.end());
 }
 
@@ -128,7 +138,7 @@ std::shared_ptr<const MaskedBand> LabelPartition::smoothed(const Labels& labels,
   const double smallest = std::min({lengths.x, lengths.y, lengths.z});
   result->band = bandOf(result->mask, lengths / smallest);
   smoothBand(result->band, result->mask, image_.axes / smallest, progress);
-  keepVolume(result->band, result->mask);
+  result->excess = keepVolume(result->band, result->mask);
   result->band.dropBounds();
   return result;
 }
@@ -154,19 +164,56 @@ std::vector<std::size_t> LabelPartition::neighborsOf(std::size_t index, const Pr
   return result;
 }
 
-MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progress& progress) {
-  const std::lock_guard lock(mutex_);
-  const std::vector<std::size_t> neighbors = neighborsOf(index, progress);
-  MaskedBand own = cached(layers_[index], progress);
-  if (neighbors.empty()) return own;
+float LabelPartition::Limits::leastAt(int x, int y, int z) const noexcept {
+  float least = std::numeric_limits<float>::quiet_NaN();
+  for (const auto& [band, shift] : others) least = std::fmin(least, band->valueAt(x, y, z) - shift);
+  return least;
+}
+
+LabelPartition::Limits LabelPartition::limitsOf(std::size_t index,
+                                                const std::vector<std::size_t>& neighbors,
+                                                const Progress& progress) {
   // What has labels in common with the layer is no part of the rest, unless something else is.
   Labels labels = layers_[index];
   for (const Labels& other : layers_) {
     if (!haveCommonLabel(other, layers_[index])) labels = together(labels, other);
   }
-  const MaskedBand& whole = cached(labels, progress);
-  std::vector<const Band*> others;
-  for (const std::size_t n : neighbors) others.push_back(&cached(layers_[n], progress).band);
+  Limits limits;
+  limits.whole = &cached(labels, progress);
+  for (const std::size_t n : neighbors) {
+    limits.others.emplace_back(&cached(layers_[n], progress).band, 0.0F);
+  }
+  return limits;
+}
+
+float LabelPartition::shiftOf(std::size_t index, const Progress& progress) {
+  std::optional<float>& shift = shifts_[index];
+  if (shift) return *shift;
+  const std::vector<std::size_t> neighbors = neighborsOf(index, progress);
+  if (neighbors.empty()) return *(shift = 0.0F);
+  const Limits limits = limitsOf(index, neighbors, progress);
+  const MaskedBand& own = cached(layers_[index], progress);
+  // What is taken off the layer's own values changes its share by half of that, so that half of the way is gone: of the
+  // rest, lines through thin layers tell too little, and neighbors move as well.
+  shift = shiftToVolumeOf(own.band, own.mask, own.excess, [&](float value, int x, int y, int z) {
+    return shared(value, limits.leastAt(x, y, z), limits.whole->band.valueAt(x, y, z));
+  });
+  return *shift;
+}
+
+MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progress& progress) {
+  const std::lock_guard lock(mutex_);
+  const std::vector<std::size_t> neighbors = neighborsOf(index, progress);
+  MaskedBand own = cached(layers_[index], progress);
+  if (neighbors.empty()) {
+    keepSides(own);
+    return own;
+  }
+  Limits limits = limitsOf(index, neighbors, progress);
+  for (std::size_t n = 0; n < neighbors.size(); ++n) {
+    limits.others[n].second = shiftOf(neighbors[n], progress);
+  }
+  const float shift = shiftOf(index, progress);
   const bool is_lapped = edge == LabelEdge::kLapped;
   const Vec3 lengths = lengthsOf(image_);
   const auto lap =
@@ -182,14 +229,14 @@ MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progre
       const int x = own.band.first[0] + at[0];
       const int y = own.band.first[1] + at[1];
       const int z = own.band.first[2] + at[2];
-      float least = std::numeric_limits<float>::quiet_NaN();
-      for (const Band* const other : others) least = std::fmin(least, other->valueAt(x, y, z));
-      const float united = whole.band.valueAt(x, y, z);
+      const float least = limits.leastAt(x, y, z);
+      const float united = limits.whole->band.valueAt(x, y, z);
       float& value = block.value[n];
+      value -= shift;
       value = is_lapped ? lapped(value, least, united, lap) : shared(value, least, united);
       const auto here = static_cast<std::size_t>(own.mask.at(at[0], at[1], at[2]));
       std::uint8_t& inside = own.mask.inside[here];
-      if (is_lapped && inside == 0 && whole.mask.holds(x, y, z)) {
+      if (is_lapped && inside == 0 && limits.whole->mask.holds(x, y, z)) {
         own.neighbors.inside[here] = 1;
         inside = value < 0.0F ? 1 : 0;
       }
@@ -213,21 +260,19 @@ std::optional<MaskedBand> LabelPartition::unite(const Progress& progress) {
     });
   }
   if (!any) return {};
-  std::vector<const Band*> members;
-  for (const Labels& layer : layers_) {
-    const MaskedBand& member = cached(layer, progress);
-    if (!member.mask.inside.empty()) members.push_back(&member.band);
+  Limits members;
+  for (std::size_t n = 0; n < layers_.size(); ++n) {
+    const MaskedBand& member = cached(layers_[n], progress);
+    if (!member.mask.inside.empty()) {
+      members.others.emplace_back(&member.band, shiftOf(n, progress));
+    }
   }
   MaskedBand result = cached(all, progress);
   forBlocks(result.band.blocks.size(), [&](std::size_t b) {
     BandBlock& block = result.band.blocks[b];
     forVoxels(block, [&](std::size_t n, const std::array<int, 3>& at) {
-      float least = std::numeric_limits<float>::quiet_NaN();
-      for (const Band* const member : members) {
-        least = std::fmin(
-            least, member->valueAt(result.band.first[0] + at[0], result.band.first[1] + at[1],
-                                   result.band.first[2] + at[2]));
-      }
+      const float least = members.leastAt(
+          result.band.first[0] + at[0], result.band.first[1] + at[1], result.band.first[2] + at[2]);
       // The rest's own value is the opposite of that of all together.
       const float value = std::isnan(least) ? block.value[n] : 0.5F * (block.value[n] + least);
       const auto here = static_cast<std::size_t>(result.mask.at(at[0], at[1], at[2]));

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "palpate/core/progress.h"
@@ -20,13 +21,15 @@ struct MaskedBand {
   Band band;
   /// Of lapped layers: voxels of other layers, which the mask may or may not hold. Else empty.
   Mask neighbors = {};
+  double excess = 0.0;  ///< [voxels] that its surface encloses more than the mask has
 };
 
 /// Every layer, and all of them together, is smoothed by itself, u_i and u_all, and then takes
 ///   f_i = (u_i - min over all others of u_j) / 2,
-/// what is in no layer, u_0 = -u_all, being one of the others. Where only two meet u_j is -u_i and f_i is u_i; where
-/// more do, the layers share the walls u_i = u_j, and any two have f_i = -f_j there: no gap, no overlap. But a
-/// grid rounds off edges, and walls of three that meet form one: there grids of f_i leave gaps.
+/// what is in no layer, u_0 = -u_all, being one of the others. Edges, where three meet, cost small layers some volume;
+/// so from each u_i but u_0 a number is taken that brings f_i halfway back to its voxels' volume. Where only two meet u_j is -u_i
+/// and f_i is u_i; where more do, the layers share the walls u_i = u_j, and any two have f_i = -f_j there: no gap, no
+/// overlap. But a grid rounds off edges, and walls of three that meet form one: there grids of f_i leave gaps.
 ///
 /// Lapped layers reach over that, into each other but not into what is in no layer:
 ///   e_i = max(min((u_i + u_all) / 2, u_all + groove), (u_i - min over the other layers of u_j) / 2 - lap)
@@ -55,9 +58,23 @@ class LabelPartition {
   /// The layers that come near this one, and have no label in common with it.
   [[nodiscard]] std::vector<std::size_t> neighborsOf(std::size_t index, const Progress& progress);
 
+  /// The layers near one, all of them together with it, and the numbers taken off.
+  struct Limits {
+    const MaskedBand* whole = nullptr;
+    std::vector<std::pair<const Band*, float>> others;
+
+    /// The smallest of the other layers' values at an index of the image; NaN: none is near.
+    [[nodiscard]] float leastAt(int x, int y, int z) const noexcept;
+  };
+  [[nodiscard]] Limits limitsOf(std::size_t index, const std::vector<std::size_t>& neighbors,
+                                const Progress& progress);
+  /// [steps] The number taken off a layer's own values.
+  [[nodiscard]] float shiftOf(std::size_t index, const Progress& progress);
+
   const Image& image_;
   std::vector<Labels> layers_;
   std::map<Labels, std::shared_ptr<const MaskedBand>> made_;
+  std::vector<std::optional<float>> shifts_;  ///< of the layers
   std::mutex mutex_;
 };
 

@@ -24,12 +24,18 @@ struct Excess {
   double slope = 0.0;
 };
 
+Excess sumOf(const std::vector<Excess>& parts) {
+  return std::accumulate(parts.begin(), parts.end(), Excess{}, [](Excess a, const Excess& b) {
+    return Excess{a.volume + b.volume, a.slope + b.slope};
+  });
+}
+
 class Volume {
  public:
   Volume(Band& band, const Mask& mask)
       : band_(band), mask_(mask), sums_(band.blocks.size()), bends_(band.blocks.size()) {}
 
-  void run() {
+  double run() {
     std::vector<BandBlock::Values> first;
     first.reserve(band_.blocks.size());
     for (const BandBlock& block : band_.blocks) first.push_back(block.value);
@@ -37,7 +43,7 @@ class Volume {
     float shift = 0.0F;
     for (int round = 0; round < kRounds; ++round) {
       const Excess excess = find();
-      if (!(excess.slope > 0.0)) return;
+      if (!(excess.slope > 0.0)) return 0.0;
       shift = std::clamp(shift - static_cast<float>(excess.volume / excess.slope), -kMostShift,
                          kMostShift);
       forBlocks(band_.blocks.size(), [&](std::size_t b) {
@@ -49,6 +55,7 @@ class Volume {
         }
       });
     }
+    return find().volume;
   }
 
  private:
@@ -65,9 +72,7 @@ class Volume {
         sum.slope += 1.0 / (3.0 * std::max(rise, kLeastRise));
       });
     });
-    return std::accumulate(sums_.begin(), sums_.end(), Excess{}, [](Excess a, const Excess& b) {
-      return Excess{a.volume + b.volume, a.slope + b.slope};
-    });
+    return sumOf(sums_);
   }
 
   /// By what the spline differs, where it passes zero, from the straight line between two voxels. A shift of all
@@ -107,6 +112,32 @@ class Volume {
 
 }  // namespace
 
-void keepVolume(Band& band, const Mask& mask) { Volume(band, mask).run(); }
+float shiftToVolumeOf(const Band& band, const Mask& mask, double excess,
+                      const std::function<float(float, int, int, int)>& other) {
+  std::vector<Excess> sums(band.blocks.size());
+  forBlocks(band.blocks.size(), [&](std::size_t b) {
+    const auto share = [](double inside, double outside) {
+      return std::clamp(inside / (inside - outside), 0.0, 1.0);
+    };
+    forCrossings(
+        band, mask, band.blocks[b],
+        [&](const std::array<int, 3>& at, int axis, int side, float inside, float outside) {
+          if (std::isnan(outside)) return;
+          std::array<int, 3> p = {band.first[0] + at[0], band.first[1] + at[1],
+                                  band.first[2] + at[2]};
+          const double in = other(inside, p[0], p[1], p[2]);
+          p[static_cast<std::size_t>(axis)] += side;
+          const double out = other(outside, p[0], p[1], p[2]);
+          sums[b].volume += (share(in, out) - share(inside, outside)) / 3.0;
+          sums[b].slope += 1.0 / (3.0 * std::max(out - in, kLeastRise));
+        });
+  });
+  const Excess all = sumOf(sums);
+  if (!(all.slope > 0.0)) return 0.0F;
+  return std::clamp(-static_cast<float>((all.volume + excess) / all.slope), -kMostShift,
+                    kMostShift);
+}
+
+double keepVolume(Band& band, const Mask& mask) { return Volume(band, mask).run(); }
 
 }  // namespace palpate::vdb
