@@ -362,6 +362,21 @@ TEST(VdbIo, DamagedFilesAreErrorsNotCrashes) {
     EXPECT_EQ(error.problem().file, cut);
     EXPECT_THROW(static_cast<void>(listVdb(cut)), Error);
   }
+  // A flipped bit in the place of a part of the tree, at a multiple of 4096: its voxels are found no more.
+  const std::string at_minus_4096("\x00\xF0\xFF\xFF", 4);
+  int misplaced = 0;
+  for (std::size_t at = 0; (at = good.find(at_minus_4096, at)) != std::string::npos; ++at) {
+    std::string bad = good;
+    bad[at + 1] = '\xF8';
+    try {
+      static_cast<void>(gridField(readVdb(folder.file("bad.vdb", bad), "", "mm")));
+    } catch (const Error& error) {
+      ASSERT_EQ(error.kind(), ErrorKind::kInput) << error.what();
+      const std::string& told = error.problem().message;
+      misplaced += told.find("not where its tree has them") != std::string::npos ? 1 : 0;
+    }
+  }
+  EXPECT_GT(misplaced, 0);
   // Flipped bits may pass unseen in a voxel's value; they may not crash or come out as another type.
   std::mt19937 random(3);
   // A damaged size can cost a second and a gigabyte before it is refused, so few by default.

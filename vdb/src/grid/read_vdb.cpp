@@ -68,19 +68,30 @@ void requireLevelSet(const openvdb::GridBase& grid, UnknownClass unknown_class,
   }
 }
 
-void requireFiniteVoxels(const openvdb::FloatGrid& grid, const std::string& path) {
-  std::atomic<bool> broken = false;
+/// Parts of a tree lie at multiples of their size. One that damage has put elsewhere cannot be found again.
+void requireSoundBlocks(const openvdb::FloatGrid& grid, const std::string& path) {
+  std::atomic<bool> not_finite = false;
+  std::atomic<bool> misplaced = false;
   openvdb::tree::LeafManager<const openvdb::FloatTree> leaves(grid.tree());
   leaves.foreach ([&](const openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
+    if (grid.tree().probeConstLeaf(leaf.origin()) != &leaf) {
+      misplaced.store(true, std::memory_order_relaxed);
+    }
     const float* const values = leaf.buffer().data();
     for (openvdb::Index i = 0; i < openvdb::FloatTree::LeafNodeType::SIZE; ++i) {
-      if (!std::isfinite(values[i])) broken.store(true, std::memory_order_relaxed);
+      if (!std::isfinite(values[i])) not_finite.store(true, std::memory_order_relaxed);
     }
   });
-  if (broken) {
+  const std::string hint = "the file may be damaged; write it again";
+  if (misplaced) {
+    throw inputError(
+        "vdb.unreadable",
+        "grid '" + grid.getName() + "' has voxels that are not where its tree has them", hint,
+        path);
+  }
+  if (not_finite) {
     throw inputError("vdb.not_finite",
-                     "grid '" + grid.getName() + "' has voxels that are no numbers",
-                     "the file may be damaged; write it again", path);
+                     "grid '" + grid.getName() + "' has voxels that are no numbers", hint, path);
   }
 }
 
@@ -115,7 +126,7 @@ LevelSet acceptLevelSet(const openvdb::GridBase::Ptr& base, const std::string& u
   requireLevelSet(*base, unknown_class, path);
   const std::string unit = unitOf(*base, unit_if_missing, path);
   const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(base);
-  requireFiniteVoxels(*grid, path);
+  requireSoundBlocks(*grid, path);
   endBandAtItsWidth(*grid);
   try {
     LevelSet set = makeLevelSet(grid, unit);
