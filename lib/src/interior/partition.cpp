@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::size_t kMaxLeaves = std::numeric_limits<LeafId>::max();
 constexpr std::size_t kMaxLayers = std::numeric_limits<RegionId>::max() - 1;
-/// Depth of the evaluation stack; the builder refuses deeper trees, so evaluate() needs no check.
-constexpr std::size_t kMaxDepth = 64;
 
 bool isIdentity(const Pose& pose) {
   return pose.rotation == Mat3(1.0) && pose.translation == Vec3(0.0);
@@ -167,6 +165,7 @@ Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr>
   Builder builder(*this);
   for (const FieldPtr& layer : layers) programs_.push_back(builder.build(layer));
   for (const FieldPtr& mask : masks) programs_.push_back(builder.build(mask));
+  for (const Program& program : programs_) sides_.push_back(sidesOf(program));
   parts_.assign(builder.parts.begin(), builder.parts.end());
 
   regions_of_leaf_.resize(leaves_.size());
@@ -190,6 +189,55 @@ Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr>
   std::vector<Box3> boxes;
   for (const Leaf& leaf : leaves_) boxes.push_back(leaf.field->bounds());
   tree_ = BoundsTree(boxes);
+}
+
+/// De Morgan's laws push each complement down to the leaves.
+Partition::Sides Partition::sidesOf(const Program& program) {
+  std::vector<Sides> stack;
+  const auto run = [&](const Step& step, bool is_any, std::uint16_t count) {
+    Sides both;
+    both[1] = {{is_any ? SideStep::Op::kAnyOf : SideStep::Op::kAllOf, true, step.leaf, count}};
+    both[0] = {{is_any ? SideStep::Op::kAllOf : SideStep::Op::kAnyOf, false, step.leaf, count}};
+    stack.push_back(std::move(both));
+  };
+  for (const Step& step : program.steps) {
+    switch (step.op) {
+      case Step::Op::kLeaf:
+        run(step, true, 1);
+        break;
+      case Step::Op::kAnyOf:
+        run(step, true, step.count);
+        break;
+      case Step::Op::kAllOf:
+        run(step, false, step.count);
+        break;
+      case Step::Op::kNot:
+        std::swap(stack.back()[0], stack.back()[1]);
+        break;
+      case Step::Op::kAnd:
+      case Step::Op::kOr: {
+        const Sides second = std::move(stack.back());
+        stack.pop_back();
+        Sides& first = stack.back();
+        for (const std::size_t holds : {0, 1}) {
+          const bool is_and = (step.op == Step::Op::kAnd) == (holds == 1);
+          first[holds].insert(first[holds].end(), second[holds].begin(), second[holds].end());
+          first[holds].push_back({is_and ? SideStep::Op::kAnd : SideStep::Op::kOr, true, 0, 0});
+        }
+        break;
+      }
+    }
+  }
+  return std::move(stack.front());
+}
+
+std::size_t Signs::countInside(LeafId first, std::size_t count) const noexcept {
+  std::size_t inside = 0;
+  (void)anyWord(words_, first, count, [&](std::uint64_t word, std::uint64_t mask) {
+    inside += static_cast<std::size_t>(std::popcount(word & mask));
+    return false;
+  });
+  return inside;
 }
 
 bool Signs::anyInside(LeafId first, std::size_t count) const noexcept {

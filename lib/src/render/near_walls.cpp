@@ -1,0 +1,51 @@
+#include "near_walls.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver_limits.h"
+
+namespace palpate {
+
+NearWall wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept {
+  NearWall out;
+  out.leaf = id;
+  out.slope = s.in_band ? glm::length(s.gradient) : 0.0;
+  const double share = std::clamp(out.slope / leaf.lipschitz, limits::kFlattest, 1.0);
+  const double tolerance = limits::kOnSurface * leaf.feature * leaf.lipschitz * share;
+  const double slope = std::max(out.slope, limits::kFlattest * leaf.lipschitz);
+  out.tolerance = tolerance / slope;
+  out.distance = s.value / slope;
+  if (out.slope > 0.0) out.normal = s.gradient / out.slope;
+  return out;
+}
+
+bool NearWalls::look(double radius, bool trust_sides) noexcept {
+  count_ = 0;
+  found_ = {};
+  std::array<NearSide, kMax> near{};
+  bool fits = true;
+  walker_.forWithin(radius, [&](LeafId id) {
+    if (count_ == kMax) {
+      fits = false;
+      return;
+    }
+    const FieldJet& jet = walker_.jetHere(id);
+    NearWall wall = wallOf(id, walker_.leaf(id), {jet.value, jet.gradient, jet.in_band});
+    if (wall.slope > 0.0) {
+      wall.bend = jet.hessian / wall.slope;
+      wall.bend_size = std::sqrt(glm::dot(wall.bend[0], wall.bend[0]) +
+                                 glm::dot(wall.bend[1], wall.bend[1]) +
+                                 glm::dot(wall.bend[2], wall.bend[2]));
+    }
+    const bool is_inside = walker_.side(id) < 0.0;
+    near[count_] = {id, trust_sides ? is_inside : wall.distance <= wall.tolerance,
+                    trust_sides ? !is_inside : wall.distance >= -wall.tolerance};
+    wall_[count_++] = wall;
+  });
+  if (!fits) return false;
+  found_ = cells_.find(walker_.region(), walker_.signs(), {near.data(), count_});
+  return true;
+}
+
+}  // namespace palpate

@@ -1,0 +1,274 @@
+#include <algorithm>
+#include <cmath>
+
+#include "proxy_solver.h"
+
+// One step of the proxy: to the best point of a cell that a tangent, curved and restored step gets to.
+
+namespace palpate {
+
+NearWall ProxySolver::wallAt(std::size_t near, const Vec3& p) const noexcept {
+  const LeafId id = near_.walls()[near].leaf;
+  return wallOf(id, walker_.leaf(id), walker_.leaf(id).field->sample(p));
+}
+
+/// sum of multiplier * Hessian of the distances to the walls that hold the solution.
+Mat3 ProxySolver::bendOf(const CellProblem& problem) const noexcept {
+  Mat3 sum(0.0);
+  const PlaneSolution& s = problem.solution;
+  for (int k = 0; k < s.count; ++k) {
+    const Source& from =
+        problem.source[static_cast<std::size_t>(s.plane[static_cast<std::size_t>(k)])];
+    if (from.is_cut) continue;
+    const double weight = s.multiplier[static_cast<std::size_t>(k)];
+    sum += (from.inside ? -weight : weight) * near_.walls()[from.near].bend;
+  }
+  return sum;
+}
+
+/// A step in one of the cells that hold the proxy; kRests if there is none to make in any.
+ProxySolver::Try ProxySolver::moveOn() noexcept {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < problems_; ++i) {
+    const CellProblem& problem = problem_[i];
+    const CurvedStep curved = curvedStep(aim_, problem.given(), problem.solution, bendOf(problem),
+                                         limits::kLeastEigenvalue);
+    longest = std::max(
+        {longest, glm::length(problem.solution.step), glm::length(curved.step)});
+  }
+  // No better point is further away than twice the distance to the aim.
+  double ball = std::min(limits::kBallOverStep * longest, 2.0 * glm::length(aim_));
+  bool rests = false;
+  for (int shrink = 0; shrink <= limits::kShrinks && batches_left_ > 0; ++shrink) {
+    while (!lookWithin(limits::kReachOverStep * ball)) {
+      ball *= 0.5;
+      if (ball <= rest_) return Try::kRefused;
+    }
+    poseAll(aim_);
+    rests = true;
+    for (std::size_t i = 0; i < problems_; ++i) {
+      const Try outcome = tryCell(problem_[i], ball);
+      if (outcome == Try::kMoved) return outcome;
+      rests = rests && outcome == Try::kRests;
+    }
+    if (rests) {
+      takeContact(problem_[0]);
+      contact_.lag = wish_ - aim_;
+      return Try::kRests;
+    }
+    ball *= limits::kShrink;
+    if (ball <= rest_) break;
+  }
+  return Try::kRefused;
+}
+
+ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcept {
+  Vec3 step(0.0);
+  for (int round = 0; round < limits::kCutRounds && batches_left_ > 0; ++round) {
+    if (glm::length(problem.solution.step) <= rest_) return Try::kRests;
+    const Mat3 bend = bendOf(problem);
+    step = curvedStep(aim_, problem.given(), problem.solution, bend, limits::kLeastEigenvalue).step;
+    const Vec3& plain = problem.solution.step;
+    // Near a singular point the curvature is that of another scale.
+    if (glm::length(step) < limits::kSingularStep * glm::length(plain) &&
+        glm::length(bend * plain) > limits::kSingularTurn * glm::length(aim_)) {
+      step = plain;
+    }
+    if (tryStep(problem, step, ball, false)) return Try::kMoved;
+    const std::size_t known = cuts_;
+    addCuts(problem, x_ + limited(problem, step, ball));
+    if (cuts_ == known) break;
+    pose(problem.cell, problem);
+    solve(problem, aim_);
+  }
+  for (const double share : limits::kShorter) {
+    if (batches_left_ <= 0) break;
+    if (tryStep(problem, share * step, ball, false)) return Try::kMoved;
+  }
+  return Try::kRefused;
+}
+
+/// Shortens a step to the ball, to what a wall that bulges towards the proxy allows, and to the largest turn.
+Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
+                          double ball) const noexcept {
+  double most = ball;
+  double turn = 0.0;
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    const Source& from = problem.source[i];
+    const NearWall& wall = near_.walls()[from.near];
+    if (from.is_cut || wall.bend_size == 0.0) continue;
+    const double sign = from.inside ? -1.0 : 1.0;
+    Vec3 t1(0.0);
+    Vec3 t2(0.0);
+    tangentsOf(wall.normal, t1, t2);
+    const Vec3 b1 = wall.bend * t1;
+    const double a = sign * glm::dot(t1, b1);
+    const double b = sign * glm::dot(t2, b1);
+    const double c = sign * glm::dot(t2, wall.bend * t2);
+    const double highest = 0.5 * (a + c) + std::hypot(0.5 * (a - c), b);
+    if (highest > limits::kFlat * wall.bend_size) {
+      most = std::min(most, limits::kShareOfFeature * walker_.leaf(wall.leaf).feature);
+    }
+    if (problem.holds(i)) turn = std::max(turn, glm::length(wall.bend * step));
+  }
+  double share = 1.0;
+  const double length = glm::length(step);
+  if (length > most) share = most / length;
+  if (turn * share > limits::kLargestTurn) share = limits::kLargestTurn / turn;
+  return share < 1.0 ? share * step : step;
+}
+
+bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double ball,
+                          bool must_gain) noexcept {
+  const Vec3 by = limited(problem, step, ball);
+  const double length = glm::length(by);
+  if (!(length > 0.0)) return false;
+  Vec3 y = x_ + by;
+  if (!restore(problem, y, length)) return false;
+  const Vec3 moved = y - x_;
+  if (glm::length(moved) > limits::kReachOverStep * ball) return false;
+  // How far the proxy is from its aim before and after, and by how much the step promised to change that.
+  const Vec3 after = aim_ - moved;
+  const Vec3 promised = aim_ - by;
+  const double before = glm::dot(aim_, aim_);
+  const double promise = std::max(0.0, before - glm::dot(promised, promised));
+  double noise = 0.0;
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    noise = std::max(noise, near_.walls()[problem.source[i].near].tolerance);
+  }
+  noise *= limits::kNoise * std::sqrt(before);
+  const double gain = before - glm::dot(after, after);
+  // A proxy beyond its walls comes back whatever it costs.
+  if (!trusts_sides_ && gain < (must_gain ? noise : limits::kGain * promise - noise)) return false;
+  return keepsOnWay(problem, y) && go(problem, y);
+}
+
+/// Brings `y` [m] onto the walls that hold the solution and to the free side of all others of the cell, by the
+/// shortest way. False if that takes more than a share of `length` [m].
+bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) noexcept {
+  double moved = 0.0;
+  for (int round = 0; round < limits::kRestorations && batches_left_ > 0; ++round) {
+    --batches_left_;
+    std::array<Plane, kMaxPlanes> planes{};
+    std::size_t count = 0;
+    bool is_done = true;
+    double tolerance = 0.0;
+    for (std::size_t i = 0; i < problem.planes && count + 1 < kMaxPlanes; ++i) {
+      const Source& from = problem.source[i];
+      if (from.is_cut) continue;
+      const NearWall wall = wallAt(from.near, y);
+      const double gap = wall.gap(from.inside);
+      if (!(wall.slope > 0.0)) {
+        if (gap < 0.0) return false;
+        continue;
+      }
+      tolerance = std::max(tolerance, wall.tolerance);
+      const Vec3 normal = from.inside ? -wall.normal : wall.normal;
+      const double left = gap - limits::kRest * wall.tolerance;
+      planes[count++] = {normal, left};
+      const bool floats = problem.holds(i) && left > wall.tolerance;
+      if (floats) planes[count++] = {-normal, -left};
+      is_done = is_done && gap >= 0.0 && !floats;
+    }
+    if (is_done) return true;
+    const Vec3 by = closestStep(Vec3(0.0), {planes.data(), count}).step;
+    moved += glm::length(by);
+    if (!(moved <= limits::kRestoredShare * length + limits::kNoise * tolerance)) return false;
+    y += by;
+  }
+  return false;
+}
+
+/// Whether the chord to `y` [m] keeps to the cell, but for what the walls' own curvature makes it dip.
+bool ProxySolver::keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept {
+  const double length = glm::length(y - x_);
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    const Source& from = problem.source[i];
+    const NearWall& wall = near_.walls()[from.near];
+    const double turn = wall.bend_size * length;
+    if (from.is_cut || turn <= limits::kTurnsMuch) continue;
+    const double dip = std::min(limits::kDipByBend * turn * length, limits::kDipByLength * length);
+    const bool is_winding = turn > limits::kTurnsMore;
+    for (const double share : {0.5, 0.25, 0.75}) {
+      if (share != 0.5 && !is_winding) break;
+      const Vec3 p = x_ + share * (y - x_);
+      const Leaf& leaf = walker_.leaf(wall.leaf);
+      const double gap = (from.inside ? -1.0 : 1.0) * leaf.field->value(p) / wall.slope;
+      if (gap < -dip - wall.tolerance) return false;
+    }
+  }
+  return true;
+}
+
+/// Goes to `y` [m]; or up to where an opening on the way lets go of a wall that holds the proxy.
+bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
+  std::array<LeafId, kMaxNear> near{};
+  const std::span<const NearWall> walls = near_.walls();
+  for (std::size_t i = 0; i < walls.size(); ++i) near[i] = walls[i].leaf;
+  std::array<LeafId, 3> held{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < problem.planes && count < held.size(); ++i) {
+    if (problem.holds(i)) held[count++] = walls[problem.source[i].near].leaf;
+  }
+  const std::span<const LeafId> leaves(near.data(), walls.size());
+  const double share = walker_.slideTo(y, problem.cell, leaves, {held.data(), count});
+  if (share >= 1.0) return true;
+  Vec3 rim = x_ + share * (y - x_);
+  const double length = std::max(glm::length(y - x_), rest_);
+  if (restore(problem, rim, length)) {
+    walker_.jump(rim);
+  } else {
+    (void)walker_.slideTo(y, problem.cell, leaves, {});
+  }
+  return true;
+}
+
+/// Keeps the tangent planes of the cell's walls at `y` [m] that it lies beyond: of walls whose inside is
+/// hollow they hold everywhere, and where they would cut off the proxy they are not kept.
+void ProxySolver::addCuts(const CellProblem& problem, const Vec3& y) noexcept {
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    const Source& from = problem.source[i];
+    if (from.is_cut || cuts_ == limits::kMaxCuts) continue;
+    const NearWall& here = near_.walls()[from.near];
+    const NearWall wall = wallAt(from.near, y);
+    if (!(wall.slope > 0.0) || wall.gap(from.inside) >= 0.0) continue;
+    if (glm::length(wall.normal - here.normal) < limits::kCutTurn) continue;
+    const Vec3 normal = from.inside ? -wall.normal : wall.normal;
+    const double left = wall.gap(from.inside) + glm::dot(normal, x_ - y);
+    if (left < -limits::kOnWall * here.tolerance) continue;
+    cut_[cuts_++] = {{normal, std::max(0.0, left)}, here.leaf, from.inside};
+  }
+}
+
+/// At rest by the first order: looks whether the proxy can come closer by the second.
+bool ProxySolver::kick() noexcept {
+  const CellProblem& first = problem_[0];
+  const PlaneSolution& s = first.solution;
+  double bend = 0.0;
+  double feature = kInfinity;
+  for (int k = 0; k < s.count; ++k) {
+    const auto index = static_cast<std::size_t>(s.plane[static_cast<std::size_t>(k)]);
+    if (first.source[index].is_cut) return false;
+    const NearWall& wall = near_.walls()[first.source[index].near];
+    bend += s.multiplier[static_cast<std::size_t>(k)] * wall.bend_size;
+    feature = std::min(feature, walker_.leaf(wall.leaf).feature);
+  }
+  if (bend < 1.0) return false;
+  const CurvedStep curved =
+      curvedStep(aim_, first.given(), s, bendOf(first), limits::kLeastEigenvalue);
+  if (curved.lowest >= limits::kSaddle) return false;
+  for (const double share : limits::kKicks) {
+    const double length = share * feature;
+    if (!lookWithin(limits::kReachOverStep * length)) continue;
+    poseAll(aim_);
+    for (std::size_t i = 0; i < problems_; ++i) {
+      for (const double way : {length, -length}) {
+        if (batches_left_ <= 0) return false;
+        if (tryStep(problem_[i], way * curved.downhill, length, true)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace palpate
