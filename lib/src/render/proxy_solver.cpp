@@ -80,7 +80,24 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
     if (outcome == Try::kRefused) return false;
     if (friction.sticks || !kick()) return true;
   }
+  takeLastContact(hip);
   return false;
+}
+
+/// Out of budget on the way: the walls that hold the proxy where it got to.
+void ProxySolver::takeLastContact(const Vec3& hip) noexcept {
+  x_ = walker_.position();
+  wish_ = hip - x_;
+  cuts_ = 0;
+  const Vec3 lag = contact_.lag;
+  const bool is_known = lookWithin(rest_);
+  if (is_known) poseAll(wish_);
+  if (!is_known || problems_ == 0 || problem_[0].solution.count == 0) {
+    contact_.count = 0;
+    return;
+  }
+  takeContact(problem_[0]);
+  contact_.lag = lag;
 }
 
 /// Looks at what touches the proxy: whether it is free to go, rests, stands at an opening, or has to slide.

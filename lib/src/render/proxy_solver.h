@@ -120,8 +120,11 @@ class ProxySolver {
   [[nodiscard]] bool restore(const CellProblem& problem, Vec3& y, double length) noexcept;
   [[nodiscard]] bool keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept;
   [[nodiscard]] bool go(const CellProblem& problem, const Vec3& y) noexcept;
-  void addCuts(const CellProblem& problem, const Vec3& y) noexcept;
+  [[nodiscard]] bool isCut(const CellProblem& problem, std::size_t i, Plane& out) const noexcept;
+  [[nodiscard]] bool foundCrease(const CellProblem& problem, double length) const noexcept;
+  [[nodiscard]] bool addCuts(const CellProblem& problem) noexcept;
   [[nodiscard]] bool kick() noexcept;
+  void takeLastContact(const Vec3& hip) noexcept;
   void takeContact(const CellProblem& problem) noexcept;
   void holdByFriction(FrictionState& friction, bool is_first) noexcept;
   [[nodiscard]] NearWall wallAt(std::size_t near, const Vec3& p) const noexcept;
@@ -140,6 +143,9 @@ class ProxySolver {
   std::size_t problems_ = 0;
   std::array<Cut, limits::kMaxCuts> cut_{};
   std::size_t cuts_ = 0;
+  std::array<NearWall, kMaxPlanes> landed_{};  ///< by plane: its wall where the last step landed
+  Vec3 landed_at_{0.0, 0.0, 0.0};              ///< [m]
+  bool has_landed_ = false;
   bool trusts_sides_ = false;
   int batches_left_ = 0;
 };

@@ -75,9 +75,7 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
       step = plain;
     }
     if (tryStep(problem, step, ball, false)) return Try::kMoved;
-    const std::size_t known = cuts_;
-    addCuts(problem, x_ + limited(problem, step, ball));
-    if (cuts_ == known) break;
+    if (!addCuts(problem)) break;
     pose(problem.cell, problem);
     solve(problem, aim_);
   }
@@ -88,7 +86,7 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
   return Try::kRefused;
 }
 
-/// Shortens a step to the ball, to what a wall that bulges towards the proxy allows, and to the largest turn.
+/// Shortens a step to the ball, to what the walls' features allow, and to the largest turn.
 Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
                           double ball) const noexcept {
   double most = ball;
@@ -96,19 +94,8 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
   for (std::size_t i = 0; i < problem.planes; ++i) {
     const Source& from = problem.source[i];
     const NearWall& wall = near_.walls()[from.near];
-    if (from.is_cut || wall.bend_size == 0.0) continue;
-    const double sign = from.inside ? -1.0 : 1.0;
-    Vec3 t1(0.0);
-    Vec3 t2(0.0);
-    tangentsOf(wall.normal, t1, t2);
-    const Vec3 b1 = wall.bend * t1;
-    const double a = sign * glm::dot(t1, b1);
-    const double b = sign * glm::dot(t2, b1);
-    const double c = sign * glm::dot(t2, wall.bend * t2);
-    const double highest = 0.5 * (a + c) + std::hypot(0.5 * (a - c), b);
-    if (highest > limits::kFlat * wall.bend_size) {
-      most = std::min(most, limits::kShareOfFeature * walker_.leaf(wall.leaf).feature);
-    }
+    if (from.is_cut) continue;
+    most = std::min(most, limits::kShareOfFeature * walker_.leaf(wall.leaf).feature);
     if (problem.holds(i)) turn = std::max(turn, glm::length(wall.bend * step));
   }
   double share = 1.0;
@@ -124,6 +111,7 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   const double length = glm::length(by);
   if (!(length > 0.0)) return false;
   Vec3 y = x_ + by;
+  has_landed_ = false;
   if (!restore(problem, y, length)) return false;
   const Vec3 moved = y - x_;
   if (glm::length(moved) > limits::kReachOverStep * ball) return false;
@@ -158,6 +146,7 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
       if (from.is_cut) continue;
       const NearWall wall = wallAt(from.near, y);
       const double gap = wall.gap(from.inside);
+      if (round == 0) landed_[i] = wall;
       if (!(wall.slope > 0.0)) {
         if (gap < 0.0) return false;
         continue;
@@ -171,6 +160,11 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
       is_done = is_done && gap >= 0.0 && !floats;
     }
     if (is_done) return true;
+    if (round == 0) {
+      landed_at_ = y;
+      has_landed_ = true;
+      if (foundCrease(problem, length)) return false;
+    }
     const Vec3 by = closestStep(Vec3(0.0), {planes.data(), count}).step;
     moved += glm::length(by);
     if (!(moved <= limits::kRestoredShare * length + limits::kNoise * tolerance)) return false;
@@ -223,21 +217,48 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
   return true;
 }
 
-/// Keeps the tangent planes of the cell's walls at `y` [m] that it lies beyond: of walls whose inside is
-/// hollow they hold everywhere, and where they would cut off the proxy they are not kept.
-void ProxySolver::addCuts(const CellProblem& problem, const Vec3& y) noexcept {
+/// Whether the tangent plane of plane `i`'s wall where the last step landed is one that the proxy has to
+/// respect here: the step ended beyond it, it is not the plane here, and it does not cut off the proxy.
+bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Plane& out) const noexcept {
+  const Source& from = problem.source[i];
+  const NearWall& wall = landed_[i];
+  if (from.is_cut || !(wall.slope > 0.0) || wall.gap(from.inside) >= 0.0) return false;
+  const NearWall& here = near_.walls()[from.near];
+  if (glm::length(wall.normal - here.normal) < limits::kCutTurn) return false;
+  out.normal = from.inside ? -wall.normal : wall.normal;
+  const double left = wall.gap(from.inside) + glm::dot(out.normal, x_ - landed_at_);
+  out.gap = std::max(0.0, left);
+  return left >= -limits::kOnWall * here.tolerance;
+}
+
+/// Whether a wall that the cell has as one smooth leaf stands more in the way than its curvature explains.
+bool ProxySolver::foundCrease(const CellProblem& problem, double length) const noexcept {
+  Plane cut;
   for (std::size_t i = 0; i < problem.planes; ++i) {
     const Source& from = problem.source[i];
-    if (from.is_cut || cuts_ == limits::kMaxCuts) continue;
+    if (from.is_cut) continue;
     const NearWall& here = near_.walls()[from.near];
-    const NearWall wall = wallAt(from.near, y);
-    if (!(wall.slope > 0.0) || wall.gap(from.inside) >= 0.0) continue;
-    if (glm::length(wall.normal - here.normal) < limits::kCutTurn) continue;
-    const Vec3 normal = from.inside ? -wall.normal : wall.normal;
-    const double left = wall.gap(from.inside) + glm::dot(normal, x_ - y);
-    if (left < -limits::kOnWall * here.tolerance) continue;
-    cut_[cuts_++] = {{normal, std::max(0.0, left)}, here.leaf, from.inside};
+    const double explained = here.bend_size * length * length + limits::kNoise * here.tolerance;
+    const double ahead = problem.plane[i].gap + glm::dot(problem.plane[i].normal, landed_at_ - x_);
+    if (landed_[i].gap(from.inside) < std::min(0.0, ahead) - explained && isCut(problem, i, cut)) {
+      return true;
+    }
   }
+  return false;
+}
+
+/// Keeps the tangent planes of the cell's walls that the last step ended beyond. Of walls that are hollow towards the
+/// proxy they hold everywhere. False if there is none.
+bool ProxySolver::addCuts(const CellProblem& problem) noexcept {
+  const std::size_t known = cuts_;
+  if (!has_landed_) return false;
+  for (std::size_t i = 0; i < problem.planes && cuts_ < limits::kMaxCuts; ++i) {
+    Plane plane;
+    if (!isCut(problem, i, plane)) continue;
+    const Source& from = problem.source[i];
+    cut_[cuts_++] = {plane, near_.walls()[from.near].leaf, from.inside};
+  }
+  return cuts_ > known;
 }
 
 /// At rest by the first order: looks whether the proxy can come closer by the second.
