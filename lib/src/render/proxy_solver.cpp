@@ -176,10 +176,10 @@ void ProxySolver::pose(const NearCell& cell, CellProblem& out) const noexcept {
     const double left = wall.gap(inside) - limits::kRest * wall.tolerance;
     const bool is_on = std::fabs(left) <= (limits::kOnWall - limits::kRest) * wall.tolerance;
     out.add({inside ? -wall.normal : wall.normal, is_on ? 0.0 : left},
-            {static_cast<std::uint8_t>(i), inside, false});
+            {static_cast<std::uint8_t>(i), inside, -1});
     for (std::size_t c = 0; c < cuts_; ++c) {
       if (cut_[c].leaf == wall.leaf && cut_[c].inside == inside) {
-        out.add(cut_[c].plane, {static_cast<std::uint8_t>(i), inside, true});
+        out.add(cut_[c].plane, {static_cast<std::uint8_t>(i), inside, static_cast<std::int8_t>(c)});
       }
     }
   }
@@ -206,7 +206,7 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
     source[k] = &problem.source[index];
     planes[k] = problem.plane[index];
     const NearWall& wall = near_.walls()[source[k]->near];
-    if (!source[k]->is_cut && planes[k].gap == 0.0) planes[k].gap = wall.gap(source[k]->inside);
+    if (!source[k]->isCut() && planes[k].gap == 0.0) planes[k].gap = wall.gap(source[k]->inside);
   }
   const PlaneSolution exact = closestStep(wish_, {planes.data(), count});
   for (std::size_t e = 0; e < static_cast<std::size_t>(exact.count); ++e) {
@@ -222,9 +222,9 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
     out.held.side = from.inside ? -1.0 : 1.0;
     out.held.jet = walker_.jetHere(wall.leaf);
     out.held.normal = planes[k].normal;
-    if (from.is_cut) {
+    if (from.isCut()) {
       out.held.jet.gradient = out.held.side * wall.slope * out.held.normal;
-      out.held.jet.hessian = Mat3(0.0);
+      out.held.jet.hessian = wall.slope * cut_[static_cast<std::size_t>(from.cut)].bend;
     }
     out.held.multiplier = exact.multiplier[e];
   }

@@ -73,12 +73,15 @@ class ProxySolver {
  private:
   static constexpr std::size_t kMaxCells = NearCells::kMaxCells;
   static constexpr std::size_t kMaxNear = NearWalls::kMax;
+  static constexpr std::size_t kMaxSeen = 6;  ///< planes of folds that a way back onto the walls keeps
 
   /// A plane of a cell's problem: the side of a near wall, or a tangent plane met further on (a cut).
   struct Source {
     std::uint8_t near = 0;  ///< index of the near wall
     bool inside = false;    ///< the side of it that the cell is on
-    bool is_cut = false;
+    std::int8_t cut = -1;   ///< index of the cut; -1: the wall as it is here
+
+    [[nodiscard]] bool isCut() const noexcept { return cut >= 0; }
   };
   struct CellProblem {
     NearCell cell;
@@ -97,7 +100,8 @@ class ProxySolver {
     [[nodiscard]] bool holds(std::size_t plane_index) const noexcept;
   };
   struct Cut {
-    Plane plane;  ///< from where the look is
+    Plane plane;      ///< from where the look is
+    Mat3 bend{0.0};   ///< [1/m] of the distance to that wall, outward; zero where it is not known here
     LeafId leaf = 0;
     bool inside = false;
   };
@@ -117,10 +121,12 @@ class ProxySolver {
                              bool must_gain) noexcept;
   [[nodiscard]] Vec3 limited(const CellProblem& problem, const Vec3& step,
                              double ball) const noexcept;
+  [[nodiscard]] Vec3 bentBack(const CellProblem& problem, const Vec3& step) const noexcept;
   [[nodiscard]] bool restore(const CellProblem& problem, Vec3& y, double length) noexcept;
   [[nodiscard]] bool keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept;
   [[nodiscard]] bool go(const CellProblem& problem, const Vec3& y) noexcept;
-  [[nodiscard]] bool isCut(const CellProblem& problem, std::size_t i, Plane& out) const noexcept;
+  [[nodiscard]] bool isCut(const CellProblem& problem, std::size_t i, Cut& out) const noexcept;
+  void bendCut(Cut& cut) const noexcept;
   [[nodiscard]] bool foundCrease(const CellProblem& problem, double length) const noexcept;
   [[nodiscard]] bool addCuts(const CellProblem& problem) noexcept;
   [[nodiscard]] bool kick() noexcept;

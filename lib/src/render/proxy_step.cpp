@@ -19,9 +19,10 @@ Mat3 ProxySolver::bendOf(const CellProblem& problem) const noexcept {
   for (int k = 0; k < s.count; ++k) {
     const Source& from =
         problem.source[static_cast<std::size_t>(s.plane[static_cast<std::size_t>(k)])];
-    if (from.is_cut) continue;
+    const Mat3& bend = from.isCut() ? cut_[static_cast<std::size_t>(from.cut)].bend
+                                    : near_.walls()[from.near].bend;
     const double weight = s.multiplier[static_cast<std::size_t>(k)];
-    sum += (from.inside ? -weight : weight) * near_.walls()[from.near].bend;
+    sum += (from.inside ? -weight : weight) * bend;
   }
   return sum;
 }
@@ -94,7 +95,7 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
   for (std::size_t i = 0; i < problem.planes; ++i) {
     const Source& from = problem.source[i];
     const NearWall& wall = near_.walls()[from.near];
-    if (from.is_cut) continue;
+    if (from.isCut()) continue;
     most = std::min(most, limits::kShareOfFeature * walker_.leaf(wall.leaf).feature);
     if (problem.holds(i)) turn = std::max(turn, glm::length(wall.bend * step));
   }
@@ -105,12 +106,13 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
   return share < 1.0 ? share * step : step;
 }
 
+// DBG
 bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double ball,
                           bool must_gain) noexcept {
   const Vec3 by = limited(problem, step, ball);
   const double length = glm::length(by);
   if (!(length > 0.0)) return false;
-  Vec3 y = x_ + by;
+  Vec3 y = x_ + by + bentBack(problem, by);
   has_landed_ = false;
   if (!restore(problem, y, length)) return false;
   const Vec3 moved = y - x_;
@@ -131,10 +133,38 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   return keepsOnWay(problem, y) && go(problem, y);
 }
 
+/// What brings a tangent step back onto the walls that hold it, as far as their curvature here tells. At a fold of one
+/// field only this tells how far off the wall it is that the field does not show there.
+Vec3 ProxySolver::bentBack(const CellProblem& problem, const Vec3& step) const noexcept {
+  std::array<Plane, 6> planes{};
+  std::size_t count = 0;
+  for (int k = 0; k < problem.solution.count; ++k) {
+    const auto i = static_cast<std::size_t>(problem.solution.plane[static_cast<std::size_t>(k)]);
+    const Source& from = problem.source[i];
+    const Mat3& bend = from.isCut() ? cut_[static_cast<std::size_t>(from.cut)].bend
+                                    : near_.walls()[from.near].bend;
+    const Vec3 turn = (from.inside ? -1.0 : 1.0) * (bend * step);
+    // Only as far as the step itself meets the plane: one that it was cut short of is still ahead.
+    const double left = problem.plane[i].gap + glm::dot(problem.plane[i].normal, step);
+    if (std::fabs(left) > limits::kGain * glm::length(step)) continue;
+    const Vec3 normal = unitOr(problem.plane[i].normal + turn, problem.plane[i].normal);
+    const double off = left + 0.5 * glm::dot(step, turn);
+    planes[count++] = {normal, off};
+    planes[count++] = {-normal, -off};
+  }
+  if (count == 0) return Vec3(0.0);
+  const Vec3 back = closestStep(Vec3(0.0), {planes.data(), count}).step;
+  const double most = limits::kRestoredShare * glm::length(step);
+  return glm::dot(back, back) <= most * most ? back : Vec3(0.0);
+}
+
 /// Brings `y` [m] onto the walls that hold the solution and to the free side of all others of the cell, by the
 /// shortest way. False if that takes more than a share of `length` [m].
 bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) noexcept {
   double moved = 0.0;
+  // Where a wall folds its field tells one of the planes that meet there at a time: those seen are kept.
+  std::array<Plane, kMaxSeen> seen{};  // gap at the world's origin
+  std::size_t seen_count = 0;
   for (int round = 0; round < limits::kRestorations && batches_left_ > 0; ++round) {
     --batches_left_;
     std::array<Plane, kMaxPlanes> planes{};
@@ -143,7 +173,7 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
     double tolerance = 0.0;
     for (std::size_t i = 0; i < problem.planes && count + 1 < kMaxPlanes; ++i) {
       const Source& from = problem.source[i];
-      if (from.is_cut) continue;
+      if (from.isCut()) continue;
       const NearWall wall = wallAt(from.near, y);
       const double gap = wall.gap(from.inside);
       if (round == 0) landed_[i] = wall;
@@ -158,6 +188,15 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
       const bool floats = problem.holds(i) && left > wall.tolerance;
       if (floats) planes[count++] = {-normal, -left};
       is_done = is_done && gap >= 0.0 && !floats;
+      if (gap >= 0.0) continue;
+      std::size_t slot = 0;
+      while (slot < seen_count &&
+             glm::length(seen[slot].normal - normal) > limits::kCutTurn) {
+        ++slot;
+      }
+      if (slot == kMaxSeen) slot = static_cast<std::size_t>(round) % kMaxSeen;
+      seen[slot] = {normal, left - glm::dot(normal, y)};
+      seen_count = std::max(seen_count, slot + 1);
     }
     if (is_done) return true;
     if (round == 0) {
@@ -165,9 +204,14 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
       has_landed_ = true;
       if (foundCrease(problem, length)) return false;
     }
+    for (std::size_t i = 0; i < seen_count && count < kMaxPlanes; ++i) {
+      planes[count++] = {seen[i].normal, seen[i].gap + glm::dot(seen[i].normal, y)};
+    }
     const Vec3 by = closestStep(Vec3(0.0), {planes.data(), count}).step;
     moved += glm::length(by);
-    if (!(moved <= limits::kRestoredShare * length + limits::kNoise * tolerance)) return false;
+    if (!(moved <= limits::kRestoredShare * length + limits::kRestoredLeast * tolerance)) {
+      return false;
+    }
     y += by;
   }
   return false;
@@ -180,7 +224,7 @@ bool ProxySolver::keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept
     const Source& from = problem.source[i];
     const NearWall& wall = near_.walls()[from.near];
     const double turn = wall.bend_size * length;
-    if (from.is_cut || turn <= limits::kTurnsMuch) continue;
+    if (from.isCut() || turn <= limits::kTurnsMuch) continue;
     const double dip = std::min(limits::kDipByBend * turn * length, limits::kDipByLength * length);
     const bool is_winding = turn > limits::kTurnsMore;
     for (const double share : {0.5, 0.25, 0.75}) {
@@ -219,24 +263,46 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
 
 /// Whether the tangent plane of plane `i`'s wall where the last step landed is one that the proxy has to
 /// respect here: the step ended beyond it, it is not the plane here, and it does not cut off the proxy.
-bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Plane& out) const noexcept {
+bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Cut& out) const noexcept {
   const Source& from = problem.source[i];
   const NearWall& wall = landed_[i];
-  if (from.is_cut || !(wall.slope > 0.0) || wall.gap(from.inside) >= 0.0) return false;
+  if (from.isCut() || !(wall.slope > 0.0) || wall.gap(from.inside) >= 0.0) return false;
   const NearWall& here = near_.walls()[from.near];
   if (glm::length(wall.normal - here.normal) < limits::kCutTurn) return false;
-  out.normal = from.inside ? -wall.normal : wall.normal;
-  const double left = wall.gap(from.inside) + glm::dot(out.normal, x_ - landed_at_);
-  out.gap = std::max(0.0, left);
+  out.leaf = here.leaf;
+  out.inside = from.inside;
+  out.plane.normal = from.inside ? -wall.normal : wall.normal;
+  const double left = wall.gap(from.inside) + glm::dot(out.plane.normal, x_ - landed_at_);
+  out.plane.gap = std::max(0.0, left);
   return left >= -limits::kOnWall * here.tolerance;
+}
+
+/// A wall that bends so little between there and here that it can be carried back with its curvature: at a crease
+/// both walls' bends decide how far along it to go.
+void ProxySolver::bendCut(Cut& cut) const noexcept {
+  const Leaf& leaf = walker_.leaf(cut.leaf);
+  const FieldJet jet = leaf.field->jet(landed_at_);
+  const double slope = glm::length(jet.gradient);
+  if (!jet.in_band || !(slope > 0.0)) return;
+  const Mat3 bend = jet.hessian / slope;
+  const Vec3 off = x_ - landed_at_;
+  const Vec3 turn = bend * off;
+  if (glm::length(turn) > limits::kCarries) return;
+  const double side = cut.inside ? -1.0 : 1.0;
+  const double left = side * (jet.value / slope + glm::dot(jet.gradient, off) / slope +
+                              0.5 * glm::dot(off, turn));
+  if (left < -limits::kCarriedShare * glm::length(turn) * glm::length(off)) return;
+  cut.plane.normal = side * unitOr(jet.gradient / slope + turn, side * cut.plane.normal);
+  cut.plane.gap = std::max(0.0, left);
+  cut.bend = bend;
 }
 
 /// Whether a wall that the cell has as one smooth leaf stands more in the way than its curvature explains.
 bool ProxySolver::foundCrease(const CellProblem& problem, double length) const noexcept {
-  Plane cut;
+  Cut cut;
   for (std::size_t i = 0; i < problem.planes; ++i) {
     const Source& from = problem.source[i];
-    if (from.is_cut) continue;
+    if (from.isCut()) continue;
     const NearWall& here = near_.walls()[from.near];
     const double explained = here.bend_size * length * length + limits::kNoise * here.tolerance;
     const double ahead = problem.plane[i].gap + glm::dot(problem.plane[i].normal, landed_at_ - x_);
@@ -253,10 +319,16 @@ bool ProxySolver::addCuts(const CellProblem& problem) noexcept {
   const std::size_t known = cuts_;
   if (!has_landed_) return false;
   for (std::size_t i = 0; i < problem.planes && cuts_ < limits::kMaxCuts; ++i) {
-    Plane plane;
-    if (!isCut(problem, i, plane)) continue;
-    const Source& from = problem.source[i];
-    cut_[cuts_++] = {plane, near_.walls()[from.near].leaf, from.inside};
+    Cut cut;
+    if (!isCut(problem, i, cut)) continue;
+    bendCut(cut);
+    bool is_known = false;
+    for (std::size_t c = 0; c < cuts_ && !is_known; ++c) {
+      is_known = cut_[c].leaf == cut.leaf && cut_[c].inside == cut.inside &&
+                 glm::length(cut_[c].plane.normal - cut.plane.normal) < limits::kSameCut &&
+                 cut_[c].plane.gap <= cut.plane.gap;
+    }
+    if (!is_known) cut_[cuts_++] = cut;
   }
   return cuts_ > known;
 }
@@ -269,7 +341,7 @@ bool ProxySolver::kick() noexcept {
   double feature = kInfinity;
   for (int k = 0; k < s.count; ++k) {
     const auto index = static_cast<std::size_t>(s.plane[static_cast<std::size_t>(k)]);
-    if (first.source[index].is_cut) return false;
+    if (first.source[index].isCut()) return false;
     const NearWall& wall = near_.walls()[first.source[index].near];
     bend += s.multiplier[static_cast<std::size_t>(k)] * wall.bend_size;
     feature = std::min(feature, walker_.leaf(wall.leaf).feature);

@@ -50,6 +50,8 @@ inline constexpr double kLargestTurn = 0.5;
 /// Restoring onto the walls: rounds, and how far in all, over the step. Longer jumps to another sheet.
 inline constexpr int kRestorations = 6;
 inline constexpr double kRestoredShare = 0.5;
+/// ... and this many tolerances more: what it takes to leave a groove of 0.1 degree by one.
+inline constexpr double kRestoredLeast = 1000.0;
 /// A step is kept if it gains this share of what it promised, less the noise of the distances.
 inline constexpr double kGain = 0.01;
 inline constexpr double kNoise = 10.0;
@@ -72,6 +74,13 @@ inline constexpr int kCutRounds = 6;
 /// A cut is worth keeping if its normal differs by this [rad] from the same wall's here: Newton's curvature
 /// does the rest, which cuts would make linear.
 inline constexpr double kCutTurn = 0.05;
+/// Cuts of one wall whose normals differ by less than this [rad] are one, if the new one is not closer.
+inline constexpr double kSameCut = 1e-6;
+/// A cut whose wall turns by less than this [rad] between where it was met and the proxy is carried back with its
+/// curvature, ...
+inline constexpr double kCarries = 0.3;
+/// ... if the proxy is then not further beyond it than this share of what the curvature moved it by.
+inline constexpr double kCarriedShare = 0.1;
 /// What a refused step is shortened to, in turn; then the ball shrinks by kShrink, kShrinks times.
 inline constexpr double kShorter[] = {0.5, 0.125, 0.02};
 inline constexpr double kShrink = 0.2;
