@@ -20,6 +20,25 @@ NearWall wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept {
   return out;
 }
 
+namespace {
+
+double sizeOf(const Mat3& m) noexcept {
+  return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+}
+
+}  // namespace
+
+void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal,
+                Mat3& bend) noexcept {
+  const double size = sizeOf(bend);
+  if (size * leaf.feature <= limits::kFolds) return;
+  const FieldJet beyond = leaf.field->jet(p - side * limits::kBeyondFold * leaf.feature * normal);
+  const double slope = glm::length(beyond.gradient);
+  if (!beyond.in_band || !(slope > 0.0)) return;
+  const Mat3 other = beyond.hessian / slope;
+  if (sizeOf(other) < limits::kFoldsLess * size) bend = other;
+}
+
 bool NearWalls::look(double radius, bool trust_sides) noexcept {
   count_ = 0;
   found_ = {};
@@ -34,9 +53,8 @@ bool NearWalls::look(double radius, bool trust_sides) noexcept {
     NearWall wall = wallOf(id, walker_.leaf(id), {jet.value, jet.gradient, jet.in_band});
     if (wall.slope > 0.0) {
       wall.bend = jet.hessian / wall.slope;
-      wall.bend_size = std::sqrt(glm::dot(wall.bend[0], wall.bend[0]) +
-                                 glm::dot(wall.bend[1], wall.bend[1]) +
-                                 glm::dot(wall.bend[2], wall.bend[2]));
+      unfoldBend(walker_.leaf(id), walker_.side(id), walker_.position(), wall.normal, wall.bend);
+      wall.bend_size = sizeOf(wall.bend);
     }
     const bool is_inside = walker_.side(id) < 0.0;
     near[count_] = {id, trust_sides ? is_inside : wall.distance <= wall.tolerance,

@@ -48,6 +48,12 @@ class NearWalls {
   std::span<const NearCell> found_;
 };
 
+/// Where `leaf`'s distance bends more than its feature size lets it, its differences straddle a fold. Then its
+/// bend is asked for a little way further beyond the surface, seen from `side`, where only the wall with
+/// `normal` (outward) is felt; a cone near its tip, which does bend like that, keeps `bend`.
+void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal,
+                Mat3& bend) noexcept;
+
 /// The leaf `id` at a place where its field has the sample `s`; without its bend.
 [[nodiscard]] NearWall wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept;
 

@@ -284,7 +284,8 @@ void ProxySolver::bendCut(Cut& cut) const noexcept {
   const FieldJet jet = leaf.field->jet(landed_at_);
   const double slope = glm::length(jet.gradient);
   if (!jet.in_band || !(slope > 0.0)) return;
-  const Mat3 bend = jet.hessian / slope;
+  Mat3 bend = jet.hessian / slope;
+  unfoldBend(leaf, cut.inside ? -1.0 : 1.0, landed_at_, jet.gradient / slope, bend);
   const Vec3 off = x_ - landed_at_;
   const Vec3 turn = bend * off;
   if (glm::length(turn) > limits::kCarries) return;

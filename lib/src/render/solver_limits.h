@@ -74,6 +74,12 @@ inline constexpr int kCutRounds = 6;
 /// A cut is worth keeping if its normal differs by this [rad] from the same wall's here: Newton's curvature
 /// does the rest, which cuts would make linear.
 inline constexpr double kCutTurn = 0.05;
+/// A leaf that bends this many times more than its feature size says has a fold at the place, ...
+inline constexpr double kFolds = 8.0;
+/// ... and is asked this share of the feature size beyond it, ...
+inline constexpr double kBeyondFold = 1e-3;
+/// ... which counts if it bends by less than this share there.
+inline constexpr double kFoldsLess = 0.1;
 /// Cuts of one wall whose normals differ by less than this [rad] are one, if the new one is not closer.
 inline constexpr double kSameCut = 1e-6;
 /// A cut whose wall turns by less than this [rad] between where it was met and the proxy is carried back with its
