@@ -86,7 +86,7 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   if (!is_suspect) return out;
   out.ran_oracle = true;
   const Rest rest = oracle_.solve(before.proxy, hip);
-  const double slack = 20.0 * on_surface / std::max(rest.blunt, 1e-3);
+  const double slack = 6.0 * on_surface / std::max(rest.blunt, 1e-3);
   const double allowed = kTolerance * glm::length(rest.point - hip) + slack;
   double off = glm::length(now.proxy - rest.point);
   if (off <= allowed) {
