@@ -54,9 +54,9 @@ class RandomHand {
 
   void choose() {
     const double which = random_.uniform(0.0, 1.0);
-    if (which < 0.5) {
+    if (which < 0.35) {
       kind_ = Kind::kWander;
-      left_ = static_cast<int>(random_.uniform(10, 120));
+      left_ = static_cast<int>(random_.uniform(10, 60));
     } else if (which < 0.8) {
       kind_ = Kind::kPress;
       left_ = static_cast<int>(random_.uniform(10, 40));

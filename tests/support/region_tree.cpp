@@ -210,6 +210,21 @@ void RegionTree::nearby(const Vec3& center, double radius, Nearby& out) const {
     }
   }
   const State state = reduce(root_, out.cells, out);
+  // What asks for both sides of one surface is that surface, not a place to be: labels that touch.
+  for (std::size_t i = 0; i < out.literals.size(); ++i) {
+    for (std::size_t j = i + 1; j < out.literals.size(); ++j) {
+      const Literal& a = literals_[static_cast<std::size_t>(out.literals[i])];
+      const Literal& b = literals_[static_cast<std::size_t>(out.literals[j])];
+      if (a.field != b.field || a.sign == b.sign || a.pose.rotation != b.pose.rotation ||
+          a.pose.translation != b.pose.translation) {
+        continue;
+      }
+      const std::uint32_t both = (std::uint32_t{1} << i) | (std::uint32_t{1} << j);
+      out.cells.erase(std::remove_if(out.cells.begin(), out.cells.end(),
+                                     [&](std::uint32_t cell) { return (cell & both) == both; }),
+                      out.cells.end());
+    }
+  }
   if (state == State::kAllowed) out.cells = {0};
   if (state == State::kForbidden) out.cells.clear();
 }

@@ -30,6 +30,14 @@ const char* nameOf(Fault fault) {
   return "none";
 }
 
+std::string causeOf(const Verdict& verdict) {
+  static constexpr std::array<const char*, 4> kHeldBy = {"free", "one wall", "two walls",
+                                                         "three walls"};
+  std::string out = kHeldBy[static_cast<std::size_t>(std::clamp(verdict.touching, 0, 3))];
+  if (verdict.has_kink) out = "apex or kink";
+  return out + (verdict.is_minimum ? ", another minimum" : ", no minimum");
+}
+
 bool RestJudge::isDirect(const Vec3& from, const Vec3& to, double moved) const {
   // The chord of a bulging wall dips by at most moved^2 / (8 R).
   const double dip = moved * moved / (8.0 * tree_.feature()) + 4.0 * tree_.onSurface();
@@ -70,11 +78,13 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   }
   const double moved = glm::length(now.proxy - before.proxy);
   bool is_suspect = !isDirect(before.proxy, now.proxy, moved);
-  bool is_minimum = true;
+  bool& is_minimum = out.is_minimum;
   if (out.is_contact) {
     is_suspect |= moved > 4.0 * glm::length(hip - previous_hip) + 1e-3 * depth;
     const RestCheck checked = oracle_.check(now.proxy, hip);
     out.is_unjudged = !checked.is_judged;
+    out.touching = checked.touching;
+    out.has_kink = checked.has_kink;
     is_minimum = checked.residual <= (3e-8 + checked.doubt) * depth + 1e-15;
     if (is_minimum && (sampled || is_suspect)) {
       // By the tree alone: within a ten-thousandth of the depth nothing is nearer by more than a bulge allows.
@@ -85,14 +95,19 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   }
   if (!is_suspect) return out;
   out.ran_oracle = true;
-  const Rest rest = oracle_.solve(before.proxy, hip);
-  const double slack = 20.0 * on_surface / std::max(rest.blunt, 1e-3);
-  const double allowed = kTolerance * glm::length(rest.point - hip) + slack;
-  double off = glm::length(now.proxy - rest.point);
-  if (off <= allowed) {
+  // Walls are met to within onSurface(), which a wedge makes longer.
+  const auto allowed_of = [&](const Rest& rest) {
+    return kTolerance * glm::length(rest.point - hip) +
+           6.0 * on_surface / std::max(rest.blunt, 1e-3);
+  };
+  Rest rest = oracle_.solveOnce(before.proxy, hip);
+  if (glm::length(now.proxy - rest.point) <= allowed_of(rest)) {
     out.is_unjudged = false;
     return out;
   }
+  rest = oracle_.solve(before.proxy, hip);
+  const double allowed = allowed_of(rest);
+  double off = glm::length(now.proxy - rest.point);
   for (const Vec3& other : rest.others) {
     out.is_ambiguous |= glm::length(other - rest.point) > 10.0 * allowed;
     off = std::min(off, glm::length(now.proxy - other));

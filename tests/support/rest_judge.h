@@ -30,8 +30,14 @@ struct Verdict {
   bool is_ambiguous = false;  ///< several ends, of which it is near one or none
   bool is_unjudged = false;   ///< the oracle does not know
   bool ran_oracle = false;
+  bool is_minimum = true;     ///< nothing near the proxy is nearer to the hand
+  int touching = 0;           ///< walls that hold it
+  bool has_kink = false;      ///< ... one of them at an apex or a crease of its own
   double off = 0.0;  ///< [m] from the minimum, or [N] of the force: what the fault is by
 };
+
+/// Where it happened and in what way, for a list.
+[[nodiscard]] std::string causeOf(const Verdict& verdict);
 
 class RestJudge {
  public:

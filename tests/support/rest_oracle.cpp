@@ -81,6 +81,7 @@ RestCheck RestOracle::check(const Vec3& x, const Vec3& hip) const {
     NearestOfPlanes next = PlaneProblem(cell.planes).nearestTo(way);
     // At an apex a few normals more, about the way that is left.
     const bool has_kink = cell.planes.size() > cell.literals.size() + 8;
+    out.has_kink |= has_kink || !cell.is_judged;
     for (int more = 0; has_kink && more < 40; ++more) {
       const double length = glm::length(next.point);
       if (length <= 1e-9 * depth) break;
@@ -330,21 +331,33 @@ RestOracle::Flow RestOracle::flow(const Vec3& previous, const Vec3& hip, double 
   return out;
 }
 
+double RestOracle::stepFor(const Vec3& previous, const Vec3& hip) const {
+  return std::min({2e-5, 0.02 * tree_.feature(), 0.05 * glm::length(hip - previous)});
+}
+
+void RestOracle::measureBluntness(Rest& rest, const Vec3& hip) const {
+  const double left = glm::length(hip - rest.point);
+  if (left == 0.0) return;
+  const double radius = std::max(1e-5 * left, 1e2 * tree_.onSurface());
+  rest.blunt = newton(rest.point, hip, radius).blunt;
+}
+
+Rest RestOracle::solveOnce(const Vec3& previous, const Vec3& hip) const {
+  const Flow run = flow(previous, hip, stepFor(previous, hip), 1.0);
+  Rest out{run.point, run.has_settled};
+  measureBluntness(out, hip);
+  return out;
+}
+
 Rest RestOracle::solve(const Vec3& previous, const Vec3& hip) const {
-  Rest out;
-  const double depth = glm::length(hip - previous);
-  const double h = std::min({2e-5, 0.02 * tree_.feature(), 0.05 * depth});
+  const double h = stepFor(previous, hip);
   const Flow fine = flow(previous, hip, 0.1 * h, 1.0);
-  out.point = fine.point;
-  out.has_settled = fine.has_settled;
+  Rest out{fine.point, fine.has_settled};
   if (fine.was_kicked) out.others.push_back(flow(previous, hip, 0.1 * h, -1.0).point);
   const Flow coarse = flow(previous, hip, h, 1.0);
   out.others.push_back(coarse.point);
   out.has_settled &= coarse.has_settled;
-  const double left = glm::length(hip - out.point);
-  if (left > 0.0) {
-    out.blunt = newton(out.point, hip, std::max(1e-5 * left, 1e2 * tree_.onSurface())).blunt;
-  }
+  measureBluntness(out, hip);
   return out;
 }
 

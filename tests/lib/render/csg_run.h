@@ -25,7 +25,8 @@ struct CsgFault {
   int tick = 0;
   double off = 0.0;  ///< [m], or [N] for forces
   double depth = 0.0;  ///< [m]
-  int touching = 0;  ///< walls that hold the oracle's check
+  std::string cause = {};
+  Vec3 hip{0.0};  ///< [m]
 };
 
 struct CsgCounts {
@@ -133,7 +134,7 @@ class CsgRun {
     ++counts_.faults[static_cast<std::size_t>(verdict.fault)];
     if (counts_.list.size() < 200) {
       counts_.list.push_back({verdict.fault, scene.number, tick, verdict.off,
-                              glm::length(now.proxy - hip)});
+                              glm::length(now.proxy - hip), causeOf(verdict), hip});
     }
     if (const char* folder = std::getenv("PALPATE_CSG_KEEP")) keep(folder, scene);
   }
