@@ -114,9 +114,12 @@ class CsgRun {
       still = hand.isFrozen() ? still + 1 : 0;
       if (still == 1 && verdict.is_contact) ++counts_.frozen;
       if (still == 30) settled_force = now.force;
+      unsettled = testing::saysSettled(now) ? 0 : unsettled + 1;
+      counts_.unsettled += unsettled > 0 ? 1 : 0;
+      counts_.longest_unsettled = std::max(counts_.longest_unsettled, unsettled);
       const bool is_frozen_fault =
           still > 30 &&
-          (glm::length(now.force - settled_force) > 1e-3 ||
+          (glm::length(now.force - settled_force) > 1e-3 || unsettled > 0 ||
            (still == RandomHand::kFrozenTicks && verdict.fault == testing::Fault::kPlace));
       if (is_frozen_fault) {
         verdict.fault = testing::Fault::kFrozen;
