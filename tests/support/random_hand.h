@@ -12,8 +12,8 @@ namespace palpate::test {
 
 class RandomHand {
  public:
-  static constexpr double kStep = 1e-4;     ///< [m] a tick
-  static constexpr double kReach = 3e-3;    ///< [m] from the proxy
+  static constexpr double kStep = 1e-4;   ///< [m] a tick
+  static constexpr double kReach = 3e-3;  ///< [m] from the proxy
   static constexpr int kFrozenTicks = 40;
 
   RandomHand(std::uint64_t seed, const Vec3& start)

@@ -11,9 +11,9 @@ namespace palpate::test {
 
 /// What a random scene is made of.
 struct RandomSceneOptions {
-  int deepest = 5;              ///< 1 to 8: levels of operations above the primitives
+  int deepest = 5;                ///< 1 to 8: levels of operations above the primitives
   bool black_box_creases = true;  ///< blends may have operands with edges of their own
-  double shell = 0.0;           ///< [mm] more than 0: the whole is a shell of this thickness
+  double shell = 0.0;             ///< [mm] more than 0: the whole is a shell of this thickness
   // The same scene elsewhere. Numbers in the file are as printed before it is moved.
   bool mirrored = false;    ///< x becomes -x
   std::string unit = "mm";  ///< what its numbers are in
@@ -23,10 +23,12 @@ struct RandomSceneOptions {
 /// A scene whose walls all have the default material: 1000 N/m, no friction, no damping, no ports.
 struct RandomScene {
   std::uint64_t number = 0;
-  int depth = 0;               ///< levels of operations
-  bool is_label_group = false;  ///< the layers share one label image; a scene file without image cannot say so
-  std::string core;  ///< of a scene of one layer: its field as in the file, before it became a shell
-  std::string yaml;            ///< for `palpate touch`; lengths in mm, all within 40 mm or so
+  int depth = 0;  ///< levels of operations
+  bool is_label_group =
+      false;  ///< the layers share one label image; a scene file without image cannot say so
+  std::string
+      core;  ///< of a scene of one layer: its field as in the file, before it became a shell
+  std::string yaml;  ///< for `palpate touch`; lengths in mm, all within 40 mm or so
 
   /// With the label group, where it is one.
   [[nodiscard]] SceneDescription description() const;

@@ -14,9 +14,8 @@ constexpr std::size_t kMostCells = 64;
 void absorb(std::vector<std::uint32_t>& cells) {
   std::vector<std::uint32_t> kept;
   for (const std::uint32_t cell : cells) {
-    const bool implied = std::any_of(kept.begin(), kept.end(), [&](std::uint32_t other) {
-      return (cell & other) == other;
-    });
+    const bool implied = std::any_of(kept.begin(), kept.end(),
+                                     [&](std::uint32_t other) { return (cell & other) == other; });
     if (implied) continue;
     kept.erase(std::remove_if(kept.begin(), kept.end(),
                               [&](std::uint32_t other) { return (cell & other) == cell; }),
@@ -74,8 +73,7 @@ int RegionTree::addField(const FieldPtr& field, double sign, const Pose& pose, b
     case Structure::kIntersection:
     case Structure::kFaces:
       // Outside a union is outside all its operands; inside it, inside any.
-      node.kind =
-          (structure.kind == Structure::kUnion) == (sign > 0.0) ? Kind::kAll : Kind::kAny;
+      node.kind = (structure.kind == Structure::kUnion) == (sign > 0.0) ? Kind::kAll : Kind::kAny;
       for (const FieldPtr& operand : structure.operands) {
         node.operands.push_back(addField(operand, sign, pose, is_moved));
       }
@@ -126,8 +124,7 @@ Slope RegionTree::slopeAt(const Literal& literal, const Vec3& p) const noexcept 
   return best;
 }
 
-Mat3 RegionTree::hessianAt(const Literal& literal, const Vec3& p,
-                           double steepness) const noexcept {
+Mat3 RegionTree::hessianAt(const Literal& literal, const Vec3& p, double steepness) const noexcept {
   const double h = 1e-3 * literal.feature;
   const double center = literal.value(p);
   Mat3 out(0.0);

@@ -33,9 +33,10 @@ struct Slope {
 
 /// What decides within a ball: the border is a tree of AND and OR over the literals that come into it.
 struct Nearby {
-  std::vector<int> literals;        ///< that can change their sign in the ball; at most 32
-  std::vector<std::uint32_t> cells;  ///< conjunctions, a bit for each of `literals`; any of them allows
-  bool is_too_much = false;          ///< more literals or cells than can be told
+  std::vector<int> literals;  ///< that can change their sign in the ball; at most 32
+  std::vector<std::uint32_t>
+      cells;                 ///< conjunctions, a bit for each of `literals`; any of them allows
+  bool is_too_much = false;  ///< more literals or cells than can be told
 };
 
 class RegionTree {
@@ -85,7 +86,8 @@ class RegionTree {
   int root_ = 0;
   double feature_ = kInfinity;
   double largest_feature_ = 0.0;
-  mutable std::vector<int> state_;  ///< by literal: 1 allowed, -1 forbidden, else 2 + its place nearby
+  mutable std::vector<int>
+      state_;  ///< by literal: 1 allowed, -1 forbidden, else 2 + its place nearby
 };
 
 }  // namespace palpate::testing

@@ -13,13 +13,13 @@ namespace palpate::testing {
 enum class Fault {
   kNone,
   kNotFinite,
-  kRegion,     ///< it left its region, though nothing is open
-  kInside,     ///< the proxy is inside a wall
-  kForce,      ///< the force is not K (x - P)
-  kContact,    ///< `contact` does not say whether the proxy is off the hand
-  kStep,       ///< not at the minimum, and the force is more than 10 mN off
-  kPlace,      ///< not at the minimum, by more than 1e-6 of the depth
-  kFrozen,     ///< the hand stood still: not settled after 30 ticks, or the force still changes by 1 mN
+  kRegion,   ///< it left its region, though nothing is open
+  kInside,   ///< the proxy is inside a wall
+  kForce,    ///< the force is not K (x - P)
+  kContact,  ///< `contact` does not say whether the proxy is off the hand
+  kStep,     ///< not at the minimum, and the force is more than 10 mN off
+  kPlace,    ///< not at the minimum, by more than 1e-6 of the depth
+  kFrozen,  ///< the hand stood still: not settled after 30 ticks, or the force still changes by 1 mN
   kCount
 };
 [[nodiscard]] const char* nameOf(Fault fault);
@@ -30,11 +30,21 @@ struct Verdict {
   bool is_ambiguous = false;  ///< several ends, of which it is near one or none
   bool is_unjudged = false;   ///< the oracle does not know
   bool ran_oracle = false;
-  bool is_minimum = true;     ///< nothing near the proxy is nearer to the hand
-  int touching = 0;           ///< walls that hold it
-  bool has_kink = false;      ///< ... one of them at an apex or a crease of its own
-  double off = 0.0;  ///< [m] from the minimum, or [N] of the force: what the fault is by
+  bool is_minimum = true;  ///< nothing near the proxy is nearer to the hand
+  int touching = 0;        ///< walls that hold it
+  bool has_kink = false;   ///< ... one of them at an apex or a crease of its own
+  double off = 0.0;        ///< [m] from the minimum, or [N] of the force: what the fault is by
 };
+
+/// What a tick says about itself; true of a library whose ticks say nothing.
+template <typename Result>
+[[nodiscard]] bool saysSettled(const Result& result) {
+  if constexpr (requires { result.settled; }) {
+    return result.settled;
+  } else {
+    return true;
+  }
+}
 
 /// Where it happened and in what way, for a list.
 [[nodiscard]] std::string causeOf(const Verdict& verdict);

@@ -119,8 +119,7 @@ std::optional<Vec3> RestOracle::project(const Vec3& goal, const Vec3& from, doub
       planes.clear();
       for (std::size_t i = 0; i < nearby.literals.size(); ++i) {
         if (((bits >> i) & 1U) == 0) continue;
-        const Literal& literal =
-            tree_.literals()[static_cast<std::size_t>(nearby.literals[i])];
+        const Literal& literal = tree_.literals()[static_cast<std::size_t>(nearby.literals[i])];
         const Slope slope = tree_.slopeAt(literal, y);
         if (slope.doubt > Slope::kSingular) continue;
         const HalfSpaceBound plane{slope.normal, slope.gap + glm::dot(slope.normal, goal - y)};
@@ -167,7 +166,8 @@ RestOracle::Newton RestOracle::newton(const Vec3& x, const Vec3& hip, double rad
     std::vector<Vec3> taken;
     double blunt = 1.0;
     for (int k = 0; k < next.active_count; ++k) {
-      Vec3 n = cell.planes[static_cast<std::size_t>(next.active[static_cast<std::size_t>(k)])].normal;
+      Vec3 n =
+          cell.planes[static_cast<std::size_t>(next.active[static_cast<std::size_t>(k)])].normal;
       for (const Vec3& t : taken) n -= glm::dot(t, n) * t;
       const double rest = glm::length(n);
       blunt = std::min(blunt, rest);
@@ -204,7 +204,8 @@ RestOracle::Newton RestOracle::newton(const Vec3& x, const Vec3& hip, double rad
       if (std::fabs(det) > 1e-18) {
         const Vec3 multiplier = glm::inverse(gram) * right;
         for (int k = 0; k < m; ++k) {
-          const int owner = cell.owner[static_cast<std::size_t>(next.active[static_cast<std::size_t>(k)])];
+          const int owner =
+              cell.owner[static_cast<std::size_t>(next.active[static_cast<std::size_t>(k)])];
           const Literal& literal = tree_.literals()[static_cast<std::size_t>(owner)];
           const Slope slope = tree_.slopeAt(literal, x);
           if (slope.doubt > Slope::kSingular) continue;
@@ -303,9 +304,9 @@ RestOracle::Flow RestOracle::flow(const Vec3& previous, const Vec3& hip, double 
     const Vec3 candidate = end.value_or(x);
     const double left = glm::length(hip - candidate);
     if (end) {
-      const bool is_reached = glm::length(candidate - x) <= 0.3 * left &&
-                              left <= glm::length(hip - x) + 1e-12 &&
-                              tree_.value(0.5 * (candidate + x)) >= -0.1 * glm::length(candidate - x);
+      const bool is_reached =
+          glm::length(candidate - x) <= 0.3 * left && left <= glm::length(hip - x) + 1e-12 &&
+          tree_.value(0.5 * (candidate + x)) >= -0.1 * glm::length(candidate - x);
       if (!is_reached && resting < 3) continue;
     }
     const RestCheck checked = check(candidate, hip);
@@ -344,7 +345,9 @@ void RestOracle::measureBluntness(Rest& rest, const Vec3& hip) const {
 
 Rest RestOracle::solveOnce(const Vec3& previous, const Vec3& hip) const {
   const Flow run = flow(previous, hip, stepFor(previous, hip), 1.0);
-  Rest out{run.point, run.has_settled};
+  Rest out;
+  out.point = run.point;
+  out.has_settled = run.has_settled;
   measureBluntness(out, hip);
   return out;
 }
@@ -352,7 +355,9 @@ Rest RestOracle::solveOnce(const Vec3& previous, const Vec3& hip) const {
 Rest RestOracle::solve(const Vec3& previous, const Vec3& hip) const {
   const double h = stepFor(previous, hip);
   const Flow fine = flow(previous, hip, 0.1 * h, 1.0);
-  Rest out{fine.point, fine.has_settled};
+  Rest out;
+  out.point = fine.point;
+  out.has_settled = fine.has_settled;
   if (fine.was_kicked) out.others.push_back(flow(previous, hip, 0.1 * h, -1.0).point);
   const Flow coarse = flow(previous, hip, h, 1.0);
   out.others.push_back(coarse.point);
@@ -393,7 +398,8 @@ double RestOracle::gainNear(const Vec3& x, const Vec3& hip, double radius) const
     const auto sides = across(around);
     for (int i = 0; i < 6; ++i) {
       const double angle = i * 1.0471975511965976;
-      attempt(glm::normalize(around + spread * (std::cos(angle) * sides[0] + std::sin(angle) * sides[1])));
+      attempt(glm::normalize(around +
+                             spread * (std::cos(angle) * sides[0] + std::sin(angle) * sides[1])));
     }
   }
   return best;

@@ -14,17 +14,19 @@ struct RestCheck {
   /// [m] How far the nearest point of the linearized region, in the worst cell that holds x, lies from x; walls
   /// nearer than 4 RegionTree::onSurface() count as touched.
   double residual = 0.0;
-  double doubt = 0.0;      ///< [-] of the normals that decided it
-  bool is_judged = true;   ///< false: too many walls at once, or a kink that is neither convex nor concave
-  int touching = 0;        ///< walls that hold it, in the worst cell
-  bool has_kink = false;   ///< one of them has no normal there: an apex, a crease of a black box
+  double doubt = 0.0;  ///< [-] of the normals that decided it
+  bool is_judged =
+      true;  ///< false: too many walls at once, or a kink that is neither convex nor concave
+  int touching = 0;       ///< walls that hold it, in the worst cell
+  bool has_kink = false;  ///< one of them has no normal there: an apex, a crease of a black box
 };
 
 struct Rest {
   Vec3 point{0.0, 0.0, 0.0};
   bool has_settled = false;  ///< the flow came to a point that passes the check
   std::vector<Vec3> others;  ///< where it ends with steps of a tenth, or off a saddle the other way
-  double blunt = 1.0;  ///< [-] least singular value of the normals that hold it: 1 for one wall, small in wedges
+  double blunt =
+      1.0;  ///< [-] least singular value of the normals that hold it: 1 for one wall, small in wedges
 };
 
 class RestOracle {

@@ -91,8 +91,8 @@ std::string textOf(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     std::array<char, 200> buffer{};
     const auto clean = [](double v) { return std::fabs(v) < 1e-12 ? 0.0 : v; };
-    (void)std::snprintf(buffer.data(), buffer.size(), "%d %.7g %.7g %.7g %.6g %.6g %.6g %d ", row.tick,
-                        1e3 * clean(row.proxy.x), 1e3 * clean(row.proxy.y),
+    (void)std::snprintf(buffer.data(), buffer.size(), "%d %.7g %.7g %.7g %.6g %.6g %.6g %d ",
+                        row.tick, 1e3 * clean(row.proxy.x), 1e3 * clean(row.proxy.y),
                         1e3 * clean(row.proxy.z), clean(row.force.x), clean(row.force.y),
                         clean(row.force.z), row.contact ? 1 : 0);
     out += buffer.data() + word(row.region) + " " + word(row.events) + "\n";
@@ -155,9 +155,8 @@ std::vector<Row> rowsOf(const std::string& text) {
         now[i].contact == then[i].contact && now[i].region == then[i].region &&
         now[i].events == then[i].events && now[i].tick == then[i].tick;
     if (is_same) continue;
-    return ::testing::AssertionFailure()
-           << file << ", tick " << now[i].tick << ": stored\n  " << textOf({then[i]}) << "now\n  "
-           << textOf({now[i]});
+    return ::testing::AssertionFailure() << file << ", tick " << now[i].tick << ": stored\n  "
+                                         << textOf({then[i]}) << "now\n  " << textOf({now[i]});
   }
   return ::testing::AssertionSuccess();
 }

@@ -50,7 +50,10 @@ TEST(CombinedLipschitz, IsThatOfTheSteepestOperand) {
       {"shell of a union", [](auto f) { return shell(unite(std::move(f)), 1e-3); }},
       {"scaled union", [](auto f) { return scale(unite(std::move(f)), 2.0); }},
       {"moved union", [](auto f) { return place(unite(std::move(f)), {}); }},
-      {"union of unions", [](auto f) { return unite({f[0], unite({f[1], f[2]})}); }},
+      {"union of unions",
+       [](auto f) {
+         return unite({f[0], unite({f[1], f[2]})});
+       }},
   };
   for (const auto& [name, combine] : all) {
     for (std::size_t place = 0; place < 3; ++place) {

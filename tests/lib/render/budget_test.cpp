@@ -12,8 +12,8 @@ namespace {
 
 struct Tally {
   long ticks = 0;
-  long inside = 0;   ///< proxy inside a wall
-  long farther = 0;  ///< than the proxy of the tick before is
+  long inside = 0;     ///< proxy inside a wall
+  long farther = 0;    ///< than the proxy of the tick before is
   double worst = 0.0;  ///< [m]
   long left_region = 0;
 };

@@ -33,8 +33,9 @@ class Loop {
 };
 
 struct Lap {
-  double given = 0.0;  ///< [J] to the hand, beyond what the wall had stored at the lap's begin and has no more
-  int leaps = 0;       ///< of the proxy off a wall, where energy is lost
+  double given =
+      0.0;  ///< [J] to the hand, beyond what the wall had stored at the lap's begin and has no more
+  int leaps = 0;  ///< of the proxy off a wall, where energy is lost
   long contacts = 0;
 };
 

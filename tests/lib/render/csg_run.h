@@ -23,7 +23,7 @@ struct CsgFault {
   testing::Fault fault = testing::Fault::kNone;
   std::uint64_t scene = 0;
   int tick = 0;
-  double off = 0.0;  ///< [m], or [N] for forces
+  double off = 0.0;    ///< [m], or [N] for forces
   double depth = 0.0;  ///< [m]
   std::string cause = {};
   Vec3 hip{0.0};  ///< [m]
@@ -37,7 +37,9 @@ struct CsgCounts {
   long oracle_runs = 0;
   long ambiguous = 0;
   long unjudged = 0;
-  long frozen = 0;  ///< times that the hand stood still in contact
+  long unsettled = 0;         ///< ticks in contact that say so
+  int longest_unsettled = 0;  ///< in a row
+  long frozen = 0;            ///< times that the hand stood still in contact
   std::array<long, static_cast<std::size_t>(testing::Fault::kCount)> faults{};
   std::vector<CsgFault> list = {};  ///< the first 200
 
@@ -54,7 +56,9 @@ struct CsgCounts {
                       std::to_string(ticks) + " ticks, " + std::to_string(contacts) +
                       " in contact, " + std::to_string(oracle_runs) + " oracle runs, " +
                       std::to_string(ambiguous) + " ambiguous, " + std::to_string(unjudged) +
-                      " unjudged, " + std::to_string(frozen) + " times frozen\n";
+                      " unjudged, " + std::to_string(frozen) + " times frozen, " +
+                      std::to_string(unsettled) + " say that they are not settled, at most " +
+                      std::to_string(longest_unsettled) + " in a row\n";
     for (std::size_t i = 1; i < faults.size(); ++i) {
       out += "  " + std::string(nameOf(static_cast<testing::Fault>(i))) + ": " +
              std::to_string(faults[i]) + "\n";
@@ -100,6 +104,7 @@ class CsgRun {
     Vec3 last = start;
     int contacts = 0;
     int still = 0;
+    int unsettled = 0;
     Vec3 settled_force(0.0);
     for (int tick = 1; tick <= most_ && contacts < contacts_; ++tick) {
       const Vec3 hip = hand.next(before.proxy, tree);
@@ -109,9 +114,13 @@ class CsgRun {
       still = hand.isFrozen() ? still + 1 : 0;
       if (still == 1 && verdict.is_contact) ++counts_.frozen;
       if (still == 30) settled_force = now.force;
+      unsettled = testing::saysSettled(now) ? 0 : unsettled + 1;
+      counts_.unsettled += unsettled > 0 ? 1 : 0;
+      counts_.longest_unsettled = std::max(counts_.longest_unsettled, unsettled);
       const bool is_frozen_fault =
-          still > 30 && (glm::length(now.force - settled_force) > 1e-3 ||
-                         (still == RandomHand::kFrozenTicks && verdict.fault == testing::Fault::kPlace));
+          still > 30 &&
+          (glm::length(now.force - settled_force) > 1e-3 || unsettled > 0 ||
+           (still == RandomHand::kFrozenTicks && verdict.fault == testing::Fault::kPlace));
       if (is_frozen_fault) {
         verdict.fault = testing::Fault::kFrozen;
         verdict.off = glm::length(now.force - settled_force);

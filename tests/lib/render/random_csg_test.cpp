@@ -25,10 +25,10 @@ long numberFrom(const char* name, long otherwise) {
 void tell(const CsgCounts& counts) {
   std::printf("%s", counts.text().c_str());
   for (const CsgFault& fault : counts.list) {
-    std::printf("  scene %llu tick %d: %s, by %.3g, depth %.3g mm, %s, hand (%.17g, %.17g, %.17g)\n",
-                static_cast<unsigned long long>(fault.scene), fault.tick, nameOf(fault.fault),
-                fault.off, 1e3 * fault.depth, fault.cause.c_str(), fault.hip.x, fault.hip.y,
-                fault.hip.z);
+    std::printf(
+        "  scene %llu tick %d: %s, by %.3g, depth %.3g mm, %s, hand (%.17g, %.17g, %.17g)\n",
+        static_cast<unsigned long long>(fault.scene), fault.tick, nameOf(fault.fault), fault.off,
+        1e3 * fault.depth, fault.cause.c_str(), fault.hip.x, fault.hip.y, fault.hip.z);
   }
   std::set<std::uint64_t> told;
   for (const CsgFault& fault : counts.list) {

@@ -29,7 +29,8 @@ struct Trace {
 std::optional<Trace> traceOf(std::uint64_t number) {
   Trace out;
   out.scene = randomScene(number);
-  if (out.scene.is_label_group) return std::nullopt;  // its layers share an image, which is not a file's to move
+  if (out.scene.is_label_group)
+    return std::nullopt;  // its layers share an image, which is not a file's to move
   out.compiled = out.scene.compiled();
   const testing::RegionTree tree(*out.compiled, out.compiled->startRegion());
   const auto start = roomyPoint(tree, number);
@@ -61,8 +62,8 @@ struct Elsewhere {
   RandomSceneOptions options;
   double scale = 1.0;
   Mat3 turn{1.0};
-  Vec3 shift{0.0};   ///< [m]
-  int samples = 1;   ///< a tick of the trace is that many of its ticks
+  Vec3 shift{0.0};  ///< [m]
+  int samples = 1;  ///< a tick of the trace is that many of its ticks
 
   [[nodiscard]] Vec3 of(const Vec3& p) const { return scale * (turn * p) + shift; }
 };
@@ -70,14 +71,15 @@ struct Elsewhere {
 struct Difference {
   long ticks = 0;
   long contacts = 0;
-  long beyond = 0;  ///< the bound, where the oracle knows one end only
-  long forked = 0;  ///< the bound, where it knows several
+  long beyond = 0;     ///< the bound, where the oracle knows one end only
+  long forked = 0;     ///< the bound, where it knows several
   double worst = 0.0;  ///< of the bound, where not forked
 };
 
 /// Both runs may be off the minimum by 1e-6 of the depth; walls are met to a billionth of their features, and to
 /// rounding of the coordinates, of which a value of a field takes about ten; in a wedge both grow by 1 / sine.
-double boundOf(const testing::RegionTree& tree, const Elsewhere& other, double depth, double blunt) {
+double boundOf(const testing::RegionTree& tree, const Elsewhere& other, double depth,
+               double blunt) {
   const double rounding = 16.0 * kEps * glm::length(other.shift) / other.scale + 16.0 * kEps * 0.05;
   return 2e-6 * depth + (8.0 * tree.onSurface() + rounding) / std::max(blunt, 1e-3);
 }

@@ -73,8 +73,7 @@ Passage feelShells(double thickness_mm, double speed, int scenes, int ticks, std
     const FieldPtr solid = randomScene(number, hollow).solid();
     const Side side = [&](const Vec3& p) { return solid->value(p); };
     ++out.scenes;
-    if (crosses(compiled, side, *start, speed, 1e-3 * thickness_mm, number, ticks,
-                out.contacts)) {
+    if (crosses(compiled, side, *start, speed, 1e-3 * thickness_mm, number, ticks, out.contacts)) {
       ++out.crossed;
       if (out.crossed <= 20) out.list += " " + std::to_string(number);
     }
@@ -101,7 +100,8 @@ TEST(ThinCsgShells, HollowToriFast) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed);
     const Vec3 axis = random.direction();
-    const FieldPtr ring = torus(Vec3(0.0), axis, random.uniform(0.008, 0.014), random.uniform(0.002, 0.006));
+    const FieldPtr ring =
+        torus(Vec3(0.0), axis, random.uniform(0.008, 0.014), random.uniform(0.002, 0.006));
     SceneDescription description;
     LayerDescription layer;
     layer.name = "ring";

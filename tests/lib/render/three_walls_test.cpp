@@ -17,7 +17,8 @@ constexpr double kTick = 0.05e-3;  // [m] that the hand goes in a tick
 struct Held {
   double worst_proxy = 0.0;  ///< [m] off the corner, at rest
   double worst_force = 0.0;  ///< [N] off K (corner - P), at rest
-  double largest_step = 0.0;  ///< [N] from tick to tick on the way in, beyond what the hand's way makes
+  double largest_step =
+      0.0;  ///< [N] from tick to tick on the way in, beyond what the hand's way makes
   int without_contact = 0;
 };
 
@@ -87,19 +88,19 @@ start: {region: first}
 }
 
 TEST(ThreeWalls, ABallMinusTwoBallsWithTheHandDeadStill) {
-  const FieldPtr solid = subtract({sphere(Vec3(0.0), 0.020), sphere(mm(20, 0, 0), 0.015),
-                                   sphere(mm(10, 18, 0), 0.012)});
+  const FieldPtr solid = subtract(
+      {sphere(Vec3(0.0), 0.020), sphere(mm(20, 0, 0), 0.015), sphere(mm(10, 18, 0), 0.012)});
   const Vec3 into = intoBallsCorner(1.0, 1.0, 1.0);
   Drive drive(sceneOfSolid(solid, true));
-  const Held held = press(drive, ballsCorner() - 0.002 * into, ballsCorner() + 0.003 * into,
-                          ballsCorner(), 400);
+  const Held held =
+      press(drive, ballsCorner() - 0.002 * into, ballsCorner() + 0.003 * into, ballsCorner(), 400);
   expectSteady(held, 0.003);
   EXPECT_NEAR(glm::length(drive.last().force), 3.0, 3e-6);
 }
 
 /// Three balls through the origin, each felt from within (its center is on the allowed side) or from outside.
 struct Corner {
-  FieldPtr solid;  ///< what the hand is within
+  FieldPtr solid;               ///< what the hand is within
   std::array<Vec3, 3> normals;  ///< [-] to where it is allowed
 };
 
@@ -132,8 +133,7 @@ TEST_P(ThreeWallsCorners, HoldAHandWithinTheConeOfTheirNormals) {
     const Corner corner = randomCorner(random, GetParam());
     const Mat3 normals(corner.normals[0], corner.normals[1], corner.normals[2]);
     // Off all three walls by the same distance.
-    const Vec3 free =
-        0.002 * glm::normalize(glm::inverse(glm::transpose(normals)) * Vec3(1.0));
+    const Vec3 free = 0.002 * glm::normalize(glm::inverse(glm::transpose(normals)) * Vec3(1.0));
     if (corner.solid->value(free) > -0.2e-3) continue;
     ++corners;
     const Vec3 weights(random.uniform(0.2, 1), random.uniform(0.2, 1), random.uniform(0.2, 1));
@@ -142,8 +142,8 @@ TEST_P(ThreeWallsCorners, HoldAHandWithinTheConeOfTheirNormals) {
     // To the corner first, so that no other minimum is nearer on the way.
     (void)drive.walk(free);
     const Held held = press(drive, Vec3(0.0), goal, Vec3(0.0), 60);
-    const bool is_right = held.worst_proxy <= 3e-9 && held.worst_force <= 3e-6 &&
-                          held.without_contact == 0;
+    const bool is_right =
+        held.worst_proxy <= 3e-9 && held.worst_force <= 3e-6 && held.without_contact == 0;
     if (!is_right && wrong++ == 0) {
       first = "corner " + std::to_string(corners) + " proxy off by " +
               std::to_string(1e9 * held.worst_proxy) + " nm, force by " +
