@@ -34,7 +34,7 @@ TEST_P(StoredTraces, AreFeltStill) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, StoredTraces, ::testing::ValuesIn(analyticScenes()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& scene) { return scene.param; });
 
 TEST(StoredTracesOfAll, NoExampleIsForgotten) {
   // The others are of scans.
