@@ -29,7 +29,7 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   fadeContent(hip.position);
   relax(hip.dt);
 
-  out.proxy = walker_.position();
+  out.proxy = walker_.position() + solver_.contact().snug;
   out.region = walker_.region();
   out.event_count = walker_.eventCount();
   out.events = walker_.events();

@@ -29,15 +29,14 @@ bool ProxySolver::CellProblem::holds(std::size_t plane_index) const noexcept {
 bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& opener) noexcept {
   batches_left_ = limits::kMaxBatches;
   trusts_sides_ = false;
-  contact_.count = 0;
-  contact_.lag = Vec3(0.0);
+  contact_ = {};
   bool may_fly = true;
   for (bool is_first = true; batches_left_ > 0; is_first = false) {
     x_ = walker_.position();
     wish_ = hip - x_;
     aim_ = wish_;
     if (wish_ == Vec3(0.0)) {
-      contact_.count = 0;
+      contact_ = {};
       friction.sticks = false;
       return true;
     }
@@ -50,7 +49,7 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
         continue;
       case Look::kFree: {
         friction.sticks = false;
-        contact_.count = 0;
+        contact_ = {};
         if (may_fly) {
           const CellWalker::Stop stop = walker_.move(hip, false);
           if (stop == CellWalker::Stop::kArrived) return true;
@@ -93,7 +92,7 @@ void ProxySolver::takeLastContact(const Vec3& hip) noexcept {
   const bool is_known = lookWithin(rest_);
   if (is_known) poseAll(wish_);
   if (!is_known || problems_ == 0 || problem_[0].solution.count == 0) {
-    contact_.count = 0;
+    contact_ = {};
     return;
   }
   takeContact(problem_[0]);
@@ -229,6 +228,7 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
     out.held.multiplier = exact.multiplier[e];
   }
   contact_.left = tangentialPart(wish_, contact_.held().walls());
+  contact_.snug = exact.step - contact_.left;
 }
 
 /// The cone: while it sticks the proxy may lag by static_ratio of the load, else it slides until it lags

@@ -41,6 +41,8 @@ struct ContactSet {
   std::array<WallContact, 3> wall{};
   std::size_t count = 0;
   Vec3 lag{0.0, 0.0, 0.0};   ///< [m] of P - x: the part along the walls that friction holds
+  /// [m] from the proxy, which stands off its walls by half a tolerance, onto their surfaces
+  Vec3 snug{0.0, 0.0, 0.0};
   Vec3 left{0.0, 0.0, 0.0};  ///< [m] of P - x: the part along the walls, held or still to go
 
   [[nodiscard]] std::span<const WallContact> walls() const noexcept { return {wall.data(), count}; }
@@ -115,6 +117,7 @@ class ProxySolver {
   void poseAll(const Vec3& wish) noexcept;
   void pose(const NearCell& cell, CellProblem& out) const noexcept;
   void solve(CellProblem& problem, const Vec3& wish) const noexcept;
+  [[nodiscard]] double turningLength(const CellProblem& problem) const noexcept;
   [[nodiscard]] Mat3 bendOf(const CellProblem& problem) const noexcept;
   [[nodiscard]] Try tryCell(CellProblem& problem, double ball) noexcept;
   [[nodiscard]] bool tryStep(const CellProblem& problem, const Vec3& step, double ball,

@@ -27,6 +27,20 @@ Mat3 ProxySolver::bendOf(const CellProblem& problem) const noexcept {
   return sum;
 }
 
+/// [m] How far the walls that hold the solution let the proxy go before their normals have turned as much as one step may.
+double ProxySolver::turningLength(const CellProblem& problem) const noexcept {
+  double bend = 0.0;
+  double feature = kInfinity;
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    if (problem.source[i].isCut() || !problem.holds(i)) continue;
+    const NearWall& wall = near_.walls()[problem.source[i].near];
+    bend = std::max(bend, wall.bend_size);
+    feature = std::min(feature, walker_.leaf(wall.leaf).feature);
+  }
+  const double most = limits::kShareOfFeature * feature;
+  return bend > 0.0 ? std::min(most, limits::kLargestTurn / bend) : 0.0;
+}
+
 /// A step in one of the cells that hold the proxy; kRests if there is none to make in any.
 ProxySolver::Try ProxySolver::moveOn() noexcept {
   double longest = 0.0;
@@ -36,6 +50,7 @@ ProxySolver::Try ProxySolver::moveOn() noexcept {
                                          limits::kLeastEigenvalue);
     longest = std::max(
         {longest, glm::length(problem.solution.step), glm::length(curved.step)});
+    if (curved.lowest < limits::kSaddle) longest = std::max(longest, turningLength(problem));
   }
   // No better point is further away than twice the distance to the aim.
   double ball = std::min(limits::kBallOverStep * longest, 2.0 * glm::length(aim_));
@@ -68,7 +83,18 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
   for (int round = 0; round < limits::kCutRounds && batches_left_ > 0; ++round) {
     if (glm::length(problem.solution.step) <= rest_) return Try::kRests;
     const Mat3 bend = bendOf(problem);
-    step = curvedStep(aim_, problem.given(), problem.solution, bend, limits::kLeastEigenvalue).step;
+    const CurvedStep curved =
+        curvedStep(aim_, problem.given(), problem.solution, bend, limits::kLeastEigenvalue);
+    step = curved.step;
+    if (curved.lowest < limits::kSaddle) {
+      // Down from a saddle every step gains, and the farther the better: as far as the normal may turn.
+      const double far = std::min(turningLength(problem), ball);
+      const double length = glm::length(step);
+      if (far > limits::kFarther * length && length > 0.0 &&
+          tryStep(problem, (far / length) * step, ball, false)) {
+        return Try::kMoved;
+      }
+    }
     const Vec3& plain = problem.solution.step;
     // Near a singular point the curvature is that of another scale.
     if (glm::length(step) < limits::kSingularStep * glm::length(plain) &&
@@ -185,8 +211,12 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
       const Vec3 normal = from.inside ? -wall.normal : wall.normal;
       const double left = gap - limits::kRest * wall.tolerance;
       planes[count++] = {normal, left};
-      const bool floats = problem.holds(i) && left > wall.tolerance;
-      if (floats) planes[count++] = {-normal, -left};
+      const bool is_held = problem.holds(i);
+      const bool floats = is_held && left > wall.tolerance;
+      // What is held already stays so while the others come down.
+      if (floats || (is_held && left > -limits::kNoise * wall.tolerance)) {
+        planes[count++] = {-normal, -left};
+      }
       is_done = is_done && gap >= 0.0 && !floats;
       if (gap >= 0.0) continue;
       std::size_t slot = 0;

@@ -61,6 +61,8 @@ inline constexpr double kSingularStep = 0.2;
 inline constexpr double kSingularTurn = 10.0;
 /// Share of the curvature that is rounding: a wall that bends no more towards the proxy is convex there.
 inline constexpr double kFlat = 1e-6;
+/// Off a saddle the step is lengthened where that makes it this many times longer.
+inline constexpr double kFarther = 1.5;
 /// Where normals turn by more than this [rad] on the way, its middle is looked at, ...
 inline constexpr double kTurnsMuch = 0.02;
 /// ... from here on its quarters too, ...
