@@ -234,7 +234,13 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
       has_landed_ = true;
       if (foundCrease(problem, length)) return false;
     }
+    const std::size_t here = count;
     for (std::size_t i = 0; i < seen_count && count < kMaxPlanes; ++i) {
+      // The same wall as it is here knows better.
+      const bool is_here = std::any_of(planes.begin(), planes.begin() + here, [&](const Plane& p) {
+        return glm::length(p.normal - seen[i].normal) <= limits::kCutTurn;
+      });
+      if (is_here) continue;
       planes[count++] = {seen[i].normal, seen[i].gap + glm::dot(seen[i].normal, y)};
     }
     const Vec3 by = closestStep(Vec3(0.0), {planes.data(), count}).step;
