@@ -1,6 +1,7 @@
 #include "palpate/interior/partition.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <string>
@@ -64,14 +65,16 @@ struct Partition::Builder {
       program.steps.push_back({Step::Op::kAnyOf, 0, 0});  // any of none
       return program;
     }
-    append(program, root, Pose{}, 1);
+    append(program, root, Pose{}, 1, kInfinity);
     std::sort(program.leaves.begin(), program.leaves.end());
     program.leaves.erase(std::unique(program.leaves.begin(), program.leaves.end()),
                          program.leaves.end());
     return program;
   }
 
-  void append(Program& program, const FieldPtr& field, const Pose& pose, std::size_t depth) {
+  /// `size` [m]: of the smallest solid so far that the field is a face of.
+  void append(Program& program, const FieldPtr& field, const Pose& pose, std::size_t depth,
+              double size) {
     if (depth >= kMaxDepth) {
       throw inputError("scene.csg_depth", "a field's CSG tree is nested deeper than 62 levels",
                        "flatten nested unions and intersections into one list");
@@ -80,14 +83,14 @@ struct Partition::Builder {
     const FieldStructure structure = field->structure();
     switch (structure.kind) {
       case FieldStructure::Kind::kLeaf:
-        program.leaves.push_back(leaf(field, pose));
+        program.leaves.push_back(leaf(field, pose, size));
         program.steps.push_back({Step::Op::kLeaf, program.leaves.back(), 0});
         break;
       case FieldStructure::Kind::kTransform:
-        append(program, structure.operands.front(), pose.after(structure.pose), depth);
+        append(program, structure.operands.front(), pose.after(structure.pose), depth, size);
         break;
       case FieldStructure::Kind::kComplement:
-        append(program, structure.operands.front(), pose, depth);
+        append(program, structure.operands.front(), pose, depth, size);
         program.steps.push_back({Step::Op::kNot, 0, 0});
         break;
       case FieldStructure::Kind::kUnion:
@@ -96,9 +99,11 @@ struct Partition::Builder {
         // Folding each operand in as it comes keeps the stack as deep as the tree, not as wide.
         const auto op =
             structure.kind == FieldStructure::Kind::kUnion ? Step::Op::kOr : Step::Op::kAnd;
+        const bool is_solid = structure.kind == FieldStructure::Kind::kFaces;
+        const double inner = is_solid ? std::min(size, field->featureSize()) : size;
         bool is_first = true;
         for (const FieldPtr& operand : structure.operands) {
-          append(program, operand, pose, depth + (is_first ? 0 : 1));
+          append(program, operand, pose, depth + (is_first ? 0 : 1), inner);
           if (!is_first) fold(program, op);
           is_first = false;
         }
@@ -126,9 +131,13 @@ struct Partition::Builder {
     steps.push_back({op, 0, 0});
   }
 
-  LeafId leaf(const FieldPtr& field, const Pose& pose) {
+  LeafId leaf(const FieldPtr& field, const Pose& pose, double size) {
     const auto known = ids.find({field.get(), pose});
-    if (known != ids.end()) return known->second;
+    if (known != ids.end()) {
+      Leaf& again = partition.leaves_[known->second];
+      if (again.is_flat) again.feature = std::min(again.feature, size);
+      return known->second;
+    }
     if (partition.leaves_.size() >= kMaxLeaves) {
       throw inputError("scene.too_many_leaves", "the scene has more than 65535 smooth leaf fields",
                        "combine some into one grid with `palpate bake`");
@@ -136,11 +145,24 @@ struct Partition::Builder {
     Leaf made;
     made.field = isIdentity(pose) ? field : place(field, pose);
     made.lipschitz = field->lipschitz();
-    made.feature = field->featureSize();
+    made.is_flat = field->isFlat();
+    made.feature = made.is_flat ? size : field->featureSize();
     const auto id = static_cast<LeafId>(partition.leaves_.size());
     partition.leaves_.push_back(std::move(made));
     ids.emplace(Placed{field.get(), pose}, id);
     return id;
+  }
+
+  /// Planes that are no solid's face take the scale of the scene, so that a scene in micrometers is the same scene.
+  void sizePlanes() {
+    double largest = 0.0;
+    for (const Leaf& leaf : partition.leaves_) {
+      if (std::isfinite(leaf.feature)) largest = std::max(largest, leaf.feature);
+    }
+    for (Leaf& leaf : partition.leaves_) {
+      if (std::isfinite(leaf.feature)) continue;
+      leaf.feature = largest > 0.0 ? largest : leaf.field->featureSize();
+    }
   }
 
   template <typename Iterator>
@@ -166,6 +188,7 @@ Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr>
   for (const FieldPtr& layer : layers) programs_.push_back(builder.build(layer));
   for (const FieldPtr& mask : masks) programs_.push_back(builder.build(mask));
   for (const Program& program : programs_) sides_.push_back(sidesOf(program));
+  builder.sizePlanes();
   parts_.assign(builder.parts.begin(), builder.parts.end());
 
   regions_of_leaf_.resize(leaves_.size());

@@ -122,7 +122,8 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
     const Source& from = problem.source[i];
     const NearWall& wall = near_.walls()[from.near];
     if (from.isCut()) continue;
-    most = std::min(most, limits::kShareOfFeature * walker_.leaf(wall.leaf).feature);
+    const Leaf& leaf = walker_.leaf(wall.leaf);
+    if (!leaf.is_flat) most = std::min(most, limits::kShareOfFeature * leaf.feature);
     if (problem.holds(i)) turn = std::max(turn, glm::length(wall.bend * step));
   }
   double share = 1.0;

@@ -24,7 +24,10 @@ inline constexpr RegionId kOutside = 0;
 struct Leaf {
   FieldPtr field;
   double lipschitz = 1.0;  ///< Field::lipschitz()
-  double feature = 1.0;    ///< [m] Field::featureSize(): the unit of tolerances at this leaf
+  /// [m] the unit of tolerances at this leaf: Field::featureSize(); of a plane, that of the solid it is a face
+  /// of, or else the largest of the other leaves
+  double feature = 1.0;
+  bool is_flat = false;  ///< Field::isFlat()
   /// A leaf between two others means something only where both of them are inside; where just one is, it is
   /// inside with the first of them and outside with the second.
   bool is_between = false;
