@@ -129,7 +129,6 @@ class ProxySolver {
   [[nodiscard]] bool keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept;
   [[nodiscard]] bool go(const CellProblem& problem, const Vec3& y) noexcept;
   [[nodiscard]] bool isCut(const CellProblem& problem, std::size_t i, Cut& out) const noexcept;
-  void bendCut(Cut& cut) const noexcept;
   [[nodiscard]] bool foundCrease(const CellProblem& problem, double length) const noexcept;
   [[nodiscard]] bool addCuts(const CellProblem& problem) noexcept;
   [[nodiscard]] bool kick() noexcept;

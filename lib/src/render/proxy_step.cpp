@@ -298,41 +298,41 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
   return true;
 }
 
-/// Whether the tangent plane of plane `i`'s wall where the last step landed is one that the proxy has to
-/// respect here: the step ended beyond it, it is not the plane here, and it does not cut off the proxy.
+/// Whether the wall of plane `i` where the last step landed is one that the proxy has to respect here: the step ended
+/// beyond it, its plane is not the one here, and carried back it does not cut off the proxy.
 bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Cut& out) const noexcept {
   const Source& from = problem.source[i];
   const NearWall& wall = landed_[i];
   if (from.isCut() || !(wall.slope > 0.0) || wall.gap(from.inside) >= 0.0) return false;
   const NearWall& here = near_.walls()[from.near];
   if (glm::length(wall.normal - here.normal) < limits::kCutTurn) return false;
+  const double side = from.inside ? -1.0 : 1.0;
+  const Vec3 off = x_ - landed_at_;
+  out = {};
   out.leaf = here.leaf;
   out.inside = from.inside;
-  out.plane.normal = from.inside ? -wall.normal : wall.normal;
-  const double left = wall.gap(from.inside) + glm::dot(out.plane.normal, x_ - landed_at_);
-  out.plane.gap = std::max(0.0, left);
-  return left >= -limits::kOnWall * here.tolerance;
-}
-
-/// A wall that bends so little between there and here that it can be carried back with its curvature: at a crease
-/// both walls' bends decide how far along it to go.
-void ProxySolver::bendCut(Cut& cut) const noexcept {
-  const Leaf& leaf = walker_.leaf(cut.leaf);
+  out.plane.normal = side * wall.normal;
+  double left = wall.gap(from.inside) + glm::dot(out.plane.normal, off);
+  double slack = limits::kOnWall * here.tolerance;
+  // A wall that bends little between there and here is carried back with its curvature: along a crease the bends of
+  // both its walls decide how far to go.
+  const Leaf& leaf = walker_.leaf(here.leaf);
   const FieldJet jet = leaf.field->jet(landed_at_);
   const double slope = glm::length(jet.gradient);
-  if (!jet.in_band || !(slope > 0.0)) return;
-  Mat3 bend = jet.hessian / slope;
-  unfoldBend(leaf, cut.inside ? -1.0 : 1.0, landed_at_, jet.gradient / slope, bend);
-  const Vec3 off = x_ - landed_at_;
-  const Vec3 turn = bend * off;
-  if (glm::length(turn) > limits::kCarries) return;
-  const double side = cut.inside ? -1.0 : 1.0;
-  const double left = side * (jet.value / slope + glm::dot(jet.gradient, off) / slope +
-                              0.5 * glm::dot(off, turn));
-  if (left < -limits::kCarriedShare * glm::length(turn) * glm::length(off)) return;
-  cut.plane.normal = side * unitOr(jet.gradient / slope + turn, side * cut.plane.normal);
-  cut.plane.gap = std::max(0.0, left);
-  cut.bend = bend;
+  if (jet.in_band && slope > 0.0) {
+    Mat3 bend = jet.hessian / slope;
+    unfoldBend(leaf, side, landed_at_, jet.gradient / slope, bend);
+    const Vec3 turn = bend * off;
+    const double size = glm::length(turn);
+    if (size <= limits::kCarries) {
+      out.bend = bend;
+      out.plane.normal = unitOr(out.plane.normal + side * turn, out.plane.normal);
+      left += 0.5 * side * glm::dot(off, turn);
+      slack += limits::kCarriedShare * size * glm::length(off);
+    }
+  }
+  out.plane.gap = std::max(0.0, left);
+  return left >= -slack;
 }
 
 /// Whether a wall that the cell has as one smooth leaf stands more in the way than its curvature explains.
@@ -359,7 +359,6 @@ bool ProxySolver::addCuts(const CellProblem& problem) noexcept {
   for (std::size_t i = 0; i < problem.planes && cuts_ < limits::kMaxCuts; ++i) {
     Cut cut;
     if (!isCut(problem, i, cut)) continue;
-    bendCut(cut);
     bool is_known = false;
     for (std::size_t c = 0; c < cuts_ && !is_known; ++c) {
       is_known = cut_[c].leaf == cut.leaf && cut_[c].inside == cut.inside &&
