@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "palpate/scene/scene.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate::test {
