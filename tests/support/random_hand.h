@@ -21,7 +21,7 @@ class RandomHand {
 
   /// The next position, from where the proxy is now; `tree` is where it may be.
   Vec3 next(const Vec3& proxy, const testing::RegionTree& tree) {
-    if (--left_ <= 0) choose();
+    if (--left_ <= 0) choose(tree);
     if (kind_ == Kind::kFrozen) return at_;
     if (kind_ == Kind::kPress) {
       // Deep in one direction for long: the proxy slides to where walls meet.
@@ -55,14 +55,15 @@ class RandomHand {
  private:
   enum class Kind { kWander, kPress, kFrozen };
 
-  void choose() {
+  void choose(const testing::RegionTree& tree) {
     const double which = random_.uniform(0.0, 1.0);
     if (which < 0.3) {
       kind_ = Kind::kWander;
       left_ = static_cast<int>(random_.uniform(10, 60));
     } else if (which < 0.8) {
       kind_ = Kind::kPress;
-      push_ = unitOr(heading_ + random_.direction(), heading_);
+      // Into a wall: the nearest one, or the one that is pressed already.
+      push_ = unitOr(downhill(tree) + 0.9 * random_.direction(), heading_);
       depth_ = random_.uniform(0.3, 1.0) * kReach;
       left_ = static_cast<int>(random_.uniform(40, 150));
     } else {
