@@ -62,8 +62,9 @@ class RandomHand {
       left_ = static_cast<int>(random_.uniform(10, 60));
     } else if (which < 0.8) {
       kind_ = Kind::kPress;
-      // Into a wall: the nearest one, or the one that is pressed already.
-      push_ = unitOr(downhill(tree) + 0.9 * random_.direction(), heading_);
+      // On along what is pressed, which slides into corners; now and then straight into the nearest wall.
+      const Vec3 ahead = random_.uniform(0.0, 1.0) < 0.7 ? heading_ : downhill(tree);
+      push_ = unitOr(ahead + random_.direction(), heading_);
       depth_ = random_.uniform(0.3, 1.0) * kReach;
       left_ = static_cast<int>(random_.uniform(40, 150));
     } else {
