@@ -21,26 +21,29 @@ class RandomHand {
 
   /// The next position, from where the proxy is now; `tree` is where it may be.
   Vec3 next(const Vec3& proxy, const testing::RegionTree& tree) {
-    if (--left_ <= 0) choose();
+    if (--left_ <= 0) choose(tree);
     if (kind_ == Kind::kFrozen) return at_;
-    const Vec3 out = at_ - proxy;
-    const double away = glm::length(out);
+    if (kind_ == Kind::kPress) {
+      // Deep in one direction for long: the proxy slides to where walls meet.
+      const Vec3 way = proxy + depth_ * push_ - at_;
+      heading_ = unitOr(unitOr(way, push_) + 0.02 * random_.direction(), push_);
+      at_ += std::min(kStep, glm::length(way)) * heading_;
+      return at_;
+    }
     if (tree.value(at_) > 0.0) {
       // Free: to the nearest wall, or there is nothing to judge.
       heading_ = unitOr(heading_ + 0.5 * downhill(tree), heading_);
-    } else if (kind_ == Kind::kPress) {
-      heading_ = unitOr(heading_ + 0.3 * unitOr(out, heading_), heading_);
     }
-    if (kind_ == Kind::kWander) heading_ = glm::normalize(heading_ + 0.3 * random_.direction());
-    Vec3 goal = at_ + kStep * heading_;
-    if (away > 0.0 && glm::length(goal - proxy) > kReach) {
+    heading_ = glm::normalize(heading_ + 0.3 * random_.direction());
+    const Vec3 out = at_ - proxy;
+    const double away = glm::length(out);
+    if (away > 0.0 && glm::length(at_ + kStep * heading_ - proxy) > kReach) {
       // Along the ball about the proxy, or back in.
       const Vec3 inward = -out / away;
       const Vec3 along = heading_ - std::min(glm::dot(heading_, inward), 0.0) * inward;
       heading_ = glm::normalize(along + 0.2 * inward + 0.1 * random_.direction());
-      goal = at_ + kStep * heading_;
     }
-    at_ = goal;
+    at_ += kStep * heading_;
     return at_;
   }
 
@@ -52,14 +55,18 @@ class RandomHand {
  private:
   enum class Kind { kWander, kPress, kFrozen };
 
-  void choose() {
+  void choose(const testing::RegionTree& tree) {
     const double which = random_.uniform(0.0, 1.0);
-    if (which < 0.35) {
+    if (which < 0.3) {
       kind_ = Kind::kWander;
       left_ = static_cast<int>(random_.uniform(10, 60));
     } else if (which < 0.8) {
       kind_ = Kind::kPress;
-      left_ = static_cast<int>(random_.uniform(10, 40));
+      // On along what is pressed, which slides into corners; now and then straight into the nearest wall.
+      const Vec3 ahead = random_.uniform(0.0, 1.0) < 0.7 ? heading_ : downhill(tree);
+      push_ = unitOr(ahead + random_.direction(), heading_);
+      depth_ = random_.uniform(0.3, 1.0) * kReach;
+      left_ = static_cast<int>(random_.uniform(40, 150));
     } else {
       kind_ = Kind::kFrozen;
       left_ = kFrozenTicks;
@@ -80,6 +87,8 @@ class RandomHand {
   Random random_;
   Vec3 at_;
   Vec3 heading_;
+  Vec3 push_{0.0, 0.0, -1.0};
+  double depth_ = kReach;  ///< [m]
   Kind kind_ = Kind::kWander;
   int left_ = 60;
 };

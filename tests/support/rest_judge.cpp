@@ -35,7 +35,7 @@ std::string causeOf(const Verdict& verdict) {
                                                          "three walls"};
   std::string out = kHeldBy[static_cast<std::size_t>(std::clamp(verdict.touching, 0, 3))];
   if (verdict.has_kink) out = "apex or kink";
-  return out + (verdict.is_minimum ? ", another minimum" : ", no minimum");
+  return out + (verdict.is_minimum ? ", at a minimum" : ", no minimum");
 }
 
 bool RestJudge::isDirect(const Vec3& from, const Vec3& to, double moved) const {
@@ -69,6 +69,10 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   if (depth > atHand()) {
     out.is_contact = true;
     if (force_off > kTolerance * stiffness_ * depth + least) {
+      const RestCheck checked = oracle_.check(now.proxy, hip);
+      out.touching = checked.touching;
+      out.has_kink = checked.has_kink;
+      out.is_minimum = checked.residual <= 1e-6 * depth;
       return is_at_fault(Fault::kForce, force_off);
     }
     if (!now.contact) return is_at_fault(Fault::kContact, depth);

@@ -190,6 +190,21 @@ void ProxySolver::solve(CellProblem& problem, const Vec3& wish) const noexcept {
   problem.gain = glm::dot(wish, wish) - glm::dot(left, left);
 }
 
+namespace {
+
+/// The part of `wish` along the planes that hold `solution`.
+Vec3 tangentialStep(const Vec3& wish, const std::array<Plane, 3>& planes,
+                    const PlaneSolution& solution) noexcept {
+  HeldWalls held;
+  for (int k = 0; k < solution.count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    held.wall[held.count++].normal = planes[static_cast<std::size_t>(solution.plane[i])].normal;
+  }
+  return tangentialPart(wish, held.walls());
+}
+
+}  // namespace
+
 /// The walls that hold the solution. How hard each is pressed is measured from its surface: the proxy stands
 /// off by half a tolerance.
 void ProxySolver::takeContact(const CellProblem& problem) noexcept {
@@ -197,6 +212,8 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
   const int material = contact_.count > 0 ? contact_.wall[0].facet.material : 0;
   contact_.count = 0;
   contact_.lag = Vec3(0.0);
+  contact_.snug = Vec3(0.0);
+  double most = 0.0;
   std::array<Plane, 3> planes{};
   std::array<const Source*, 3> source{};
   const auto count = static_cast<std::size_t>(s.count);
@@ -206,8 +223,17 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
     planes[k] = problem.plane[index];
     const NearWall& wall = near_.walls()[source[k]->near];
     if (!source[k]->isCut() && planes[k].gap == 0.0) planes[k].gap = wall.gap(source[k]->inside);
+    most = std::max(most, limits::kNoise * wall.tolerance + planes[k].gap);
   }
-  const PlaneSolution exact = closestStep(wish_, {planes.data(), count});
+  PlaneSolution exact = closestStep(wish_, {planes.data(), count});
+  // Walls that are almost parallel may meet far off: then they are taken to meet where the proxy stands.
+  const Vec3 onto = exact.step - tangentialStep(wish_, planes, exact);
+  if (glm::length(onto) > most) {
+    for (Plane& plane : planes) plane.gap = 0.0;
+    exact = closestStep(wish_, {planes.data(), count});
+  } else {
+    contact_.snug = onto;
+  }
   for (std::size_t e = 0; e < static_cast<std::size_t>(exact.count); ++e) {
     const auto k = static_cast<std::size_t>(exact.plane[e]);
     const Source& from = *source[k];
@@ -228,7 +254,6 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
     out.held.multiplier = exact.multiplier[e];
   }
   contact_.left = tangentialPart(wish_, contact_.held().walls());
-  contact_.snug = exact.step - contact_.left;
 }
 
 /// The cone: while it sticks the proxy may lag by static_ratio of the load, else it slides until it lags

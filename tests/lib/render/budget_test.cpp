@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
+
 #include "lib/render/drive.h"
 #include "support/random_hand.h"
 #include "support/random_scene.h"
@@ -53,8 +56,8 @@ void leap(std::uint64_t number, Tally& tally) {
 TEST(Budget, NeverFartherFromTheHandAndNeverInside) {
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   Tally tally;
-  for (std::uint64_t number = 1; number <= (slow ? 20'000U : 500U); ++number) leap(number, tally);
-  EXPECT_GT(tally.ticks, 20'000);
+  for (std::uint64_t number = 1; number <= (slow ? 20'000U : 250U); ++number) leap(number, tally);
+  EXPECT_GT(tally.ticks, 10'000);
   EXPECT_EQ(tally.inside, 0) << "of " << tally.ticks;
   EXPECT_EQ(tally.farther, 0) << "of " << tally.ticks << ", by up to " << tally.worst << " m";
   EXPECT_EQ(tally.left_region, 0);

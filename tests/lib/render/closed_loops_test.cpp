@@ -88,12 +88,12 @@ TEST(ClosedLoops, OverRandomSolidsGiveNoEnergy) {
     const testing::RegionTree tree(*compiled, compiled->startRegion());
     const auto start = roomyPoint(tree, number);
     if (!start) continue;
-    // About where a hand that goes straight on meets the first wall.
+    // About where a pressed hand brought the proxy: often to where walls meet.
     Random random(number + 5);
-    const Vec3 way = random.direction();
+    const auto renderer = makeRenderer(compiled);
+    RandomHand hand(number, *start);
     Vec3 center = *start;
-    for (int i = 0; i < 300 && tree.value(center) > 0.0; ++i) center += 1e-4 * way;
-    if (tree.value(center) > 0.0) continue;
+    for (int i = 0; i < 300; ++i) center = renderer->update({hand.next(center, tree)}).proxy;
     const Loop loop(random, center);
     ++loops;
     const Lap coarse = lapOf(compiled, *start, loop, 4000);

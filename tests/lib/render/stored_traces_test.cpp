@@ -23,6 +23,11 @@ const std::vector<std::string>& analyticScenes() {
   return all;
 }
 
+/// gtest's own printer of texts puts them in quotes.
+std::string nameOfExample(const ::testing::TestParamInfo<std::string>& example) {
+  return example.param;
+}
+
 class StoredTraces : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(StoredTraces, AreFeltStill) {
@@ -34,7 +39,7 @@ TEST_P(StoredTraces, AreFeltStill) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, StoredTraces, ::testing::ValuesIn(analyticScenes()),
-                         [](const auto& scene) { return scene.param; });
+                         nameOfExample);
 
 TEST(StoredTracesOfAll, NoExampleIsForgotten) {
   // The others are of scans.

@@ -78,19 +78,22 @@ struct Difference {
 
 /// Both runs may be off the minimum by 1e-6 of the depth; walls are met to a billionth of their features, and to
 /// rounding of the coordinates, of which a value of a field takes about ten; in a wedge both grow by 1 / sine.
-double boundOf(const testing::RegionTree& tree, const Elsewhere& other, double depth,
-               double blunt) {
+double boundOf(double on_surface, const Elsewhere& other, double depth, double blunt) {
   const double rounding = 16.0 * kEps * glm::length(other.shift) / other.scale + 16.0 * kEps * 0.05;
-  return 2e-6 * depth + (8.0 * tree.onSurface() + rounding) / std::max(blunt, 1e-3);
+  return 2e-6 * depth + (8.0 * on_surface + rounding) / std::max(blunt, 1e-3);
 }
 
 Difference compare(const Elsewhere& other) {
   Difference out;
   for (const Trace& trace : traces()) {
     const RandomScene scene = randomScene(trace.scene.number, other.options);
-    const auto renderer = makeRenderer(scene.compiled());
+    const ScenePtr compiled = scene.compiled();
+    const auto renderer = makeRenderer(compiled);
+    const testing::RegionTree there(*compiled, compiled->startRegion());
     const testing::RegionTree tree(*trace.compiled, trace.compiled->startRegion());
     const testing::RestOracle oracle(tree);
+    // A plane has a billionth of 0.1 m for its tolerance, whatever the size of the scene.
+    const double on_surface = std::max(tree.onSurface(), there.onSurface() / other.scale);
     (void)renderer->update({other.of(trace.path[0]), Vec3(0.0), 1e-3});
     for (std::size_t i = 1; i < trace.path.size(); ++i) {
       TickResult now;
@@ -105,14 +108,14 @@ Difference compare(const Elsewhere& other) {
       const Vec3 here = glm::transpose(other.turn) * (now.proxy - other.shift) / other.scale;
       const double depth = glm::length(first.proxy - trace.path[i]);
       const double off = glm::length(here - first.proxy);
-      if (off <= boundOf(tree, other, depth, 1.0)) {
-        out.worst = std::max(out.worst, off / boundOf(tree, other, depth, 1.0));
+      if (off <= boundOf(on_surface, other, depth, 1.0)) {
+        out.worst = std::max(out.worst, off / boundOf(on_surface, other, depth, 1.0));
         continue;
       }
       // Deep in a wedge, or one of several ends that rounding chose between: then both go on from different places,
       // and the rest of the trace is not compared.
       const testing::Rest rest = oracle.solve(trace.ticks[i - 1].proxy, trace.path[i]);
-      const double bound = boundOf(tree, other, depth, rest.blunt);
+      const double bound = boundOf(on_surface, other, depth, rest.blunt);
       if (off <= bound) continue;
       bool is_forked = false;
       for (const Vec3& end : rest.others) is_forked |= glm::length(end - rest.point) > bound;
