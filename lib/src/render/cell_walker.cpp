@@ -235,7 +235,7 @@ void CellWalker::turn(LeafId leaf) noexcept {
   ++state_;
 }
 
-double CellWalker::slideTo(const Vec3& target, const NearCell& cell, std::span<const LeafId> near,
+CellWalker::Slid CellWalker::slideTo(const Vec3& target, const NearCell& cell, std::span<const LeafId> near,
                            std::span<const LeafId> held) noexcept {
   struct Change {
     LeafId leaf = 0;
@@ -267,7 +267,7 @@ double CellWalker::slideTo(const Vec3& target, const NearCell& cell, std::span<c
   for (std::size_t i = 0; i < count; ++i) {
     turn(changes[i].leaf);
     for (const LeafId wall : held) {
-      if (!facetAt(wall).isClosed()) return changes[i].at;
+      if (!facetAt(wall).isClosed()) return {false, changes[i].leaf, changes[i].at};
     }
   }
   jump(target);
@@ -275,7 +275,7 @@ double CellWalker::slideTo(const Vec3& target, const NearCell& cell, std::span<c
     const LeafId leaf = changes[i].leaf;
     if (opens_[leaf] && side(leaf) * valueHere(leaf) < -tolerance_[leaf]) turn(leaf);
   }
-  return 1.0;
+  return {};
 }
 
 }  // namespace palpate

@@ -62,9 +62,14 @@ class CellWalker {
   Stop move(const Vec3& target, bool stop_at_crossing) noexcept;
   /// To `target` [m], along the walls `held`: the solver found that the way keeps to the sides `cell` of
   /// `near` leaves. Other leaves change side on the way, in order; where that opens one of the walls the
-  /// walker stays, on the far side of that leaf already, and says at which share of the way this was; else
-  /// it arrives, and says 1.
-  [[nodiscard]] double slideTo(const Vec3& target, const NearCell& cell,
+  /// walker stays, on the far side of that leaf already, and says which this was and at about which share of
+  /// the way; else it arrives.
+  struct Slid {
+    bool arrived = true;
+    LeafId leaf = 0;
+    double share = 1.0;
+  };
+  [[nodiscard]] Slid slideTo(const Vec3& target, const NearCell& cell,
                                std::span<const LeafId> near,
                                std::span<const LeafId> held) noexcept;
   /// To `x` [m], which slideTo() or a solver's way back onto the walls found.

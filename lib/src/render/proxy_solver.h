@@ -154,6 +154,7 @@ class ProxySolver {
   std::array<NearWall, kMaxPlanes> landed_{};  ///< by plane: its wall where the last step landed
   Vec3 landed_at_{0.0, 0.0, 0.0};              ///< [m]
   bool has_landed_ = false;
+  int rim_ = -1;  ///< leaf that a way back onto the walls has to end on as well; -1: none
   bool trusts_sides_ = false;
   int batches_left_ = 0;
 };

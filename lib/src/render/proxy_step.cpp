@@ -198,7 +198,7 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
     std::size_t count = 0;
     bool is_done = true;
     double tolerance = 0.0;
-    for (std::size_t i = 0; i < problem.planes && count + 1 < kMaxPlanes; ++i) {
+    for (std::size_t i = 0; i < problem.planes && count + 3 < kMaxPlanes; ++i) {
       const Source& from = problem.source[i];
       if (from.isCut()) continue;
       const NearWall wall = wallAt(from.near, y);
@@ -229,8 +229,18 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
       seen[slot] = {normal, left - glm::dot(normal, y)};
       seen_count = std::max(seen_count, slot + 1);
     }
+    if (rim_ >= 0) {
+      const auto id = static_cast<LeafId>(rim_);
+      const NearWall wall = wallOf(id, walker_.leaf(id), walker_.leaf(id).field->sample(y));
+      if (!(wall.slope > 0.0)) return false;
+      const double side = walker_.side(id);
+      const double left = side * wall.distance - limits::kRest * wall.tolerance;
+      planes[count++] = {side * wall.normal, left};
+      planes[count++] = {-side * wall.normal, -left};
+      is_done = is_done && std::fabs(left) <= wall.tolerance;
+    }
     if (is_done) return true;
-    if (round == 0) {
+    if (round == 0 && rim_ < 0) {
       landed_at_ = y;
       has_landed_ = true;
       if (foundCrease(problem, length)) return false;
@@ -286,11 +296,16 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
     if (problem.holds(i)) held[count++] = walls[problem.source[i].near].leaf;
   }
   const std::span<const LeafId> leaves(near.data(), walls.size());
-  const double share = walker_.slideTo(y, problem.cell, leaves, {held.data(), count});
-  if (share >= 1.0) return true;
-  Vec3 rim = x_ + share * (y - x_);
+  const CellWalker::Slid slid =
+      walker_.slideTo(y, problem.cell, leaves, {held.data(), count});
+  if (slid.arrived) return true;
+  // To where the opening begins: on the walls that hold the proxy, and on the leaf that was passed there.
+  Vec3 rim = x_ + slid.share * (y - x_);
   const double length = std::max(glm::length(y - x_), rest_);
-  if (restore(problem, rim, length)) {
+  rim_ = static_cast<int>(slid.leaf);
+  const bool is_there = restore(problem, rim, length);
+  rim_ = -1;
+  if (is_there) {
     walker_.jump(rim);
   } else {
     (void)walker_.slideTo(y, problem.cell, leaves, {});
