@@ -369,20 +369,26 @@ bool ProxySolver::foundCrease(const CellProblem& problem, double length) const n
 /// Keeps the tangent planes of the cell's walls that the last step ended beyond. Of walls that are hollow towards the
 /// proxy they hold everywhere. False if there is none.
 bool ProxySolver::addCuts(const CellProblem& problem) noexcept {
-  const std::size_t known = cuts_;
+  bool has_new = false;
   if (!has_landed_) return false;
   for (std::size_t i = 0; i < problem.planes && cuts_ < limits::kMaxCuts; ++i) {
     Cut cut;
     if (!isCut(problem, i, cut)) continue;
-    bool is_known = false;
-    for (std::size_t c = 0; c < cuts_ && !is_known; ++c) {
-      is_known = cut_[c].leaf == cut.leaf && cut_[c].inside == cut.inside &&
-                 glm::length(cut_[c].plane.normal - cut.plane.normal) < limits::kSameCut &&
-                 cut_[c].plane.gap <= cut.plane.gap;
+    // Met again from nearer by, the same wall is better known; met as it was, there is nothing new.
+    std::size_t slot = cuts_;
+    bool is_new = true;
+    for (std::size_t c = 0; c < cuts_; ++c) {
+      if (cut_[c].leaf != cut.leaf || cut_[c].inside != cut.inside) continue;
+      const double turn = glm::length(cut_[c].plane.normal - cut.plane.normal);
+      if (turn < limits::kSameCut && cut_[c].plane.gap <= cut.plane.gap) is_new = false;
+      if (turn < limits::kSameWall) slot = c;
     }
-    if (!is_known) cut_[cuts_++] = cut;
+    if (!is_new) continue;
+    cut_[slot] = cut;
+    cuts_ = std::max(cuts_, slot + 1);
+    has_new = true;
   }
-  return cuts_ > known;
+  return has_new;
 }
 
 /// At rest by the first order: looks whether the proxy can come closer by the second.

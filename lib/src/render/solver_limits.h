@@ -84,6 +84,8 @@ inline constexpr double kBeyondFold = 1e-3;
 inline constexpr double kFoldsLess = 0.1;
 /// Cuts of one wall whose normals differ by less than this [rad] are one, if the new one is not closer.
 inline constexpr double kSameCut = 1e-6;
+/// Cuts whose normals differ by less than this [rad] are of the same wall: the last one counts.
+inline constexpr double kSameWall = 0.1;
 /// A cut whose wall turns by less than this [rad] between where it was met and the proxy is carried back with its
 /// curvature, ...
 inline constexpr double kCarries = 0.3;
