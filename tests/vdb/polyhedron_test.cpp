@@ -40,7 +40,7 @@ Mesh meshOf(const std::vector<Vec3>& vertices, const std::vector<std::vector<int
     for (const int v : polygon) text += " " + std::to_string(v + 1);
     text += "\n";
   }
-  const testing::TempFolder folder;
+  const palpate::testing::TempFolder folder;
   return readMesh(folder.file("polygons.obj", text), 1.0);
 }
 
@@ -239,7 +239,7 @@ TEST(PolyhedronContact, CubeFeelsLikeTheBox) {
   ASSERT_TRUE(field);
   Drive mesh(sceneOfSolid(field));
   Drive truth(sceneOfSolid(box(Vec3(0.0), size)));
-  palpate::testing::Random random(3);
+  palpate::test::Random random(3);
   Vec3 p(0.0, 0.0, 30 * kMm);
   Vec3 goal = p;
   int contacts = 0;

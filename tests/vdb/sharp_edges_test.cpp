@@ -11,6 +11,7 @@
 
 #include "lib/render/hard_judge.h"
 #include "palpate/core/error.h"
+#include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
 #include "vdb/shapes.h"
 
