@@ -5,6 +5,7 @@
 #include <openvdb/tools/MeshToVolume.h>
 
 #include <cmath>
+#include <map>
 #include <random>
 
 #include "bench/bake_bench.h"

@@ -11,7 +11,8 @@ namespace palpate::vdb::test {
 /// in another solid is cut away, one plane after the other.
 class UnionOracle {
  public:
-  /// Convex solids, wound outwards.
+  /// Convex solids, wound outwards. Faces of two that look the same way in one plane must not overlap: each would be
+  /// taken off the other.
   explicit UnionOracle(const std::vector<Mesh>& parts);
 
   /// The signed distance at `p`, if it is less than `reach`; else `reach` or its opposite.

@@ -20,6 +20,9 @@ constexpr double kReach = 5.0;
 /// [voxels] The grid rounds an edge off by less: what is farther from its surface is none of it.
 constexpr double kMostRounding = 2.0;
 
+/// [voxels] Nearer to an edge or corner than that nothing is said to bend.
+constexpr double kCreep = 0.1;
+
 struct Surface {
   std::vector<Vec3> vertices;
   std::vector<MeshTriangle> triangles;
@@ -132,6 +135,9 @@ class SharpEdges final : public Field {
       return out;
     }
     out.gradient = sign / distance * way;
+    // By an edge the surface bends all at once. As a slide goes no farther than the normal turns by half a radian, it
+    // would creep over the edge; taken for flat, it goes over it and is pulled back.
+    if (distance < kCreep * voxel_) return out;
     const double bend = sign / distance;
     out.hessian = (Mat3(1.0) - outer(out.gradient, out.gradient)) * bend;
     if (feature < 4) {
