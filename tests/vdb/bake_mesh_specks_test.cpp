@@ -1,5 +1,5 @@
 // Surfaces as they come out of scans: good, but for specks, slivers, small open shells and gaps. What a voxel
-// cannot show is dropped and told; what it could show is asked about.
+// cannot show is dropped and reported; what it could show is refused.
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@ namespace palpate::vdb {
 namespace {
 
 /// [voxels] On a wall's sides, its neighborhood is looked at from so far: what is nearer to another wall than
-/// that is told wrong, and distances are off by no more.
+/// that may be taken for the wrong side, and distances are off by no more.
 constexpr double kBeside = 1e-5;
 
 constexpr std::size_t kBatch = 256;
