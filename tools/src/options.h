@@ -16,6 +16,14 @@ struct GeneralOptions {
   bool force = false;  ///< verbs that write files only
 };
 
+/// What a scan or a mesh leaves open.
+struct ScanOptions {
+  std::string affine;        ///< image: "sform", "qform" or "spacing"; empty: as the file says
+  std::string space;         ///< mesh, NRRD image: "RAS" or "LPS"; empty: as the file says
+  std::optional<int> frame;  ///< 4-D image
+  std::string series;        ///< DICOM
+};
+
 struct TouchOptions {
   std::string scene;
   // Exactly one of these five says how the hand moves.
@@ -44,14 +52,16 @@ struct TouchOptions {
   std::string trace;
   std::string image;
   std::string plot;
-};
 
-/// What a scan or a mesh leaves open.
-struct ScanOptions {
-  std::string affine;        ///< image: "sform", "qform" or "spacing"; empty: as the file says
-  std::string space;         ///< mesh, NRRD image: "RAS" or "LPS"; empty: as the file says
-  std::optional<int> frame;  ///< 4-D image
-  std::string series;        ///< DICOM
+  // Where `scene` is a mesh, a scan or a grid.
+  std::optional<double> above;
+  std::vector<std::string> labels;
+  std::string names;
+  std::string units;
+  std::string layer;  ///< which grid of a .vdb
+  std::string voxel;
+  ScanOptions scan;
+  std::string write_scene;
 };
 
 struct BakeOptions {
@@ -64,7 +74,8 @@ struct BakeOptions {
   std::string shell;             ///< mesh: thickness; empty: a solid
   std::optional<double> smooth;  ///< mesh: [degrees]
   std::optional<double> above;
-  std::string keep;  ///< "largest" or "all"; empty: largest
+  bool distances = false;  ///< image: its voxels are signed distances, negative inside
+  std::string keep;        ///< "largest" or "all"; empty: largest
   bool fill = false;
   std::vector<std::string> labels;
   std::string names;

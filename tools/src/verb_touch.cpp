@@ -10,6 +10,7 @@
 #include "palpate/devices/virtual_device.h"
 #include "palpate/render/trace.h"
 #include "picture/picture.h"
+#include "shape_scene.h"
 #include "stop_signal.h"
 #include "text.h"
 #include "touch_plot.h"
@@ -100,7 +101,39 @@ void checkExit(devices::ServoExit exit) {
 
 }  // namespace
 
-Report run(const TouchOptions& options, const GeneralOptions& general, Console& console) {
+namespace {
+
+bool hasMotion(const TouchOptions& o) {
+  return !(o.path.empty() && o.press.empty() && o.stroke.empty() && o.tap.empty() &&
+           o.insert.empty());
+}
+
+/// Presses on a place of the shape's surface that is found from above.
+void pressOnSurface(const Scene& scene, TouchOptions& options, Console& console) {
+  const SurfacePoint found = findSurfacePoint(scene);
+  const auto text = [](const Vec3& v) {
+    return formatNumber(v.x, 17) + "," + formatNumber(v.y, 17) + "," + formatNumber(v.z, 17);
+  };
+  options.press = text(found.place / scene.metresPerUnit());
+  if (options.normal.empty()) options.normal = text(found.normal);
+  console.note("pressing on its surface at " +
+               formatVector(found.place / scene.metresPerUnit(), 6) + " " + scene.lengthUnit() +
+               "; --press X,Y,Z presses elsewhere");
+}
+
+}  // namespace
+
+Report run(const TouchOptions& asked, const GeneralOptions& general, Console& console) {
+  TouchOptions options = asked;
+  const bool is_shape = isShape(options.scene);
+  const bool finds_place = is_shape && !hasMotion(options);
+  std::string scene_text;
+  if (is_shape) {
+    scene_text = shapeSceneText(options);
+  } else {
+    refuseShapeOptions(options);
+  }
+  if (finds_place) options.press = "0,0,0";  // for now: its parameters apply
   checkMotion(options);
   const ForceLimits limits = forceLimits(options);
   OutputFiles files(general.force);
@@ -121,14 +154,24 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
     files.announce(options.plot, inputs);
   }
 
-  LoadedScene loaded(options.scene, console);
-  devices::Path path = makeMotion(options, loaded.unit());
+  if (!options.write_scene.empty()) {
+    if (!hasExtension(options.write_scene, ".yaml")) {
+      throw Error(ErrorKind::kUsage,
+                  {"usage.touch", "the scene " + options.write_scene + " must end in .yaml"});
+    }
+    files.announce(options.write_scene, inputs);
+    files.write(options.write_scene, scene_text);
+  }
+
+  LoadedScene loaded(options.scene, console, 0, scene_text);
   RendererSettings settings = rendererSettings(options.renderer);
   const bool is_paper =
       settings.kind.value_or(loaded.description().renderer) == RendererKind::kPaper;
   // A picture shows all layers, and so does the paper's table.
   const bool wants_all = is_paper || !options.image.empty();
   const ScenePtr scene = loaded.compile(wants_all ? Purpose::kShow : Purpose::kTouch);
+  if (finds_place) pressOnSurface(*scene, options, console);
+  devices::Path path = makeMotion(options, loaded.unit());
   settings.limits = limits;
   const auto renderer = makeRenderer(scene, settings);
 
@@ -178,6 +221,7 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   report.json["grids"] = loaded.gridsJson();
   report.json["trace"] = options.trace.empty() ? Json() : Json(options.trace);
   report.json["image"] = options.image.empty() ? Json() : Json(options.image);
+  report.json["written_scene"] = options.write_scene.empty() ? Json() : Json(options.write_scene);
   report.json["plot"] = options.plot.empty() ? Json() : Json(options.plot);
 
   report.text = summaryText(summary, *scene) + limitsText(limits);
@@ -192,6 +236,7 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   if (!options.trace.empty()) written += "Trace    " + options.trace + "\n";
   if (!options.image.empty()) written += "Picture  " + options.image + "\n";
   if (!options.plot.empty()) written += "Plot     " + options.plot + "\n";
+  if (!options.write_scene.empty()) written += "Scene    " + options.write_scene + "\n";
   if (!written.empty()) report.text += "\n" + written;
   return report;
 }

@@ -49,6 +49,24 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   add(app, g, "--image", "FILE.png", o.image,
       "draw the scene cut open, with the path and the forces");
   add(app, g, "--plot", "FILE.svg", o.plot, "draw the force over the depth of the hand");
+  add(app, g, "--write-scene", "FILE.yaml", o.write_scene,
+      "a mesh, image or grid: the scene that it is touched as");
+  g = "A mesh, an image or a grid instead of a scene (without a motion: pressed on from above)";
+  add(app, g, "--above", "VALUE", o.above,
+      "image, grid of densities: the surface around what is greater");
+  add(app, g, "--labels", "NAME,...", o.labels,
+      "image: a layer for each of these labels, values or names")
+      ->expected(1)
+      ->delimiter(',')
+      ->take_all()
+      ->allow_extra_args(false);
+  add(app, g, "--names", "FILE", o.names, "image: table of names of its labels");
+  add(app, g, "--layer", "NAME", o.layer, "grid: this one of a file (default: every level set)");
+  add(app, g, "--voxel", "LENGTH", o.voxel,
+      "mesh, image: of the grid that is made, in mm or with a unit (default: as in a scene)");
+  add(app, g, "--units", "UNIT", o.units,
+      "mesh, or grid that does not say: what one unit is (default: mm; glTF and GLB are metres)");
+  addScan(app, "What an image or a mesh leaves open", o.scan, true);
 }
 
 void defineQuery(CLI::App& app, Invocation& invocation) {
@@ -95,7 +113,7 @@ Verb touchVerb() {
       "touch",
       "Move a probe through a scene and feel it",
       "palpate touch data/scenes/container.yaml --insert 0,0,60 0,0,0 --back --trace trace.csv",
-      "palpate touch SCENE MOTION [OPTIONS]",
+      "palpate touch SCENE|MESH|IMAGE|GRID.vdb MOTION [OPTIONS]",
       "Prints the regions in the order in which they were entered, with the depth below the "
       "first\n"
       "surface met and the peak force in each; the ports passed; how long a tick takes; and what "
@@ -106,7 +124,9 @@ Verb touchVerb() {
       "and the same input gives the same trace, bit for bit except tick_ns.",
       {"--stroke", "--insert"},
       defineTouch,
-      [](const Invocation& i) { need(!chosen<TouchOptions>(i).scene.empty(), "SCENE"); },
+      [](const Invocation& i) {
+        need(!chosen<TouchOptions>(i).scene.empty(), "SCENE, MESH, IMAGE or GRID");
+      },
       true};
 }
 

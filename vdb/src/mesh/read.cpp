@@ -163,6 +163,11 @@ Mesh readAsItIs(const std::string& path, double metres_per_unit) {
 
 }  // namespace
 
+std::string prescribedUnit(const std::string& path) {
+  const std::string extension = extensionOf(path);
+  return extension == ".gltf" || extension == ".glb" ? "m" : "";
+}
+
 Mesh readMesh(const std::string& path, double metres_per_unit, Space space) {
   Mesh mesh = readAsItIs(path, metres_per_unit);
   const Space stated = statedSpace(path);
