@@ -4,6 +4,7 @@
 
 #include "input_kind.h"
 #include "loaded_scene.h"
+#include "map_coverage.h"
 #include "motion.h"
 #include "output_files.h"
 #include "palpate/devices/servo_loop.h"
@@ -102,10 +103,12 @@ void checkExit(devices::ServoExit exit) {
 
 Report run(const TouchOptions& options, const GeneralOptions& general, Console& console) {
   checkMotion(options);
-  const ForceLimits limits = forceLimits(options);
-  OutputFiles files(general.force);
+  ForceLimits limits = forceLimits(options);
+  OutputFiles files(general);
   const std::vector<std::string> inputs = {options.scene, options.path};
-  if (!options.trace.empty()) files.announce(options.trace, inputs);
+  if (!options.trace.empty()) {
+    files.announce(options.trace, inputs, OutputFiles::Streams::kYes);
+  }
   if (!options.image.empty()) {
     if (!hasExtension(options.image, ".png")) {
       throw Error(ErrorKind::kUsage,
@@ -123,12 +126,16 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
 
   LoadedScene loaded(options.scene, console);
   devices::Path path = makeMotion(options, loaded.unit());
+  limits.period = nominalPeriod(path, options.rate);
   RendererSettings settings = rendererSettings(options.renderer);
   const bool is_paper =
       settings.kind.value_or(loaded.description().renderer) == RendererKind::kPaper;
   // A picture shows all layers, and so does the paper's table.
   const bool wants_all = is_paper || !options.image.empty();
   const ScenePtr scene = loaded.compile(wants_all ? Purpose::kShow : Purpose::kTouch);
+  for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
+    console.warn(gapText(gap, scene->lengthUnit(), scene->metresPerUnit()));
+  }
   settings.limits = limits;
   const auto renderer = makeRenderer(scene, settings);
 
