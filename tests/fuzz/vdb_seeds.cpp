@@ -66,9 +66,10 @@ std::vector<std::string> vdbSeeds() {
                                     gridOf<openvdb::Vec3SGrid>("vector", openvdb::Vec3s(1, 2, 3)),
                                     gridOf<openvdb::MaskGrid>("mask", true)};
   using namespace openvdb::io;
-  for (const std::uint32_t compression :
-       {std::uint32_t{COMPRESS_NONE}, std::uint32_t{COMPRESS_ZIP},
-        COMPRESS_ZIP | COMPRESS_ACTIVE_MASK, COMPRESS_BLOSC | COMPRESS_ACTIVE_MASK}) {
+  constexpr std::uint32_t kWays[] = {COMPRESS_NONE, COMPRESS_ZIP,
+                                     COMPRESS_ZIP | COMPRESS_ACTIVE_MASK,
+                                     COMPRESS_BLOSC | COMPRESS_ACTIVE_MASK};
+  for (const std::uint32_t compression : kWays) {
     seeds.push_back(fileOf(all, compression));
   }
   // A frustum, and two names for one tree.

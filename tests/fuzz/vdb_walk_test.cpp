@@ -3,6 +3,7 @@
 #include "grid/vdb_walk.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
 #include <filesystem>
