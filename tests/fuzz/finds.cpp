@@ -118,12 +118,14 @@ void addImages(std::vector<Find>& out) {
 }
 
 void addScenes(std::vector<Find>& out) {
-  std::string scene = "palpate: 1\nlength: mm\nlayers:\n";
-  for (int i = 0; i < 100'000; ++i) {
-    scene +=
-        " - {name: l" + std::to_string(i) + ", inside: {sphere: {center: [0, 0, 0], radius: 1}}}\n";
+  for (const int layers : {5'000, 100'000}) {
+    std::string scene = "palpate: 1\nlength: mm\nlayers:\n";
+    for (int i = 0; i < layers; ++i) {
+      scene += " - {name: l" + std::to_string(i) +
+               ", inside: {sphere: {center: [0, 0, 0], radius: 1}}}\n";
+    }
+    out.push_back({"yaml_" + std::to_string(layers) + "_layers", "yaml", std::move(scene)});
   }
-  out.push_back({"yaml_100000_layers", "yaml", std::move(scene)});
   std::string list = "[";
   for (int i = 0; i < 4'000'000; ++i) list += "1,";
   out.push_back({"yaml_four_million_numbers", "yaml", list + "1]"});

@@ -71,7 +71,7 @@ void MeshBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c)
 /// The search for ears takes the cube of a face's corners in the worst case, and their square as a rule.
 void MeshBuilder::spend(std::size_t tests, std::size_t corners) {
   constexpr std::uint64_t kMost =
-      1'000'000'000;  // a few seconds; faces of a thousand corners, a thousand times
+      200'000'000;  // seconds; faces of a thousand corners by the hundred
   constexpr std::uint64_t kPoll = 1U << 20U;
   const std::uint64_t before = spent_;
   spent_ += tests;
