@@ -17,8 +17,8 @@ constexpr int kPriority = 75;
 /// Longer than most wake-ups are late on a stock kernel: 80 us, or 8 % of a 1 kHz tick.
 constexpr std::int64_t kSpin = 80'000;  // [ns]
 
-/// A stop that another thread asks for does not wake a sleeper: of a slow loop, the device would hold its force
-/// until the next tick is due.
+/// A stop that another thread asks for does not wake a sleeper: of a slow loop, the device would
+/// hold its force until the next tick is due.
 constexpr std::int64_t kLongestSleep = 10'000'000;  // [ns]
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What the servo loop does when readings stop, when the device's limits make no sense, and while it sleeps.
+// What the servo loop does when readings stop, when the device's limits make no sense, and while it
+// sleeps.
 
 #include <gtest/gtest.h>
 
@@ -88,8 +89,8 @@ TEST(ServoSafety, SilenceWhileItRecoversBeginsAnew) {
 }
 
 TEST(ServoSafety, RealtimeWatchesTheClock) {
-  // Readings stop for 300 turns of 0.2 ms. The turns that are left after 20 ms write zero, on a machine that is
-  // late too: late turns only make the reading older.
+  // Readings stop for 300 turns of 0.2 ms. The turns that are left after 20 ms write zero, on a
+  // machine that is late too: late turns only make the reading older.
   ScriptedDevice device;
   script(device, 300, 0);
   const ServoReport report = runServo(device, push, {.realtime = true, .rate = 5000.0}, kNeverStop);

@@ -132,8 +132,8 @@ std::string polygon(int corners) {
 }
 
 TEST(Finds, AConvexFaceOfManyCornersIsCutAtOnceAndAnyOtherWithinBounds) {
-  // The search for ears takes the square of the corners of a convex face, the cube of the worst one's. Beyond some
-  // ten thousand corners a regular polygon's turns are lost in rounding.
+  // The search for ears takes the square of the corners of a convex face, the cube of the worst
+  // one's. Beyond some ten thousand corners a regular polygon's turns are lost in rounding.
   const TempFolder folder;
   const vdb::Mesh mesh = vdb::readMesh(folder.file("disc.obj", polygon(9000)), 1.0);
   EXPECT_EQ(mesh.triangles.size(), 8998U);
@@ -203,7 +203,8 @@ std::string many(std::string_view kind, int vertices) {
   return "solid a\n" + facets + "endsolid a\n";
 }
 
-/// A stop that was asked for before the work begins: whatever polls it within the file's first bytes ends there.
+/// A stop that was asked for before the work begins: whatever polls it within the file's first
+/// bytes ends there.
 TEST(Finds, EveryReaderStopsWhenItIsAskedTo) {
   const std::atomic<bool> stop{true};
   struct Watch {

@@ -20,8 +20,8 @@ struct Reader {
 
 enum class Outcome { kRead, kRefused };
 
-/// Gives `bytes` to the reader as a file. palpate::Error is an answer; anything else that is thrown comes through,
-/// and is a fault.
+/// Gives `bytes` to the reader as a file. palpate::Error is an answer; anything else that is thrown
+/// comes through, and is a fault.
 Outcome readBytes(const Reader& reader, std::string_view bytes);
 
 }  // namespace palpate::fuzz

@@ -1,4 +1,5 @@
-// Sound files, every file that ever did harm, and some thousand damaged ones: each is read or refused by an Error.
+// Sound files, every file that ever did harm, and some thousand damaged ones: each is read or
+// refused by an Error.
 
 #include <gtest/gtest.h>
 

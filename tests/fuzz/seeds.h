@@ -1,5 +1,6 @@
 #pragma once
-// Small sound files of every kind, made by the tests' own writers, and every damaged one that ever did harm.
+// Small sound files of every kind, made by the tests' own writers, and every damaged one that ever
+// did harm.
 
 #include <string>
 #include <string_view>

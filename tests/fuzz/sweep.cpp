@@ -1,6 +1,7 @@
-// palpate_damage_sweep [MUTANTS] [SEED]: damages files of every format in every way, MUTANTS times each, and gives each to
-// the command with 4 GB of address space and 20 s. Told are signals, hangs, exit codes that are not documented, and
-// runs that took more than 1 GB for an input of less than 10 MB; such inputs are kept beside. Exit 1 if there are any.
+// palpate_damage_sweep [MUTANTS] [SEED]: damages files of every format in every way, MUTANTS times
+// each, and gives each to the command with 4 GB of address space and 20 s. Told are signals, hangs,
+// exit codes that are not documented, and runs that took more than 1 GB for an input of less than
+// 10 MB; such inputs are kept beside. Exit 1 if there are any.
 
 #include <fcntl.h>
 #include <poll.h>

@@ -1,4 +1,5 @@
-// palpate_fuzz_corpus FOLDER: writes what fuzzers start from to FOLDER/READER/, made anew each time.
+// palpate_fuzz_corpus FOLDER: writes what fuzzers start from to FOLDER/READER/, made anew each
+// time.
 
 #include <cstdio>
 #include <filesystem>

@@ -21,8 +21,9 @@ struct MapGap {
   [[nodiscard]] bool misses() const noexcept { return share <= 0.0; }
 };
 
-/// Looked at in some thousand places of each layer whose parameters are maps of voxels; of a port, those of the
-/// layers that it leads into. Shares above 99.5 % are whole: the layer's rim may lie within half a voxel of the map's.
+/// Looked at in some thousand places of each layer whose parameters are maps of voxels; of a port,
+/// those of the layers that it leads into. Shares above 99.5 % are whole: the layer's rim may lie
+/// within half a voxel of the map's.
 [[nodiscard]] std::vector<MapGap> mapGaps(const SceneDescription& description, const Scene& scene);
 
 /// "the map of skin/stiffness (map.vdb) does not reach its layer: ..." `unit` is that of the scene.

@@ -73,7 +73,8 @@ std::string randomWord() {
   return word;
 }
 
-/// Makes an empty file whose name begins as given, which was not there before. Empty name: it could not be made.
+/// Makes an empty file whose name begins as given, which was not there before. Empty name: it could
+/// not be made.
 std::string makeTemporary(const std::string& begin) {
   for (int attempt = 0; attempt < 100; ++attempt) {
     std::string name = begin + "." + randomWord() + ".tmp";

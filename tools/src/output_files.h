@@ -9,10 +9,11 @@
 
 namespace palpate::tools {
 
-/// Checked before the work, written beside their names after it, renamed together at the end. Whatever is not
-/// committed is removed. A file that is replaced keeps its mode (and owner, if this process may give it). What is
-/// not a regular file is never replaced: devices and pipes are written directly, after the files, and "-" is standard
-/// output. The files written meanwhile have names that nobody can foresee, and are opened exclusively.
+/// Checked before the work, written beside their names after it, renamed together at the end.
+/// Whatever is not committed is removed. A file that is replaced keeps its mode (and owner, if this
+/// process may give it). What is not a regular file is never replaced: devices and pipes are
+/// written directly, after the files, and "-" is standard output. The files written meanwhile have
+/// names that nobody can foresee, and are opened exclusively.
 class OutputFiles {
  public:
   /// Whether an output may be "-". Only what is written from front to back can be streamed.
@@ -25,12 +26,14 @@ class OutputFiles {
   OutputFiles& operator=(const OutputFiles&) = delete;
 
   /// Announces an output. @throws Error: kOperation if it exists (and --force is not given), its folder
-  /// is missing or cannot be written to, or it is neither file, pipe nor character device; kUsage if it is one of
-  /// `inputs` or was announced before, or is "-" and cannot be (with --json, for one).
+  /// is missing or cannot be written to, or it is neither file, pipe nor character device; kUsage
+  /// if it is one of `inputs` or was announced before, or is "-" and cannot be (with --json, for
+  /// one).
   void announce(const std::string& path, const std::vector<std::string>& inputs,
                 Streams streams = Streams::kNo);
 
-  /// Where to write the announced file `path`: a file of ours, beside it or in the folder for temporary files.
+  /// Where to write the announced file `path`: a file of ours, beside it or in the folder for
+  /// temporary files.
   [[nodiscard]] const std::string& temporary(const std::string& path) const;
   /// Writes `text` to the temporary of `path`. @throws Error (kOperation).
   void write(const std::string& path, std::string_view text) const;

@@ -11,7 +11,8 @@
 
 namespace palpate {
 
-/// Layers, walls, ports and sheets of a scene, of each: what is kept of pairs of regions grows with their square.
+/// Layers, walls, ports and sheets of a scene, of each: what is kept of pairs of regions grows with
+/// their square.
 inline constexpr std::size_t kMostItems = 4096;
 
 template <typename Items>

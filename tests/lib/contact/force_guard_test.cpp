@@ -50,7 +50,8 @@ TEST(ForceGuard, AGapBringsNoMoreThanANominalPeriod) {
 }
 
 TEST(ForceGuard, TheRampAndTheSlewRateDoNotFeedOnEachOther) {
-  // 2 N, a ramp of 1 s: 1 N is due half-way. The slew rate allows 50 N/s, and never holds 2 N/s back.
+  // 2 N, a ramp of 1 s: 1 N is due half-way. The slew rate allows 50 N/s, and never holds 2 N/s
+  // back.
   ForceGuard guard({.max_growth = 50.0, .ramp = 1.0});
   double force = 0.0;
   for (int i = 0; i <= 500; ++i) force = guard.apply(push(2.0), kTick).x;
@@ -116,8 +117,9 @@ TEST(ForceGuard, ALimitThatIsNoNumberOrBelowZeroPermitsNothing) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(ramped.apply(push(3.0), kTick), push(0.0));
 }
 
-/// What the limits mean, written down in another way: a force is sent if it is not longer than the maximum and
-/// if some share of the last one is within reach of it. Shares are looked for one after the other.
+/// What the limits mean, written down in another way: a force is sent if it is not longer than the
+/// maximum and if some share of the last one is within reach of it. Shares are looked for one after
+/// the other.
 struct Model {
   ForceLimits limits;
   Vec3 last{0.0};

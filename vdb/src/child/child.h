@@ -80,10 +80,11 @@ struct ChildTask {
   std::string path;
 };
 
-/// Runs `work` in a child with the limits of libraryLimits(), and gives back what it wrote. `work` must need no
-/// thread but its own. An Error that it throws is thrown here. Polls the stop flag while it waits.
-/// @throws Error (kInput, `code`) if the child crashed, took too long or too much memory; kOperation if there can
-/// be none; kCancelled.
+/// Runs `work` in a child with the limits of libraryLimits(), and gives back what it wrote. `work`
+/// must need no thread but its own. An Error that it throws is thrown here. Polls the stop flag
+/// while it waits.
+/// @throws Error (kInput, `code`) if the child crashed, took too long or too much memory;
+/// kOperation if there can be none; kCancelled.
 [[nodiscard]] ChildReader runInChild(const ChildTask& task,
                                      const std::function<void(ChildWriter&)>& work);
 

@@ -1,7 +1,7 @@
 #pragma once
 /// .vdb streams with errors. OpenVDB's own io::File never looks at its streams, so that a full disk and a
-/// file cut short pass for success; here every short read or write throws std::ios_base::failure, and every
-/// length is checked (vdb_walk.h) before OpenVDB takes it for true.
+/// file cut short pass for success; here every short read or write throws std::ios_base::failure,
+/// and every length is checked (vdb_walk.h) before OpenVDB takes it for true.
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -31,7 +31,8 @@ class VdbArchive : public openvdb::io::Archive {
   void open(std::istream& stream);
   [[nodiscard]] const std::vector<Entry>& entries() const noexcept { return entries_; }
 
-  /// Reads the whole tree of an entry, also if that is another entry's. @throws std::exception as open() does.
+  /// Reads the whole tree of an entry, also if that is another entry's. @throws std::exception as
+  /// open() does.
   openvdb::GridBase::Ptr readGridOf(std::istream& stream, const Entry& entry) const;
 
   /// Reads an entry's tree without the values of its leaves.

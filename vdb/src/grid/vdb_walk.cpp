@@ -177,7 +177,8 @@ class VdbWalk::Impl {
       if (!is_instance) treeHere(type, is_half, true);
       return;
     }
-    // Each grid must lie behind the one before, or a damaged file could keep its reader here for ever.
+    // Each grid must lie behind the one before, or a damaged file could keep its reader here for
+    // ever.
     if (grid < bytes_.position() || end <= grid) fail("its table of contents makes no sense");
     bytes_.seek(grid);
     gridHead();

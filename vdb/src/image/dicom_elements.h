@@ -15,8 +15,9 @@ struct PixelPart {
   std::uint64_t size = 0;
 };
 
-/// GDCM takes what is missing of a file for zeros, or ends the process on an assertion. So every file is walked by
-/// this code: every length must fit, every sequence end. GDCM sees none of these bytes but those of packed pixels.
+/// GDCM takes what is missing of a file for zeros, or ends the process on an assertion. So every
+/// file is walked by this code: every length must fit, every sequence end. GDCM sees none of these
+/// bytes but those of packed pixels.
 struct DicomElements {
   std::string path;
   std::map<std::uint32_t, std::string>

@@ -45,7 +45,8 @@ std::string plainPixels(const DicomElements& slice, int allocated) {
   return bytes;
 }
 
-/// Nothing that is of use packs better; what claims to is damaged, and would be given memory for it.
+/// Nothing that is of use packs better; what claims to is damaged, and would be given memory for
+/// it.
 void requireLikely(const DicomElements& slice, std::uint64_t bytes) {
   constexpr std::uint64_t kBestRatio = 4096;
   constexpr std::uint64_t kAlwaysLikely = std::uint64_t{1} << 24U;

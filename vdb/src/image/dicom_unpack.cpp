@@ -11,7 +11,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// What GDCM unpacks, and is known to do well: RLE, and JPEG in its lossless, lossy, JPEG-LS and 2000 kinds.
+/// What GDCM unpacks, and is known to do well: RLE, and JPEG in its lossless, lossy, JPEG-LS and
+/// 2000 kinds.
 bool isKnownPacking(const std::string& syntax) {
   constexpr std::string_view kRle = "1.2.840.10008.1.2.5";
   constexpr std::string_view kJpeg = "1.2.840.10008.1.2.4.";

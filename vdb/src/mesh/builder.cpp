@@ -68,7 +68,8 @@ void MeshBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c)
   }
 }
 
-/// The search for ears takes the cube of a face's corners in the worst case, and their square as a rule.
+/// The search for ears takes the cube of a face's corners in the worst case, and their square as a
+/// rule.
 void MeshBuilder::spend(std::size_t tests, std::size_t corners) {
   constexpr std::uint64_t kMost =
       200'000'000;  // seconds; faces of a thousand corners by the hundred

@@ -30,7 +30,8 @@ class MeshBuilder {
   }
 
   /// Corners are numbers from addVertex(); polygons are cut into triangles by their ears.
-  /// @throws Error (kInput, mesh.polygon) once that takes too long, kCancelled once a stop was asked for.
+  /// @throws Error (kInput, mesh.polygon) once that takes too long, kCancelled once a stop was
+  /// asked for.
   void addPolygon(std::span<const std::uint32_t> corners);
 
   /// @throws Error (kInput, mesh.no_faces)

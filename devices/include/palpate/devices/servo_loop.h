@@ -18,8 +18,9 @@ struct ServoSettings {
   /// Try for a real-time priority of the calling thread (SCHED_FIFO) and for locked memory, for as
   /// long as the loop runs; what was refused is in the report.
   bool elevate = false;
-  /// [s] without a new reading after which the force is zero; above 0. Without `realtime` a turn of the loop counts
-  /// as 1 / rate. At least one turn may pass without a reading, however slow the loop is.
+  /// [s] without a new reading after which the force is zero; above 0. Without `realtime` a turn of
+  /// the loop counts as 1 / rate. At least one turn may pass without a reading, however slow the
+  /// loop is.
   double watchdog = 0.02;
   /// [s] from zero to full force once readings come again after that; 0 or more.
   double recovery = 0.1;
@@ -47,16 +48,17 @@ struct ServoReport {
 /// - A force that is not finite, or that answers a position or velocity that is not finite, is written
 ///   as zero. One longer than DeviceInfo::max_force is shortened to it, its direction kept.
 /// - kStale: the tick gets the previous reading again; before the first reading it is not called.
-/// - Watchdog: once the last new reading is `watchdog` old, zero is written and the tick is not called, until a
-///   new reading comes; from then on forces grow from zero to their full length within `recovery`.
+/// - Watchdog: once the last new reading is `watchdog` old, zero is written and the tick is not
+///   called, until a new reading comes; from then on forces grow from zero to their full length
+///   within `recovery`.
 /// - A device whose maximum force is NaN, zero or below is written zero.
 /// - kTimeout, kDisconnected, kFault and kEnd, from read() or write(), end the loop.
 /// - realtime: tick k is due at start + k / rate by the monotonic clock. After an overrun the ticks
 ///   that were missed are skipped, never made up for.
 ///
 /// The loop itself never allocates, locks or throws.
-/// @throws Error (kDevice) from opening; Error (kUsage) for an empty `tick`, a bad rate (realtime), watchdog or
-/// recovery.
+/// @throws Error (kDevice) from opening; Error (kUsage) for an empty `tick`, a bad rate (realtime),
+/// watchdog or recovery.
 [[nodiscard]] ServoReport runServo(Device& device, const ServoTick& tick,
                                    const ServoSettings& settings, const std::atomic<bool>& stop);
 

@@ -5,11 +5,13 @@
 
 namespace palpate {
 
-/// From now on pollStop() of any thread looks at `flag`, which must outlive the work; null: at none. One flag for
-/// the process, which a signal handler may set. Not to be called while work runs on other threads.
+/// From now on pollStop() of any thread looks at `flag`, which must outlive the work; null: at
+/// none. One flag for the process, which a signal handler may set. Not to be called while work runs
+/// on other threads.
 void watchStopFlag(const std::atomic<bool>* flag) noexcept;
 
-/// True once the watched flag is set. A relaxed load: cheap enough for every thousand voxels or bytes.
+/// True once the watched flag is set. A relaxed load: cheap enough for every thousand voxels or
+/// bytes.
 [[nodiscard]] bool isStopRequested() noexcept;
 
 /// @throws Error (kCancelled) once the watched flag is set.
