@@ -143,7 +143,7 @@ Report run(const ConvertOptions& options, const GeneralOptions& general, Console
   }
   if (to_grid) return run(options.bake, general, console);
 
-  OutputFiles files(general.force);
+  OutputFiles files(general);
   files.announce(output, {options.bake.input, options.bake.names});
   const Written written = to_image ? asImage(options, console) : asMesh(options, console);
   checkStop();

@@ -2,6 +2,7 @@
 
 #include "json_parts.h"
 #include "loaded_scene.h"
+#include "map_coverage.h"
 #include "output_files.h"
 #include "palpate/scene/transitions.h"
 #include "saving.h"
@@ -138,8 +139,9 @@ std::string graphOf(const Scene& scene, const SceneDescription& description,
 }  // namespace
 
 Report run(const ExplainOptions& options, const GeneralOptions& general, Console& console) {
-  OutputFiles files(general.force);
-  if (!options.svg.empty()) files.announce(options.svg, {options.scene});
+  OutputFiles files(general);
+  if (!options.svg.empty())
+    files.announce(options.svg, {options.scene}, OutputFiles::Streams::kYes);
   LoadedScene loaded(options.scene, console);
   const ScenePtr compiled = loaded.compile(Purpose::kTouch);
   const Scene& scene = *compiled;
@@ -287,6 +289,15 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
   }
   if (!map_table.empty()) {
     report.text += "\nParameters that differ from place to place\n" + map_table.text("  ");
+  }
+  report.json["map_gaps"] = Json::array();
+  for (const MapGap& gap : mapGaps(description, scene)) {
+    report.text += "  " + gapText(gap, scene.lengthUnit(), unit) + "\n";
+    report.json["map_gaps"].push_back({{"name", gap.parameter},
+                                       {"source", gap.source},
+                                       {"share", gap.share},
+                                       {"away_m", gap.away},
+                                       {"size_ratio", gap.size_ratio}});
   }
 
   report.json["sources"] = Json::array();

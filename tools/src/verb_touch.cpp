@@ -4,6 +4,7 @@
 
 #include "input_kind.h"
 #include "loaded_scene.h"
+#include "map_coverage.h"
 #include "motion.h"
 #include "output_files.h"
 #include "palpate/devices/servo_loop.h"
@@ -135,10 +136,12 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   }
   if (finds_place) options.press = "0,0,0";  // for now: its parameters apply
   checkMotion(options);
-  const ForceLimits limits = forceLimits(options);
-  OutputFiles files(general.force);
+  ForceLimits limits = forceLimits(options);
+  OutputFiles files(general);
   const std::vector<std::string> inputs = {options.scene, options.path};
-  if (!options.trace.empty()) files.announce(options.trace, inputs);
+  if (!options.trace.empty()) {
+    files.announce(options.trace, inputs, OutputFiles::Streams::kYes);
+  }
   if (!options.image.empty()) {
     if (!hasExtension(options.image, ".png")) {
       throw Error(ErrorKind::kUsage,
@@ -172,6 +175,10 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   const ScenePtr scene = loaded.compile(wants_all ? Purpose::kShow : Purpose::kTouch);
   if (finds_place) pressOnSurface(*scene, options, console);
   devices::Path path = makeMotion(options, loaded.unit());
+  limits.period = nominalPeriod(path, options.rate);
+  for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
+    console.warn(gapText(gap, scene->lengthUnit(), scene->metresPerUnit()));
+  }
   settings.limits = limits;
   const auto renderer = makeRenderer(scene, settings);
 

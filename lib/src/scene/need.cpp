@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "palpate/core/stop.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate {
@@ -155,6 +156,7 @@ class Needs {
 
   /// Empty if it may be touched.
   std::string whyUntouchable(std::size_t region) {
+    pollStop();
     // What it is felt through may be that thick.
     const Box3 box = boxOf(region)->grownBy(felt_).intersectedWith(needed_);
     for (std::size_t other = 1; other < names_.size(); ++other) {

@@ -28,7 +28,7 @@ double RegionReader::readForce(MapReader& reader, std::string_view key, double f
 
 void RegionReader::readPorts(const Node& ports) {
   const Document& document = loader_.document();
-  const auto& nodes = readList(document, ports, "'ports'", 1, 0);
+  const auto& nodes = readList(document, ports, "'ports'", 1, kMostItems);
   for (const Node& node : nodes) {
     MapReader reader(loader_, node, "a port");
     PortDescription port;
@@ -121,7 +121,7 @@ void RegionReader::readAfter(const Node& after, PortDescription& port) const {
 
 void RegionReader::readSheets(const Node& sheets) {
   const Document& document = loader_.document();
-  for (const Node& node : readList(document, sheets, "'sheets'", 1, 0)) {
+  for (const Node& node : readList(document, sheets, "'sheets'", 1, kMostItems)) {
     MapReader reader(loader_, node, "a sheet");
     SheetDescription sheet;
     sheet.name = readName(reader, "sheet");

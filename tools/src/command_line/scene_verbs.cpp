@@ -36,11 +36,12 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1.0, 100000.0));
   addFlag(app, g, "--realtime", o.realtime,
           "keep to the clock (default: as fast as the machine goes)");
-  g = "Limits of the force, in this order (default: none)";
+  g = "Limits of the force (default: none)";
   add(app, g, "--max-force", "FORCE", o.max_force,
       "shorten longer forces to this, direction kept: 3 (N), 500mN");
   add(app, g, "--slew", "FORCE/s", o.slew,
-      "let the force grow by no more than this a second: 100 (N/s); it may drop at once");
+      "let the force grow, in any direction, by no more than this a second: 100 (N/s); it may drop "
+      "at once");
   add(app, g, "--ramp", "TIME", o.ramp,
       "start without force, and reach all of it after this: "
       "0.2 (s), 200ms");
