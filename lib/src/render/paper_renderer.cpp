@@ -183,8 +183,14 @@ RegionId PaperRenderer::regionBehind(std::size_t layer, double side) noexcept {
   const Vec3& x = contact_.surface_point;
   const Vec3 inward = -side * unitOr(surface.field->sample(x).gradient, Vec3(0.0));
   scene_->partition().signsAt(x + layers_[layer].beneath * inward, scratch_);
+  const auto is_wall = [&](RegionId region) {
+    return region != state_ && !scene_->passages().wall(state_, region).absent;
+  };
   const RegionId behind = scene_->partition().regionOf(scratch_);
-  if (behind != state_ && !scene_->passages().wall(state_, behind).absent) return behind;
+  if (is_wall(behind)) return behind;
+  // At a rim, beside which there is no wall: what the probe itself is in.
+  const RegionId here = scene_->partition().regionOf(now_);
+  if (is_wall(here)) return here;
   return side > 0.0 ? static_cast<RegionId>(layer + 1) : kOutside;
 }
 
