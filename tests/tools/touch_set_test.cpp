@@ -20,7 +20,8 @@ class TouchSet : public ::testing::Test {
   std::vector<double> column(std::size_t index) {
     std::vector<double> all;
     const auto lines = linesOf(textOf(folder_.path("t.csv")));
-    for (std::size_t i = 1; i < lines.size(); ++i) all.push_back(std::stod(cellsOf(lines[i])[index]));
+    for (std::size_t i = 1; i < lines.size(); ++i)
+      all.push_back(std::stod(cellsOf(lines[i])[index]));
     return all;
   }
 
@@ -28,8 +29,8 @@ class TouchSet : public ::testing::Test {
 };
 
 // Straight through the syrup at 50 mm/s: 4 N.s/m are 0.2 N.
-const std::vector<std::string> kThroughSyrup = {"--insert", "0,0,14", "0,0,-30", "--hold", "0",
-                                                "--trace",  "t.csv",  "--json"};
+const std::vector<std::string> kThroughSyrup = {"--insert", "0,0,14",  "0,0,-30", "--hold",
+                                                "0",        "--trace", "t.csv",   "--json"};
 
 TEST_F(TouchSet, TheDragBecomesThatOfTheNewViscosityInTheTickOfItsTime) {
   std::string text = kContainer;
@@ -78,14 +79,15 @@ TEST_F(TouchSet, FlowLatticeAndCutting) {
     ASSERT_NEAR(x[i], times[i] < 0.5 ? 0.0 : 4.0 * 0.02, 1e-9) << times[i];
   }
   EXPECT_TRUE(had_lattice);
-  EXPECT_EQ(touch({"--insert", "0,0,14", "0,0,-30", "--set", "syrup.cutting=0.5@0.1"}).exit_code, 0);
+  EXPECT_EQ(touch({"--insert", "0,0,14", "0,0,-30", "--set", "syrup.cutting=0.5@0.1"}).exit_code,
+            0);
 }
 
 TEST_F(TouchSet, WhatIsNoSettingIsWrongUsage) {
-  for (const char* bad : {"syrup.viscosity=9", "syrup.viscosity@1", "viscosity=9@1", "syrup=9@1",
-                          "syrup.stiffness=9@1", "syrup.viscosity=9 N@1", "syrup.viscosity=@1",
-                          "syrup.viscosity=9@", "syrup.viscosity=9@-1", "syrup.viscosity=9@1 N",
-                          "syrup.flow=1,2@1", ".viscosity=9@1"}) {
+  for (const char* bad :
+       {"syrup.viscosity=9", "syrup.viscosity@1", "viscosity=9@1", "syrup=9@1",
+        "syrup.stiffness=9@1", "syrup.viscosity=9 N@1", "syrup.viscosity=@1", "syrup.viscosity=9@",
+        "syrup.viscosity=9@-1", "syrup.viscosity=9@1 N", "syrup.flow=1,2@1", ".viscosity=9@1"}) {
     const CommandResult result =
         touch({"--insert", "0,0,14", "0,0,-30", "--set", bad, "--trace", "t.csv"});
     EXPECT_EQ(result.exit_code, 2) << bad << "\n" << result.err;
@@ -110,8 +112,7 @@ TEST_F(TouchSet, WhatTheSceneCannotHaveIsBadInput) {
         touch({"--insert", "0,0,14", "0,0,-30", "--set", row.set, "--trace", "t.csv"});
     EXPECT_EQ(result.exit_code, 3) << row.set << "\n" << result.err;
     EXPECT_NE(result.err.find(row.told), std::string::npos) << result.err;
-    const CommandResult json =
-        touch({"--insert", "0,0,14", "0,0,-30", "--set", row.set, "--json"});
+    const CommandResult json = touch({"--insert", "0,0,14", "0,0,-30", "--set", row.set, "--json"});
     EXPECT_EQ(json.exit_code, 3);
     EXPECT_TRUE(parseOnly(json).contains("error")) << json.out;
   }
@@ -138,9 +139,9 @@ TEST_F(TouchSet, APressThatMissesSaysSoAndEndsWith1) {
 }
 
 TEST_F(TouchSet, ThePapersParametersAreFlags) {
-  const std::vector<std::string> press = {"--insert",   "0,0,30", "0,0,-41", "1,0,-41", "--hold",
-                                          "0",          "--trace", "t.csv",  "--force",
-                                          "--renderer", "paper"};
+  const std::vector<std::string> press = {"--insert", "0,0,30",     "0,0,-41", "1,0,-41",
+                                          "--hold",   "0",          "--trace", "t.csv",
+                                          "--force",  "--renderer", "paper"};
   const auto last_x = [&](std::vector<std::string> more) {
     more.insert(more.begin(), press.begin(), press.end());
     EXPECT_EQ(touch(more).exit_code, 0);
@@ -155,14 +156,13 @@ TEST_F(TouchSet, ThePapersParametersAreFlags) {
   const CommandResult wrong = touch({"--insert", "0,0,30", "0,0,0", "--alpha", "1"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_NE(wrong.err.find("--renderer paper"), std::string::npos) << wrong.err;
-  EXPECT_EQ(touch({"--insert", "0,0,30", "0,0,0", "--renderer", "paper", "--epsilon", "0"}).exit_code,
-            2);
+  EXPECT_EQ(
+      touch({"--insert", "0,0,30", "0,0,0", "--renderer", "paper", "--epsilon", "0"}).exit_code, 2);
 }
 
 TEST(TouchPaper, TheCompositeTubePassesItsPortsAsInFigure27) {
-  const CommandResult result =
-      runPalpate({"touch", scenePath("composite_tube.yaml"), "--renderer", "paper", "--insert",
-                  "-60,0,0", "60,0,0", "--json"});
+  const CommandResult result = runPalpate({"touch", scenePath("composite_tube.yaml"), "--renderer",
+                                           "paper", "--insert", "-60,0,0", "60,0,0", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   Json json = parseOnly(result);
   std::vector<std::string> ports;
