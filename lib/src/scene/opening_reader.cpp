@@ -131,7 +131,7 @@ AfterDescription RegionReader::readBefore(const Node& item) const {
   if (item.kind != Node::Kind::kMap) return {readText(document, item, "a port")};
   MapReader reader(loader_, item, "an item of 'after'");
   AfterDescription before(reader.requireText("port"));
-  if (reader.has("times")) {
+  if (reader.optional("times") != nullptr) {
     const double times = reader.numberOr("times", 1.0);
     if (times != std::floor(times) || times < 1.0 || times > kMostTimes) {
       throw reader.errorAt(
