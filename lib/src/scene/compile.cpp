@@ -66,7 +66,6 @@ ScenePtr SceneCompiler::build() {
   scene_->touch_ = survey_.touch;
   scene_->keep_memory_ = description_.keep_memory;
   scene_->paper_ = description_.paper;
-  findSheets();
   markReachable();
   scene_->renderer_ = description_.renderer;
   scene_->device_ = description_.device;

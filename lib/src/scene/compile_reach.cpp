@@ -74,18 +74,18 @@ RegionId SceneCompiler::start() {
   throw unknownRegion(description_.start_region, description_.start_place);
 }
 
-void SceneCompiler::findSheets() {
-  scene_->sheet_in_.assign(description_.sheets.size() * count(), false);
-  for (std::size_t i = 0; i < description_.sheets.size(); ++i) findSheet(i);
-}
-
-/// Shoots through where the sheet may be, and looks at the places where it was hit.
-void SceneCompiler::findSheet(std::size_t sheet) {
+/// The regions that the sheet was seen to lie in, within `part` if that is given: shoots through where it may be.
+std::vector<bool> SceneCompiler::regionsOfSheet(std::size_t sheet,
+                                                const FieldSourcePtr& part) const {
+  std::vector<bool> in(count(), false);
   const SheetDescription& given = description_.sheets[sheet];
   const Field& on = *made(given.on);
-  Box3 box = boxes_.front().intersectedWith(on.bounds());
-  if (given.where) box = box.intersectedWith(made(given.where)->bounds());
-  if (box.isEmpty() || !box.isBounded()) return;
+  Box3 box = on.bounds();
+  for (const FieldSourcePtr& limit : {given.where, part}) {
+    if (limit) box = box.intersectedWith(made(limit)->bounds());
+  }
+  if (!box.isBounded()) box = box.intersectedWith(boxes_.front());
+  if (box.isEmpty() || !box.isBounded()) return in;
   Shots shots(box.grownBy(1e-3 * glm::length(box.size())));
   for (int shot = 0; shot < kShots; ++shot) {
     auto [a, b] = shots.next();
@@ -95,10 +95,14 @@ void SceneCompiler::findSheet(std::size_t sheet) {
       const Vec3 middle = 0.5 * (a + b);
       ((on.value(middle) < 0.0) == is_inside ? a : b) = middle;
     }
-    if (given.where && !(made(given.where)->value(a) < 0.0)) continue;
+    if ((given.where && !(made(given.where)->value(a) < 0.0)) ||
+        (part && !(made(part)->value(a) < 0.0))) {
+      continue;
+    }
     const RegionId region = scene_->regionAt(a);
-    if (region == scene_->regionAt(b)) scene_->sheet_in_[sheet * count() + region] = true;
+    if (region == scene_->regionAt(b)) in[region] = true;
   }
+  return in;
 }
 
 std::set<std::pair<RegionId, RegionId>> SceneCompiler::findPort(PortId id) const {
@@ -116,9 +120,9 @@ std::set<std::pair<RegionId, RegionId>> SceneCompiler::findPort(PortId id) const
     }
   }
   if (port.on.empty() && port.mask < 0) return wanted;  // all of the wall
-  box = box.intersectedWith(boxes_.front());
   const FieldSourcePtr& where = description_.ports[id].where;
   if (where) box = box.intersectedWith(made(where)->bounds());
+  if (!box.isBounded()) box = box.intersectedWith(boxes_.front());
   std::set<std::pair<RegionId, RegionId>> found;
   if (box.isEmpty() || !box.isBounded()) return found;
   const Partition& partition = scene_->partition_;
@@ -176,10 +180,11 @@ void SceneCompiler::markReachable() {
   for (std::size_t id = 0; id < scene_->ports().size(); ++id) {
     const Port& port = scene_->ports()[id];
     if (port.sheet < 0) continue;
+    const std::vector<bool> lies_in =
+        regionsOfSheet(static_cast<std::size_t>(port.sheet), description_.ports[id].where);
     for (std::size_t i = 0; i < count(); ++i) {
       const auto region = static_cast<RegionId>(i);
-      // A small sheet escapes the look.
-      const bool is_doubtful = !scene_->liesIn(static_cast<std::size_t>(port.sheet), region);
+      const bool is_doubtful = !lies_in[i];  // a small opening escapes the look
       for (const bool inward : {true, false}) {
         if (port.direction == (inward ? PortDirection::kOut : PortDirection::kIn)) continue;
         table.ways.push_back({region, region, static_cast<int>(id), inward, is_doubtful});

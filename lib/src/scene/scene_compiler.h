@@ -50,8 +50,8 @@ class SceneCompiler {
   // compile_reach.cpp
   void lookAround();
   RegionId start();
-  void findSheets();
-  void findSheet(std::size_t sheet);
+  [[nodiscard]] std::vector<bool> regionsOfSheet(std::size_t sheet,
+                                                 const FieldSourcePtr& part) const;
   /// Pairs of regions, the lower one first, that were seen to touch where the port is.
   [[nodiscard]] std::set<std::pair<RegionId, RegionId>> findPort(PortId id) const;
   /// Follows absent walls and ports from the start.

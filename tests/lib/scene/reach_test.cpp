@@ -236,9 +236,6 @@ ports:
   EXPECT_EQ(
       reachOf(text + "  - {name: v, between: [shell, vault], after: [{port: up, times: 3}]}\n"),
       "yyyy");
-  std::string shut = text;
-  shut.replace(shut.find("direction: out"), 14, "direction: out, after: [v]");
-  EXPECT_EQ(reachOf(shut + "  - {name: v, between: [core, vault]}\n").substr(0, 3), "yyy");
 }
 
 }  // namespace

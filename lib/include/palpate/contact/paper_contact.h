@@ -12,10 +12,10 @@ namespace palpate {
 struct PaperSurface {
   const Field* field = nullptr;
   double side = 1.0;
-  double epsilon = 1e-6;  ///< |S| that counts as on the surface, in units of S
-  double alpha = 1.0;     ///< [-] share of the nudge
-  int max_halvings = PaperParameters::kMaxHalvings;  ///< MAX_N: of the segment that is searched
+  double epsilon = 1e-6;     ///< |S| that counts as on the surface, in units of S
+  double alpha = 1.0;        ///< [-] share of the nudge
   bool newton_form = false;  ///< alpha S N / (N.N) instead of the printed alpha S N / |N|
+  int max_halvings = PaperParameters::kMaxHalvings;  ///< MAX_N: of the segment that is searched
 
   /// S and N with the side applied: negative beyond the wall, N towards the hand's side.
   [[nodiscard]] FieldSample at(const Vec3& p) const noexcept;

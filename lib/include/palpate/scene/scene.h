@@ -49,10 +49,6 @@ class Scene {
   [[nodiscard]] std::span<const Port> ports() const noexcept { return passages_.ports(); }
   /// Whether the port can ever be passed.
   [[nodiscard]] Reach reachOf(PortId port) const { return reach_of_port_[port]; }
-  /// True if the sheet was found to lie, in part, within the region.
-  [[nodiscard]] bool liesIn(std::size_t sheet, RegionId region) const {
-    return sheet_in_[sheet * regions_.size() + region];
-  }
   /// True if the two regions were found to have a wall (or an absent one) between them.
   [[nodiscard]] bool touches(RegionId a, RegionId b) const {
     return a != b && touch_[a * regions_.size() + b];
@@ -83,9 +79,8 @@ class Scene {
   std::vector<Region> regions_;
   std::vector<Material> materials_;
   Passages passages_;
-  Box3 sheet_bounds_;           ///< [m]
-  std::vector<bool> touch_;     ///< [a * regions + b], symmetric
-  std::vector<bool> sheet_in_;  ///< [sheet * regions + region]
+  Box3 sheet_bounds_;        ///< [m]
+  std::vector<bool> touch_;  ///< [a * regions + b], symmetric
   std::vector<Reach> reach_of_port_;
   PaperParameters paper_;
   std::vector<NamedField> fields_;
