@@ -52,7 +52,7 @@ bool PaperWall::setOpen(std::size_t face, bool is_open) noexcept {
 
 bool PaperWall::isWithinOpenings(const Vec3& p) const noexcept {
   for (std::size_t i = 0; i < faces_.size(); ++i) {
-    if (is_open_[i] != 0 && faces_[i].field->value(p) > 0.0) return false;
+    if (is_open_[i] != 0 && !(faces_[i].field->value(p) < 0.0)) return false;
   }
   return true;
 }

@@ -30,7 +30,7 @@ class PaperWall final : public Field {
   /// Makes a face a wall, or an opening. True if it was not. Real-time safe.
   bool setOpen(std::size_t face, bool is_open) noexcept;
   [[nodiscard]] bool hasWalls() const noexcept { return open_count_ < faces_.size(); }
-  /// Whether `p` [m] is on the layer's side of all openings.
+  /// Whether `p` [m] is on the layer's side of all openings; on one is not, as for the cells of ports.
   [[nodiscard]] bool isWithinOpenings(const Vec3& p) const noexcept;
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override;
