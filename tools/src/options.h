@@ -43,7 +43,14 @@ struct TouchOptions {
   std::optional<int> taps;
   bool back = false;
 
-  std::string renderer;  ///< empty: as the scene says
+  std::string renderer;          ///< empty: as the scene says
+  std::vector<std::string> set;  ///< MATERIAL.KEY=VALUE@TIME
+  // Of the paper's renderer; what is not given is as the scene says.
+  std::string epsilon;
+  std::optional<int> halvings;
+  std::optional<double> alpha;
+  std::string alpha_form;  ///< "by_field", "printed" or "newton"
+  std::string interior;    ///< "together" or "wall"
   bool realtime = false;
   double rate = 1000.0;  ///< [Hz]
   std::string max_force;

@@ -36,7 +36,25 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1.0, 100000.0));
   addFlag(app, g, "--realtime", o.realtime,
           "keep to the clock (default: as fast as the machine goes)");
-  g = "Limits of the force (default: none)";
+  addList(
+      app, g, "--set", "MATERIAL.KEY=VALUE@TIME", o.set,
+      "change a content while the hand moves, may be repeated: syrup.viscosity=9@0.5 (N.s/m, s); "
+      "also flow, lattice.force, cutting");
+  g = "The paper's renderer (default: as the scene's `paper` says)";
+  add(app, g, "--epsilon", "LENGTH", o.epsilon,
+      "so near to the surface a contact point is on it (default 1 um)");
+  add(app, g, "--halvings", "N", o.halvings,
+      "of the way in which the surface is searched, at most (default 48)")
+      ->check(CLI::Range(1, 1000));
+  add(app, g, "--alpha", "SHARE", o.alpha, "of the step back onto the surface (default 1)")
+      ->check(CLI::Range(0.0, 1e6));
+  add(app, g, "--alpha-form", "FORM", o.alpha_form,
+      "printed, newton, or by_field: newton where the field is not a distance (default)")
+      ->check(CLI::IsMember({"by_field", "printed", "newton"}));
+  add(app, g, "--interior", "HOW", o.interior,
+      "at a wall from within: wall and content together (default), or the wall alone")
+      ->check(CLI::IsMember({"together", "wall"}));
+  g = "Limits of the force, in this order (default: none)";
   add(app, g, "--max-force", "FORCE", o.max_force,
       "shorten longer forces to this, direction kept: 3 (N), 500mN");
   add(app, g, "--slew", "FORCE/s", o.slew,
@@ -119,7 +137,7 @@ Verb touchVerb() {
       "first\n"
       "surface met and the peak force in each; the ports passed; how long a tick takes; and what "
       "each\n"
-      "grid cost. A trace has the header\n"
+      "grid cost. A press or tap that meets nothing ends with 1. A trace has the header\n"
       "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,"
       "tick_ns\n"
       "and the same input gives the same trace, bit for bit except tick_ns.",

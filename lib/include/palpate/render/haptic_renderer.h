@@ -55,18 +55,10 @@ struct TickResult {
   std::array<PortId, kMaxEvents> events{};
 };
 
-/// How the paper's algorithms nudge the contact point back onto the surface (its alpha term).
-enum class AlphaForm {
-  kByMetric,  ///< kLength for distances (exact and bound fields), kNewton for implicit ones
-  kLength,    ///< alpha S N / |N|, as printed: its strength depends on the field's scale
-  kNewton,    ///< alpha S N / (N . N)
-};
-
 struct RendererSettings {
-  std::optional<RendererKind> kind = {};        ///< not given: as the scene says
-  AlphaForm alpha_form = AlphaForm::kByMetric;  ///< paper's renderer only
-  double alpha = 1.0;                           ///< [-] paper's renderer only
-  ForceLimits limits = {};  ///< none unless asked for, so that closed forms hold
+  std::optional<RendererKind> kind = {};  ///< not given: as the scene says
+  PaperParameters paper = {};             ///< paper's renderer only; goes before the scene's own
+  ForceLimits limits = {};                ///< none unless asked for, so that closed forms hold
 };
 
 /// One algorithm of section 3 of DESIGN.md. Construction may throw and allocate; update() and reset()
