@@ -39,9 +39,27 @@ void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal
   if (sizeOf(other) < limits::kFoldsLess * size) bend = other;
 }
 
+bool NearWalls::isSliver(const NearCell& cell) const noexcept {
+  const std::uint32_t both = cell.inside | cell.outside;
+  if ((both & (both - 1)) == 0) return false;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (((both >> i) & 1U) == 0) continue;
+    const bool is_in = ((cell.inside >> i) & 1U) != 0;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (((both >> j) & 1U) == 0) continue;
+      const bool other_in = ((cell.inside >> j) & 1U) != 0;
+      const double cosine = glm::dot(wall_[i].normal, wall_[j].normal);
+      if ((is_in == other_in ? cosine : -cosine) > limits::kFacing - 1.0) continue;
+      const double room = wall_[i].gap(is_in) + wall_[j].gap(other_in);
+      if (room <= limits::kRoom * (wall_[i].tolerance + wall_[j].tolerance)) return true;
+    }
+  }
+  return false;
+}
+
 bool NearWalls::look(double radius, bool trust_sides) noexcept {
   count_ = 0;
-  found_ = {};
+  cell_count_ = 0;
   std::array<NearSide, kMax> near{};
   bool fits = true;
   walker_.forWithin(radius, [&](LeafId id) {
@@ -62,7 +80,11 @@ bool NearWalls::look(double radius, bool trust_sides) noexcept {
     wall_[count_++] = wall;
   });
   if (!fits) return false;
-  found_ = cells_.find(walker_.region(), walker_.signs(), {near.data(), count_});
+  cell_count_ = 0;
+  for (const NearCell& cell :
+       cells_.find(walker_.region(), walker_.signs(), {near.data(), count_})) {
+    if (!isSliver(cell)) cell_[cell_count_++] = cell;
+  }
   return true;
 }
 

@@ -38,14 +38,21 @@ class NearWalls {
   [[nodiscard]] bool look(double radius, bool trust_sides) noexcept;
 
   [[nodiscard]] std::span<const NearWall> walls() const noexcept { return {wall_.data(), count_}; }
-  [[nodiscard]] std::span<const NearCell> cells() const noexcept { return found_; }
+  [[nodiscard]] std::span<const NearCell> cells() const noexcept {
+    return {cell_.data(), cell_count_};
+  }
 
  private:
+  /// True if two walls of the cell that face each other coincide: faces of neighbors that touch leave nothing
+  /// between them.
+  [[nodiscard]] bool isSliver(const NearCell& cell) const noexcept;
+
   CellWalker& walker_;
   NearCells cells_;
   std::array<NearWall, kMax> wall_{};
   std::size_t count_ = 0;
-  std::span<const NearCell> found_;
+  std::array<NearCell, NearCells::kMaxCells> cell_{};
+  std::size_t cell_count_ = 0;
 };
 
 /// Where `leaf`'s distance bends more than its feature size lets it, its differences straddle a fold. Then its

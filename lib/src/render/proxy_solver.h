@@ -135,6 +135,9 @@ class ProxySolver {
   void takeLastContact(const Vec3& hip) noexcept;
   void takeContact(const CellProblem& problem) noexcept;
   void holdByFriction(FrictionState& friction, bool is_first) noexcept;
+  [[nodiscard]] bool isReached(std::size_t plane) const noexcept {
+    return ((reached_ >> plane) & 1U) != 0;
+  }
   [[nodiscard]] NearWall wallAt(std::size_t near, const Vec3& p) const noexcept;
 
   const Scene& scene_;
@@ -154,6 +157,7 @@ class ProxySolver {
   std::array<NearWall, kMaxPlanes> landed_{};  ///< by plane: its wall where the last step landed
   Vec3 landed_at_{0.0, 0.0, 0.0};              ///< [m]
   bool has_landed_ = false;
+  std::uint64_t reached_ = 0;  ///< by plane, a bit: the step at hand ends on it
   int rim_ = -1;  ///< leaf that a way back onto the walls has to end on as well; -1: none
   bool trusts_sides_ = false;
   int batches_left_ = 0;

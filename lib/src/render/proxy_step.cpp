@@ -123,7 +123,11 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
     const NearWall& wall = near_.walls()[from.near];
     if (from.isCut()) continue;
     const Leaf& leaf = walker_.leaf(wall.leaf);
-    if (!leaf.is_flat) most = std::min(most, limits::kShareOfFeature * leaf.feature);
+    // What stays nearer than a wall is cannot land on its other side.
+    const double safe = std::fabs(wall.distance) * std::min(1.0, wall.slope / leaf.lipschitz);
+    if (!leaf.is_flat) {
+      most = std::min(most, std::max(limits::kShareOfFeature * leaf.feature, safe));
+    }
     if (problem.holds(i)) turn = std::max(turn, glm::length(wall.bend * step));
   }
   double share = 1.0;
@@ -139,6 +143,14 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   const Vec3 by = limited(problem, step, ball);
   const double length = glm::length(by);
   if (!(length > 0.0)) return false;
+  // A step that was cut short does not get to all the walls that hold the whole one.
+  reached_ = 0;
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    const double left = problem.plane[i].gap + glm::dot(problem.plane[i].normal, by);
+    if (problem.holds(i) && std::fabs(left) <= limits::kGain * length) {
+      reached_ |= std::uint64_t{1} << i;
+    }
+  }
   Vec3 y = x_ + by + bentBack(problem, by);
   has_landed_ = false;
   if (!restore(problem, y, length)) return false;
@@ -171,9 +183,8 @@ Vec3 ProxySolver::bentBack(const CellProblem& problem, const Vec3& step) const n
     const Mat3& bend = from.isCut() ? cut_[static_cast<std::size_t>(from.cut)].bend
                                     : near_.walls()[from.near].bend;
     const Vec3 turn = (from.inside ? -1.0 : 1.0) * (bend * step);
-    // Only as far as the step itself meets the plane: one that it was cut short of is still ahead.
+    if (!isReached(i)) continue;
     const double left = problem.plane[i].gap + glm::dot(problem.plane[i].normal, step);
-    if (std::fabs(left) > limits::kGain * glm::length(step)) continue;
     const Vec3 normal = unitOr(problem.plane[i].normal + turn, problem.plane[i].normal);
     const double off = left + 0.5 * glm::dot(step, turn);
     planes[count++] = {normal, off};
@@ -212,7 +223,7 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
       const Vec3 normal = from.inside ? -wall.normal : wall.normal;
       const double left = gap - limits::kRest * wall.tolerance;
       planes[count++] = {normal, left};
-      const bool is_held = problem.holds(i);
+      const bool is_held = isReached(i);
       const bool floats = is_held && left > wall.tolerance;
       // What is held already stays so while the others come down.
       if (floats || (is_held && left > -limits::kNoise * wall.tolerance)) {
@@ -293,7 +304,7 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
   std::array<LeafId, 3> held{};
   std::size_t count = 0;
   for (std::size_t i = 0; i < problem.planes && count < held.size(); ++i) {
-    if (problem.holds(i)) held[count++] = walls[problem.source[i].near].leaf;
+    if (isReached(i)) held[count++] = walls[problem.source[i].near].leaf;
   }
   const std::span<const LeafId> leaves(near.data(), walls.size());
   const CellWalker::Slid slid =

@@ -19,6 +19,11 @@ inline constexpr double kRest = 0.5;
 /// but where walls meet at an angle of about rounding.
 inline constexpr double kOnWall = 2.5;
 
+/// Walls face each other where the cosine of their normals differs from -1 by less, ...
+inline constexpr double kFacing = 1e-9;
+/// ... and coincide where there are at most this many of their tolerances between them.
+inline constexpr double kRoom = 4.0;
+
 // At rest -----------------------------------------------------------------------------------------
 
 /// The proxy has settled when what is left to slide is this share of the depth: 6e-8 degree of the
