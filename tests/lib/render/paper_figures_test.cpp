@@ -310,7 +310,7 @@ class PaperFigures : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Figures, PaperFigures,
                          testing::Values("container", "lattice", "composite_tube", "valve_tube",
                                          "cup", "heart", "metaballs", "csg"),
-                         [](const auto& each) { return std::string(each.param); });
+                         [](const auto& one) { return std::string(one.param); });
 
 TEST_P(PaperFigures, EveryTickIsAsTheTableAndTheAlgorithmsSay) {
   const std::string name = GetParam();

@@ -132,27 +132,6 @@ walls:
   }
 }
 
-TEST_P(PortMemory, AnAbsentWallBackTakesThePassageOff) {
-  // From a to b by a port on that side, back anywhere: whoever is back has not passed it.
-  Drive drive(sceneOf(ring(R"(
-  - {name: ab, between: [a, b], direction: in}
-  - {name: trap, between: [a, vault], after: [ab]}
-walls:
-  - {between: [a, b], wall: absent, felt_from: b}
-)")),
-              GetParam());
-  (void)drive.walk(kAbove);
-  (void)drive.walk(kA);
-  (void)drive.walk(mm(-20, 20, 0));
-  EXPECT_EQ(drive.region(), "b");
-  (void)drive.walk(kA);
-  EXPECT_EQ(drive.region(), "a");
-  EXPECT_EQ(drive.events(), "in ab");
-  (void)drive.walk(mm(20, 20, -20));
-  EXPECT_EQ(drive.region(), "a");
-  EXPECT_TRUE(drive.last().contact);
-}
-
 /// A plate at z = 0 in the air, with an opening in the middle; a box beneath.
 std::string plate(const std::string& port, const std::string& more = {}) {
   return R"(
