@@ -59,6 +59,12 @@ Facet CellWalker::facetAt(LeafId leaf) noexcept {
   Facet facet = scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_,
                                         beyond_, std::span(crossing_.data(), crossing_count_),
                                         passed_, x_, in_hole ? &punctures_ : nullptr);
+  if (leaves_[leaf].is_between && facet.beyond == kOutside && region_ != kOutside) {
+    // Where the walls between three labels meet, rounding sees a cell that is none of theirs. There is none.
+    facet.kind = Facet::Kind::kClosed;
+    facet.material = std::max(facet.material, 0);
+    facet.opens = false;
+  }
   if (is_sealed_ && facet.beyond != region_) {
     facet.kind = Facet::Kind::kClosed;
     facet.material = std::max(facet.material, 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "palpate/contact/planes.h"
 #include "solver_limits.h"
 
 namespace palpate {
@@ -42,19 +43,21 @@ void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal
 bool NearWalls::isSliver(const NearCell& cell) const noexcept {
   const std::uint32_t both = cell.inside | cell.outside;
   if ((both & (both - 1)) == 0) return false;
+  std::array<Plane, kMax> planes{};
+  std::size_t count = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     if (((both >> i) & 1U) == 0) continue;
-    const bool is_in = ((cell.inside >> i) & 1U) != 0;
-    for (std::size_t j = 0; j < i; ++j) {
-      if (((both >> j) & 1U) == 0) continue;
-      const bool other_in = ((cell.inside >> j) & 1U) != 0;
-      const double cosine = glm::dot(wall_[i].normal, wall_[j].normal);
-      if ((is_in == other_in ? cosine : -cosine) > limits::kFacing - 1.0) continue;
-      const double room = wall_[i].gap(is_in) + wall_[j].gap(other_in);
-      if (room <= limits::kRoom * (wall_[i].tolerance + wall_[j].tolerance)) return true;
+    const bool inside = ((cell.inside >> i) & 1U) != 0;
+    const NearWall& wall = wall_[i];
+    if (wall.slope > 0.0 && wall.gap(inside) <= limits::kRoom * wall.tolerance) {
+      planes[count++] = {inside ? -wall.normal : wall.normal, -1.0};
     }
   }
-  return false;
+  if (count < 2) return false;
+  // A way that leads away from all of these walls at once; there is none where they leave no room.
+  const Vec3 away = closestStep(Vec3(0.0), {planes.data(), count}).step;
+  return std::any_of(planes.begin(), planes.begin() + static_cast<std::ptrdiff_t>(count),
+                     [&](const Plane& plane) { return glm::dot(plane.normal, away) < 0.5; });
 }
 
 bool NearWalls::look(double radius, bool trust_sides) noexcept {

@@ -43,8 +43,8 @@ class NearWalls {
   }
 
  private:
-  /// True if two walls of the cell that face each other coincide: faces of neighbors that touch leave nothing
-  /// between them.
+  /// True if the cell's walls at the point leave no room between them: faces of neighbors that touch, or the line
+  /// where the walls between three labels meet.
   [[nodiscard]] bool isSliver(const NearCell& cell) const noexcept;
 
   CellWalker& walker_;

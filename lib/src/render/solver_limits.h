@@ -19,9 +19,7 @@ inline constexpr double kRest = 0.5;
 /// but where walls meet at an angle of about rounding.
 inline constexpr double kOnWall = 2.5;
 
-/// Walls face each other where the cosine of their normals differs from -1 by less, ...
-inline constexpr double kFacing = 1e-9;
-/// ... and coincide where there are at most this many of their tolerances between them.
+/// Walls this many tolerances off count as touched where it is looked whether they leave any room.
 inline constexpr double kRoom = 4.0;
 
 // At rest -----------------------------------------------------------------------------------------
