@@ -106,6 +106,7 @@ class ProxySolver {
     Mat3 bend{0.0};   ///< [1/m] of the distance to that wall, outward; zero where it is not known here
     LeafId leaf = 0;
     bool inside = false;
+    double away = 0.0;  ///< [m] how far off it was met
   };
 
   enum class Look { kFree, kRests, kCrossed, kMoves, kNowhere };

@@ -126,7 +126,10 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
     // What stays nearer than a wall is cannot land on its other side.
     const double safe = std::fabs(wall.distance) * std::min(1.0, wall.slope / leaf.lipschitz);
     if (!leaf.is_flat) {
-      most = std::min(most, std::max(limits::kShareOfFeature * leaf.feature, safe));
+      // A longer step is looked at in strides, as many as there are, where the wall turns little over it.
+      const double turned = limits::kLargestTurn / std::max(wall.bend_size, 1.0 / ball);
+      const double seen = std::min(turned, limits::kMostStrides * limits::kStride * leaf.feature);
+      most = std::min(most, std::max({limits::kShareOfFeature * leaf.feature, safe, seen}));
     }
     if (problem.holds(i)) turn = std::max(turn, glm::length(wall.bend * step));
   }
@@ -282,14 +285,26 @@ bool ProxySolver::keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept
     const Source& from = problem.source[i];
     const NearWall& wall = near_.walls()[from.near];
     const double turn = wall.bend_size * length;
-    if (from.isCut() || turn <= limits::kTurnsMuch) continue;
+    if (from.isCut()) continue;
     const double dip = std::min(limits::kDipByBend * turn * length, limits::kDipByLength * length);
+    const Leaf& own = walker_.leaf(wall.leaf);
+    if (!own.is_flat && length > limits::kShareOfFeature * own.feature &&
+        std::fabs(wall.distance) < length) {
+      const int strides = static_cast<int>(std::ceil(length / (limits::kStride * own.feature)));
+      batches_left_ -= strides / limits::kStridesPerBatch;
+      for (int k = 1; k < strides; ++k) {
+        const Vec3 p = x_ + (static_cast<double>(k) / strides) * (y - x_);
+        const double gap = (from.inside ? -1.0 : 1.0) * own.field->value(p) / wall.slope;
+        if (gap < -dip - wall.tolerance) return false;
+      }
+      continue;
+    }
+    if (turn <= limits::kTurnsMuch) continue;
     const bool is_winding = turn > limits::kTurnsMore;
     for (const double share : {0.5, 0.25, 0.75}) {
       if (share != 0.5 && !is_winding) break;
       const Vec3 p = x_ + share * (y - x_);
-      const Leaf& leaf = walker_.leaf(wall.leaf);
-      const double gap = (from.inside ? -1.0 : 1.0) * leaf.field->value(p) / wall.slope;
+      const double gap = (from.inside ? -1.0 : 1.0) * own.field->value(p) / wall.slope;
       if (gap < -dip - wall.tolerance) return false;
     }
   }
@@ -337,6 +352,7 @@ bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Cut& out) con
   out = {};
   out.leaf = here.leaf;
   out.inside = from.inside;
+  out.away = glm::length(off);
   out.plane.normal = side * wall.normal;
   double left = wall.gap(from.inside) + glm::dot(out.plane.normal, off);
   double slack = limits::kOnWall * here.tolerance;
@@ -354,7 +370,7 @@ bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Cut& out) con
       out.bend = bend;
       out.plane.normal = unitOr(out.plane.normal + side * turn, out.plane.normal);
       left += 0.5 * side * glm::dot(off, turn);
-      slack += limits::kCarriedShare * size * glm::length(off);
+      slack += limits::kCarriedShare * size * out.away;
     }
   }
   out.plane.gap = std::max(0.0, left);
@@ -392,7 +408,8 @@ bool ProxySolver::addCuts(const CellProblem& problem) noexcept {
       if (cut_[c].leaf != cut.leaf || cut_[c].inside != cut.inside) continue;
       const double turn = glm::length(cut_[c].plane.normal - cut.plane.normal);
       if (turn < limits::kSameCut && cut_[c].plane.gap <= cut.plane.gap) is_new = false;
-      if (turn < limits::kSameWall) slot = c;
+      const bool is_nearer = limits::kNearer * cut.away < cut_[c].away;
+      if (turn < limits::kSameWall || (is_nearer && turn < limits::kCarries)) slot = c;
     }
     if (!is_new) continue;
     cut_[slot] = cut;

@@ -48,7 +48,12 @@ inline constexpr double kBallOverStep = 1.5;
 /// A step on a wall that bulges towards the proxy is at most this share of its feature size, so that it does
 /// not land on the wall's other sheet, ...
 inline constexpr double kShareOfFeature = 0.5;
-/// ... and turns no held wall's normal by more [rad].
+/// ... unless it is looked at in strides of this share of it, at most so many, ...
+inline constexpr double kStride = 0.4;
+inline constexpr double kMostStrides = 48.0;
+/// ... which cost as much as the fields at one place, so many of them;
+inline constexpr int kStridesPerBatch = 8;
+/// it turns no held wall's normal by more [rad].
 inline constexpr double kLargestTurn = 0.5;
 /// Restoring onto the walls: rounds, and how far in all, over the step. Longer jumps to another sheet.
 inline constexpr int kRestorations = 6;
@@ -89,6 +94,8 @@ inline constexpr double kFoldsLess = 0.1;
 inline constexpr double kSameCut = 1e-6;
 /// Cuts whose normals differ by less than this [rad] are of the same wall: the last one counts.
 inline constexpr double kSameWall = 0.1;
+/// Met so many times nearer by, a cut takes the place of one that it could have been carried to.
+inline constexpr double kNearer = 3.0;
 /// A cut whose wall turns by less than this [rad] between where it was met and the proxy is carried back with its
 /// curvature, ...
 inline constexpr double kCarries = 0.3;
