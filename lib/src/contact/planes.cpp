@@ -68,7 +68,8 @@ class Search {
     if (square < kParallel) return 0;
     const double cosine = glm::dot(a, b);
     Vec3 on = wish_;
-    for (int pass = 0; pass < 3; ++pass) {  // the second and third take the first one's rounding out
+    for (int pass = 0; pass < 3;
+         ++pass) {  // the second and third take the first one's rounding out
       const double r = left(i, on);
       const double s = left(j, on);
       on -= ((r - cosine * s) * a + (s - cosine * r) * b) / square;

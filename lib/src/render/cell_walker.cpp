@@ -235,8 +235,9 @@ void CellWalker::turn(LeafId leaf) noexcept {
   ++state_;
 }
 
-CellWalker::Slid CellWalker::slideTo(const Vec3& target, const NearCell& cell, std::span<const LeafId> near,
-                           std::span<const LeafId> held) noexcept {
+CellWalker::Slid CellWalker::slideTo(const Vec3& target, const NearCell& cell,
+                                     std::span<const LeafId> near,
+                                     std::span<const LeafId> held) noexcept {
   struct Change {
     LeafId leaf = 0;
     double at = 0.0;

@@ -69,9 +69,8 @@ class CellWalker {
     LeafId leaf = 0;
     double share = 1.0;
   };
-  [[nodiscard]] Slid slideTo(const Vec3& target, const NearCell& cell,
-                               std::span<const LeafId> near,
-                               std::span<const LeafId> held) noexcept;
+  [[nodiscard]] Slid slideTo(const Vec3& target, const NearCell& cell, std::span<const LeafId> near,
+                             std::span<const LeafId> held) noexcept;
   /// To `x` [m], which slideTo() or a solver's way back onto the walls found.
   void jump(const Vec3& x) noexcept;
   [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }

@@ -109,8 +109,7 @@ Vec3 ConstraintRenderer::wallForce(const HipState& hip) noexcept {
       length = std::sqrt(std::max(0.0, multiplier * (glm::dot(held.normal, outward) + lag)));
     }
     const double secant = spring.secant(length);
-    const Vec3 normal =
-        wall.shading > 0.0 ? shaded(held, each.facet, wall.shading) : held.normal;
+    const Vec3 normal = wall.shading > 0.0 ? shaded(held, each.facet, wall.shading) : held.normal;
     force += secant * (multiplier + textureHeight(wall.texture, x, multiplier)) * normal;
     stiffness += secant * multiplier;
     damping += wall.damping.at(x) * multiplier;

@@ -14,9 +14,9 @@ namespace palpate {
 /// A leaf at one place, as a distance: S over the length of its gradient.
 struct NearWall {
   LeafId leaf = 0;
-  double distance = 0.0;  ///< [m] S / |grad S|, negative inside
-  double tolerance = 0.0;  ///< [m] how near is on the surface
-  double slope = 0.0;      ///< [-] |grad S|; 0: the leaf has no normal here
+  double distance = 0.0;       ///< [m] S / |grad S|, negative inside
+  double tolerance = 0.0;      ///< [m] how near is on the surface
+  double slope = 0.0;          ///< [-] |grad S|; 0: the leaf has no normal here
   Vec3 normal{0.0, 0.0, 0.0};  ///< [-] outward
   Mat3 bend{0.0};              ///< [1/m] Hessian of S over the slope
   double bend_size = 0.0;      ///< [1/m] its norm

@@ -40,7 +40,7 @@ struct HeldWalls {
 struct ContactSet {
   std::array<WallContact, 3> wall{};
   std::size_t count = 0;
-  Vec3 lag{0.0, 0.0, 0.0};   ///< [m] of P - x: the part along the walls that friction holds
+  Vec3 lag{0.0, 0.0, 0.0};  ///< [m] of P - x: the part along the walls that friction holds
   /// [m] from the proxy, which stands off its walls by half a tolerance, onto their surfaces
   Vec3 snug{0.0, 0.0, 0.0};
   Vec3 left{0.0, 0.0, 0.0};  ///< [m] of P - x: the part along the walls, held or still to go
@@ -75,7 +75,8 @@ class ProxySolver {
  private:
   static constexpr std::size_t kMaxCells = NearCells::kMaxCells;
   static constexpr std::size_t kMaxNear = NearWalls::kMax;
-  static constexpr std::size_t kMaxSeen = 6;  ///< planes of folds that a way back onto the walls keeps
+  static constexpr std::size_t kMaxSeen =
+      6;  ///< planes of folds that a way back onto the walls keeps
 
   /// A plane of a cell's problem: the side of a near wall, or a tangent plane met further on (a cut).
   struct Source {
@@ -102,8 +103,9 @@ class ProxySolver {
     [[nodiscard]] bool holds(std::size_t plane_index) const noexcept;
   };
   struct Cut {
-    Plane plane;      ///< from where the look is
-    Mat3 bend{0.0};   ///< [1/m] of the distance to that wall, outward; zero where it is not known here
+    Plane plane;  ///< from where the look is
+    Mat3 bend{
+        0.0};  ///< [1/m] of the distance to that wall, outward; zero where it is not known here
     LeafId leaf = 0;
     bool inside = false;
     double away = 0.0;  ///< [m] how far off it was met
@@ -132,6 +134,7 @@ class ProxySolver {
   [[nodiscard]] bool isCut(const CellProblem& problem, std::size_t i, Cut& out) const noexcept;
   [[nodiscard]] bool foundCrease(const CellProblem& problem, double length) const noexcept;
   [[nodiscard]] bool addCuts(const CellProblem& problem) noexcept;
+  [[nodiscard]] bool lookClose(const CellProblem& problem, const Vec3& way) noexcept;
   [[nodiscard]] bool kick() noexcept;
   void takeLastContact(const Vec3& hip) noexcept;
   void takeContact(const CellProblem& problem) noexcept;

@@ -48,8 +48,7 @@ ProxySolver::Try ProxySolver::moveOn() noexcept {
     const CellProblem& problem = problem_[i];
     const CurvedStep curved = curvedStep(aim_, problem.given(), problem.solution, bendOf(problem),
                                          limits::kLeastEigenvalue);
-    longest = std::max(
-        {longest, glm::length(problem.solution.step), glm::length(curved.step)});
+    longest = std::max({longest, glm::length(problem.solution.step), glm::length(curved.step)});
     if (curved.lowest < limits::kSaddle) longest = std::max(longest, turningLength(problem));
   }
   // No better point is further away than twice the distance to the aim.
@@ -80,8 +79,17 @@ ProxySolver::Try ProxySolver::moveOn() noexcept {
 
 ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcept {
   Vec3 step(0.0);
+  const Vec3 first = problem.solution.step;
+  bool is_refined = false;
   for (int round = 0; round < limits::kCutRounds && batches_left_ > 0; ++round) {
-    if (glm::length(problem.solution.step) <= rest_) return Try::kRests;
+    if (glm::length(problem.solution.step) <= rest_) {
+      // What was met far off is known only so well: asked for again close by before it counts as rest.
+      if (is_refined || !lookClose(problem, first)) return Try::kRests;
+      is_refined = true;
+      pose(problem.cell, problem);
+      solve(problem, aim_);
+      continue;
+    }
     const Mat3 bend = bendOf(problem);
     const CurvedStep curved =
         curvedStep(aim_, problem.given(), problem.solution, bend, limits::kLeastEigenvalue);
@@ -235,8 +243,7 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
       is_done = is_done && gap >= 0.0 && !floats;
       if (gap >= 0.0) continue;
       std::size_t slot = 0;
-      while (slot < seen_count &&
-             glm::length(seen[slot].normal - normal) > limits::kCutTurn) {
+      while (slot < seen_count && glm::length(seen[slot].normal - normal) > limits::kCutTurn) {
         ++slot;
       }
       if (slot == kMaxSeen) slot = static_cast<std::size_t>(round) % kMaxSeen;
@@ -322,8 +329,7 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
     if (isReached(i)) held[count++] = walls[problem.source[i].near].leaf;
   }
   const std::span<const LeafId> leaves(near.data(), walls.size());
-  const CellWalker::Slid slid =
-      walker_.slideTo(y, problem.cell, leaves, {held.data(), count});
+  const CellWalker::Slid slid = walker_.slideTo(y, problem.cell, leaves, {held.data(), count});
   if (slid.arrived) return true;
   // To where the opening begins: on the walls that hold the proxy, and on the leaf that was passed there.
   Vec3 rim = x_ + slid.share * (y - x_);
@@ -391,6 +397,28 @@ bool ProxySolver::foundCrease(const CellProblem& problem, double length) const n
     }
   }
   return false;
+}
+
+/// Looks just ahead along `way` for the walls of cuts that hold the solution and were met far off. True if that
+/// found them anew.
+bool ProxySolver::lookClose(const CellProblem& problem, const Vec3& way) noexcept {
+  double feature = 0.0;
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    const Source& from = problem.source[i];
+    if (!from.isCut() || !problem.holds(i)) continue;
+    const double size = walker_.leaf(near_.walls()[from.near].leaf).feature;
+    if (cut_[static_cast<std::size_t>(from.cut)].away > limits::kNearer * limits::kClose * size) {
+      feature = std::max(feature, size);
+    }
+  }
+  if (feature == 0.0) return false;
+  landed_at_ = x_ + limits::kClose * feature * unitOr(way, Vec3(0.0));
+  has_landed_ = true;
+  --batches_left_;
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    if (!problem.source[i].isCut()) landed_[i] = wallAt(problem.source[i].near, landed_at_);
+  }
+  return addCuts(problem);
 }
 
 /// Keeps the tangent planes of the cell's walls that the last step ended beyond. Of walls that are hollow towards the

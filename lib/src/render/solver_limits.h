@@ -80,7 +80,7 @@ inline constexpr double kDipByBend = 0.2;
 inline constexpr double kDipByLength = 0.1;
 /// Tangent planes met where a step was refused, kept for the rest of the look at that place.
 inline constexpr std::size_t kMaxCuts = 8;
-inline constexpr int kCutRounds = 6;
+inline constexpr int kCutRounds = 8;
 /// A cut is worth keeping if its normal differs by this [rad] from the same wall's here: Newton's curvature
 /// does the rest, which cuts would make linear.
 inline constexpr double kCutTurn = 0.05;
@@ -94,8 +94,10 @@ inline constexpr double kFoldsLess = 0.1;
 inline constexpr double kSameCut = 1e-6;
 /// Cuts whose normals differ by less than this [rad] are of the same wall: the last one counts.
 inline constexpr double kSameWall = 0.1;
+/// Before the proxy rests on a cut, its wall is asked for this share of the feature size ahead.
+inline constexpr double kClose = 1e-5;
 /// Met so many times nearer by, a cut takes the place of one that it could have been carried to.
-inline constexpr double kNearer = 3.0;
+inline constexpr double kNearer = 10.0;
 /// A cut whose wall turns by less than this [rad] between where it was met and the proxy is carried back with its
 /// curvature, ...
 inline constexpr double kCarries = 0.3;
@@ -110,7 +112,7 @@ inline constexpr int kShrinks = 4;
 
 /// Places at which fields are asked. A smooth wall takes 3 or 4, corners 8; the rest waits for the next
 /// tick.
-inline constexpr int kMaxBatches = 64;
+inline constexpr int kMaxBatches = 160;
 /// Crossings of facets between cells; each takes some microseconds at most.
 inline constexpr int kCrossings = 32;
 

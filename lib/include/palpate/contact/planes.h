@@ -36,9 +36,10 @@ inline constexpr std::size_t kMaxPlanes = 48;
 /// closestStep(), with respect to all others, where B = I - bend in their tangent space. Eigenvalues of
 /// B count by their magnitude, and as `least` at least, so that the step comes closer.
 struct CurvedStep {
-  Vec3 step{0.0, 0.0, 0.0};      ///< [m]
-  double lowest = 1.0;           ///< [-] the smallest eigenvalue of B along the planes
-  Vec3 downhill{0.0, 0.0, 0.0};  ///< [-] its direction, unit; zero where no motion along them is free
+  Vec3 step{0.0, 0.0, 0.0};  ///< [m]
+  double lowest = 1.0;       ///< [-] the smallest eigenvalue of B along the planes
+  Vec3 downhill{0.0, 0.0,
+                0.0};  ///< [-] its direction, unit; zero where no motion along them is free
 };
 [[nodiscard]] CurvedStep curvedStep(const Vec3& wish, std::span<const Plane> planes,
                                     const PlaneSolution& first, const Mat3& bend,

@@ -36,9 +36,10 @@ struct NearSide {
 /// Scratch of one solver. Real-time safe but for the constructor.
 class NearCells {
  public:
-  static constexpr std::size_t kMaxNear = 32;   ///< bits of NearCell
-  static constexpr std::size_t kMaxCells = 24;  ///< more are left out, which is safe: cells are where
-                                                ///< the point may go
+  static constexpr std::size_t kMaxNear = 32;  ///< bits of NearCell
+  static constexpr std::size_t kMaxCells =
+      24;  ///< more are left out, which is safe: cells are where
+           ///< the point may go
 
   NearCells(const Partition& partition, const Passages& passages);
 
@@ -55,8 +56,8 @@ class NearCells {
 
     void add(const NearCell& cell) noexcept;
   };
-  void evaluate(std::span<const SideStep> steps, const Signs& signs,
-                std::span<const NearSide> near, List& out) noexcept;
+  void evaluate(std::span<const SideStep> steps, const Signs& signs, std::span<const NearSide> near,
+                List& out) noexcept;
   void run(const SideStep& step, const Signs& signs, std::span<const NearSide> near,
            List& out) const noexcept;
   static void intersect(const List& a, const List& b, List& out) noexcept;
