@@ -75,7 +75,9 @@ TEST_F(TouchSet, FlowLatticeAndCutting) {
   bool had_lattice = false;
   for (std::size_t i = 150; i < times.size() - 1; ++i) {
     if (times[i] < 0.3) had_lattice |= std::fabs(z[i] - 0.2) > 0.05;
-    if (times[i] >= 0.3) ASSERT_NEAR(z[i], 0.2, 1e-9) << times[i];
+    if (times[i] >= 0.3) {
+      ASSERT_NEAR(z[i], 0.2, 1e-9) << times[i];
+    }
     ASSERT_NEAR(x[i], times[i] < 0.5 ? 0.0 : 4.0 * 0.02, 1e-9) << times[i];
   }
   EXPECT_TRUE(had_lattice);

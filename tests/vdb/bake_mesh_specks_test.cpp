@@ -234,7 +234,7 @@ TEST_P(RealSurface, WithSpecksSliversShellsAndGapsIsTheSameSurface) {
 INSTANTIATE_TEST_SUITE_P(Surfaces, RealSurface,
                          ::testing::Values("brain_region.stl", "brain_region2.stl", "footbones.ply",
                                            "liver-smooth.obj", "malleus.obj", "tooth.obj"),
-                         [](const auto& info) {
+                         [](const auto& each) {
                            std::string name = info.param;
                            std::replace_if(
                                name.begin(), name.end(), [](char c) { return !std::isalnum(c); },
