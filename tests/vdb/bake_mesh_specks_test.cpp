@@ -235,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, RealSurface,
                          ::testing::Values("brain_region.stl", "brain_region2.stl", "footbones.ply",
                                            "liver-smooth.obj", "malleus.obj", "tooth.obj"),
                          [](const auto& each) {
-                           std::string name = info.param;
+                           std::string name = each.param;
                            std::replace_if(
                                name.begin(), name.end(), [](char c) { return !std::isalnum(c); },
                                '_');
