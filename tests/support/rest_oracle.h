@@ -24,7 +24,8 @@ struct RestCheck {
 struct Rest {
   Vec3 point{0.0, 0.0, 0.0};
   bool has_settled = false;  ///< the flow came to a point that passes the check
-  std::vector<Vec3> others = {};  ///< where it ends with steps of a tenth, or off a saddle the other way
+  std::vector<Vec3> others =
+      {};  ///< where it ends with steps of a tenth, or off a saddle the other way
   double blunt =
       1.0;  ///< [-] least singular value of the normals that hold it: 1 for one wall, small in wedges
 };

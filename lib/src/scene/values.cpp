@@ -178,7 +178,7 @@ const std::vector<Node>& readList(const Document& document, const Node& node,
     const bool is_open = most == 0 || (most >= 1000 && node.items.size() < least);
     const std::string wanted = least == most ? std::to_string(least)
                                : is_open     ? std::to_string(least) + " or more"
-                                           : std::to_string(least) + " to " + std::to_string(most);
+                                         : std::to_string(least) + " to " + std::to_string(most);
     throw document.error(
         node.mark, "scene.length",
         what + " wants a list of " + wanted + ", not of " + std::to_string(node.items.size()));

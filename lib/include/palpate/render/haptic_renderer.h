@@ -47,7 +47,7 @@ struct TickResult {
   Vec3 force{0.0, 0.0, 0.0};  ///< [N, world] on the hand; always finite
   Vec3 proxy{0.0, 0.0, 0.0};  ///< [m, world] the tip held in its region
   RegionId region = kOutside;
-  bool contact = false;          ///< a closed wall is pressed
+  bool contact = false;  ///< a closed wall is pressed
   /// The proxy rests where it is closest to the hand, within the stated tolerances; false: it is on its way
   /// there, at a point that is allowed and no further from the hand than the last one, out of budget for this tick.
   bool settled = true;
