@@ -141,6 +141,14 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
     }
     if (problem.holds(i)) turn = std::max(turn, glm::length(wall.bend * step));
   }
+  // Of a wall out of its band only a bound of the distance is known.
+  const std::span<const NearWall> walls = near_.walls();
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const std::uint32_t bit = std::uint32_t{1} << i;
+    if (((problem.cell.inside | problem.cell.outside) & bit) == 0 || walls[i].slope > 0.0) continue;
+    most = std::min(most,
+                    std::max(limits::kFlattest * std::fabs(walls[i].distance), walls[i].tolerance));
+  }
   double share = 1.0;
   const double length = glm::length(step);
   if (length > most) share = most / length;
@@ -302,7 +310,10 @@ bool ProxySolver::keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept
       for (int k = 1; k < strides; ++k) {
         const Vec3 p = x_ + (static_cast<double>(k) / strides) * (y - x_);
         const double gap = (from.inside ? -1.0 : 1.0) * own.field->value(p) / wall.slope;
-        if (gap < -dip - wall.tolerance) return false;
+        // Less than what a thin wall is deep: a chord through one is no way along another.
+        if (gap < -std::min(dip, limits::kShareOfFeature * own.feature) - wall.tolerance) {
+          return false;
+        }
       }
       continue;
     }
