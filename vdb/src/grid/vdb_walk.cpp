@@ -311,7 +311,7 @@ class VdbWalk::Impl {
     const std::int64_t unpacked = bytes_.take<std::uint32_t>();
     const std::int64_t block = bytes_.take<std::uint32_t>();
     const std::int64_t whole = bytes_.take<std::uint32_t>();
-    if (unpacked != plain || whole != packed || block > std::max<std::int64_t>(plain, 1)) {
+    if (unpacked > plain || whole != packed || block > std::max<std::int64_t>(plain, 1)) {
       fail("packed voxels that are not as many as their tree has");
     }
   }
