@@ -309,9 +309,9 @@ class VdbWalk::Impl {
     if (packed < kBloscHead) fail("packed voxels that are cut short");
     bytes_.skip(4);
     const std::int64_t unpacked = bytes_.take<std::uint32_t>();
-    const std::int64_t block = bytes_.take<std::uint32_t>();
+    bytes_.skip(4);
     const std::int64_t whole = bytes_.take<std::uint32_t>();
-    if (unpacked > plain || whole != packed || block > std::max<std::int64_t>(plain, 1)) {
+    if (unpacked > plain || whole > packed) {
       fail("packed voxels that are not as many as their tree has");
     }
   }
