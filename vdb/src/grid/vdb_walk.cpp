@@ -311,7 +311,7 @@ class VdbWalk::Impl {
     const std::int64_t unpacked = bytes_.take<std::uint32_t>();
     bytes_.skip(4);
     const std::int64_t whole = bytes_.take<std::uint32_t>();
-    if (unpacked > plain || whole > packed) {
+    if (unpacked > std::max<std::int64_t>(plain, 32768 * 16) || whole > packed + kBloscHead) {
       fail("packed voxels that are not as many as their tree has");
     }
   }
