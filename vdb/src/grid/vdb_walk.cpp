@@ -309,9 +309,12 @@ class VdbWalk::Impl {
     if (packed < kBloscHead) fail("packed voxels that are cut short");
     bytes_.skip(4);
     const std::int64_t unpacked = bytes_.take<std::uint32_t>();
-    bytes_.skip(4);
+    const std::int64_t block = bytes_.take<std::uint32_t>();
     const std::int64_t whole = bytes_.take<std::uint32_t>();
-    if (unpacked > std::max<std::int64_t>(plain, 32768 * 16) || whole > packed + kBloscHead) {
+    // OpenVDB pads short buffers before it packs them, and takes the padding off again.
+    constexpr std::int64_t kPadded = 128;
+    const bool fits = unpacked == plain || (plain < kPadded && unpacked == kPadded);
+    if (!fits || whole != packed || block > std::max<std::int64_t>(unpacked, 1)) {
       fail("packed voxels that are not as many as their tree has");
     }
   }
