@@ -194,7 +194,8 @@ TEST(Reach, NeverSaysNoOfWhatAWalkGetsIntoAndDecidesNearlyAlways) {
 
 std::string reachOf(const std::string& yaml) {
   std::vector<Reach> all;
-  for (const Region& region : sceneOf(yaml)->regions()) all.push_back(region.reach);
+  const auto scene = sceneOf(yaml);
+  for (const Region& region : scene->regions()) all.push_back(region.reach);
   return answersOf(all);
 }
 
