@@ -21,13 +21,13 @@ constexpr double kHorizonShare = 0.1;
 
 }  // namespace
 
-CellWalker::CellWalker(const Scene& scene)
+CellWalker::CellWalker(const Scene& scene, PlaceState& state)
     : scene_(scene),
       leaves_(scene.partition().leaves()),
       domain_(leaves_.size()),
       opens_(leaves_.size(), false),
       tolerance_(leaves_.size()),
-      signs_(leaves_.size()),
+      here_(state),
       beyond_(leaves_.size()),
       due_(leaves_.size()),
       hot_(leaves_.size()),
@@ -50,29 +50,33 @@ CellWalker::CellWalker(const Scene& scene)
     }
   }
   holding_.reserve(scene.regions().size());
-  place(Vec3(0.0));
 }
 
 void CellWalker::place(const Vec3& p) noexcept {
-  x_ = p;
+  here_.point = p;
+  if (here_.sides.size() != leaves_.size()) here_.sides = Signs(leaves_.size());
+  scene_.partition().signsAt(p, here_.sides);
+  resume();
+  here_.region = holding_.empty() ? kOutside : holding_.front();
+  here_.mouth = -1;
+}
+
+void CellWalker::resume() noexcept {
   ++stay_;
+  ++state_;
   travel_ = 0.0;
   cold_due_ = 0.0;
   hot_count_ = 0;
-  scene_.partition().signsAt(p, signs_);
   holding_.clear();
   for (std::size_t i = scene_.regions().size() - 1; i > 0; --i) {
     const auto region = static_cast<RegionId>(i);
-    if (scene_.partition().layerHolds(region, signs_)) holding_.push_back(region);
+    if (scene_.partition().layerHolds(region, here_.sides)) holding_.push_back(region);
   }
-  region_ = holding_.empty() ? kOutside : holding_.front();
-  mouth_ = -1;
-  ++state_;
 }
 
 void CellWalker::beginTick() noexcept {
   event_count_ = 0;
-  punctures_.visit(x_);
+  here_.punctures.visit(here_.point);
   crossings_left_ = limits::kCrossings;
   evaluations_left_ = kEvaluationsPerTick;
   // The odometer starts again now and then, so that its rounding stays below every tolerance.
@@ -82,7 +86,7 @@ void CellWalker::beginTick() noexcept {
   }
   // One leaf a tick is looked at whether it can have been met or not: a field whose bound is false may
   // have let the point through, and a hand at rest would leave it there.
-  if (hot_count_ > 0) (void)measure(hot_[audited_++ % hot_count_]);
+  if (hot_count_ > 0) (void)measure(hot_[here_.audited++ % hot_count_]);
 }
 
 double CellWalker::measure(LeafId leaf) noexcept {
@@ -97,7 +101,7 @@ void CellWalker::refresh(double length) noexcept {
   if (travel_ + length < cold_due_) return;
   const double horizon = std::max(kHorizon * length, smallest_horizon_);
   hot_count_ = 0;
-  scene_.partition().tree().visit(x_, horizon, [&](std::uint32_t item) {
+  scene_.partition().tree().visit(here_.point, horizon, [&](std::uint32_t item) {
     const auto leaf = static_cast<LeafId>(item);
     due_[leaf] = travel_;
     hot_[hot_count_++] = leaf;
@@ -106,14 +110,14 @@ void CellWalker::refresh(double length) noexcept {
 }
 
 void CellWalker::jump(const Vec3& x) noexcept {
-  travel_ += glm::length(x - x_);
-  x_ = x;
+  travel_ += glm::length(x - here_.point);
+  here_.point = x;
   ++stay_;
 }
 
 CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noexcept {
   for (;;) {
-    const double length = glm::length(target - x_);
+    const double length = glm::length(target - here_.point);
     if (!(length > 0.0)) return Stop::kArrived;
     refresh(length);
     double nearest = 1.0;
@@ -129,7 +133,7 @@ CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noe
         const LeafId leaf = hot_[k];
         if (due_[leaf] > travel_ + nearest * length) continue;
         if (isIdle(leaf)) continue;
-        const Vec3 end = nearest < 1.0 ? x_ + nearest * (target - x_) : target;
+        const Vec3 end = nearest < 1.0 ? here_.point + nearest * (target - here_.point) : target;
         if (is_second) {
           if (leaf == hit_leaf ||
               side(leaf) * leaves_[leaf].field->value(end) >= -tolerance_[leaf]) {
@@ -139,7 +143,8 @@ CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noe
         const double start = side(leaf) * measure(leaf);
         const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
         if (budget <= 8) return Stop::kSpent;
-        const SweepResult result = sweepLeaf(leaf, surfaceOf(leaf), x_, end, start, budget);
+        const SweepResult result =
+            sweepLeaf(leaf, surfaceOf(leaf), here_.point, end, start, budget);
         if (result.kind == SweepResult::Kind::kFree) continue;
         evaluations_left_ -= 8;
         nearest *= result.at;
@@ -155,7 +160,7 @@ CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noe
       jump(target);
       return Stop::kArrived;
     }
-    jump(x_ + nearest * (target - x_));
+    jump(here_.point + nearest * (target - here_.point));
     if (unsure) return Stop::kSpent;
     const Facet facet = facetAt(hit_leaf);
     if (facet.isClosed()) {
@@ -172,12 +177,12 @@ double CellWalker::reachOf(LeafId leaf, double value) const noexcept {
   const double bound = value / leaves_[leaf].lipschitz;
   const Domain& domain = domain_[leaf];
   if (domain.is_everywhere) return bound;
-  if (domain.box.contains(x_)) {
+  if (domain.box.contains(here_.point)) {
     if (domain.holds_surface) return bound;
-    const Vec3 room = glm::min(x_ - domain.box.lo, domain.box.hi - x_);
+    const Vec3 room = glm::min(here_.point - domain.box.lo, domain.box.hi - here_.point);
     return std::min(bound, std::min({room.x, room.y, room.z}));
   }
-  return domain.holds_surface ? leaves_[leaf].field->bounds().distanceTo(x_) : 0.0;
+  return domain.holds_surface ? leaves_[leaf].field->bounds().distanceTo(here_.point) : 0.0;
 }
 
 SweepResult CellWalker::sweepLeaf(LeafId leaf, SweepSurface surface, const Vec3& a, const Vec3& b,
@@ -230,7 +235,7 @@ SweepSurface CellWalker::surfaceOf(LeafId leaf) const noexcept {
 void CellWalker::turn(LeafId leaf) noexcept {
   crossing_[0] = leaf;
   crossing_count_ = 1;
-  flip(leaf, signs_);
+  flip(leaf, here_.sides);
   updateHolding();
   ++state_;
 }
@@ -249,7 +254,7 @@ CellWalker::Slid CellWalker::slideTo(const Vec3& target, const NearCell& cell,
     if (isIdle(leaf)) continue;
     const std::uint32_t bit = std::uint32_t{1} << i;
     if (((cell.inside | cell.outside) & bit) != 0) {
-      if (signs_.inside(leaf) != ((cell.inside & bit) != 0)) changes[count++] = {leaf, 0.0};
+      if (here_.sides.inside(leaf) != ((cell.inside & bit) != 0)) changes[count++] = {leaf, 0.0};
       continue;
     }
     const double before = std::max(0.0, side(leaf) * valueHere(leaf));
@@ -257,7 +262,8 @@ CellWalker::Slid CellWalker::slideTo(const Vec3& target, const NearCell& cell,
     if (opens_[leaf] && !held.empty()) {
       // An opening may be narrower than the way is long.
       const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
-      const SweepResult swept = sweepLeaf(leaf, surfaceOf(leaf), x_, target, before, budget);
+      const SweepResult swept =
+          sweepLeaf(leaf, surfaceOf(leaf), here_.point, target, before, budget);
       if (swept.kind != SweepResult::Kind::kFree) changes[count++] = {leaf, swept.at};
     } else if (after < -tolerance_[leaf]) {
       changes[count++] = {leaf, before / (before - after)};

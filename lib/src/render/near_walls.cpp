@@ -21,14 +21,6 @@ NearWall wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept {
   return out;
 }
 
-namespace {
-
-double sizeOf(const Mat3& m) noexcept {
-  return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
-}
-
-}  // namespace
-
 void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal,
                 Mat3& bend) noexcept {
   const double size = sizeOf(bend);

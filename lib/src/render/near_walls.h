@@ -3,6 +3,7 @@
 /// around it. Scratch: made anew for each place.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -60,6 +61,11 @@ class NearWalls {
 /// `normal` (outward) is felt; a cone near its tip, which does bend like that, keeps `bend`.
 void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal,
                 Mat3& bend) noexcept;
+
+/// [1/m] The norm of a bend.
+[[nodiscard]] inline double sizeOf(const Mat3& m) noexcept {
+  return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+}
 
 /// The leaf `id` at a place where its field has the sample `s`; without its bend.
 [[nodiscard]] NearWall wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept;

@@ -103,6 +103,12 @@ inline constexpr double kNearer = 10.0;
 inline constexpr double kCarries = 0.3;
 /// ... if the proxy is then not further beyond it than this share of what the curvature moved it by.
 inline constexpr double kCarriedShare = 0.1;
+/// The quick way on one smooth wall is left to the general one after so many steps, ...
+inline constexpr int kGlides = 4;
+/// ... where the place of rest is a minimum by less than this (an eigenvalue: 0 at the wall's center of curvature), ...
+inline constexpr double kFirm = 0.02;
+/// ... and where the normal turns by more than this [rad] over twice what the wall's curvature explains.
+inline constexpr double kFirmTurn = 1e-6;
 /// What a refused step is shortened to, in turn; then the ball shrinks by kShrink, kShrinks times.
 inline constexpr double kShorter[] = {0.5, 0.125, 0.02};
 inline constexpr double kShrink = 0.2;
@@ -110,7 +116,7 @@ inline constexpr int kShrinks = 4;
 
 // One tick ----------------------------------------------------------------------------------------
 
-/// Places at which fields are asked. A smooth wall takes 3 or 4, corners 8; the rest waits for the next
+/// Places at which fields are asked. A smooth wall takes 2 or 3, corners 8; the rest waits for the next
 /// tick.
 inline constexpr int kMaxBatches = 160;
 /// Crossings of facets between cells; each takes some microseconds at most.
