@@ -44,30 +44,34 @@ bool ProxySolver::glide(const Vec3& hip, FrictionState& friction) noexcept {
   FieldJet jet = walker_.jetHere(id);
   NearWall wall = wallOf(id, leaf, {jet.value, jet.gradient, jet.in_band});
   if (wall.gap(inside) < -wall.tolerance) return false;
-  PlaneSolution solution;
   for (int round = 0;; ++round) {
     if (round == limits::kGlides || !(wall.slope > 0.0)) return false;
     const double gap = wall.gap(inside);
     const double left = gap - limits::kRest * wall.tolerance;
     const bool is_on = std::fabs(left) <= (limits::kOnWall - limits::kRest) * wall.tolerance;
     if (round == 0 && !is_on) return false;
-    wall.bend = jet.hessian / wall.slope;
+    wall.bend = jet.hessian * (1.0 / wall.slope);
     const double bend_size = sizeOf(wall.bend);
     if (bend_size * leaf.feature > limits::kFolds) return false;
     const Vec3 wish = hip - y;
     const Plane plane{side * wall.normal, is_on ? 0.0 : left};
-    solution = closestStep(wish, {&plane, 1});
-    if (solution.count == 0) return false;
-    const CurvedStep curved =
-        curvedStep(wish, {&plane, 1}, solution, side * solution.multiplier[0] * wall.bend,
-                   limits::kLeastEigenvalue);
+    const double along = glm::dot(plane.normal, wish);
+    const double multiplier = -plane.gap - along;
+    if (!(multiplier > rest_)) return false;
+    // The place is a minimum where the wall's curvature, times how far the hand is beyond it, stays below 1.
+    const bool is_firm = multiplier * bend_size < 1.0 - limits::kFirm;
+    const Vec3 plain = wish + multiplier * plane.normal;
+    if (is_firm && is_on && glm::dot(plain, plain) <= rest_ * rest_) break;
+    const PlaneSolution solution{plain, 1, {0}, {multiplier}};
+    const CurvedStep curved = curvedStep(wish, {&plane, 1}, solution, side * multiplier * wall.bend,
+                                         limits::kLeastEigenvalue);
     if (curved.lowest < limits::kFirm) return false;
-    if (is_on && glm::length(solution.step) <= rest_) break;
+    if (is_on && glm::dot(plain, plain) <= rest_ * rest_) break;
 
     const Vec3 to = y + curved.step;
     const double length = glm::length(curved.step);
     const double way = glm::length(to - x);
-    if (bend_size * way > limits::kTurnsMuch) return false;
+    if (bend_size * way > limits::kTurnsMore) return false;
     if (!leaf.is_flat && way > limits::kShareOfFeature * leaf.feature) return false;
     jet = leaf.field->jet(to);
     const NearWall there = wallOf(id, leaf, {jet.value, jet.gradient, jet.in_band});
@@ -84,6 +88,8 @@ bool ProxySolver::glide(const Vec3& hip, FrictionState& friction) noexcept {
     wall = there;
   }
 
+  // A hand between the surface and the proxy, which stands off it, does not press.
+  if (!(side * glm::dot(wall.normal, y - hip) - wall.gap(inside) > rest_)) return false;
   const double static_ratio =
       scene_.materials()[static_cast<std::size_t>(facet.material)].friction.static_ratio.at(y);
   if (static_ratio > 0.0) return false;
@@ -91,6 +97,12 @@ bool ProxySolver::glide(const Vec3& hip, FrictionState& friction) noexcept {
     const Vec3 before = hip - x;
     const Vec3 after = hip - y;
     if (glm::dot(after, after) > glm::dot(before, before)) return false;
+    const double turn = sizeOf(wall.bend) * glm::length(y - x);
+    if (turn > limits::kTurnsMuch) {
+      const double dip = limits::kDipByBend * turn * glm::length(y - x);
+      const double middle = side * leaf.field->value(0.5 * (x + y));
+      if (middle < -(dip + wall.tolerance) * wall.slope) return false;
+    }
     found = {};
     walker_.forWithin(glm::length(y - x), found);
     if (found.count != 1) return false;

@@ -60,8 +60,8 @@ class HapticRenderer {
 
   /// All that the last tick left for the next.
   [[nodiscard]] const RendererState& state() const noexcept { return state_; }
-  /// Goes on from `state` as the renderer that it was taken from would, to the last bit where fields keep their Lipschitz
-  /// bounds. False, and nothing is changed, if it cannot be a state of this scene. What setContent() changed is
+  /// Goes on from `state` as the renderer that it was taken from would, but for rounding: what a renderer knows of the
+  /// leaves around it, which is not part of the state, decides which of them it looks at once more. False, and nothing is changed, if it cannot be a state of this scene. What setContent() changed is
   /// not part of it. Until the next tick crossings() is empty.
   [[nodiscard]] bool setState(const RendererState& state) noexcept;
 
