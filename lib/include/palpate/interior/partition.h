@@ -1,6 +1,6 @@
 #pragma once
 /// Space cut into regions. Each layer is a Boolean expression over smooth leaf fields; the leaves' signs
-/// at a point say which layers hold it, and the last of those is its region (DESIGN.md section 2).
+/// at a point say which layers hold it, and the last of those is its region.
 
 #include <array>
 #include <bit>
