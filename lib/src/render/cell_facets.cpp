@@ -7,13 +7,6 @@
 #include "cell_walker.h"
 
 namespace palpate {
-namespace {
-
-/// Leaves are one facet where both are on the surface and their normals are parallel to this.
-constexpr double kParallel = 1e-6;
-
-}  // namespace
-
 void CellWalker::gather(LeafId leaf) noexcept {
   crossing_[0] = leaf;
   crossing_count_ = 1;
@@ -24,8 +17,8 @@ void CellWalker::gather(LeafId leaf) noexcept {
   for (std::size_t k = 0; k < hot_count_ && crossing_count_ < crossing_.size(); ++k) {
     const LeafId other = hot_[k];
     if (other == leaf || isIdle(other)) continue;
-    const double near = 4.0 * (tolerance_[other] / leaves_[other].lipschitz +
-                               tolerance_[leaf] / leaves_[leaf].lipschitz);
+    const double near = limits::kTouch * (tolerance_[other] / leaves_[other].lipschitz +
+                                          tolerance_[leaf] / leaves_[leaf].lipschitz);
     if (due_[other] - travel_ > near) continue;
     if (std::fabs(measure(other)) > near * leaves_[other].lipschitz) continue;
     if (!measured) {
@@ -35,7 +28,7 @@ void CellWalker::gather(LeafId leaf) noexcept {
     const Vec3 theirs =
         side(other) * unitOr(leaves_[other].field->sample(here_.point).gradient, Vec3(0.0));
     // Going against `normal`, the other changes side too where its own side lies the same way.
-    if (glm::dot(normal, theirs) > 1.0 - kParallel) crossing_[crossing_count_++] = other;
+    if (glm::dot(normal, theirs) > 1.0 - limits::kParallel) crossing_[crossing_count_++] = other;
   }
 }
 

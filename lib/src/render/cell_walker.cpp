@@ -7,20 +7,6 @@
 #include "solver_limits.h"
 
 namespace palpate {
-namespace {
-
-/// Sweeps let go of grazes shorter than this share of the feature size: what they miss is no deeper than
-/// 5e-7 of it.
-constexpr double kGraze = 0.002;
-constexpr int kEvaluationsPerTick = 4096;
-constexpr int kEvaluationsPerSweep = 256;
-/// The hot list reaches this many times as far as the motion that made it.
-constexpr double kHorizon = 16.0;
-/// ... and at least this share of the smallest feature.
-constexpr double kHorizonShare = 0.1;
-
-}  // namespace
-
 CellWalker::CellWalker(const Scene& scene, PlaceState& state)
     : scene_(scene),
       leaves_(scene.partition().leaves()),
@@ -40,7 +26,7 @@ CellWalker::CellWalker(const Scene& scene, PlaceState& state)
     const Box3 bounds = leaves_[i].field->bounds();
     domain_[i] = {box, box.lo == Vec3(-kInfinity) && box.hi == Vec3(kInfinity),
                   bounds.isEmpty() || (box.contains(bounds.lo) && box.contains(bounds.hi))};
-    smallest_horizon_ = std::min(smallest_horizon_, kHorizonShare * leaves_[i].feature);
+    smallest_horizon_ = std::min(smallest_horizon_, limits::kHorizonShare * leaves_[i].feature);
   }
   for (const Port& port : scene.ports()) {
     if (port.mask < 0) continue;
@@ -78,7 +64,7 @@ void CellWalker::beginTick() noexcept {
   event_count_ = 0;
   here_.punctures.visit(here_.point);
   crossings_left_ = limits::kCrossings;
-  evaluations_left_ = kEvaluationsPerTick;
+  evaluations_left_ = limits::kEvaluationsPerTick;
   // The odometer starts again now and then, so that its rounding stays below every tolerance.
   if (travel_ > 1.0) {
     travel_ = 0.0;
@@ -86,7 +72,9 @@ void CellWalker::beginTick() noexcept {
   }
   // One leaf a tick is looked at whether it can have been met or not: a field whose bound is false may
   // have let the point through, and a hand at rest would leave it there.
-  if (hot_count_ > 0) (void)measure(hot_[here_.audited++ % hot_count_]);
+  if (hot_count_ == 0) return;
+  const LeafId leaf = hot_[here_.audited++ % hot_count_];
+  if (due_[leaf] > travel_) (void)measure(leaf);
 }
 
 double CellWalker::measure(LeafId leaf) noexcept {
@@ -99,7 +87,7 @@ double CellWalker::measure(LeafId leaf) noexcept {
 
 void CellWalker::refresh(double length) noexcept {
   if (travel_ + length < cold_due_) return;
-  const double horizon = std::max(kHorizon * length, smallest_horizon_);
+  const double horizon = std::max(limits::kHorizon * length, smallest_horizon_);
   hot_count_ = 0;
   scene_.partition().tree().visit(here_.point, horizon, [&](std::uint32_t item) {
     const auto leaf = static_cast<LeafId>(item);
@@ -107,6 +95,20 @@ void CellWalker::refresh(double length) noexcept {
     hot_[hot_count_++] = leaf;
   });
   cold_due_ = travel_ + horizon;
+}
+
+bool CellWalker::isAlone(LeafId leaf, double radius) noexcept {
+  refresh(radius);
+  for (std::size_t k = 0; k < hot_count_; ++k) {
+    const LeafId other = hot_[k];
+    if (other == leaf) continue;
+    const double reach =
+        travel_ + radius + limits::kTouch * tolerance_[other] / leaves_[other].lipschitz;
+    if (due_[other] > reach) continue;
+    (void)measure(other);
+    if (due_[other] <= reach) return false;
+  }
+  return true;
 }
 
 void CellWalker::jump(const Vec3& x) noexcept {
@@ -141,7 +143,7 @@ CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noe
           }
         }
         const double start = side(leaf) * measure(leaf);
-        const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
+        const int budget = std::min(limits::kEvaluationsPerSweep, evaluations_left_);
         if (budget <= 8) return Stop::kSpent;
         const SweepResult result =
             sweepLeaf(leaf, surfaceOf(leaf), here_.point, end, start, budget);
@@ -228,7 +230,7 @@ SweepSurface CellWalker::surfaceOf(LeafId leaf) const noexcept {
   surface.side = side(leaf);
   surface.lipschitz = leaves_[leaf].lipschitz;
   surface.tolerance = tolerance_[leaf];
-  surface.graze = kGraze * leaves_[leaf].feature;
+  surface.graze = limits::kGraze * leaves_[leaf].feature;
   return surface;
 }
 
@@ -261,7 +263,7 @@ CellWalker::Slid CellWalker::slideTo(const Vec3& target, const NearCell& cell,
     const double after = side(leaf) * leaves_[leaf].field->value(target);
     if (opens_[leaf] && !held.empty()) {
       // An opening may be narrower than the way is long.
-      const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
+      const int budget = std::min(limits::kEvaluationsPerSweep, evaluations_left_);
       const SweepResult swept =
           sweepLeaf(leaf, surfaceOf(leaf), here_.point, target, before, budget);
       if (swept.kind != SweepResult::Kind::kFree) changes[count++] = {leaf, swept.at};

@@ -13,6 +13,7 @@
 #include "palpate/interior/port_machine.h"
 #include "palpate/render/renderer_state.h"
 #include "palpate/scene/scene.h"
+#include "solver_limits.h"
 
 namespace palpate {
 
@@ -86,12 +87,15 @@ class CellWalker {
     refresh(radius);
     for (std::size_t k = 0; k < hot_count_; ++k) {
       const LeafId leaf = hot_[k];
-      const double reach = travel_ + radius + kTouch * tolerance_[leaf] / leaves_[leaf].lipschitz;
+      const double reach =
+          travel_ + radius + limits::kTouch * tolerance_[leaf] / leaves_[leaf].lipschitz;
       if (due_[leaf] > reach) continue;
       (void)measure(leaf);
       if (due_[leaf] <= reach) f(leaf);
     }
   }
+  /// True if no surface but that of `leaf` can come within `radius` [m] of the point.
+  [[nodiscard]] bool isAlone(LeafId leaf, double radius) noexcept;
   [[nodiscard]] const Signs& signs() const noexcept { return here_.sides; }
 
   /// What the facet of `leaf` at the point is, seen from here.
@@ -130,7 +134,7 @@ class CellWalker {
   /// S of the leaf at the point, asked for once as long as the point stays there.
   double valueHere(LeafId leaf) noexcept {
     // A leaf that held the point a slide ago does so again: its jet will be asked for as well.
-    if (stay_ - jets_[leaf].stay <= kStaysOfSlide) return jetHere(leaf).value;
+    if (stay_ - jets_[leaf].stay <= limits::kStaysOfSlide) return jetHere(leaf).value;
     Measured& known = measured_[leaf];
     if (known.stay != stay_) known = {leaves_[leaf].field->value(here_.point), stay_};
     return known.value;
@@ -189,13 +193,9 @@ class CellWalker {
     FieldJet jet;
     std::uint64_t stay = 0;
   };
-  std::vector<Measured> measured_;  ///< by leaf
-  std::vector<Jet> jets_;           ///< by leaf
-  static constexpr double kTouch = 4.0;
-  /// A slide takes so many straight moves: to above where it lands, and down.
-  static constexpr std::uint64_t kStaysOfSlide = 2;
-
-  std::uint64_t stay_ = 1 + kStaysOfSlide;  ///< counts the places where the point was
+  std::vector<Measured> measured_;                  ///< by leaf
+  std::vector<Jet> jets_;                           ///< by leaf
+  std::uint64_t stay_ = 1 + limits::kStaysOfSlide;  ///< counts the places where the point was
 
   /// A facet looked up in the present state, valid while nothing was crossed; one that varies from place to
   /// place, as long as the point stays where it was.

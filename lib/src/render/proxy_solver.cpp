@@ -30,7 +30,7 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
   batches_left_ = limits::kMaxBatches;
   trusts_sides_ = false;
   contact_.clear();
-  if (glide(hip, friction)) return true;
+  if (goQuickly(hip, friction)) return true;
   bool may_fly = true;
   for (bool is_first = true; batches_left_ > 0; is_first = false) {
     x_ = walker_.position();

@@ -112,7 +112,8 @@ class ProxySolver {
 
   /// [m] A step from `x` as short as this is none for a hand that is `wish` away.
   [[nodiscard]] static double restLength(const Vec3& x, const Vec3& wish) noexcept;
-  [[nodiscard]] bool glide(const Vec3& hip, FrictionState& friction) noexcept;
+  [[nodiscard]] bool goQuickly(const Vec3& hip, FrictionState& friction) noexcept;
+  [[nodiscard]] bool glide(LeafId id, const Vec3& hip, FrictionState& friction) noexcept;
   void takeOnly(LeafId id, const Facet& facet, const NearWall& wall, const FieldJet& jet,
                 const Vec3& wish) noexcept;
   [[nodiscard]] Look lookAround(FrictionState& friction, bool is_first) noexcept;
