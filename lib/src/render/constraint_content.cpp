@@ -6,26 +6,20 @@
 // What the hand feels of what is inside a region.
 
 namespace palpate {
-namespace {
-
-/// Content is felt in full this far behind the facet it was entered through [m], so that hovering in a
-/// mouth does not chatter.
-constexpr double kFadeLength = 0.25e-3;
-
-}  // namespace
 
 double Feel::contentShare() noexcept {
   if (walker_.mouth() < 0) return 1.0;
   const auto mouth = static_cast<LeafId>(walker_.mouth());
+  const double length = fade_.length(walker_.region(), mouth);
   const FieldSample s = walker_.leaf(mouth).field->sample(walker_.position());
   const double slope = s.in_band ? glm::length(s.gradient) : 1.0;
-  const double behind = slope > 0.0 ? std::fabs(s.value) / slope : kFadeLength;
-  if (behind >= kFadeLength) return 1.0;
+  const double behind = slope > 0.0 ? std::fabs(s.value) / slope : length;
+  if (behind >= length) return 1.0;
   // Only an opening is hovered in: behind a valve that has shut, and along the wall beside the mouth, the
   // content is there in full.
   const Facet::Kind kind = walker_.facetAt(mouth).kind;
   const bool is_open = kind == Facet::Kind::kOpen || kind == Facet::Kind::kAbsent;
-  return is_open ? behind / kFadeLength : 1.0;
+  return is_open ? behind / length : 1.0;
 }
 
 /// The share of the content that is felt changes no faster than the hand moves, wherever an opening ends.
@@ -35,7 +29,10 @@ void Feel::fadeContent(const Vec3& hip) noexcept {
   if (!state_.has_begun) {
     fade.share = share;
   } else {
-    const double most = glm::length(hip - state_.hip) / kFadeLength;
+    const int mouth = walker_.mouth();
+    const double most = mouth < 0 ? 1.0
+                                  : glm::length(hip - state_.hip) /
+                                        fade_.length(walker_.region(), static_cast<LeafId>(mouth));
     if (walker_.region() != fade.region) fade.share = 0.0;
     fade.share = std::clamp(share, fade.share - most, fade.share + most);
   }

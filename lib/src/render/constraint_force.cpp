@@ -2,30 +2,26 @@
 #include <cmath>
 
 #include "feel.h"
-#include "palpate/contact/surface_effects.h"
 
 // What the hand feels of the walls that hold the proxy.
 
 namespace palpate {
 
-/// The wall's normal smoothed, over the whole solid that the wall bounds: its facets may be leaves.
-Vec3 Feel::shaded(const HeldWall& held, const Facet& facet, double radius) const noexcept {
-  const RegionId here = walker_.region();
-  const Field* solid = held.field;
-  double side = held.side;
-  if (here != facet.beyond) {
-    const RegionId inner = std::max(here, facet.beyond);
-    solid = scene_.regions()[inner].field.get();
-    side = here == inner ? -1.0 : 1.0;
-  }
-  return shadedNormal(*solid, side, walker_.position(), held.normal, radius);
+namespace {
+
+/// What relaxes alike is handed on from wall to wall: the tissue goes on behind them.
+bool relaxAlike(const Maxwell& a, const Maxwell& b) noexcept {
+  return a.time == b.time && a.stiffness == b.stiffness;
 }
 
+}  // namespace
+
 /// The Maxwell branch of the wall that is pressed most: stretched by how deep the hand presses now.
-void Feel::relax(const ContactSet& c, double dt) noexcept {
+void Feel::relax(const ContactSet& c, const HipState& hip) noexcept {
   RelaxationState& branch = state_.relaxation;
   if (c.count == 0) {
-    branch = {};
+    // On its way to the hand, out of budget, the proxy is held by what it was held by.
+    if (walker_.position() == hip.position) branch = {};
     return;
   }
   std::size_t most = 0;
@@ -36,7 +32,10 @@ void Feel::relax(const ContactSet& c, double dt) noexcept {
   const Material& wall = wallMaterial(facet);
   const bool has_branch = wall.maxwell.time > 0.0;
   const double depth = has_branch ? c.load() : 0.0;
-  const bool goes_on = branch.material == facet.material && branch.region == walker_.region();
+  const bool goes_on =
+      branch.region == walker_.region() && branch.material >= 0 &&
+      relaxAlike(scene_.materials()[static_cast<std::size_t>(branch.material)].maxwell,
+                 wall.maxwell);
   // Pressed from free space it is stretched by all of the depth. A wall that the proxy was handed on to was not
   // pressed by the hand's motion of this tick: it is taken as relaxed.
   const double before = goes_on || branch.material < 0 ? branch.depth : depth;
@@ -45,26 +44,78 @@ void Feel::relax(const ContactSet& c, double dt) noexcept {
   branch.region = walker_.region();
   branch.depth = depth;
   if (!has_branch) return;
-  branch.branch.step(depth - before, dt, wall.maxwell.time);
+  branch.branch.step(depth - before, hip.dt, wall.maxwell.time);
   const double stiffness = wall.maxwell.stiffness.at(walker_.position());
   // It slackens rather than to pull the wall's own spring below zero.
   if (stiffness > 0.0) branch.branch.keepAbove(-springOf(c.wall[most]).force(depth) / stiffness);
 }
 
-/// [N/m] What the held wall is pressed against, by the place of the proxy: its material's, or that of the
-/// layers behind it.
-MaterialMap::Sample Feel::stiffnessOf(const WallContact& contact) noexcept {
-  const Material& wall = wallMaterial(contact.facet);
-  if (wall.composite.radius > 0.0 && contact.facet.beyond != walker_.region()) {
-    return beneath_.stiffness(contact.leaf, walker_.position(), contact.held, contact.facet, wall);
+/// Walls of one kind: the whole way from the hand to the proxy stretches one spring, by whatever walls that is held.
+Feel::SpringForce Feel::evenForce(const ContactSet& c, const Vec3& apart) noexcept {
+  const FeltWall felt = walls_.felt(c.wall[0], walker_.position());
+  SpringForce out;
+  const double length = glm::length(apart);
+  out.varies = !felt.isEven();
+  Vec3 by_press(0.0);
+  if (out.varies) {
+    out.rise = felt.rise(length);
+    if (felt.stiffness_press != Vec3(0.0)) {
+      by_press = felt.law.energyPerStiffness(length) * felt.stiffness_press;
+    }
   }
-  return wall.stiffness.sample(walker_.position());
+  if (felt.law.height != 0.0 || !felt.law.spring.isStraight()) {
+    out.stiffness = felt.law.force(length) / length;
+    out.force = out.stiffness * apart + by_press;
+    return out;
+  }
+  const double secant = felt.law.spring.stiffness;
+  double total = 0.0;
+  for (const WallContact& each : c.walls()) {
+    out.force += secant * each.held.multiplier * each.held.normal;
+    out.stiffness += secant * each.held.multiplier;
+    total += each.held.multiplier;
+  }
+  out.stiffness /= total;
+  // What the walls do not hold of the displacement: by friction, or because the proxy is not there yet.
+  out.held = out.stiffness * c.left - by_press;
+  return out;
+}
+
+/// Walls of several kinds. Where friction holds the proxy, the walls are pressed as if the whole displacement were
+/// towards them; what of the force was along them is its share along the walls. So what is stored depends on the
+/// displacement alone, as long as the proxy stays where it is.
+Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
+                                   const Vec3& outward) noexcept {
+  const Vec3& x = walker_.position();
+  SpringForce out;
+  const double length = glm::length(apart);
+  const double across = glm::length(outward);
+  if (!state_.friction.is_felt || !(across > 0.0)) {
+    const SeriesForce series = seriesForce(x, x - apart, walls_.stop(), walls_);
+    out.stiffness = std::max(0.0, glm::dot(series.force, apart)) / (length * length);
+    out.force = series.force + series.by_press;
+    out.rise = series.by_press;
+    out.varies = series.by_press != Vec3(0.0);
+    return out;
+  }
+  const Vec3 u = outward / across;
+  const SeriesForce series = seriesForce(x, x - length * u, walls_.stop(), walls_);
+  const Vec3& pressed = series.force;
+  const HeldWalls held = c.held();
+  const Vec3 along = tangentialPart(pressed, held.walls());
+  const double straight = glm::dot(pressed, u);
+  const double lag = glm::dot(c.left, c.left);
+  out.stiffness = straight / length;
+  out.rise = series.by_press - along;
+  out.force = (length / across) * (pressed - along) - (straight * lag / (across * length)) * u -
+              out.stiffness * c.left + series.by_press;
+  return out;
 }
 
 /// What the walls push with: the springs between the proxy and the hand. Whatever the walls were found to
 /// be, for one stiffness it is that times the way from the hand to the proxy.
 Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
-  relax(c, hip.dt);
+  relax(c, hip);
   const Vec3& x = walker_.position();
   const Vec3 apart = x - hip.position;
   state_.friction.lean = Vec3(0.0);
@@ -85,42 +136,19 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
     total += each.held.multiplier;
   }
   const Vec3 n = unitOr(outward, Vec3(0.0));
-  const double lag = glm::dot(c.lag, c.lag) / total;
-  Vec3 force(0.0);
-  double stiffness = 0.0;
+  walls_.press(apart);
+  const bool differ = walls_.differ(c, glm::length(apart));
+  const SpringForce springs = differ ? mixedForce(c, apart, outward) : evenForce(c, apart);
   double damping = 0.0;
+  for (const WallContact& each : c.walls()) {
+    damping += wallMaterial(each.facet).damping.at(x) * each.held.multiplier;
+  }
+  damping /= total;
+  Vec3 force = springs.force - (springs.held + damping * hip.velocity);
   // What parameters that vary add: the energy of the springs as they are, by the place of the proxy, is handed
   // on to the hand.
-  Vec3 rise(0.0);  // [N]
-  bool varies = false;
-  for (const WallContact& each : c.walls()) {
-    const Material& wall = wallMaterial(each.facet);
-    const HeldWall& held = each.held;
-    const double multiplier = held.multiplier;
-    const MaterialMap::Sample linear = stiffnessOf(each);
-    const MaterialMap::Sample stiffening = wall.curve.stiffening.sample(x);
-    const WallSpring spring{linear.value, stiffening.value, wall.curve.exponent,
-                            wall.curve.reference};
-    const bool is_even = linear.gradient == Vec3(0.0) && stiffening.gradient == Vec3(0.0);
-    double length = multiplier;
-    if (!is_even || !spring.isStraight()) {
-      // From the proxy to the hand, with what friction holds.
-      length = std::sqrt(std::max(0.0, multiplier * (glm::dot(held.normal, outward) + lag)));
-    }
-    const double secant = spring.secant(length);
-    const Vec3 normal = wall.shading > 0.0 ? shaded(held, each.facet, wall.shading) : held.normal;
-    force += secant * (multiplier + textureHeight(wall.texture, x, multiplier)) * normal;
-    stiffness += secant * multiplier;
-    damping += wall.damping.at(x) * multiplier;
-    if (is_even) continue;
-    varies = true;
-    rise += spring.energyPerStiffness(length) * linear.gradient +
-            WallSpring::energyPerStiffening(length) * stiffening.gradient;
-  }
-  stiffness /= total;
-  damping /= total;
-  // What the walls do not hold of the displacement: by friction, or because the proxy is not there yet.
-  force -= stiffness * c.left + damping * hip.velocity;
+  Vec3 rise = springs.rise;  // [N]
+  bool varies = springs.varies;
   if (state_.relaxation.branch.stretch() != 0.0) {
     const Maxwell& branch =
         scene_.materials()[static_cast<std::size_t>(state_.relaxation.material)].maxwell;
@@ -131,7 +159,7 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
     varies = varies || !branch.stiffness.isConstant();
   }
   if (state_.friction.is_felt) {
-    state_.friction.lean = rise / stiffness;
+    state_.friction.lean = springs.stiffness > 0.0 ? rise / springs.stiffness : Vec3(0.0);
   } else if (varies) {
     force -= gradientByHand(rise, c.held().walls());
   }

@@ -1,8 +1,8 @@
 #pragma once
 /// Feel: which force the walls and the contents make of where the solver brought the proxy.
 
-#include "layers_beneath.h"
-#include "palpate/contact/wall_spring.h"
+#include "content_fade.h"
+#include "felt_walls.h"
 #include "palpate/render/contents.h"
 #include "palpate/render/renderer_state.h"
 #include "proxy_solver.h"
@@ -13,7 +13,7 @@ namespace palpate {
 class Feel {
  public:
   Feel(const Scene& scene, CellWalker& walker, RendererState& state)
-      : scene_(scene), walker_(walker), state_(state), beneath_(scene) {}
+      : scene_(scene), walker_(walker), state_(state), walls_(scene, walker), fade_(scene) {}
 
   /// The force [N] of the walls that hold the proxy.
   [[nodiscard]] Vec3 walls(const ContactSet& contact, const HipState& hip) noexcept;
@@ -23,14 +23,24 @@ class Feel {
   [[nodiscard]] WallSpring springOf(const WallContact& contact) noexcept {
     const Material& wall = wallMaterial(contact.facet);
     const Vec3& x = walker_.position();
-    return {stiffnessOf(contact).value, wall.curve.stiffening.at(x), wall.curve.exponent,
-            wall.curve.reference};
+    return {walls_.stiffness(contact.leaf, contact.facet, contact.held, x).value,
+            wall.curve.stiffening.at(x), wall.curve.exponent, wall.curve.reference};
   }
 
  private:
-  void relax(const ContactSet& contact, double dt) noexcept;
-  [[nodiscard]] Vec3 shaded(const HeldWall& held, const Facet& facet, double radius) const noexcept;
-  [[nodiscard]] MaterialMap::Sample stiffnessOf(const WallContact& contact) noexcept;
+  /// What the springs of walls come to.
+  struct SpringForce {
+    Vec3 force{0.0, 0.0, 0.0};  ///< [N]
+    Vec3 held{0.0, 0.0, 0.0};   ///< [N] to be taken off it: of what the walls do not hold
+    double stiffness = 0.0;     ///< [N/m] against what friction holds
+    Vec3 rise{0.0, 0.0, 0.0};   ///< [N] by the place of the proxy, what is stored changes by
+    bool varies = false;        ///< the rise may be other than zero, and is not in the force
+  };
+
+  void relax(const ContactSet& contact, const HipState& hip) noexcept;
+  [[nodiscard]] SpringForce evenForce(const ContactSet& contact, const Vec3& apart) noexcept;
+  [[nodiscard]] SpringForce mixedForce(const ContactSet& contact, const Vec3& apart,
+                                       const Vec3& outward) noexcept;
   [[nodiscard]] double contentShare() noexcept;
   [[nodiscard]] const Material& wallMaterial(const Facet& facet) const noexcept {
     return scene_.materials()[static_cast<std::size_t>(facet.material)];
@@ -39,7 +49,8 @@ class Feel {
   const Scene& scene_;
   CellWalker& walker_;
   RendererState& state_;
-  LayersBeneath beneath_;
+  FeltWalls walls_;
+  ContentFade fade_;
 };
 
 }  // namespace palpate

@@ -1,0 +1,125 @@
+#include "palpate/contact/series.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr int kMostSteps = 24;
+/// Of the force: what may be left of the sum of all forces on the point.
+constexpr double kSettled = 1e-12;
+/// Of it: what is left where rounding of the walls' own points ends the steps.
+constexpr double kSettledAtLast = 1e-7;
+constexpr double kShorter[] = {1.0, 0.5, 0.25, 0.125, 0.03};
+/// Of the coordinates: a shorter way to a wall has no direction.
+constexpr double kRounding = 1e-15;
+
+struct Look {
+  std::array<Vec3, SoftKinds::kMost> at{};  ///< [m] by kind: the point of its walls
+  Vec3 sum{0.0, 0.0, 0.0};                  ///< [N] the energy's gradient
+  Mat3 rate{0.0};                           ///< [N/m] its derivative
+  Vec3 by_press{0.0, 0.0, 0.0};             ///< [N]
+  double energy = 0.0;                      ///< [J]
+  bool is_even = true;
+};
+
+Look lookFrom(const Vec3& place, const Vec3& hand, double stop, SoftKinds& kinds,
+              std::span<const Vec3> from) noexcept {
+  Look out;
+  const Vec3 off = place - hand;
+  out.sum = stop * off;
+  out.rate = Mat3(stop);
+  out.energy = 0.5 * stop * glm::dot(off, off);
+  const double size = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
+  for (std::size_t m = 0; m < from.size(); ++m) {
+    SoftWalls walls;
+    kinds.look(m, from[m], place, walls);
+    out.at[m] = walls.on.at;
+    const Vec3 way = place - walls.on.at;
+    const double give = glm::length(way);
+    if (walls.on.count == 0 || !(give > kRounding * size)) continue;
+    const Vec3 u = way / give;
+    const SoftWall soft = softWall(walls.felt.law, stop, give);
+    out.sum += soft.force * u;
+    // The law's energy less what the stop would hold of it.
+    out.energy += walls.felt.law.energy(soft.depth) - 0.5 * soft.force * soft.force / stop;
+    const Mat3 along = outer(u, u);
+    Mat3 follows(0.0);
+    for (int i = 0; i < 3; ++i) {
+      Vec3 axis(0.0);
+      axis[i] = 1.0;
+      follows[i] = gradientByHand(axis, walls.on.walls());
+    }
+    out.rate += soft.tangent * along + (soft.force / give) * (Mat3(1.0) - follows - along);
+    if (walls.felt.stiffness_press != Vec3(0.0)) {
+      out.by_press += walls.felt.law.energyPerStiffness(soft.depth) * walls.felt.stiffness_press;
+    }
+    if (walls.felt.isEven()) continue;
+    out.is_even = false;
+    out.sum += gradientByHand(walls.felt.rise(soft.depth), walls.on.walls());
+  }
+  return out;
+}
+
+}  // namespace
+
+Vec3 FeltWall::rise(double depth) const noexcept {
+  Vec3 out(0.0);
+  if (height_rise != Vec3(0.0)) out += law.energyPerHeight(depth) * height_rise;
+  if (stiffness_rise != Vec3(0.0)) out += law.energyPerStiffness(depth) * stiffness_rise;
+  if (stiffening_rise != Vec3(0.0)) out += law.energyPerStiffening(depth) * stiffening_rise;
+  return out;
+}
+
+SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
+                        SoftKinds& kinds) noexcept {
+  const std::size_t count = std::min(kinds.count(), SoftKinds::kMost);
+  std::array<Vec3, SoftKinds::kMost> from;
+  from.fill(proxy);
+  SeriesForce out;
+  out.place = hand;
+  Look here = lookFrom(out.place, hand, stop, kinds, {from.data(), count});
+  Mat3 rate = here.rate;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double most =
+        std::max(stop * glm::length(out.place - hand), 1e-3 * glm::length(here.sum));
+    const double left = glm::length(here.sum);
+    if (left <= kSettled * most || left == 0.0) {
+      out.settled = true;
+      break;
+    }
+    Vec3 step = -(glm::inverse(rate) * here.sum);
+    // Where a wall bulges towards the point the plain derivative may lead uphill.
+    if (!(glm::dot(step, here.sum) < 0.0)) step = -here.sum / stop;
+    bool is_better = false;
+    for (const double share : kShorter) {
+      const Vec3 next = out.place + share * step;
+      const Look there = lookFrom(next, hand, stop, kinds, {here.at.data(), count});
+      if (!(glm::length(there.sum) < left)) continue;
+      is_better = true;
+      const Vec3 moved = next - out.place;
+      const double square = glm::dot(moved, moved);
+      if (there.is_even || !(square > 0.0)) {
+        rate = there.rate;
+      } else {
+        // What varies along the walls is not in the derivative: it is learnt from the steps (Broyden 1965).
+        const Vec3 missed = there.sum - here.sum - rate * moved;
+        rate += outer(missed, moved / square);
+      }
+      out.place = next;
+      here = there;
+      break;
+    }
+    if (!is_better) {
+      out.settled = left <= kSettledAtLast * most;
+      break;
+    }
+  }
+  out.energy = here.energy;
+  out.by_press = here.by_press;
+  out.force = stop * (out.place - hand);
+  return out;
+}
+
+}  // namespace palpate

@@ -1,0 +1,160 @@
+#include "palpate/contact/wall_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+/// Of the stop's stiffness: a law that is no stiffer is followed as it is.
+constexpr double kFollowed = 1.0 / 1.02;
+constexpr int kMostSteps = 60;
+
+/// [N] The integral of the secant over the depth.
+double secantIntegral(const WallSpring& s, double depth) noexcept {
+  if (!(depth > 0.0)) return 0.0;
+  const double straight =
+      s.exponent == 1.0
+          ? s.stiffness * depth
+          : s.stiffness * s.reference * std::pow(depth / s.reference, s.exponent) / s.exponent;
+  return straight + 0.5 * s.stiffening * depth * depth;
+}
+
+/// [J] The integral of the secant times the depth: the spring's own energy.
+double springEnergy(const WallSpring& s, double depth) noexcept {
+  return s.stiffness * s.energyPerStiffness(depth) +
+         s.stiffening * WallSpring::energyPerStiffening(depth);
+}
+
+double springTangent(const WallSpring& s, double depth) noexcept {
+  if (s.exponent == 1.0) return s.stiffness + 2.0 * s.stiffening * depth;
+  const double power =
+      depth > 0.0 ? s.stiffness * std::pow(depth / s.reference, s.exponent - 1.0) : 0.0;
+  return s.exponent * power + 2.0 * s.stiffening * depth;
+}
+
+/// The derivative of the secant by the depth.
+double secantTangent(const WallSpring& s, double depth) noexcept {
+  if (s.exponent == 1.0) return s.stiffening;
+  return (s.exponent - 1.0) * s.stiffness * std::pow(depth / s.reference, s.exponent - 1.0) /
+             depth +
+         s.stiffening;
+}
+
+}  // namespace
+
+double WallLaw::fading(double depth) const noexcept {
+  if (depth <= reach) return 1.0;
+  return depth < 2.0 * reach ? 2.0 - depth / reach : 0.0;
+}
+
+double WallLaw::shown(double depth) const noexcept {
+  if (height == 0.0) return 0.0;
+  const double most = std::max(0.0, held * depth);
+  return std::clamp(height, -most, most) * fading(depth);
+}
+
+double WallLaw::tangent(double depth) const noexcept {
+  const double own = springTangent(spring, depth);
+  if (height == 0.0 || !(depth > 0.0)) return own;
+  const double c = shown(depth);
+  double rate = 0.0;
+  if (held * depth < std::fabs(height)) {
+    rate = std::copysign(held, height);
+  } else if (depth > reach && depth < 2.0 * reach) {
+    rate = -height / reach;
+  }
+  return own + secantTangent(spring, depth) * c + spring.secant(depth) * rate;
+}
+
+double WallLaw::energyPerHeight(double depth) const noexcept {
+  const double from = std::fabs(height) / held;
+  if (!(depth > from)) return 0.0;
+  double all = 0.0;
+  if (depth <= reach) {
+    all = secantIntegral(spring, depth);
+  } else {
+    const double end = std::min(depth, 2.0 * reach);
+    all = 2.0 * secantIntegral(spring, end) - secantIntegral(spring, reach) -
+          (springEnergy(spring, end) - springEnergy(spring, reach)) / reach;
+  }
+  return all - secantIntegral(spring, from);
+}
+
+double WallLaw::energy(double depth) const noexcept {
+  if (!(depth > 0.0)) return 0.0;
+  const double own = springEnergy(spring, depth);
+  if (height == 0.0) return own;
+  const double from = std::min(depth, std::fabs(height) / held);
+  return own + std::copysign(held, height) * springEnergy(spring, from) +
+         height * energyPerHeight(depth);
+}
+
+double WallLaw::energyPerStiffness(double depth) const noexcept {
+  if (height == 0.0) return spring.energyPerStiffness(depth);
+  WallLaw unit = *this;
+  unit.spring.stiffness = 1.0;
+  unit.spring.stiffening = 0.0;
+  return unit.energy(depth);
+}
+
+double WallLaw::energyPerStiffening(double depth) const noexcept {
+  if (height == 0.0) return WallSpring::energyPerStiffening(depth);
+  WallLaw unit = *this;
+  unit.spring.stiffness = 0.0;
+  unit.spring.stiffening = 1.0;
+  return unit.energy(depth);
+}
+
+SoftWall softWall(const WallLaw& law, double stop, double give) noexcept {
+  SoftWall out;
+  if (!(give > 0.0)) return out;
+  const double most = kFollowed * stop;
+  // The law is as stiff as the stop allows from `bend` on; it grows stiffer with the depth only.
+  const auto giveAt = [&](double depth) { return depth - law.force(depth) / stop; };
+  double low = give;
+  double high = give;
+  double tangent = law.tangent(give);
+  if (law.spring.isStraight() && law.height == 0.0) {
+    const double own = std::min(law.spring.stiffness, most);
+    out.depth = give * stop / (stop - own);
+    out.force = own * out.depth;
+    out.tangent = stop * own / (stop - own);
+    return out;
+  }
+  // give <= d, and beyond it each piece of depth gives way by a share of 1 - most / stop at least.
+  high = give * stop / (stop - most);
+  if (law.tangent(high) > most) {
+    double below = 0.0;
+    double above = high;
+    for (int i = 0; i < kMostSteps; ++i) {
+      const double middle = 0.5 * (below + above);
+      (law.tangent(middle) > most ? above : below) = middle;
+    }
+    const double bent = giveAt(below);
+    if (give >= bent) {
+      const double further = (give - bent) * stop / (stop - most);
+      out.depth = below + further;
+      out.force = law.force(below) + most * further;
+      out.tangent = stop * most / (stop - most);
+      return out;
+    }
+    high = below;
+  }
+  double depth = std::clamp(give * stop / std::max(stop - tangent, stop - most), low, high);
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double off = giveAt(depth) - give;
+    (off > 0.0 ? high : low) = depth;
+    tangent = law.tangent(depth);
+    double next = depth - off / std::max(1.0 - tangent / stop, 1e-3);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::fabs(next - depth) <= 1e-16 * depth) break;
+    depth = next;
+  }
+  out.depth = depth;
+  out.force = law.force(depth);
+  out.tangent = tangent / std::max(1.0 - tangent / stop, 1e-3);
+  return out;
+}
+
+}  // namespace palpate

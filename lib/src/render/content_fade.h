@@ -1,0 +1,24 @@
+#pragma once
+/// How far behind an opening a content is felt in full.
+
+#include <vector>
+
+#include "palpate/scene/scene.h"
+
+namespace palpate {
+
+/// Made when a renderer is; then real-time safe.
+class ContentFade {
+ public:
+  explicit ContentFade(const Scene& scene);
+
+  /// [m] Behind the surface of `mouth` in `region`: a share of the surface's own feature size, or of how thick the region
+  /// is, whichever is less. So a scene in micrometers is the same scene, and a film is felt as well as a bowl.
+  [[nodiscard]] double length(RegionId region, LeafId mouth) const noexcept;
+
+ private:
+  const Scene& scene_;
+  std::vector<double> thickness_;  ///< [m] by region: of the largest ball seen in it
+};
+
+}  // namespace palpate

@@ -1,0 +1,81 @@
+#pragma once
+/// What the walls near the proxy push with at one place, and whether walls of several kinds are felt at once.
+
+#include <array>
+#include <vector>
+
+#include "layers_beneath.h"
+#include "near_walls.h"
+#include "palpate/contact/felt_height.h"
+#include "palpate/contact/series.h"
+#include "proxy_solver.h"
+
+namespace palpate {
+
+/// Scratch of one renderer: nothing in it is left for the next tick.
+class FeltWalls final : public SoftKinds {
+ public:
+  FeltWalls(const Scene& scene, CellWalker& walker);
+
+  /// [N/m] The stiffness of a wall at `x` [m]: its material's, or that of the layers behind it.
+  [[nodiscard]] MaterialMap::Sample stiffness(LeafId leaf, const Facet& facet, const HeldWall& held,
+                                              const Vec3& x) noexcept;
+  /// What that wall pushes with there.
+  [[nodiscard]] FeltWall felt(LeafId leaf, const Facet& facet, const HeldWall& held, const Vec3& x,
+                              SmoothedField& smoothed) noexcept;
+  [[nodiscard]] FeltWall felt(const WallContact& contact, const Vec3& x) noexcept {
+    return felt(contact.leaf, contact.facet, contact.held, x, smoothed_[0]);
+  }
+
+  /// Finds the walls within `reach` [m] of the proxy, which `contact` holds; true if they are of several kinds. Then
+  /// seriesForce() may be asked, until the walker moves.
+  [[nodiscard]] bool differ(const ContactSet& contact, double reach) noexcept;
+  /// The way from the hand to the proxy [m]: how wide a patch is pressed. To be told before all that is felt.
+  void press(const Vec3& way) noexcept { press_ = way; }
+  /// [N/m] Stiffer than any wall of the scene, at any depth that its shapes have room for.
+  [[nodiscard]] double stop() const noexcept { return stop_; }
+
+  [[nodiscard]] std::size_t count() const noexcept override { return count_; }
+  void look(std::size_t index, const Vec3& from, const Vec3& place,
+            SoftWalls& out) noexcept override;
+
+ private:
+  struct Near {
+    LeafId leaf = 0;
+    Facet facet;
+    HeldWall held;
+  };
+  /// Walls of one kind.
+  struct Group {
+    int kind = -1;
+    int own = 0;  ///< what it is that feels so, where it does by what lies behind it
+    std::array<Near, kMaxProjectionWalls> wall{};
+    std::array<HeldWall, kMaxProjectionWalls> held{};
+    std::size_t count = 0;
+  };
+  void sortKinds();
+  [[nodiscard]] std::vector<bool> usedByWalls() const;
+  [[nodiscard]] const Material& material(const Facet& facet) const noexcept {
+    return scene_.materials()[static_cast<std::size_t>(facet.material)];
+  }
+  [[nodiscard]] int ownOf(const Near& wall) const noexcept;
+  void add(const Near& wall) noexcept;
+  [[nodiscard]] LocalProjection ontoPlanes(const Group& group, const Vec3& place) const noexcept;
+
+  const Scene& scene_;
+  CellWalker& walker_;
+  NearWalls near_;
+  LayersBeneath beneath_;
+  std::vector<int> kind_;      ///< by material: those that feel the same have the same
+  std::vector<double> reach_;  ///< [m] by material: of its texture
+  std::vector<double>
+      contrast_;  ///< [m] by material: infinite where its stiffness is felt at a point
+  bool may_differ_ = false;
+  double stop_ = 0.0;
+  Vec3 press_{0.0, 0.0, 0.0};
+  std::array<Group, kMost> group_{};
+  std::size_t count_ = 0;
+  std::array<SmoothedField, kMost> smoothed_{};
+};
+
+}  // namespace palpate

@@ -1,0 +1,127 @@
+// Walls of several kinds in series with one stop: the force is minus the slope of the energy, whatever the shapes.
+
+#include "palpate/contact/series.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "palpate/fields/primitives.h"
+#include "support/field_contract.h"
+
+namespace palpate::test {
+namespace {
+
+HeldWall outsideOf(const FieldPtr& field) {
+  HeldWall out;
+  out.field = field.get();
+  out.side = 1.0;
+  return out;
+}
+
+TEST(LocalProjection, FindsTheCircleWhereTwoBallsMeet) {
+  const FieldPtr left = sphere(Vec3(-0.006, 0, 0), 0.01);
+  const FieldPtr right = sphere(Vec3(0.006, 0, 0), 0.01);
+  const std::vector<HeldWall> walls{outsideOf(left), outsideOf(right)};
+  const double radius = 0.008;
+  Random random(1);
+  for (int i = 0; i < 200; ++i) {
+    const double angle = random.uniform(-0.5, 0.5);
+    const Vec3 from(0.0, radius * std::sin(angle), radius * std::cos(angle));
+    const double turned = angle + random.uniform(-0.2, 0.2);
+    const Vec3 target(random.uniform(-1e-4, 1e-4), 0.006 * std::sin(turned),
+                      0.006 * std::cos(turned));
+    const LocalProjection out = projectLocally(from, target, walls);
+    ASSERT_TRUE(out.settled) << i;
+    ASSERT_EQ(out.count, 2U) << i;
+    const Vec3 expected(0.0, radius * std::sin(turned), radius * std::cos(turned));
+    // Newton's last step is below 1e-12 of the way of 2 mm.
+    EXPECT_LT(glm::length(out.at - expected), 1e-14) << i;
+  }
+}
+
+TEST(LocalProjection, LeavesWhatIsAllowedAlone) {
+  const FieldPtr ball = sphere(Vec3(0.0), 0.01);
+  const std::vector<HeldWall> walls{outsideOf(ball)};
+  const LocalProjection out = projectLocally(Vec3(0, 0, 0.01), Vec3(0.001, 0, 0.012), walls);
+  EXPECT_TRUE(out.settled);
+  EXPECT_EQ(out.count, 0U);
+  EXPECT_EQ(out.at, Vec3(0.001, 0, 0.012));
+}
+
+/// Each wall a kind of its own, with a height and a stiffness that vary along it.
+class Kinds final : public SoftKinds {
+ public:
+  Kinds(std::vector<FieldPtr> fields, std::vector<WallLaw> laws, bool varies)
+      : fields_(std::move(fields)), laws_(std::move(laws)), varies_(varies) {}
+  [[nodiscard]] std::size_t count() const noexcept override { return fields_.size(); }
+  void look(std::size_t index, const Vec3& from, const Vec3& place,
+            SoftWalls& out) noexcept override {
+    const HeldWall wall = outsideOf(fields_[index]);
+    out.on = projectLocally(from, place, {&wall, 1});
+    out.felt.law = laws_[index];
+    if (!varies_) return;
+    const Vec3& p = out.on.at;
+    out.felt.law.height = 0.1e-3 * std::sin(900.0 * p.x) * std::cos(700.0 * p.y);
+    out.felt.height_rise = 0.1e-3 * Vec3(900.0 * std::cos(900.0 * p.x) * std::cos(700.0 * p.y),
+                                         -700.0 * std::sin(900.0 * p.x) * std::sin(700.0 * p.y), 0);
+    out.felt.law.spring.stiffness *= 1.0 + 40.0 * p.y;
+    out.felt.stiffness_rise = Vec3(0, 40.0 * laws_[index].spring.stiffness, 0);
+  }
+
+ private:
+  std::vector<FieldPtr> fields_;
+  std::vector<WallLaw> laws_;
+  bool varies_;
+};
+
+TEST(SeriesForce, IsMinusTheSlopeOfTheEnergy) {
+  const std::vector<std::vector<FieldPtr>> shapes{
+      {halfSpace(Vec3(0.0), glm::normalize(Vec3(1, 0, 0.6))),
+       halfSpace(Vec3(0.0), glm::normalize(Vec3(-1, 0.2, 0.7)))},
+      {sphere(Vec3(-0.006, 0, -0.008), 0.01), sphere(Vec3(0.006, 0, -0.008), 0.01)},
+      {halfSpace(Vec3(0.0), glm::normalize(Vec3(1, 0, 0.6))),
+       halfSpace(Vec3(0.0), glm::normalize(Vec3(-1, 0.9, 0.7))), sphere(Vec3(0, -0.01, 0), 0.01)}};
+  const WallLaw straight{{700.0, 0.0, 1.0, 1.0}};
+  const WallLaw hertz{{900.0, 0.0, 1.5, 1e-3}};
+  const WallLaw okamura{{400.0, 2e5, 1.0, 1.0}};
+  Random random(7);
+  int settled = 0;
+  for (const auto& fields : shapes) {
+    for (const bool varies : {false, true}) {
+      Kinds kinds(fields, {straight, hertz, okamura}, varies);
+      for (int i = 0; i < 40; ++i) {
+        const Vec3 hand(random.uniform(-0.3e-3, 0.3e-3), random.uniform(-0.3e-3, 0.3e-3),
+                        random.uniform(-1e-3, -0.2e-3));
+        const Vec3 proxy(0.0);
+        const double stop = 4000.0;
+        const SeriesForce here = seriesForce(proxy, hand, stop, kinds);
+        settled += here.settled ? 1 : 0;
+        for (int axis = 0; axis < 3; ++axis) {
+          Vec3 by(0.0);
+          by[axis] = 1e-7;
+          const double slope = (seriesForce(proxy, hand + by, stop, kinds).energy -
+                                seriesForce(proxy, hand - by, stop, kinds).energy) /
+                               2e-7;
+          // A difference over 0.2 um of some 1e-4 J that are known to 1e-16 of it.
+          EXPECT_NEAR(here.force[axis], -slope, 1e-6) << i << " " << varies;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(settled, 240);
+}
+
+TEST(SeriesForce, OfOneKindIsItsOwnLaw) {
+  const WallLaw hertz{{900.0, 0.0, 1.5, 1e-3}};
+  Kinds kinds({halfSpace(Vec3(0.0), Vec3(0, 0, 1))}, {hertz}, false);
+  for (double d = 0.05e-3; d < 2e-3; d += 0.05e-3) {
+    const SeriesForce out = seriesForce(Vec3(0.0), Vec3(0, 0, -d), 4000.0, kinds);
+    EXPECT_NEAR(out.force.z, hertz.force(d), 1e-10);
+    EXPECT_NEAR(out.energy, hertz.energy(d), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,147 @@
+// Stiffness that changes within a short way: felt over a patch that grows with the depth, and told at set-up.
+
+#include "palpate/render/contrast.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "lib/render/energy_loop.h"
+#include "palpate/contact/contact_patch.h"
+#include "palpate/fields/primitives.h"
+#include "support/test_maps.h"
+
+namespace palpate::test {
+namespace {
+
+using testing::FunctionMap;
+
+/// 300 N/m, and from x = 0 on 3000 N/m, over `width` [m], with a continuous slope.
+MaterialMapPtr step(double width) {
+  return std::make_shared<FunctionMap>(
+      [=](const Vec3& p) {
+        const double t = std::clamp(p.x / width + 0.5, 0.0, 1.0);
+        MaterialMap::Sample out{300.0 + 2700.0 * t * t * (3.0 - 2.0 * t), Vec3(0.0)};
+        out.gradient.x = 2700.0 * 6.0 * t * (1.0 - t) / width;
+        return out;
+      },
+      MaterialMap::Range{300.0, 3000.0});
+}
+
+ScenePtr sceneWith(const FieldPtr& field, const Parameter& stiffness) {
+  SceneDescription description;
+  Material wall;
+  wall.name = "wall";
+  wall.stiffness = stiffness;
+  description.materials = {wall};
+  LayerDescription layer;
+  layer.name = "body";
+  layer.inside = std::make_shared<FieldSource>(field);
+  layer.wall.material = "wall";
+  description.layers = {layer};
+  description.metres_per_unit = 1e-3;
+  return compile(description);
+}
+
+const FieldPtr kFloor = halfSpace(Vec3(0.0), Vec3(0, 0, 1));
+
+TEST(ContactPatch, ItsSlopesAreThoseOfTheMean) {
+  const MaterialMapPtr map = std::make_shared<FunctionMap>(
+      [](const Vec3& p) {
+        const Vec3 k(900.0, 700.0, -400.0);
+        const double phase = glm::dot(k, p) + 0.4;
+        return MaterialMap::Sample{600.0 + 200.0 * std::sin(phase), 200.0 * std::cos(phase) * k};
+      },
+      MaterialMap::Range{400.0, 800.0});
+  const Parameter parameter(map);
+  Random random(2);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 middle = random.in({mm(-3, -3, -3), mm(3, 3, 3)});
+    const Vec3 press = random.uniform(0.2e-3, 4e-3) * random.direction();
+    const double contrast = 0.5e-3;
+    const PatchSample here = overPatch(parameter, middle, press, contrast);
+    const double by = 1e-8;
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 off(0.0);
+      off[axis] = by;
+      const double place = (overPatch(parameter, middle + off, press, contrast).value -
+                            overPatch(parameter, middle - off, press, contrast).value) /
+                           (2.0 * by);
+      EXPECT_NEAR(here.by_place[axis], place, 0.05) << i;
+      const double pressed = (overPatch(parameter, middle, press + off, contrast).value -
+                              overPatch(parameter, middle, press - off, contrast).value) /
+                             (2.0 * by);
+      EXPECT_NEAR(here.by_press[axis], pressed, 0.05) << i;
+    }
+  }
+}
+
+TEST(ContactPatch, IsAPointForALightPressAndAsWideAsADeepOneIsDeep) {
+  EXPECT_EQ(patchRadius(0.5e-3, 1e-3), 0.0);
+  EXPECT_EQ(patchRadius(5.0, kInfinity), 0.0);
+  EXPECT_NEAR(patchRadius(0.1, 1e-3), 0.099, 1e-5);
+}
+
+// Ten times as stiff from one voxel to the next: the term for the slope alone pushed sideways with 60 N where the wall
+// pushed back with 15 N.
+TEST(Contrasts, NeverPushSidewaysAsHardAsTheWallPushesBack) {
+  for (const double width : {0.5e-3, 1e-3, 2e-3}) {
+    Drive hand(sceneWith(kFloor, step(width)));
+    for (const double depth : {0.2e-3, 1e-3, 5e-3, 10e-3}) {
+      (void)hand.walk(Vec3(-0.02, 0.001, 0.001));
+      (void)hand.walk(Vec3(-0.02, 0.001, -depth));
+      double most = 0.0;
+      double jump = 0.0;
+      Vec3 last = hand.last().force;
+      for (int i = 1; i <= 40'000; ++i) {
+        const Vec3 force = hand.to(Vec3(-0.02 + 1e-6 * i, 0.001, -depth)).force;
+        most = std::max(most, glm::length(Vec3(force.x, force.y, 0)) / force.z);
+        jump = std::max(jump, glm::length(force - last));
+        last = force;
+      }
+      std::printf(
+          "  over %.2f mm, %4.1f mm deep: sideways over back %.3f, largest step in 1 um %.3g N\n",
+          1e3 * width, 1e3 * depth, most, jump);
+      // Deeper than ten times what a contrast is wide, single places of the patch are felt; that is told (below).
+      if (depth <= 10.01 * width) EXPECT_LT(most, 1.0) << width << " " << depth;
+      // Beside it, each is what it is.
+      EXPECT_NEAR(hand.last().force.z, 3000.0 * depth, 1e-9);
+    }
+  }
+}
+
+TEST(Contrasts, GiveNoEnergy) {
+  Random random(6);
+  const ScenePtr flat = sceneWith(kFloor, step(0.5e-3));
+  const ScenePtr ball = sceneWith(sphere(Vec3(0.0), 0.02), step(0.5e-3));
+  for (int i = 0; i < 3; ++i) {
+    EnergyLoop loop = randomLoop(random, mm(0.2, 0, -1), 0.2e-3, 1.0e-3);
+    const EnergyGiven on_floor = energyGiven(flat, mm(0, 0, 10), loop);
+    loop.center = mm(0.2, 0, 19);
+    const EnergyGiven on_ball = energyGiven(ball, mm(0, 0, 30), loop);
+    std::printf("  floor %.3g J (%.1g), ball %.3g J (%.1g)\n", on_floor.work, on_floor.change,
+                on_ball.work, on_ball.change);
+    EXPECT_LE(on_floor.work, 1e-9);
+    EXPECT_LE(on_ball.work, 1e-9);
+  }
+}
+
+TEST(Contrasts, AreToldWithWhatRemains) {
+  const std::vector<Contrast> none = contrastsOf(*sceneWith(kFloor, testing::flatMap(700.0)));
+  EXPECT_TRUE(none.empty());
+  const std::vector<Contrast> gentle =
+      contrastsOf(*sceneWith(kFloor, testing::linearMap(1000.0, {2e4, 0, 0}, {500.0, 1500.0})));
+  ASSERT_EQ(gentle.size(), 1U);
+  EXPECT_NEAR(gentle[0].length, 500.0 / 2e4, 2e-3);
+  const std::vector<Contrast> sharp = contrastsOf(*sceneWith(kFloor, step(0.5e-3)));
+  ASSERT_EQ(sharp.size(), 1U);
+  EXPECT_EQ(sharp[0].material, 0);
+  EXPECT_NEAR(sharp[0].at.x, 0.0, 0.25e-3);
+  // Steepest where K / K' is least, a little on the soft side of the middle.
+  EXPECT_LT(sharp[0].length, 0.2e-3);
+  EXPECT_GT(sharp[0].length, 0.05e-3);
+  EXPECT_GT(sharp[0].sideways, 0.05);
+}
+
+}  // namespace
+}  // namespace palpate::test

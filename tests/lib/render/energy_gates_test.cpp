@@ -1,0 +1,106 @@
+// Every key of a wall's and a content's material: over closed ways of the hand, at random and looked for, it gives
+// nothing beyond counted sources.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "lib/render/energy_loop.h"
+
+namespace palpate::test {
+namespace {
+
+struct Key {
+  const char* name;
+  const char* wall;
+  const char* content;
+};
+
+const Key kKeys[] = {
+    {"stiffness", "stiffness: 1000 N/m", ""},
+    {"damping", "stiffness: 1000 N/m, damping: 2 N.s/m", ""},
+    {"friction", "stiffness: 1000 N/m, friction: {static: 0.4, kinetic: 0.3}", ""},
+    {"texture", "stiffness: 1000 N/m, texture: {amplitude: 0.2 mm, wavelength: 3}", ""},
+    {"texture and friction",
+     "stiffness: 1000 N/m, texture: {amplitude: 0.2 mm, wavelength: 3}, friction: {static: 0.4}",
+     ""},
+    {"composite", "stiffness: 1000 N/m, composite: {radius: 3, depth: 20}", ""},
+    {"shading", "stiffness: 1000 N/m, shading: 0.8 mm", ""},
+    {"shading and texture",
+     "stiffness: 1000 N/m, shading: 0.8 mm, texture: {amplitude: 0.1 mm, wavelength: 2}", ""},
+    {"stiffening", "stiffness: 500 N/m, curve: {stiffening: 2e5 N/m^2}", ""},
+    {"exponent", "stiffness: 800 N/m, curve: {exponent: 1.5, reference: 1 mm}", ""},
+    {"maxwell", "stiffness: 700 N/m, maxwell: {stiffness: 900 N/m, time: 50 ms}", ""},
+    {"viscosity", "stiffness: 1000 N/m", "viscosity: 3 N.s/m"},
+    {"flow", "stiffness: 1000 N/m", "viscosity: 3 N.s/m, flow: [20 mm/s, -10 mm/s, 30 mm/s]"},
+    {"lattice", "stiffness: 1000 N/m",
+     "stiffness: 1000 N/m, lattice: {force: 0.3 N, wavelength: [4, 5, 6]}"},
+    {"cutting and shaft", "stiffness: 1000 N/m",
+     "stiffness: 500 N/m, cutting: 0.2 N, shaft: {stiffness: 1e5 N/m^2, in: {static: 18 N/m, "
+     "kinetic: 10 "
+     "N/m}}"},
+};
+
+struct Place {
+  const char* name;
+  const char* layers;
+  Vec3 start;   // [m]
+  Vec3 center;  // [m] about which loops go
+};
+
+const Place kPlaces[] = {
+    {"floor",
+     "[{name: a, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: m, content: "
+     "c}]",
+     mm(0, 0, 10), mm(0, 0, -0.7)},
+    {"ball",
+     "[{name: a, inside: {sphere: {center: [0, 0, -12], radius: 12}}, wall: m, content: c}]",
+     mm(0, 0, 10), mm(0, 0, -0.7)},
+    {"crease with another wall",
+     "[{name: a, inside: {half_space: {point: [0, 0, 0], normal: [1, 0, 1]}}, wall: m, content: "
+     "c}, "
+     "{name: b, inside: {half_space: {point: [0, 0, 0], normal: [-1, 0, 0.8]}}, wall: other, "
+     "content: c}]",
+     mm(0, 0, 10), mm(0, 0, -0.4)},
+    {"hollow ball beside another wall",
+     "[{name: b, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: other}, "
+     "{name: a, inside: {sphere: {center: [0, 0, 6], radius: 8}}, wall: m, content: c}]",
+     mm(0, 0, 30), mm(0, 0, 14)},
+    {"within a ball",
+     "[{name: a, inside: {sphere: {center: [0, 0, 0], radius: 8}}, wall: m, content: c}]\nstart: "
+     "{region: a}",
+     mm(0, 0, 0), mm(0, 0, 7.5)},
+};
+
+ScenePtr sceneOf(const Key& key, const Place& place) {
+  return test::sceneOf(std::string("palpate: 1\nlength: mm\nmaterials:\n  m: {") + key.wall +
+                       "}\n  c: {" + (*key.content != '\0' ? key.content : "viscosity: 0 N.s/m") +
+                       "}\n  other: {stiffness: 2500 N/m}\nlayers: " + place.layers + "\n");
+}
+
+TEST(EnergyGates, NoKeyOfAMaterialGivesEnergy) {
+  const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
+  const int loops = slow ? 20 : 1;
+  const int tries = slow ? 100 : 6;
+  for (const Key& key : kKeys) {
+    for (const Place& place : kPlaces) {
+      const ScenePtr scene = sceneOf(key, place);
+      Random random(17);
+      double most = -kInfinity;
+      EnergyGiven worst;
+      for (int i = 0; i < loops; ++i) {
+        EnergyLoop loop = randomLoop(random, place.center, 0.05e-3, 0.7e-3);
+        loop = worstLoop(scene, place.start, loop, 0.3e-3, tries, random);
+        const EnergyGiven given = energyGiven(scene, place.start, loop);
+        if (given.work - given.change > most) worst = given;
+        most = std::max(most, given.work - given.change);
+      }
+      std::printf("  %-22s %-32s %10.3g J (last halving %.1g J)\n", key.name, place.name,
+                  worst.work, worst.change);
+      EXPECT_LE(worst.work, 1e-9 + worst.change) << key.name << ", " << place.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,101 @@
+#pragma once
+// The work that a rendered world does on a hand which goes round a closed way.
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "lib/render/drive.h"
+#include "support/random_hand.h"
+
+namespace palpate::test {
+
+/// A smooth closed way about a point.
+struct EnergyLoop {
+  Vec3 center{0.0, 0.0, 0.0};  // [m]
+  std::array<Vec3, 4> wave{};  // [m]
+
+  [[nodiscard]] Vec3 at(double share) const {
+    const double turn = 2.0 * std::numbers::pi * share;
+    return center + std::cos(turn) * wave[0] + std::sin(turn) * wave[1] +
+           std::cos(2.0 * turn) * wave[2] + std::sin(2.0 * turn) * wave[3];
+  }
+};
+
+/// [J] Done on the hand in the second of two laps, by the trapezium rule, beyond counted sources. A lap takes `lap` [s].
+inline double workOfLap(const ScenePtr& scene, const Vec3& start, const EnergyLoop& loop, int steps,
+                        double lap = 1.0) {
+  const auto renderer = makeRenderer(scene);
+  const double dt = lap / steps;
+  Vec3 last = start;
+  bool is_first = true;
+  const auto tick = [&](const Vec3& p) {
+    const Vec3 velocity = is_first ? Vec3(0.0) : (p - last) / dt;
+    is_first = false;
+    last = p;
+    return renderer->update({p, velocity, dt});
+  };
+  (void)tick(start);
+  constexpr int kWayIn = 500;
+  for (int i = 1; i <= kWayIn; ++i) (void)tick(glm::mix(start, loop.at(0.0), 1.0 * i / kWayIn));
+  for (int i = 1; i < steps; ++i) (void)tick(loop.at(static_cast<double>(i) / steps));
+  Vec3 before = tick(loop.at(0.0)).force;
+  const double sources = renderer->sourceWork();
+  double work = 0.0;
+  for (int i = 1; i <= steps; ++i) {
+    const Vec3 from = last;
+    const Vec3 now = tick(loop.at(i == steps ? 0.0 : static_cast<double>(i) / steps)).force;
+    work += 0.5 * glm::dot(before + now, last - from);
+    before = now;
+  }
+  return work - (renderer->sourceWork() - sources);
+}
+
+struct EnergyGiven {
+  double work = 0.0;    // [J] in the limit of short steps
+  double change = 0.0;  // [J] by the last halving of the step
+  double moved = 0.0;   // [J] of half the absolute work of the lap: what went to and fro
+};
+
+/// The same, with the step halved until that changes it by less than 1e-10 J, or the steps are as many as `most`.
+inline EnergyGiven energyGiven(const ScenePtr& scene, const Vec3& start, const EnergyLoop& loop,
+                               int most = 64'000, double lap = 1.0) {
+  EnergyGiven out;
+  int steps = 1000;
+  out.work = workOfLap(scene, start, loop, steps, lap);
+  do {
+    steps *= 2;
+    const double finer = workOfLap(scene, start, loop, steps, lap);
+    out.change = std::fabs(finer - out.work);
+    out.work = finer;
+  } while (out.change > 1e-10 && steps < most);
+  return out;
+}
+
+/// A loop about `center` whose waves are from `least` to `most` [m] long.
+inline EnergyLoop randomLoop(Random& random, const Vec3& center, double least, double most) {
+  EnergyLoop out;
+  out.center = center;
+  for (Vec3& each : out.wave) each = random.uniform(least, most) * random.direction();
+  return out;
+}
+
+/// Looks for the loop that gives most, by changing the best one of before a little, `tries` times.
+inline EnergyLoop worstLoop(const ScenePtr& scene, const Vec3& start, EnergyLoop best, double size,
+                            int tries, Random& random) {
+  constexpr int kSteps = 2000;
+  double most = workOfLap(scene, start, best, kSteps);
+  for (int i = 0; i < tries; ++i) {
+    EnergyLoop next = best;
+    const double by = size * (i % 3 == 0 ? 0.5 : 0.1);
+    next.center += by * random.direction();
+    for (Vec3& each : next.wave) each += by * random.direction();
+    const double work = workOfLap(scene, start, next, kSteps);
+    if (work <= most) continue;
+    most = work;
+    best = next;
+  }
+  return best;
+}
+
+}  // namespace palpate::test
