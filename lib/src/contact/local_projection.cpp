@@ -13,7 +13,7 @@ constexpr double kLeastEigenvalue = 0.02;
 constexpr double kLargestTurn = 0.5;  // [rad]
 /// Of the way to the target, and of the coordinates: a step as short as this is none.
 constexpr double kSettled = 1e-12;
-constexpr double kRounding = 4e-16;
+constexpr double kRounding = 1e-14;
 
 }  // namespace
 

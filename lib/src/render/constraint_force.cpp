@@ -86,7 +86,7 @@ Feel::SpringForce Feel::evenForce(const ContactSet& c, const Vec3& apart) noexce
 /// displacement alone, as long as the proxy stays where it is.
 Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
                                    const Vec3& outward) noexcept {
-  const Vec3& x = walker_.position();
+  const Vec3 x = walker_.position() + c.snug;
   SpringForce out;
   const double length = glm::length(apart);
   const double across = glm::length(outward);
@@ -136,9 +136,11 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
     total += each.held.multiplier;
   }
   const Vec3 n = unitOr(outward, Vec3(0.0));
-  walls_.press(apart);
-  const bool differ = walls_.differ(c, glm::length(apart));
-  const SpringForce springs = differ ? mixedForce(c, apart, outward) : evenForce(c, apart);
+  // From the walls' surfaces, off which the proxy stands a little.
+  const Vec3 press = apart + c.snug;
+  walls_.press(press);
+  const bool differ = walls_.differ(c, glm::length(press));
+  const SpringForce springs = differ ? mixedForce(c, press, outward) : evenForce(c, press);
   double damping = 0.0;
   for (const WallContact& each : c.walls()) {
     damping += wallMaterial(each.facet).damping.at(x) * each.held.multiplier;

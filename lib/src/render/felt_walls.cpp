@@ -182,6 +182,9 @@ bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
   count_ = 0;
   if (!may_differ_) return false;
   for (const WallContact& each : contact.walls()) add({each.leaf, each.facet, each.held});
+  std::size_t near_count = 0;
+  walker_.forWithin(reach, [&](LeafId) { ++near_count; });
+  if (near_count <= contact.count) return count_ > 1;
   if (!near_.look(reach, false)) return count_ > 1;
   const std::span<const NearWall> walls = near_.walls();
   // The cell that the walls which hold the proxy bound: what else bounds it is felt as well.
