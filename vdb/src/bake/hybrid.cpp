@@ -16,7 +16,9 @@
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/fields/transform.h"
+#include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_error.h"
+#include "palpate/vdb/grid_memory.h"
 
 namespace palpate::vdb {
 namespace {
@@ -102,9 +104,9 @@ class HybridBaker {
                          "the grid " + grid.info().name + " is of a part that the field lacks",
                          "it was made of another field: bake again");
       }
-      const LevelSet wide = options_.sampler == Sampler::kCubic && isTooNarrow(grid.info())
-                                ? widened(grid, kCubicHalfWidth, progress_)
-                                : grid;
+      CertifyOptions certify;
+      certify.sampler = options_.sampler;
+      const LevelSet wide = certified(grid, certify, progress_).grid;
       part->made = gridField(wide, options_.sampler);
       refuseOther(*part, wide);
       if (part->within.isBounded()) part->made = gridField(wide, options_.sampler, part->within);
@@ -117,9 +119,9 @@ class HybridBaker {
   Hybrid runWhole() {
     BakeOptions bake_options = options_.bake;
     if (options_.within.isBounded()) setBox(bake_options, options_.within, root_->bounds());
-    const LevelSet grid = bake(*root_, bake_options, progress_);
+    const LevelSet grid = sure(bake(*root_, bake_options, progress_));
     Hybrid out;
-    out.field = gridField(grid, options_.sampler, options_.within);
+    out.field = gridField(grid, options_.sampler, options_.within, options_.bake.max_memory);
     const GridError error =
         gridError(*root_, grid, *out.field, root_->bounds().intersectedWith(options_.within));
     HybridPart part;
@@ -250,6 +252,14 @@ class HybridBaker {
     return out.analytic_ns < kWorthIt * out.grid_ns;
   }
 
+  /// What contact relies on, made sure of.
+  [[nodiscard]] LevelSet sure(const LevelSet& grid) const {
+    CertifyOptions certify;
+    certify.sampler = options_.sampler;
+    certify.is_foreign = false;
+    return certified(grid, certify, progress_).grid;
+  }
+
   /// Of any grid with such voxels: a small ball's.
   double gridNanoseconds() {
     if (grid_ns_ == 0.0) {
@@ -274,14 +284,14 @@ class HybridBaker {
     setBox(bake_options, part.needed, part.field->bounds());
     LevelSet grid;
     try {
-      grid = bake(*part.field, bake_options, named(part));
+      grid = sure(bake(*part.field, bake_options, named(part)));
     } catch (const Error& error) {
       const std::string& code = error.problem().code;
-      if (code != "bake.too_thin" && code != "bake.empty") throw;
+      if (code != "bake.too_thin" && code != "bake.empty" && code != "vdb.uncertified") throw;
       out.reason = "stays analytic: " + error.problem().message;
       return;
     }
-    FieldPtr made = gridField(grid, options_.sampler, part.within);
+    FieldPtr made = gridField(grid, options_.sampler, part.within, options_.bake.max_memory);
     const GridError error =
         gridError(*part.field, grid, *made,
                   part.needed.grownBy(bake_options.voxel_size).intersectedWith(part.within));

@@ -1,0 +1,36 @@
+#pragma once
+/// What the function out of bricks can be between voxels, bounded and not sampled.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "brick/brick_view.h"
+
+namespace palpate::vdb {
+
+/// Bounds over the cells of some bricks. In a cell the cubic spline is a polynomial, which lies between the least and the largest
+/// of its control values (Bernstein's form, made of the spline's coefficients); so do its derivatives, whose control values
+/// are differences of those. Trilinear cells are bounded by their corners.
+struct BandBounds {
+  using Voxel = std::array<int, 3>;
+
+  /// [voxels] |value| in the cells that do not answer is no less than that; infinite if all do.
+  double least_unknown = std::numeric_limits<double>::infinity();
+  Voxel unknown_at{};  ///< first voxel of that cell
+  /// [-] The slope along one direction, in the cell where its bound is least among those that may hold the surface. Not above 0:
+  /// an edge, a cusp, or a thin part.
+  double least_slope = std::numeric_limits<double>::infinity();
+  Voxel slope_at{};
+  std::uint64_t surface_cells = 0;  ///< that may hold the surface
+  std::uint64_t rough_cells = 0;    ///< of these, the ones whose slope may be below kSmoothSlope
+
+  void add(const BandBounds& other) noexcept;
+  /// All cells of the brick; `first` is its first voxel.
+  void add(const Brick& brick, const Voxel& first, bool cubic) noexcept;
+};
+
+/// A sphere of two voxels has no cell with a smaller bound of its slope.
+inline constexpr double kSmoothSlope = 0.4;
+
+}  // namespace palpate::vdb
