@@ -71,10 +71,12 @@ TEST(Certificate, BoundsHoldWhereverTheGridIsSampled) {
       for (int i = 0; i < 200000; ++i) {
         const Vec3 p = random.in(field->bounds().grownBy(4 * voxel));
         const FieldSample s = made->sample(p);
-        // As the value rises by no more than L, a point within w of the surface has |value| <= L w.
-        if (std::fabs(s.value) < sure.within) {
-          ASSERT_TRUE(s.in_band) << p.x << " " << p.y << " " << p.z;
+        // A step along the gradient leads to the surface, where that is near; from there on points within w answer.
+        if (s.in_band && std::fabs(s.value) < 0.3 * voxel) {
+          const Vec3 on = p - s.value / glm::dot(s.gradient, s.gradient) * s.gradient;
+          if (std::fabs(made->sample(on).value) > 1e-3 * voxel) continue;
           ++near;
+          ASSERT_TRUE(made->sample(on + 0.99 * sure.within * random.direction()).in_band);
         }
         if (!s.in_band) continue;
         ASSERT_LE(glm::length(s.gradient), sure.lipschitz);
@@ -82,7 +84,7 @@ TEST(Certificate, BoundsHoldWhereverTheGridIsSampled) {
           ASSERT_GE(glm::length(s.gradient), sure.slope - 1e-3);
         }
       }
-      EXPECT_GT(near, 1000);
+      EXPECT_GT(near, 500);
     }
   }
 }

@@ -9,15 +9,17 @@ namespace {
 
 constexpr int kMostLooks = 6;
 constexpr int kModelSteps = 8;
-constexpr int kCreeps = 6;
+constexpr int kCreeps = 4;
 // In voxels.
 constexpr double kLeash = 1.5;         ///< of one step
 constexpr double kFarthest = 2.5;      ///< from the start
-constexpr double kModelEnough = 1e-5;  ///< of a step that the next one would only square
+constexpr double kModelEnough = 3e-4;  ///< of a step that the next one would only square
 constexpr double kOnSurface = 1e-5;
 /// [voxels] A step s through a surface that bends by k a voxel leaves some k^2 s^3 / 6, if its bend changes over the same way
-/// as it turns; a surface that is flat where it is looked at is taken for one that bends over kLeastBend.
-constexpr double kMostLeft = 2e-7;
+/// as it turns; a surface that is flat where it is looked at is taken for one that bends by kLeastBend. That may be
+/// kMostLeft, and a tenth of what a cubic spline leaves of such a bend, 0.037 k^3.
+constexpr double kMostLeft = 1e-6;
+constexpr double kShareLeft = 0.0037;
 constexpr double kLeastBend = 0.03;
 
 /// Two directions across `n`, at right angles, of its length squared or less.
@@ -69,31 +71,36 @@ std::optional<Vec3> onModel(const FieldJet& jet, const Vec3& apart, double voxel
   return e;
 }
 
-/// [voxels] What is left after a step of the model.
-double leftAfter(const FieldJet& jet, double step, double voxel) noexcept {
+/// Whether a step of the model is short enough to leave nothing that counts.
+bool isEnough(const FieldJet& jet, double step, double voxel) noexcept {
   double square = 0.0;
   for (int column = 0; column < 3; ++column) {
     square += glm::dot(jet.hessian[column], jet.hessian[column]);
   }
   const double slope2 = glm::dot(jet.gradient, jet.gradient);
-  const double bend2 = std::max(square / slope2 * voxel * voxel, kLeastBend * kLeastBend);
+  const double bend = std::max(std::sqrt(square / slope2) * voxel, kLeastBend);
   const double s = step / voxel;
-  return bend2 * s * s * s / 6.0;
+  return bend * bend * s * s * s / 6.0 < std::max(kMostLeft, kShareLeft * bend * bend * bend);
 }
 
 }  // namespace
 
 std::optional<Vec3> ClosestPoint::of(const Vec3& p, const Vec3& start) const noexcept {
+  return from(p, start, field_.jet(start));
+}
+
+std::optional<Vec3> ClosestPoint::from(const Vec3& p, const Vec3& start,
+                                       const FieldJet& at_start) const noexcept {
   Vec3 x = start;
   double last = kInfinity;
   for (int look = 0; look < kMostLooks; ++look) {
-    const FieldJet jet = field_.jet(x);
+    const FieldJet jet = look == 0 ? at_start : field_.jet(x);
     if (!jet.in_band) return std::nullopt;
     const std::optional<Vec3> step = onModel(jet, p - x, voxel_);
     if (!step) return std::nullopt;
     x += *step;
     const double length = glm::length(*step);
-    if (leftAfter(jet, length, voxel_) < kMostLeft) return x;
+    if (isEnough(jet, length, voxel_)) return x;
     const Vec3 way = x - start;
     if (!(glm::dot(way, way) < kFarthest * kFarthest * voxel_ * voxel_)) return std::nullopt;
     if (look >= 2 && length > 0.5 * last) return std::nullopt;

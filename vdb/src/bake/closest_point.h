@@ -19,6 +19,10 @@ class ClosestPoint {
   /// field, or where its gradient vanishes. [m]
   [[nodiscard]] std::optional<Vec3> of(const Vec3& p, const Vec3& start) const noexcept;
 
+  /// The same, with the field's jet at `start`.
+  [[nodiscard]] std::optional<Vec3> from(const Vec3& p, const Vec3& start,
+                                         const FieldJet& jet) const noexcept;
+
   /// The same, by small steps along the surface that only ever come nearer; from a point on it, also over a kink of the field.
   /// What it finds at an edge is off along it by some hundredths of a voxel. [m]
   [[nodiscard]] Vec3 creptTo(const Vec3& p, const Vec3& foot) const noexcept;

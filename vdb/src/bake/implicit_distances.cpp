@@ -26,7 +26,7 @@ constexpr std::size_t kVoxels = DistanceLeaf::kVoxels;
 /// [voxels] beyond the band that still tell their neighbors: the nearest way round a hollow leads past them.
 constexpr double kBeyond = 1.0;
 /// [voxels] A neighbor's point that is nearer by less is the same one.
-constexpr double kNearer = 1e-3;
+constexpr double kNearer = 5e-3;
 constexpr int kLooks = 3;
 /// [voxels] A closest point that is further off than the one its search began at by more is another place's.
 constexpr double kSamePlace = 1e-3;
@@ -82,6 +82,7 @@ class Spreading {
         progress_(progress),
         sided_(surface.leaves.size()),
         leaves_(pointsOf(surface), plan.half_width + kBeyond) {
+    grown_.assign(leaves_.all().size(), 1);
     takeSides(surface);
     for (const SurfaceFoot& foot : surface.feet) {
       DistanceLeaf& leaf = leafAt(foot.voxel);
@@ -180,6 +181,7 @@ class Spreading {
   bool spread() {
     std::vector<std::vector<Found>> fresh(leaves_.all().size());
     forLeaves([&](std::size_t b, const DistanceLeaf& leaf) {
+      if (!isAnyBeside(leaf, grown_)) return;
       VoxelBits next = leaves_.besideKnown(leaf);
       std::uint64_t rows = 0;
       for (std::size_t x = 0; x < 8; ++x) {
@@ -207,9 +209,17 @@ class Spreading {
     // When all have searched, so that none sees what others found in the same round.
     forLeaves([&](std::size_t b, DistanceLeaf& leaf) {
       for (const Found& found : fresh[b]) take(leaf, found);
+      grown_[b] = fresh[b].empty() ? 0 : 1;
     });
     return std::any_of(fresh.begin(), fresh.end(),
                        [](const auto& found) { return !found.empty(); });
+  }
+
+  /// Whether the leaf, or one beside it, has a mark.
+  static bool isAnyBeside(const DistanceLeaf& leaf, const std::vector<std::uint8_t>& marks) {
+    return std::any_of(leaf.near.begin(), leaf.near.end(), [&](std::int32_t n) {
+      return n >= 0 && marks[static_cast<std::size_t>(n)] != 0;
+    });
   }
 
   static Coord stepTo(int which) noexcept {
@@ -228,11 +238,7 @@ class Spreading {
   void lookAround(std::vector<std::uint8_t>& changed) {
     std::vector<std::vector<Found>> better(leaves_.all().size());
     forLeaves([&](std::size_t b, const DistanceLeaf& leaf) {
-      if (std::none_of(leaf.near.begin(), leaf.near.end(), [&](std::int32_t n) {
-            return n >= 0 && changed[static_cast<std::size_t>(n)] != 0;
-          })) {
-        return;
-      }
+      if (!isAnyBeside(leaf, changed)) return;
       NearestFeet nearest(Mat3(1.0));
       nearest.find(leaves_.feetAround(leaf), ~std::uint64_t{0});
       const Around around(leaves_, leaf);
@@ -257,6 +263,7 @@ class Spreading {
   const Progress& progress_;
   std::vector<VoxelBits> sided_;  ///< by leaf: voxels whose side is known from the field's value
   DistanceLeaves leaves_;
+  std::vector<std::uint8_t> grown_;  ///< by leaf: voxels were found in the last round
 };
 
 /// [voxels^2] Half a voxel to each side of the surface has one voxel for each voxel's face of it.
@@ -286,7 +293,8 @@ void requireNear(const openvdb::CoordBBox& range, const BakePlan& plan,
 }
 
 /// While distances are found, a leaf takes some four times what it takes in the grid.
-constexpr double kScratch = 1.0 + static_cast<double>(sizeof(DistanceLeaf)) / (512.0 * sizeof(float));
+constexpr double kScratch =
+    1.0 + static_cast<double>(sizeof(DistanceLeaf)) / (512.0 * sizeof(float));
 
 }  // namespace
 

@@ -20,8 +20,9 @@ using openvdb::Coord;
 constexpr double kSided = 1.75;
 /// [voxels] Up to here a voxel looks for its closest point by itself. Each point of the surface has a voxel within 0.87.
 constexpr double kSeeded = 1.2;
-/// Where the field is flatter than that share of its steepest slope, S / |grad S| does not tell how far the surface is.
-constexpr double kFlat = 0.2;
+/// In a leaf no slope is taken for steeper than that many times the steepest between points two voxels apart there: a
+/// bound for all of space is many times what a quadratic form, say, has near its surface.
+constexpr double kSteeper = 2.0;
 
 constexpr std::size_t kVoxels = DistanceLeaf::kVoxels;
 constexpr std::size_t kBatch = PointBatch::kCount;
@@ -29,6 +30,30 @@ constexpr std::size_t kBatch = PointBatch::kCount;
 Coord offsetOf(std::size_t place) noexcept {
   const auto n = static_cast<int>(place);
   return {n >> 6, n >> 3 & 7, n & 7};
+}
+
+/// The largest difference between neighbors of 4^3 values.
+double steepestOf(const ValueBatch& values) noexcept {
+  double most = 0.0;
+  for (std::size_t n = 0; n < kBatch; ++n) {
+    if ((n & 3U) < 3) most = std::max(most, std::fabs(values[n + 1] - values[n]));
+    if ((n >> 2 & 3U) < 3) most = std::max(most, std::fabs(values[n + 4] - values[n]));
+    if (n >> 4 < 3) most = std::max(most, std::fabs(values[n + 16] - values[n]));
+  }
+  return most;
+}
+
+/// [m] How far it is to the surface at least, if the field bends by no more than twice what it does here:
+/// where |S| = |grad S| t + |H| t^2.
+double leastDistance(const FieldJet& jet) noexcept {
+  double square = 0.0;
+  for (int column = 0; column < 3; ++column) {
+    square += glm::dot(jet.hessian[column], jet.hessian[column]);
+  }
+  const double slope = glm::length(jet.gradient);
+  // The root, written so that it holds for no bend as well.
+  const double value = std::fabs(jet.value);
+  return 2.0 * value / (slope + std::sqrt(slope * slope + 4.0 * std::sqrt(square) * value));
 }
 
 /// What one leaf has.
@@ -54,7 +79,6 @@ class SurfaceFinder {
     const Vec3 first = at(cube.origin);
     const bool is_bounded = domain_.contains(first - Vec3(2.0 * voxel_)) &&
                             domain_.contains(first + Vec3(9.0 * voxel_));
-    const double steepest = is_bounded ? lipschitz_ : kInfinity;
     // Blocks of 2^3 first, by their middles.
     PointBatch points;
     ValueBatch values;
@@ -64,6 +88,8 @@ class SurfaceFinder {
     }
     const double reach = (0.5 * std::sqrt(3.0) + kSided) * voxel_ * (1.0 + 1e-9);
     source_.parts().values(part, points, values);
+    const double steepest = std::min(is_bounded ? lipschitz_ : kInfinity,
+                                     kSteeper * steepestOf(values) / (2.0 * voxel_));
     std::array<std::uint16_t, kVoxels> places;
     std::size_t count = 0;
     for (std::size_t n = 0; n < kBatch; ++n) {
@@ -109,14 +135,13 @@ class SurfaceFinder {
     if (std::fabs(value) > steepest * kSeeded * voxel_) return;
     const Coord voxel = found.sides.origin + offsetOf(place);
     const Vec3 p = at(voxel);
-    const FieldSample sample = field_.sample(p);
-    const double slope = glm::length(sample.gradient);
-    if (!sample.in_band) return;
-    const bool is_far = !(std::fabs(sample.value) <= kSeeded * voxel_ * slope);
-    const bool is_flat = std::isfinite(steepest) && slope < kFlat * steepest;
-    if (is_far && !is_flat) return;
-    if (is_flat && !hasCrossing(p, value)) return;
-    if (const std::optional<Vec3> foot = footOf(p, sample, slope)) {
+    const FieldJet jet = field_.jet(p);
+    const double slope = glm::length(jet.gradient);
+    if (!jet.in_band || leastDistance(jet) > kSeeded * voxel_) return;
+    // Where the gradient vanishes S / |grad S| does not tell how far the surface is.
+    const bool is_far = !(std::fabs(jet.value) <= kSeeded * voxel_ * slope);
+    if (is_far && !hasCrossing(p, value)) return;
+    if (const std::optional<Vec3> foot = footOf(p, jet, slope)) {
       const Vec3 way = (*foot - p) / voxel_;
       if (glm::length(way) <= kSided) found.feet.push_back({voxel, way});
     }
@@ -134,17 +159,17 @@ class SurfaceFinder {
     return false;
   }
 
-  [[nodiscard]] std::optional<Vec3> footOf(const Vec3& p, const FieldSample& sample,
+  [[nodiscard]] std::optional<Vec3> footOf(const Vec3& p, const FieldJet& jet,
                                            double slope) const noexcept {
     if (slope > 0.0) {
-      const Vec3 start = p - (sample.value / (slope * slope)) * sample.gradient;
+      const Vec3 start = p - (jet.value / (slope * slope)) * jet.gradient;
       const Vec3 way = start - p;
       if (glm::dot(way, way) < 4.0 * voxel_ * voxel_) {
-        if (const auto foot = closest_.of(p, start)) return foot;
+        if (const auto foot = closest_.from(p, p, jet)) return foot;
         if (const auto on = closest_.onto(start)) return closest_.creptTo(p, *on);
       }
     }
-    return byBisection(p, sample.value);
+    return byBisection(p, jet.value);
   }
 
   /// A point of the surface on the way to a neighbor on the other side.

@@ -15,6 +15,8 @@ constexpr std::size_t kFine = 3 * kCells + 1;  ///< control values along an axis
 constexpr std::size_t kFineRow = kFine + 3;    ///< floats, so that four can be read at the last
 /// [voxels] A cell whose coefficients are all beyond that needs no closer look.
 constexpr float kClear = 2.5F;
+/// Where no slope of a brick is above that, it is not worth to know it cell by cell.
+constexpr double kNotSteep = 1.3;
 
 /// The control values of the cells along one axis, out of 11 coefficients `step` apart; `to` likewise.
 template <typename From, typename To>
@@ -159,10 +161,22 @@ bool isNear(const Brick& brick) noexcept {
   return least < kClear || (has_negative && has_positive);
 }
 
+double steepest(const std::array<Range, 3>& d) noexcept {
+  double square = 0.0;
+  for (const Range& range : d) {
+    const double most = std::max(-static_cast<double>(range.lo), static_cast<double>(range.hi));
+    square += most * most;
+  }
+  return std::sqrt(square);
+}
+
 template <std::size_t kSide>
-void addCell(const float (&c)[kSide][kSide][kSide], bool known, const Voxel& at,
+void addCell(const float (&c)[kSide][kSide][kSide], bool known, bool is_steep, const Voxel& at,
              BandBounds& bounds) noexcept {
   const Range range = rangeOf(c);
+  if (is_steep && range.least() < BandBounds::kNear) {
+    bounds.steepest_near = std::max(bounds.steepest_near, steepest(slopesOf(c)));
+  }
   if (!known) {
     if (range.least() < bounds.least_unknown) {
       bounds.least_unknown = range.least();
@@ -194,12 +208,20 @@ void BandBounds::add(const BandBounds& other) noexcept {
     least_slope = other.least_slope;
     slope_at = other.slope_at;
   }
+  steepest_near = std::max(steepest_near, other.steepest_near);
   surface_cells += other.surface_cells;
   rough_cells += other.rough_cells;
 }
 
-void BandBounds::add(const Brick& brick, const Voxel& first, bool cubic) noexcept {
+double BandBounds::within() const noexcept {
+  return std::min(least_unknown, kNear) / steepest_near;
+}
+
+void BandBounds::add(const Brick& brick, const Voxel& first, bool cubic,
+                     double steepest_of_brick) noexcept {
   BandBounds own;
+  const bool is_steep = steepest_of_brick > kNotSteep;
+  if (!is_steep) own.steepest_near = std::max(1.0, steepest_of_brick);
   if (!isNear(brick)) {
     // No coefficient is nearer to 0 than kClear, and none of another side: no value either.
     own.least_unknown = kClear;
@@ -224,11 +246,12 @@ void BandBounds::add(const Brick& brick, const Voxel& first, bool cubic) noexcep
                {v[Brick::at(i, j + 1, k)], v[Brick::at(i, j + 1, k + 1)]}},
               {{v[Brick::at(i + 1, j, k)], v[Brick::at(i + 1, j, k + 1)]},
                {v[Brick::at(i + 1, j + 1, k)], v[Brick::at(i + 1, j + 1, k + 1)]}}};
-          addCell(corners, known, at, own);
+          addCell(corners, known, is_steep, at, own);
           continue;
         }
         const double least = coefficientRange<4>(brick, i, j, k).least();
-        if (known ? least > 0.0 : least >= static_cast<double>(kClear)) {
+        const double clear = known ? (is_steep ? kNear : 0.0) : static_cast<double>(kClear);
+        if (known ? least > clear : least >= clear) {
           if (!known && static_cast<double>(kClear) < own.least_unknown) {
             own.least_unknown = kClear;
             own.unknown_at = at;
@@ -239,8 +262,8 @@ void BandBounds::add(const Brick& brick, const Voxel& first, bool cubic) noexcep
         has_controls = true;
         float c[4][4][4];
         controls.of(static_cast<std::size_t>(i), static_cast<std::size_t>(j),
-                     static_cast<std::size_t>(k), c);
-        addCell(c, known, at, own);
+                    static_cast<std::size_t>(k), c);
+        addCell(c, known, is_steep, at, own);
       }
     }
   }

@@ -22,12 +22,20 @@ struct BandBounds {
   /// an edge, a cusp, or a thin part.
   double least_slope = std::numeric_limits<double>::infinity();
   Voxel slope_at{};
+  /// [-] No slope is steeper in cells with a value nearer to 0 than kNear.
+  double steepest_near = 1.0;
   std::uint64_t surface_cells = 0;  ///< that may hold the surface
   std::uint64_t rough_cells = 0;    ///< of these, the ones whose slope may be below kSmoothSlope
 
   void add(const BandBounds& other) noexcept;
-  /// All cells of the brick; `first` is its first voxel.
-  void add(const Brick& brick, const Voxel& first, bool cubic) noexcept;
+  /// [voxels] How far it is at least from the surface to a point that does not answer: on the way there |value| rises
+  /// to least_unknown or kNear, and until then no slope is above steepest_near.
+  [[nodiscard]] double within() const noexcept;
+
+  /// All cells of the brick; `first` is its first voxel, and no slope in it is above `steepest`.
+  void add(const Brick& brick, const Voxel& first, bool cubic, double steepest) noexcept;
+
+  static constexpr double kNear = 1.5;  ///< [voxels]
 };
 
 /// A sphere of two voxels has no cell with a smaller bound of its slope.

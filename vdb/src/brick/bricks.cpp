@@ -110,6 +110,7 @@ void gather(const Accessor& accessor, const Coord& block, Neighborhood& to) {
 struct Part {
   Neighborhood neighborhood;
   double steepest_square = 0.0;
+  double last_square = 0.0;  ///< of the last brick made
   CoordBBox negative;
   BandBounds bounds;
 };
@@ -178,7 +179,8 @@ class BrickMaker {
   void make(const Coord& block, const Accessor& accessor, Part& part, Brick& brick) const {
     gather(accessor, block, part.neighborhood);
     (cubic_ ? fillCubic : fillLinear)(part.neighborhood, plateau_, units_per_voxel_, brick);
-    part.steepest_square = std::max(part.steepest_square, steepestSquareIn(brick, cubic_));
+    part.last_square = steepestSquareIn(brick, cubic_);
+    part.steepest_square = std::max(part.steepest_square, part.last_square);
   }
 
   /// Of all that was made. The slope of a distance is 1, though a grid whose surface is flat may measure less. The
@@ -274,7 +276,8 @@ BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler) {
     Brick brick;
     maker.make(map.bricks[n], accessor, part, brick);
     const Coord first = map.bricks[n] << 3;
-    part.bounds.add(brick, {first.x(), first.y(), first.z()}, maker.cubic());
+    part.bounds.add(brick, {first.x(), first.y(), first.z()}, maker.cubic(),
+                    std::sqrt(part.last_square));
   });
   BrickSurvey survey;
   for (const Part& part : maker.parts()) survey.bounds.add(part.bounds);

@@ -195,8 +195,7 @@ class Certifier {
     BandCertificate c;
     c.sampler = sampler();
     c.lipschitz = found.lipschitz;
-    const double unknown = std::max(0.0, found.bounds.least_unknown - kRounding);
-    c.within = std::min(unknown, grid_.info().half_width) * voxel / c.lipschitz;
+    c.within = std::max(0.0, found.bounds.within() - kRounding) * voxel;
     unknown_at_ = {found.bounds.unknown_at[0], found.bounds.unknown_at[1],
                    found.bounds.unknown_at[2]};
     if (found.bounds.surface_cells > 0) {

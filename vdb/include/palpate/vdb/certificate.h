@@ -31,8 +31,9 @@ struct BandCertificate {
 
 /// Least BandCertificate::within, in voxels. A hand at 1 m/s moves a millimetre in a tick, but the proxy is on the surface.
 inline constexpr double kLeastWithin = 0.5;
-/// Distances never differ by more than the way; the spline through them overshoots at edges, by a slope of 2 at worst.
-inline constexpr double kMostLipschitz = 3.0;
+/// Distances never differ by more than the way. The coefficients of the spline through them overshoot where distances to all sides meet, in
+/// the middle of a ball or a wedge, so that the bound of its slope is up to 3.5 there; 9 and more was that of values that are none.
+inline constexpr double kMostLipschitz = 5.0;
 
 /// 16 hexadecimal digits of all that a sample can depend on: voxels, band, place and unit. Names and other metadata do not
 /// count. Not a signature: it tells damage, not forgery.
