@@ -60,16 +60,20 @@ GridVerdict judge(const vdb::GridCheck& check, const LengthUnit& unit) {
 }
 
 Json certificateJson(const vdb::BandCertificate& c) {
-  return {{"within_m", c.within},   {"lipschitz", c.lipschitz},
-          {"slope", c.slope},       {"slope_place_m", vectorJson(c.slope_place)},
-          {"rough_share", c.rough}, {"off_m", c.off},
+  return {{"within_m", c.within},
+          {"lipschitz", c.lipschitz},
+          {"steepest", c.steepest},
+          {"slope", c.slope},
+          {"slope_place_m", vectorJson(c.slope_place)},
+          {"rough_share", c.rough},
+          {"off_m", c.off},
           {"content", c.content}};
 }
 
 std::string certificateText(const vdb::BandCertificate& c, const LengthUnit& unit) {
   std::string text = "    certified " + formatNumber(c.within / unit.metres, 3) + " " + unit.name +
                      " to each side of the surface answer, no slope is above " +
-                     formatNumber(c.lipschitz, 3) + ", off by at most " +
+                     formatNumber(c.steepest, 3) + ", off by at most " +
                      formatNumber(c.off / unit.metres, 2) + " " + unit.name + " where smooth\n";
   if (c.rough > 0.0) {
     text += "    " + formatNumber(100.0 * c.rough, 2) +

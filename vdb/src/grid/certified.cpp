@@ -23,9 +23,9 @@ constexpr double kMostSlope = 0.25;
 constexpr double kSmallStep = 0.05;
 /// [voxels] Beside the surface, more than that is damage.
 constexpr double kMostStep = 0.25;
-/// [voxels] A voxel that is off by less than that, and contradicts no neighbor by more than kSmallStep: on a plane, where
-/// the next of the 26 directions is up to 26 degrees off its normal, it is 0.16.
-constexpr double kUnseen = 0.2;
+/// [voxels] Values can be off by less than that and contradict no neighbor by more than kSmallStep: one half of a grid against the
+/// other by the square root of 3 less that of 2, a single voxel by half of that.
+constexpr double kUnseen = 0.4;
 /// [voxels] What rounding leaves of a bound that was found in floats.
 constexpr double kRounding = 1e-4;
 
@@ -195,6 +195,7 @@ class Certifier {
     BandCertificate c;
     c.sampler = sampler();
     c.lipschitz = found.lipschitz;
+    c.steepest = found.bounds.steepest_near;
     c.within = std::max(0.0, found.bounds.within() - kRounding) * voxel;
     unknown_at_ = {found.bounds.unknown_at[0], found.bounds.unknown_at[1],
                    found.bounds.unknown_at[2]};
@@ -211,14 +212,15 @@ class Certifier {
   }
 
   [[nodiscard]] bool holds(const BandCertificate& c) const noexcept {
-    return c.within >= kLeastWithin * grid_.info().voxel_size && c.lipschitz <= kMostLipschitz;
+    return c.within >= kLeastWithin * grid_.info().voxel_size && c.steepest <= kMostSteep;
   }
 
   [[noreturn]] void refuse(const BandCertificate& c) const {
-    if (c.lipschitz > kMostLipschitz) {
+    if (c.steepest > kMostSteep) {
       no("vdb.uncertified",
-         text("has samples that differ by up to %.2g times their distance", c.lipschitz) +
-             text("; %.2g is the most that a surface can be touched with", kMostLipschitz),
+         text("has samples by the surface that differ by up to %.2g times their distance",
+              c.steepest) +
+             text("; %.2g is the most that a surface can be touched with", kMostSteep),
          "its values are not distances: write it again, or bake the shape that it is of");
     }
     no("vdb.uncertified",

@@ -17,7 +17,9 @@ struct BandCertificate {
   Sampler sampler = Sampler::kCubic;
   double within =
       0.0;  ///< [m] every point that near to the surface answers with value and gradient
-  double lipschitz = 1.0;  ///< [-] of what is sampled, everywhere
+  double lipschitz =
+      1.0;  ///< [-] of what is sampled, everywhere; up to 6 where distances to all sides meet
+  double steepest = 1.0;  ///< [-] no slope is above where |value| is below 1.5 voxels
   /// [-] In each cell that may hold the surface the value grows at least so fast along some direction. Not above 0: there is an
   /// edge, a cusp or a part as thin as the cell.
   double slope = 1.0;
@@ -31,9 +33,9 @@ struct BandCertificate {
 
 /// Least BandCertificate::within, in voxels. A hand at 1 m/s moves a millimetre in a tick, but the proxy is on the surface.
 inline constexpr double kLeastWithin = 0.5;
-/// Distances never differ by more than the way. The coefficients of the spline through them overshoot where distances to all sides meet, in
-/// the middle of a ball or a wedge, so that the bound of its slope is up to 3.5 there; 9 and more was that of values that are none.
-inline constexpr double kMostLipschitz = 5.0;
+/// Most of BandCertificate::steepest: distances never differ by more than the way, and the spline through them overshoots by the edges
+/// of a box to 1.8.
+inline constexpr double kMostSteep = 3.0;
 
 /// 16 hexadecimal digits of all that a sample can depend on: voxels, band, place and unit. Names and other metadata do not
 /// count. Not a signature: it tells damage, not forgery.
@@ -69,7 +71,7 @@ struct CertifiedGrid {
 /// grid is refused.
 /// @throws Error: kInput naming place and remedy (vdb.gradient: values are no distances in the grid's unit; vdb.no_inside;
 /// vdb.torn: the band has a hole or inside and outside meet; vdb.jump: voxels by the surface differ by more than their
-/// distance; vdb.uncertified: points near the surface would not answer, or samples are steeper than kMostLipschitz),
+/// distance; vdb.uncertified: points near the surface would not answer, or samples by the surface are steeper than kMostSteep),
 /// kOperation for memory, kCancelled.
 [[nodiscard]] CertifiedGrid certified(const LevelSet& grid, const CertifyOptions& options = {},
                                       const Progress& progress = {});
