@@ -20,6 +20,7 @@ constexpr double kOnSurface = 1e-5;
 /// kMostLeft, and a tenth of what a cubic spline leaves of such a bend, 0.037 k^3.
 constexpr double kMostLeft = 1e-6;
 constexpr double kShareLeft = 0.0037;
+constexpr double kMostAnywhere = 1e-3;
 constexpr double kLeastBend = 0.03;
 
 /// Two directions across `n`, at right angles, of its length squared or less.
@@ -80,7 +81,8 @@ bool isEnough(const FieldJet& jet, double step, double voxel) noexcept {
   const double slope2 = glm::dot(jet.gradient, jet.gradient);
   const double bend = std::max(std::sqrt(square / slope2) * voxel, kLeastBend);
   const double s = step / voxel;
-  return bend * bend * s * s * s / 6.0 < std::max(kMostLeft, kShareLeft * bend * bend * bend);
+  return bend * bend * s * s * s / 6.0 <
+         std::clamp(kShareLeft * bend * bend * bend, kMostLeft, kMostAnywhere);
 }
 
 }  // namespace

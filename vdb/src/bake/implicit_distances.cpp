@@ -26,10 +26,10 @@ constexpr std::size_t kVoxels = DistanceLeaf::kVoxels;
 /// [voxels] beyond the band that still tell their neighbors: the nearest way round a hollow leads past them.
 constexpr double kBeyond = 1.0;
 /// [voxels] A neighbor's point that is nearer by less is the same one.
-constexpr double kNearer = 0.01;
+constexpr double kNearer = 2e-3;
 constexpr int kLooks = 3;
 /// [voxels] A closest point that is further off than the one its search began at by more is another place's.
-constexpr double kSamePlace = 0.01;
+constexpr double kSamePlace = 2e-3;
 /// [voxels] A neighbor's point this near to the one that two in a row lead to is one of a smooth surface.
 constexpr double kInLine = 1.0;
 
