@@ -215,7 +215,9 @@ TEST(Certificate, CheckAndTouchAgreeOnTwoHundredGrids) {
     EXPECT_EQ(check.code, scene.code);
     if (!foreign.is_damaged) {
       whole_refused += check.is_yes ? 0 : 1;
-      if (check.is_yes) EXPECT_TRUE(check.notes.empty()) << check.notes.front();
+      if (check.is_yes) {
+        EXPECT_TRUE(check.notes.empty()) << check.notes.front();
+      }
     }
     if (!scene.is_yes || !check.is_yes) {
       ++refused;

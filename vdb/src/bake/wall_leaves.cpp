@@ -43,12 +43,9 @@ class LeafMaker {
         // Out of the field's own band its side is all that counts.
         const double wall = wallAt(origin, n);
         const double out = 2.0 * plan_.band;
-        if (std::fabs(wall) >= plan_.band) {
-          set(*leaf, n, std::copysign(out, wall));
-        } else {
-          const bool inside = source_.parts().value(source_.whole(), position(origin, n)) < 0.0;
-          set(*leaf, n, inside ? wall : out);
-        }
+        const bool inside =
+            wall < plan_.band && source_.parts().value(source_.whole(), position(origin, n)) < 0.0;
+        set(*leaf, n, inside ? wall : out);
       }
     }
     return leaf->isEmpty() ? nullptr : std::move(leaf);
