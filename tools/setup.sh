@@ -20,6 +20,9 @@ test_packages=(
   libinsighttoolkit5-dev python3-pydicom python3-gdcm
 )
 
+# To fuzz the readers (tools/test.sh --all): the sanitizers and libFuzzer come with clang's runtime.
+fuzz_packages=(clang-14 libclang-rt-14-dev)
+
 export LC_ALL=C.UTF-8
 
 say() { printf '\n== %s\n' "$*"; }

@@ -7,6 +7,10 @@
 #             lib and devices, and with --all everything: vdb and tools take half an hour more
 #   tsan      data races: the devices, and what threads do together (without vdb: TBB is not instrumented)
 #   tidy      names and bug patterns, by clang-tidy, in the sources that changed
+#   damage    damaged files of every format through the command, with limits (PALPATE_MUTANTS of each kind, default 100);
+#             with --all, or if it is asked for
+#   fuzz      every reader under libFuzzer with clang, address and undefined behaviour (PALPATE_FUZZ_SECONDS each, default
+#             60); with --all, or if it is asked for
 #   dev       as asan without the sanitizers, quick to build; not run unless it is asked for
 # Options:
 #   --quick         format, arrows and dev only
@@ -22,7 +26,7 @@ source tools/setup.sh
 
 lanes=()
 default_lanes=(format arrows release asan tsan tidy)
-all_lanes=("${default_lanes[@]}" dev)
+all_lanes=("${default_lanes[@]}" damage fuzz dev)
 tidy_all=0 changed_since=
 usage() { printf 'error: %s; tools/test.sh --help lists the options\n' "$1" >&2; exit 2; }
 while [ $# -gt 0 ]; do
@@ -90,6 +94,34 @@ lane_dev() { build_and_test dev; }
 lane_release() { build_and_test release; }
 lane_asan() { build_and_test asan "${asan_options[@]}"; }
 lane_tsan() { build_and_test tsan; }
+
+lane_damage() { # over the command of the release lane
+  configure release -DPALPATE_TESTS=ON &&
+    cmake --build --preset release --target palpate_damage_sweep palpate_command || {
+    lane_note="does not build"; count_check 1; return; }
+  (cd "$results" && "$root/build/release/tests/fuzz/palpate_damage_sweep" "${PALPATE_MUTANTS:-100}") |
+    tee "$results/damage.txt"
+  local status=${PIPESTATUS[0]}
+  lane_note=$(tail -n 1 "$results/damage.txt")
+  count_check "$status"
+}
+
+lane_fuzz() { # each reader goes on from the corpus that the last run left
+  local corpus=$root/build/fuzz/corpus fuzzer reader all=0
+  install_packages "${fuzz_packages[@]}"
+  configure fuzz && cmake --build --preset fuzz -- -k 0 || {
+    lane_note="does not build"; count_check 1; return; }
+  "$root/build/fuzz/tests/fuzz/palpate_fuzz_corpus" "$corpus" || { count_check 1; return; }
+  for fuzzer in "$root"/build/fuzz/tests/fuzz/palpate_fuzz_*; do
+    reader=${fuzzer##*/palpate_fuzz_}
+    [ -d "$corpus/$reader" ] && [ -x "$fuzzer" ] || continue
+    ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0 "$fuzzer" -max_total_time="${PALPATE_FUZZ_SECONDS:-60}" -timeout=20 \
+      -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$results/fuzz_${reader}_" "$corpus/$reader" \
+      > "$results/fuzz_$reader.txt" 2>&1
+    count_check $? || { all=1; tail -n 30 "$results/fuzz_$reader.txt"; }
+  done
+  return $all
+}
 
 # The sources clang-tidy has to look at: all that changed, and for each header that changed one that includes it.
 tidy_sources() {

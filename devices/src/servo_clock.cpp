@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 
+#include <algorithm>
 #include <ctime>
 
 namespace palpate::devices {
@@ -16,6 +17,10 @@ constexpr int kPriority = 75;
 /// Longer than most wake-ups are late on a stock kernel: 80 us, or 8 % of a 1 kHz tick.
 constexpr std::int64_t kSpin = 80'000;  // [ns]
 
+/// A stop that another thread asks for does not wake a sleeper: of a slow loop, the device would
+/// hold its force until the next tick is due.
+constexpr std::int64_t kLongestSleep = 10'000'000;  // [ns]
+
 }  // namespace
 
 std::int64_t monotonicNs() noexcept {
@@ -26,11 +31,12 @@ std::int64_t monotonicNs() noexcept {
 
 void sleepUntil(std::int64_t due, const std::atomic<bool>& stop) noexcept {
   const std::int64_t wake = due - kSpin;
-  timespec until{};
-  until.tv_sec = wake / 1'000'000'000;
-  until.tv_nsec = wake % 1'000'000'000;
-  while (monotonicNs() < wake) {
+  for (std::int64_t now = monotonicNs(); now < wake; now = monotonicNs()) {
     if (stop.load(std::memory_order_relaxed)) return;
+    const std::int64_t next = std::min(wake, now + kLongestSleep);
+    timespec until{};
+    until.tv_sec = next / 1'000'000'000;
+    until.tv_nsec = next % 1'000'000'000;
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);  // EINTR: look at stop again
   }
   while (monotonicNs() < due) {

@@ -1,9 +1,11 @@
 #include "palpate/devices/servo_loop.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "palpate/core/error.h"
+#include "reading_watch.h"
 #include "servo_clock.h"
 #include "servo_schedule.h"
 
@@ -54,6 +56,26 @@ void check(const ServoTick& tick, const ServoSettings& settings) {
     throw Error(ErrorKind::kUsage, {"servo.rate", "the servo rate must be 1 to 1e5 Hz, not " +
                                                       std::to_string(settings.rate)});
   }
+  constexpr double kLongest = 1e6;  // [s] far beyond use, well within a clock's nanoseconds
+  if (!(settings.watchdog > 0.0 && settings.watchdog <= kLongest)) {
+    throw Error(ErrorKind::kUsage,
+                {"servo.watchdog", "the servo watchdog must be above 0 s and at most 1e6 s, not " +
+                                       std::to_string(settings.watchdog)});
+  }
+  if (!(settings.recovery >= 0.0 && settings.recovery <= kLongest)) {
+    throw Error(ErrorKind::kUsage,
+                {"servo.recovery", "the servo recovery must be from 0 s to 1e6 s, not " +
+                                       std::to_string(settings.recovery)});
+  }
+}
+
+/// [ns]
+std::int64_t nanoseconds(double seconds) noexcept { return std::llround(1e9 * seconds); }
+
+/// [ns] of a turn of the loop; without a clock and without a sound rate, of one at 1 kHz.
+std::int64_t turnOf(const ServoSettings& settings) noexcept {
+  const bool is_sound = settings.rate >= 1.0 && settings.rate <= 1e5;
+  return nanoseconds(1.0 / (is_sound ? settings.rate : 1000.0));
 }
 
 }  // namespace
@@ -68,19 +90,24 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
   report.has_locked_memory = elevation.hasLockedMemory();
   report.elevated = report.has_priority && report.has_locked_memory;
 
-  // A maximum that is not a number is no permission.
+  // A maximum that is not a number is not a permission.
   const double limit = device.info().max_force > 0.0 ? device.info().max_force : 0.0;
   DeviceState last;
   bool has_reading = false;
   const std::int64_t period = settings.realtime ? std::llround(1e9 / settings.rate) : 1;
   ServoSchedule schedule(settings.realtime ? monotonicNs() : 0, period);
+  const std::int64_t turn = turnOf(settings);
+  ReadingWatch watch(std::max(nanoseconds(settings.watchdog), 2 * turn),
+                     nanoseconds(settings.recovery));
+  std::int64_t now = 0;
   while (true) {
     if (settings.realtime) sleepUntil(schedule.due(), stop);
     if (stop.load(std::memory_order_relaxed)) {
       report.exit = ServoExit::kStopped;
       break;
     }
-    if (settings.realtime) schedule.begin(monotonicNs());
+    now = settings.realtime ? monotonicNs() : now + turn;
+    if (settings.realtime) schedule.begin(now);
     DeviceState fresh = last;
     const DeviceStatus read = device.read(fresh);
     if (ends(read, report.exit)) break;
@@ -88,8 +115,11 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
       last = fresh;
       has_reading = true;
     }
+    if (has_reading) watch.turn(now, read == DeviceStatus::kOk);
     Vec3 force(0.0);
-    if (has_reading) {
+    if (has_reading && watch.hasExpired()) {
+      ++report.stale;
+    } else if (has_reading) {
       force = tick(last);
       ++report.ticks;
       if (!isFinite(force) || !isFinite(last.position) || !isFinite(last.velocity)) {
@@ -99,6 +129,7 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
         force *= limit / length;
         ++report.shortened;
       }
+      force *= watch.share();
     }
     if (ends(device.write(force), report.exit)) break;
     if (settings.realtime) schedule.end(monotonicNs());

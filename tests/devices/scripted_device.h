@@ -19,6 +19,7 @@ class ScriptedDevice final : public Device {
   std::vector<DeviceStatus> writes;
   std::vector<std::size_t> nan_positions;  ///< reads that report a NaN position
   bool fails_to_open = false;
+  double max_force = 10.0;  ///< [N]
 
   std::vector<Vec3> written;
   int opened = 0;
@@ -34,7 +35,10 @@ class ScriptedDevice final : public Device {
     ++opened;
   }
   void close() noexcept override { ++closed; }
-  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] const DeviceInfo& info() const noexcept override {
+    info_.max_force = max_force;
+    return info_;
+  }
 
   [[nodiscard]] DeviceStatus read(DeviceState& out) noexcept override {
     const std::size_t k = read_count_++;
@@ -56,7 +60,7 @@ class ScriptedDevice final : public Device {
   }
 
  private:
-  DeviceInfo info_{"scripted", 10.0, {}};
+  mutable DeviceInfo info_{"scripted", 10.0, {}};
   std::size_t read_count_ = 0;
   std::size_t write_count_ = 0;
 };

@@ -76,6 +76,58 @@ TEST(Convert, UnitsOfMeshes) {
   EXPECT_EQ(back["schema"], "palpate.bake/1");
 }
 
+TEST(Convert, GltfIsMetresAsItsStandardSays) {
+  const TempFolder folder;
+  (void)folder.file("ball.yaml", kBall);
+  (void)converted(folder, {"ball.yaml", "-o", "ball.glb", "--voxel", "1"});
+  // Its own writer's file comes back in its own size, unasked, as a grid and as another mesh.
+  const CommandResult back =
+      runPalpate({"convert", "ball.glb", "-o", "back.stl", "--json"}, folder.path());
+  ASSERT_EQ(back.exit_code, 0) << back.err;
+  EXPECT_NEAR(parseOnly(back)["volume_m3"], kVolume, 0.01 * kVolume);
+  EXPECT_EQ(parseOnly(back)["unit"], "mm");
+  EXPECT_EQ(back.err.find("taken as 1 mm"), std::string::npos) << back.err;
+  EXPECT_NEAR(described(folder, "back.stl", "mm")["volume_m3"], kVolume, 0.01 * kVolume);
+  (void)converted(folder, {"ball.glb", "-o", "back.vdb", "--voxel", "1mm"});
+  (void)folder.file("scene.yaml",
+                    "palpate: 1\nlength: mm\nfields: {b: {mesh: {file: ball.glb}}, "
+                    "g: {grid: {file: back.vdb}}}\nlayers: [{name: b, inside: b}, "
+                    "{name: g, inside: g}]\n");
+  const CommandResult query =
+      runPalpate({"query", "scene.yaml", "--at", "0,0,0", "--json"}, folder.path());
+  ASSERT_EQ(query.exit_code, 0) << query.err;
+  // Said otherwise, it counts: a file of millimetres that is no proper glTF.
+  const Json said = converted(folder, {"ball.glb", "--units", "mm", "-o", "small.stl"});
+  EXPECT_NEAR(said["volume_m3"], 1e-9 * kVolume, 1e-11 * kVolume);
+}
+
+TEST(Convert, AnImageOfDistancesBecomesTheGridItWas) {
+  const TempFolder folder;
+  (void)folder.file("ball.yaml", kBall);
+  (void)converted(folder, {"ball.yaml", "-o", "ball.nii.gz", "--voxel", "1"});
+  const CommandResult back = runPalpate(
+      {"convert", "ball.nii.gz", "--distances", "-o", "back.stl", "--json"}, folder.path());
+  ASSERT_EQ(back.exit_code, 0) << back.err;
+  EXPECT_NEAR(parseOnly(back)["volume_m3"], kVolume, 0.005 * kVolume);
+  // --above 0 takes the outside, and says so.
+  const CommandResult above = runPalpate(
+      {"convert", "ball.nii.gz", "--above", "0", "-o", "outside.stl", "--json"}, folder.path());
+  EXPECT_NE(above.err.find("--distances takes the inside"), std::string::npos) << above.err;
+  const CommandResult both = runPalpate(
+      {"convert", "ball.nii.gz", "--above", "0", "--distances", "-o", "x.stl"}, folder.path());
+  EXPECT_EQ(both.exit_code, 2) << both.err;
+}
+
+TEST(Convert, ATinyVoxelIsAClearError) {
+  const TempFolder folder;
+  (void)folder.file("ball.yaml", kBall);
+  const CommandResult result =
+      runPalpate({"convert", "ball.yaml", "-o", "a.vdb", "--voxel", "5e-8"}, folder.path());
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_EQ(result.err.find("unexpected"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("5e-08 mm"), std::string::npos) << result.err;
+}
+
 TEST(Convert, RefusesWhatHasNoMeaning) {
   const TempFolder folder;
   (void)folder.file("ball.yaml", kBall);

@@ -387,5 +387,31 @@ TEST(ReadMesh, RealMeshesAreClosedOnceWelded) {
   }
 }
 
+TEST(ReadMesh, ObjLinesGoOnAfterABackslash) {
+  const TempFolder folder;
+  const std::string text =
+      "v 0 0 \\\n0\nv 1 0 0\\\r\n\nv 0\\\n1 0\nv 0 0 1\n"
+      "f 1 3 \\\n 2\nf 1 2\\\n4\nf 2 3 4\nf 3 1 \\ \n\\\n4\n";
+  const Mesh mesh = readMesh(folder.file("a.obj", text), 1.0);
+  EXPECT_EQ(mesh.vertices.size(), 4U);
+  EXPECT_EQ(mesh.triangles.size(), 4U);
+  EXPECT_TRUE(checkMesh(mesh).isClosed());
+  EXPECT_NEAR(checkMesh(mesh).volume, 1.0 / 6.0, 1e-15);
+  // Lines are still counted as they are in the file.
+  try {
+    (void)readMesh(folder.file("b.obj", "v 0 0 \\\n0\nv 1 0 x\n"), 1.0);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.problem().line, 3);
+  }
+}
+
+TEST(ReadMesh, TheUnitOfGltfIsPrescribed) {
+  EXPECT_EQ(prescribedUnit("a/b.GLB"), "m");
+  EXPECT_EQ(prescribedUnit("b.gltf"), "m");
+  EXPECT_EQ(prescribedUnit("b.stl"), "");
+  EXPECT_EQ(prescribedUnit("glb"), "");
+}
+
 }  // namespace
 }  // namespace palpate::vdb

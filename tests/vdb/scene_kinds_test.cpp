@@ -156,7 +156,7 @@ TEST_F(SceneKinds, MeshesAndGridsAreFields) {
   writeVdb(folder_.path("ball.vdb"), std::span(&baked, 1), false);
   const SceneDescription scene = read(
       "fields:\n"
-      "  plain: {mesh: {file: octahedron.obj}}\n"
+      "  plain: {mesh: {file: octahedron.obj, edges: rounded}}\n"
       "  big: {mesh: {file: octahedron.obj, units: cm, voxel: 2, half_width: 3}}\n"
       "  ball: {grid: {file: ball.vdb, name: ball/surface}}\n");
   ASSERT_EQ(scene.fields.size(), 3U);
@@ -173,6 +173,27 @@ TEST_F(SceneKinds, MeshesAndGridsAreFields) {
   const FieldPtr& read_back = scene.fields[2].source->get();
   EXPECT_NEAR(read_back->value(Vec3(11, 2, 3) * kMm), 0.0, 0.03 * kMm);
   EXPECT_EQ(grids_.at(2).what, "ball.vdb: grid ball.vdb");
+}
+
+TEST_F(SceneKinds, MeshesOfFlatFacesKeepTheirEdgesUnlessAGridIsAskedFor) {
+  const SceneDescription scene = read(
+      "fields:\n"
+      "  plain: {mesh: {file: octahedron.obj}}\n"
+      "  asked: {mesh: {file: octahedron.obj, voxel: 0.5, edges: sharp}}\n"
+      "  grid: {mesh: {file: octahedron.obj, voxel: 0.5}}\n"
+      "  sharp: {mesh: {file: octahedron.obj, voxel: 0.5, sharp: 30}}\n");
+  const Vec3 on_edge = Vec3(5.0, 0.0, 5.0) * kMm;
+  for (const std::size_t n : {0, 1}) {
+    const FieldPtr& exact = scene.fields[n].source->get();
+    EXPECT_NEAR(exact->value(on_edge), 0.0, 1e-15);
+    EXPECT_EQ(exact->structure().operands.size(), 8U);
+  }
+  EXPECT_TRUE(grids_.empty());
+  EXPECT_GT(scene.fields[2].source->get()->value(on_edge), 0.02 * kMm);  // rounded off
+  const FieldPtr& sharp = scene.fields[3].source->get();
+  EXPECT_NEAR(sharp->value(on_edge), 0.0, 1e-12);
+  EXPECT_TRUE(sharp->structure().operands.empty());
+  EXPECT_EQ(grids_.size(), 2U);
 }
 
 TEST_F(SceneKinds, MeshesTakeASignAShellAndSmoothing) {
@@ -278,6 +299,10 @@ TEST_F(SceneKinds, WhatCanBeKnownIsRefusedWhenTheSceneIsRead) {
               "flood");
   expectError("fields: {m: {mesh: {file: octahedron.obj, shell: 0}}}\n", "scene.range", 3, 50,
               "more than 0");
+  expectError("fields: {m: {mesh: {file: octahedron.obj, edges: round}}}\n", "scene.kind", 3, 50,
+              "sharp or edges");
+  expectError("fields: {m: {mesh: {file: octahedron.obj, sharp: 0}}}\n", "scene.range", 3, 50,
+              "degrees");
   expectError("fields: {m: {mesh: {file: octahedron.obj, smooth: 190}}}\n", "scene.range", 3, 51,
               "180 degrees");
   expectError("fields: {m: {mesh: {file: octahedron.obj, voxle: 1}}}\n", "scene.unknown_key", 3, 43,

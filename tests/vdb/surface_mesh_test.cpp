@@ -96,6 +96,24 @@ TEST(EncodeMesh, GlbIsInMetresWhateverTheUnit) {
   EXPECT_EQ(encodeMesh(mesh, MeshFormat::kGlb, 1e-3), encodeMesh(mesh, MeshFormat::kGlb, 1.0));
 }
 
+TEST(EncodeMesh, FilesOfFloatsHaveNoTriangleWithTwoCornersInOnePlace) {
+  // Two vertices that differ by less than a float at 0.1 m tells: the side between them goes, with both its triangles.
+  Mesh mesh = ballMesh();
+  const auto [a, b, c] = mesh.triangles[7];
+  for (Vec3& v : mesh.vertices) v += Vec3(0.1);
+  mesh.vertices[b] = mesh.vertices[a] + Vec3(1e-11, 0.0, 0.0);
+  const TempFolder folder;
+  for (const char* name : {"ball.stl", "ball.glb"}) {
+    const std::string path = folder.file(name, encodeMesh(mesh, meshFormat(name), 1.0));
+    const Mesh back = readMesh(path, 1.0);
+    EXPECT_EQ(back.triangles.size(), mesh.triangles.size() - 2) << name;
+    EXPECT_EQ(back.dropped_triangles, 0U) << name;  // none was there to be dropped
+    const MeshReport report = checkMesh(back);
+    EXPECT_TRUE(report.isClosed()) << name;
+    EXPECT_EQ(report.degenerate_triangles, 0U) << name;
+  }
+}
+
 TEST(EncodeMesh, RefusesWhatItCannotWrite) {
   EXPECT_EQ(errorOf([] { (void)encodeMesh(Mesh{}, MeshFormat::kStl, 1.0); }).problem().code,
             "mesh.no_faces");

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "grid_baking.h"
+#include "image_distances.h"
 #include "input_kind.h"
 #include "loaded_scene.h"
 #include "palpate/scene/scene_file.h"
@@ -123,6 +124,7 @@ std::string onlyLayerName(const BakeOptions& options) {
 
 std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console) {
   refuse(options.above.has_value(), "--above", "images");
+  refuse(options.distances, "--distances", "images");
   refuse(!options.labels.empty(), "--labels", "images");
   const std::string layer = onlyLayerName(options);
   const LengthUnit unit = meshUnit(options.units);
@@ -182,16 +184,45 @@ void tellLoss(const BakeOptions& options, const vdb::LevelSet& grid, Console& co
   if (!note.empty()) console.note(options.input + ": " + grid.info().name + ": " + note);
 }
 
+/// Turns signed distances into what is greater than 0 inside. @throws Error if nothing is inside, or all is.
+void takeDistances(const BakeOptions& options, vdb::Image& image, Console& console) {
+  const std::optional<double> slope = slopeAtZero(image);
+  if (!slope) {
+    throw inputError("image.distances", "the values do not change their sign between any voxels",
+                     "signed distances are negative inside; --above VALUE takes what is brighter",
+                     options.input);
+  }
+  if (!looksLikeDistances(image)) {
+    console.note(options.input + ": where its values are 0 they change by " +
+                 formatNumber(*slope * 1e-3, 3) +
+                 " a mm, so they are no distances in mm; only where they are 0 counts");
+  }
+  for (float& value : image.values) value = -value;
+}
+
+/// What --above takes for the inside is the outside of an image of distances.
+void tellDistances(const BakeOptions& options, const vdb::Image& image, Console& console) {
+  if (!looksLikeDistances(image)) return;
+  console.note(options.input +
+               ": its values look like signed distances in mm, negative inside. --above takes "
+               "what is greater, which is the outside; --distances takes the inside");
+}
+
 std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   const bool is_grid = inputKind(options.input) == InputKind::kGrid;
   refuse(!options.units.empty() && !is_grid, "--units",
          "meshes; an image says where its voxels are");
   refuseMeshOptions(options);
-  if (options.above.has_value() == !options.labels.empty()) {
-    throw bakeUsageError(options.labels.empty()
-                             ? "an image needs --above VALUE or --labels NAME,..."
-                             : "--above and --labels exclude one another");
+  const int asked_for =
+      (options.above ? 1 : 0) + (options.labels.empty() ? 0 : 1) + (options.distances ? 1 : 0);
+  if (asked_for != 1) {
+    throw bakeUsageError(asked_for == 0
+                             ? "an image needs --above VALUE, --labels NAME,... or --distances"
+                             : "--above, --labels and --distances exclude one another");
   }
+  refuse(options.distances && is_grid, "--distances", "images; a grid of them: --level-set");
+  refuse(options.distances && !options.keep.empty(), "--keep", "--above");
+  refuse(options.distances && options.fill, "--fill", "--above");
   refuse(!options.labels.empty() && !options.keep.empty(), "--keep", "--above");
   refuse(!options.labels.empty() && options.fill, "--fill", "--above");
   refuse(options.labels.empty() && !options.names.empty(), "--names", "--labels");
@@ -201,7 +232,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   const auto layers = labelLayers(options);
 
   std::string unit;
-  const vdb::Image image = readVoxels(options, unit);
+  vdb::Image image = readVoxels(options, unit);
   const double asked = askedVoxel(options, lengthUnit(unit));
   for (const auto& note : image.notes) console.note(options.input + ": " + note);
   const double spacing = std::min(
@@ -209,10 +240,12 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   const double voxel = asked > 0.0 ? asked : spacing;
 
   std::vector<BakedGrid> grids;
-  if (options.above) {
+  if (options.above || options.distances) {
+    if (options.distances) takeDistances(options, image, console);
+    if (options.above) tellDistances(options, image, console);
     vdb::ThresholdOptions threshold;
-    threshold.above = *options.above;
-    threshold.largest_component = options.keep != "all";
+    threshold.above = options.above.value_or(0.0);
+    threshold.largest_component = !options.distances && options.keep != "all";
     threshold.fill = options.fill;
     threshold.voxel_size = asked;
     grids.push_back(timed([&] {
@@ -262,7 +295,7 @@ std::vector<BakedGrid> baked(const BakeOptions& options, Console& console,
     case InputKind::kGrid:
       refuseMeshOptions(options);
       refuseScanOptions(options.scan, false);
-      return inTheSameFrame(options, options.above || !options.labels.empty()
+      return inTheSameFrame(options, options.above || options.distances || !options.labels.empty()
                                          ? bakeImage(options, console)
                                          : std::vector<BakedGrid>{rebakeGrid(options, console)});
   }

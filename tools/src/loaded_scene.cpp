@@ -9,7 +9,8 @@
 
 namespace palpate::tools {
 
-LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_t max_memory)
+LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_t max_memory,
+                         const std::string& text)
     : console_(&console) {
   SceneRegistry registry;
   vdb::RegisterOptions options;
@@ -41,7 +42,7 @@ LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_
     image = {};
     return made;
   };
-  description_ = readScene(file, registry);
+  description_ = text.empty() ? readScene(file, registry) : parseScene(text, file, registry);
 }
 
 LengthUnit LoadedScene::unit() const {

@@ -28,7 +28,9 @@ class LoadedScene {
  public:
   /// Reads the file; makes nothing yet. @throws Error (kInput).
   /// `max_memory` [bytes] of each grid; 0: the library's own limit.
-  LoadedScene(const std::string& file, Console& console, std::uint64_t max_memory = 0);
+  /// `text`: of the scene, if `file` does not hold it itself (a mesh, say).
+  LoadedScene(const std::string& file, Console& console, std::uint64_t max_memory = 0,
+              const std::string& text = {});
   LoadedScene(const LoadedScene&) = delete;
   LoadedScene& operator=(const LoadedScene&) = delete;
 

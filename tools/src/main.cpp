@@ -9,6 +9,9 @@
 
 #include "command_line.h"
 #include "console.h"
+#include "output_files.h"
+#include "palpate/core/stop.h"
+#include "palpate/vdb/library_limits.h"
 #include "stop_signal.h"
 #include "verbs.h"
 
@@ -90,7 +93,11 @@ static int runCommand(const std::vector<std::string>& arguments) {
             invocation.options);
       }
       is_yes = report.is_yes;
-      printed = invocation.general.json ? print(report.json) : print(report.text);
+      if (standardOutputIsTaken()) {  // by a file of the run: what there is to tell is talk then
+        printed = invocation.general.quiet || std::fputs(report.text.c_str(), stderr) >= 0;
+      } else {
+        printed = invocation.general.json ? print(report.json) : print(report.text);
+      }
     }
     if (!printed) {
       std::fputs("error: cannot write to standard output\n", stderr);
@@ -115,5 +122,7 @@ static int runCommand(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   palpate::tools::catchStopSignals();
+  palpate::watchStopFlag(&palpate::tools::stopRequested());
+  palpate::vdb::setLibraryLimits({.in_child = true});
   return palpate::tools::runCommand(std::vector<std::string>(argv + 1, argv + argc));
 }

@@ -1,8 +1,11 @@
 #include "motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
+#include "output_files.h"
 #include "palpate/core/error.h"
 
 namespace palpate::tools {
@@ -93,7 +96,7 @@ void checkMotion(const TouchOptions& o) {
 }
 
 devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {
-  if (!o.path.empty()) return devices::readPath(o.path);
+  if (!o.path.empty()) return devices::readPath(inputName(o.path));
   const auto point = [&](const std::string& text, const char* what) {
     return parsePoint(text, unit, what);
   };
@@ -154,6 +157,15 @@ devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {
   shape.back = o.back;
   checkDuration(2.0 * way / shape.speed + shape.hold, o.rate);
   return devices::generate(shape, o.rate);
+}
+
+double nominalPeriod(const devices::Path& path, double rate) {
+  if (path.size() < 2) return 1.0 / rate;
+  std::vector<double> steps(path.size() - 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = path[i + 1].t - path[i].t;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
 }
 
 }  // namespace palpate::tools

@@ -13,4 +13,8 @@ void checkMotion(const TouchOptions& options);
 /// @throws Error: kUsage for values, kInput for the path file.
 [[nodiscard]] devices::Path makeMotion(const TouchOptions& options, const LengthUnit& unit);
 
+/// [s] from tick to tick: what half of the path's steps do not exceed, so that gaps in it do not
+/// count. Of a path of one row, 1 / `rate` [Hz].
+[[nodiscard]] double nominalPeriod(const devices::Path& path, double rate);
+
 }  // namespace palpate::tools

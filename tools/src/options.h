@@ -16,6 +16,14 @@ struct GeneralOptions {
   bool force = false;  ///< verbs that write files only
 };
 
+/// What a scan or a mesh leaves open.
+struct ScanOptions {
+  std::string affine;        ///< image: "sform", "qform" or "spacing"; empty: as the file says
+  std::string space;         ///< mesh, NRRD image: "RAS" or "LPS"; empty: as the file says
+  std::optional<int> frame;  ///< 4-D image
+  std::string series;        ///< DICOM
+};
+
 struct TouchOptions {
   std::string scene;
   // Exactly one of these five says how the hand moves.
@@ -35,7 +43,14 @@ struct TouchOptions {
   std::optional<int> taps;
   bool back = false;
 
-  std::string renderer;  ///< empty: as the scene says
+  std::string renderer;          ///< empty: as the scene says
+  std::vector<std::string> set;  ///< MATERIAL.KEY=VALUE@TIME
+  // Of the paper's renderer; what is not given is as the scene says.
+  std::string epsilon;
+  std::optional<int> halvings;
+  std::optional<double> alpha;
+  std::string alpha_form;  ///< "by_field", "printed" or "newton"
+  std::string interior;    ///< "together" or "wall"
   bool realtime = false;
   double rate = 1000.0;  ///< [Hz]
   std::string max_force;
@@ -44,14 +59,16 @@ struct TouchOptions {
   std::string trace;
   std::string image;
   std::string plot;
-};
 
-/// What a scan or a mesh leaves open.
-struct ScanOptions {
-  std::string affine;        ///< image: "sform", "qform" or "spacing"; empty: as the file says
-  std::string space;         ///< mesh, NRRD image: "RAS" or "LPS"; empty: as the file says
-  std::optional<int> frame;  ///< 4-D image
-  std::string series;        ///< DICOM
+  // Where `scene` is a mesh, a scan or a grid.
+  std::optional<double> above;
+  std::vector<std::string> labels;
+  std::string names;
+  std::string units;
+  std::string layer;  ///< which grid of a .vdb
+  std::string voxel;
+  ScanOptions scan;
+  std::string write_scene;
 };
 
 struct BakeOptions {
@@ -64,7 +81,8 @@ struct BakeOptions {
   std::string shell;             ///< mesh: thickness; empty: a solid
   std::optional<double> smooth;  ///< mesh: [degrees]
   std::optional<double> above;
-  std::string keep;  ///< "largest" or "all"; empty: largest
+  bool distances = false;  ///< image: its voxels are signed distances, negative inside
+  std::string keep;        ///< "largest" or "all"; empty: largest
   bool fill = false;
   std::vector<std::string> labels;
   std::string names;

@@ -30,8 +30,12 @@ LengthUnit meshUnit(const std::string& units) { return lengthUnit(units.empty() 
 vdb::Mesh readMeshFile(const std::string& file, const std::string& units,
                        const ScanOptions& options, Console& console) {
   refuseScanOptions(options, true);
-  if (units.empty()) console.note(file + ": one unit is taken as 1 mm; --units says otherwise");
-  vdb::Mesh mesh = vdb::readMesh(file, meshUnit(units).metres, spaceOf(options));
+  const std::string prescribed = units.empty() ? vdb::prescribedUnit(file) : "";
+  if (units.empty() && prescribed.empty()) {
+    console.note(file + ": one unit is taken as 1 mm; --units says otherwise");
+  }
+  const LengthUnit unit = prescribed.empty() ? meshUnit(units) : lengthUnit(prescribed);
+  vdb::Mesh mesh = vdb::readMesh(file, unit.metres, spaceOf(options));
   // Of models of scans it matters; other meshes have no patient.
   if (options.space.empty() && (mesh.space_is_stated || hasExtension(file, ".vtk"))) {
     console.note(file + ": coordinates are " + spaceText(mesh, options) +

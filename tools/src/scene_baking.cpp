@@ -25,6 +25,7 @@ void checkSceneOptions(const BakeOptions& options, const SceneDescription& descr
       {!options.shell.empty(), "--shell applies to meshes"},
       {options.smooth.has_value(), "--smooth applies to meshes"},
       {options.above.has_value(), "--above applies to images"},
+      {options.distances, "--distances applies to images"},
       {!options.labels.empty(), "--labels applies to images"}};
   for (const auto& [given, message] : misplaced) {
     if (given) throw bakeUsageError(message);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "palpate/core/error.h"
 #include "report.h"
 
 namespace palpate::tools {
@@ -21,7 +22,17 @@ bool isPlain(std::string_view text) {
          text.back() != ' ' && (text.front() != '-' || text.size() > 1);
 }
 
-std::string quoted(const std::string& text) { return Json(text).dump(); }
+/// Scene files are UTF-8. @throws Error (kUsage): what a file is called need not be.
+std::string quoted(const std::string& text) {
+  try {
+    return Json(text).dump();
+  } catch (const Json::exception&) {
+    const std::string shown = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+    throw Error(ErrorKind::kUsage,
+                {"scene.not_utf8", shown + " is not UTF-8, as a scene file must be",
+                 "rename the file or folder"});
+  }
+}
 
 std::string wordText(const std::string& word) { return isPlain(word) ? word : quoted(word); }
 

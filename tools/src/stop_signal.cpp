@@ -19,6 +19,10 @@ void catchStopSignals() {
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // A reader that goes away is an error of writing, told as one, with nothing left behind.
+  struct sigaction ignore = {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &ignore, nullptr);
 }
 
 const std::atomic<bool>& stopRequested() noexcept { return stop_requested; }

@@ -5,7 +5,8 @@
 
 namespace palpate::tools {
 
-/// From now on SIGINT and SIGTERM set stopRequested(); a second one ends the process at once.
+/// From now on SIGINT and SIGTERM set stopRequested(); a second one ends the process at once. Writing to a pipe that
+/// nobody reads fails, instead of ending the process.
 void catchStopSignals();
 
 [[nodiscard]] const std::atomic<bool>& stopRequested() noexcept;

@@ -55,6 +55,8 @@ TouchSummary summarize(std::span<const TraceRow> rows) {
     if (r.contact) ++summary.contact_ticks;
     for (std::size_t i = 0; i < r.event_count; ++i) summary.ports.push_back({row.t, r.events[i]});
   }
+  summary.met_something = summary.contact_ticks > 0 || !summary.ports.empty() ||
+                          summary.visits.size() > 1 || summary.peak_force > 0.0;
   std::sort(times.begin(), times.end());
   summary.tick_median = quantile(times, 0.5);
   summary.tick_p99 = quantile(times, 0.99);

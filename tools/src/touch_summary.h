@@ -32,9 +32,10 @@ struct TouchSummary {
   std::uint64_t ticks = 0;
   double seconds = 0.0;  ///< [s] of hand time
   std::uint64_t contact_ticks = 0;
-  double peak_force = 0.0;  ///< [N]
-  Vec3 peak_force_at{0.0};  ///< [m] proxy
-  double work = 0.0;        ///< [J] on the hand, each force held until the next tick
+  bool met_something = false;  ///< a wall, a port, another region or a force
+  double peak_force = 0.0;     ///< [N]
+  Vec3 peak_force_at{0.0};     ///< [m] proxy
+  double work = 0.0;           ///< [J] on the hand, each force held until the next tick
   double source_work =
       0.0;  ///< [J] HapticRenderer::sourceWork(), filled in by who has the renderer
   std::vector<Visit> visits;

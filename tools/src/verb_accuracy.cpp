@@ -89,9 +89,9 @@ Report run(const AccuracyOptions& options, const GeneralOptions& general, Consol
                      "name the file in a scene: fields: {part: {mesh: {file: part.stl}}}",
                      options.scene);
   }
-  OutputFiles files(general.force);
+  OutputFiles files(general);
   for (const std::string& path : {options.csv, options.svg}) {
-    if (!path.empty()) files.announce(path, {options.scene});
+    if (!path.empty()) files.announce(path, {options.scene}, OutputFiles::Streams::kYes);
   }
   LoadedScene loaded(options.scene, console);
   const LengthUnit unit = loaded.unit();

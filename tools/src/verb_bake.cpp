@@ -133,7 +133,7 @@ Report run(const BakeOptions& options, const GeneralOptions& general, Console& c
                 {"usage.bake", "the output " + options.output + " must end in .vdb",
                  "palpate convert writes meshes and images"});
   }
-  OutputFiles files(general.force);
+  OutputFiles files(general);
   files.announce(options.output, {options.input, options.names});
   if (!options.parts.empty()) files.announce(options.parts, {options.input, options.names});
 

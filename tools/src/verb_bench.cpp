@@ -177,9 +177,9 @@ Report run(const BenchOptions& options, const GeneralOptions& general, Console& 
     throw usageError("there is no bench '" + options.what + "'", "write palpate bench contact");
   }
   (void)chosenCases(options.scenes);
-  OutputFiles files(general.force);
+  OutputFiles files(general);
   for (const std::string& path : {options.csv, options.svg}) {
-    if (!path.empty()) files.announce(path, {});
+    if (!path.empty()) files.announce(path, {}, OutputFiles::Streams::kYes);
   }
   const Machine machine = thisMachine();
   if (!machine.optimised) {

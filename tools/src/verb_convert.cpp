@@ -26,8 +26,8 @@ bool isImageName(const std::string& path) {
 
 /// Whether the input is a grid of distances that nothing is asked to be done about.
 bool isTakenAsItIs(const BakeOptions& bake) {
-  return inputKind(bake.input) == InputKind::kGrid && !bake.above && bake.labels.empty() &&
-         bake.voxel.empty();
+  return inputKind(bake.input) == InputKind::kGrid && !bake.above && !bake.distances &&
+         bake.labels.empty() && bake.voxel.empty();
 }
 
 /// Its level set; none if its voxels are no cubes along the axes, or no floats.
@@ -136,12 +136,14 @@ Report run(const ConvertOptions& options, const GeneralOptions& general, Console
   if (!options.to_units.empty() && (to_grid || to_image)) {
     throw usageError("--to-units applies to meshes", "a grid's unit is that of its input");
   }
-  if (to_image && kind == InputKind::kImage && !options.bake.above && options.bake.labels.empty()) {
-    throw usageError("an image of distances needs a surface: --above VALUE or --labels NAME");
+  if (to_image && kind == InputKind::kImage && !options.bake.above && options.bake.labels.empty() &&
+      !options.bake.distances) {
+    throw usageError(
+        "an image of distances needs a surface: --above VALUE, --labels NAME or --distances");
   }
   if (to_grid) return run(options.bake, general, console);
 
-  OutputFiles files(general.force);
+  OutputFiles files(general);
   files.announce(output, {options.bake.input, options.bake.names});
   const Written written = to_image ? asImage(options, console) : asMesh(options, console);
   checkStop();

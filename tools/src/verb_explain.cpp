@@ -2,6 +2,7 @@
 
 #include "json_parts.h"
 #include "loaded_scene.h"
+#include "map_coverage.h"
 #include "output_files.h"
 #include "palpate/scene/transitions.h"
 #include "saving.h"
@@ -48,7 +49,10 @@ std::vector<std::string> conditions(const Transition& t, const Scene& scene,
                                : std::string("one face")));
   }
   if (port.mask >= 0) all.emplace_back("within its extent");
-  for (const PortId before : port.after) all.push_back("after " + scene.ports()[before].name);
+  for (const PassedBefore& before : port.after) {
+    all.push_back("after " + scene.ports()[before.port].name);
+    if (before.times > 1) all.back() += " " + std::to_string(before.times) + " times";
+  }
   if (t.force != 0.0) {
     all.push_back("pressed with " + formatParameter(t.force) + " N");
     if (port.hole_radius > 0.0 && port.reopens_at < t.force.range().most) {
@@ -76,6 +80,18 @@ const char* directionName(PortDirection direction) {
   return "";
 }
 
+const char* reachName(Reach reach) {
+  switch (reach) {
+    case Reach::kNo:
+      return "no";
+    case Reach::kUndecided:
+      return "undecided";
+    case Reach::kYes:
+      return "yes";
+  }
+  return "";
+}
+
 /// Why the probe cannot get into a region.
 std::string whyUnreachable(const Scene& scene, RegionId region) {
   bool touched = false;
@@ -96,7 +112,8 @@ std::string whyUnreachable(const Scene& scene, RegionId region) {
   if (!touched) return "it touches no other region";
   if (closed.empty()) return "no port leads into it";
   return "its ports (" + closed +
-         ") start in regions that cannot be reached either, or come after such";
+         ") start in regions that cannot be reached either, or what they come after is never "
+         "passed when they could be";
 }
 
 std::string contentText(const Material& content) {
@@ -138,8 +155,9 @@ std::string graphOf(const Scene& scene, const SceneDescription& description,
 }  // namespace
 
 Report run(const ExplainOptions& options, const GeneralOptions& general, Console& console) {
-  OutputFiles files(general.force);
-  if (!options.svg.empty()) files.announce(options.svg, {options.scene});
+  OutputFiles files(general);
+  if (!options.svg.empty())
+    files.announce(options.svg, {options.scene}, OutputFiles::Streams::kYes);
   LoadedScene loaded(options.scene, console);
   const ScenePtr compiled = loaded.compile(Purpose::kTouch);
   const Scene& scene = *compiled;
@@ -182,13 +200,14 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
     const std::string source = i == kOutside ? "-" : r.source.empty() ? "formula" : r.source;
     region_table.add({r.name, source, content == nullptr ? "-" : contentText(*content),
                       i == kOutside ? "-" : wallText(scene, {r.wall_absent, r.wall}),
-                      r.reachable ? "yes" : "NO",
+                      r.reach == Reach::kNo ? "NO" : reachName(r.reach),
                       r.has_seed ? formatVector(r.seed / unit, 3) : "-"});
     Json json = {{"name", r.name},
                  {"source", source},
                  {"left_out", r.left_out.empty() ? Json() : Json(r.left_out)},
                  {"content", content == nullptr ? Json() : materialJson(*content)},
                  {"reachable", r.reachable},
+                 {"reach", reachName(r.reach)},
                  {"seed", r.has_seed ? vectorJson(r.seed / unit) : Json()}};
     if (!r.reachable) {
       const std::string why =
@@ -220,10 +239,17 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
   report.text += "\nWalls (between regions that touch)\n" + wall_table.text("  ");
 
   report.json["sheets"] = Json::array();
-  Table sheet_table({"sheet", "wall", "extent"});
+  Table sheet_table({"sheet", "wall", "extent", "ports"});
   for (const Sheet& sheet : scene.passages().sheets()) {
+    std::string openings;
+    for (const Port& port : scene.ports()) {
+      if (port.sheet < 0) continue;
+      if (&scene.passages().sheets()[static_cast<std::size_t>(port.sheet)] != &sheet) continue;
+      openings += (openings.empty() ? "" : ", ") + port.name;
+    }
     sheet_table.add({sheet.name, wallText(scene, {false, sheet.material}),
-                     sheet.mask < 0 ? "all of its surface" : "limited"});
+                     sheet.mask < 0 ? "all of its surface" : "limited",
+                     openings.empty() ? "-" : openings});
     report.json["sheets"].push_back({{"name", sheet.name},
                                      {"where", sheet.mask >= 0},
                                      {"wall", wallJson(scene, {false, sheet.material})}});
@@ -233,16 +259,27 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
   }
 
   report.json["ports"] = Json::array();
-  for (const Port& port : scene.ports()) {
+  for (std::size_t id = 0; id < scene.ports().size(); ++id) {
+    const Port& port = scene.ports()[id];
     const PortDescription* described = describedPort(description, port.name);
     Json json = {{"name", port.name}};
-    json["between"] = described == nullptr ? Json() : Json::array({described->from, described->to});
+    json["between"] = described == nullptr || port.sheet >= 0
+                          ? Json()
+                          : Json::array({described->from, described->to});
+    json["sheet"] =
+        port.sheet < 0 ? Json()
+                       : Json(scene.passages().sheets()[static_cast<std::size_t>(port.sheet)].name);
+    json["reach"] = reachName(scene.reachOf(static_cast<PortId>(id)));
     json["on"] =
         described == nullptr || described->on_name.empty() ? Json() : Json(described->on_name);
     json["where"] = port.mask >= 0;
     json["direction"] = directionName(port.direction);
     json["after"] = Json::array();
-    for (const PortId before : port.after) json["after"].push_back(scene.ports()[before].name);
+    json["after_times"] = Json::array();
+    for (const PassedBefore& before : port.after) {
+      json["after"].push_back(scene.ports()[before.port].name);
+      json["after_times"].push_back(before.times);
+    }
     json["opens_at_N"] = parameterJson(port.opens_at);
     json["back_N"] = parameterJson(port.back);
     json["hole"] = port.hole_radius > 0.0
@@ -287,6 +324,15 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
   }
   if (!map_table.empty()) {
     report.text += "\nParameters that differ from place to place\n" + map_table.text("  ");
+  }
+  report.json["map_gaps"] = Json::array();
+  for (const MapGap& gap : mapGaps(description, scene)) {
+    report.text += "  " + gapText(gap, scene.lengthUnit(), unit) + "\n";
+    report.json["map_gaps"].push_back({{"name", gap.parameter},
+                                       {"source", gap.source},
+                                       {"share", gap.share},
+                                       {"away_m", gap.away},
+                                       {"size_ratio", gap.size_ratio}});
   }
 
   report.json["sources"] = Json::array();

@@ -156,7 +156,7 @@ std::string withoutExtension(const std::string& path) {
 
 Report run(const ImportOptions& options, const GeneralOptions& general, Console& console) {
   const bool is_written = !options.dry_run;
-  OutputFiles files(general.force);
+  OutputFiles files(general);
   const std::string changed_labels = withoutExtension(options.output) + ".labels.nii.gz";
   if (is_written) {
     if (!hasExtension(options.output, ".yaml") && !hasExtension(options.output, ".yml")) {

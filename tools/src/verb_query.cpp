@@ -5,6 +5,7 @@
 #include "input_kind.h"
 #include "json_parts.h"
 #include "loaded_scene.h"
+#include "output_files.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/image.h"
 #include "points_file.h"
@@ -16,7 +17,7 @@ namespace palpate::tools {
 namespace {
 
 std::vector<Vec3> queryPoints(const QueryOptions& options, const LengthUnit& unit) {
-  if (!options.points.empty()) return readPoints(options.points, unit);
+  if (!options.points.empty()) return readPoints(inputName(options.points), unit);
   std::vector<Vec3> points;
   for (const std::string& text : options.at) points.push_back(parsePoint(text, unit, "--at"));
   return points;

@@ -43,7 +43,7 @@ Report run(const RenderOptions& options, const GeneralOptions& general, Console&
   }
   PictureOptions picture;
   parseSize(options.size, picture);
-  OutputFiles files(general.force);
+  OutputFiles files(general);
   files.announce(options.output, {options.scene, options.trace, options.image});
 
   LoadedScene loaded(options.scene, console);

@@ -2,14 +2,17 @@
 #include <cmath>
 #include <filesystem>
 
+#include "content_changes.h"
 #include "input_kind.h"
 #include "loaded_scene.h"
+#include "map_coverage.h"
 #include "motion.h"
 #include "output_files.h"
 #include "palpate/devices/servo_loop.h"
 #include "palpate/devices/virtual_device.h"
 #include "palpate/render/trace.h"
 #include "picture/picture.h"
+#include "shape_scene.h"
 #include "stop_signal.h"
 #include "text.h"
 #include "touch_plot.h"
@@ -23,6 +26,29 @@ RendererSettings rendererSettings(const std::string& name) {
   if (name == "paper") return {RendererKind::kPaper};
   if (name == "constraint") return {RendererKind::kConstraint};
   return {};
+}
+
+bool givesPaperParameters(const TouchOptions& o) {
+  return !o.epsilon.empty() || o.halvings || o.alpha || !o.alpha_form.empty() ||
+         !o.interior.empty();
+}
+
+PaperParameters paperParameters(const TouchOptions& o, const LengthUnit& unit) {
+  PaperParameters paper;
+  if (!o.epsilon.empty()) {
+    paper.epsilon = parseLength(o.epsilon, unit, "--epsilon");
+    if (!(*paper.epsilon > 0.0)) {
+      throw Error(ErrorKind::kUsage, {"usage.touch", "--epsilon must be greater than 0"});
+    }
+  }
+  paper.max_halvings = o.halvings;
+  paper.alpha = o.alpha;
+  if (o.alpha_form == "by_field") paper.alpha_form = AlphaForm::kByMetric;
+  if (o.alpha_form == "printed") paper.alpha_form = AlphaForm::kLength;
+  if (o.alpha_form == "newton") paper.alpha_form = AlphaForm::kNewton;
+  if (o.interior == "together") paper.interior = PaperInterior::kTogether;
+  if (o.interior == "wall") paper.interior = PaperInterior::kWall;
+  return paper;
 }
 
 double positive(double value, const char* what) {
@@ -62,8 +88,9 @@ std::string limitsText(const ForceLimits& limits) {
 
 /// Runs the loop over the whole path and keeps every tick.
 Trace follow(HapticRenderer& renderer, devices::Path path, const devices::ServoSettings& settings,
-             devices::ServoReport& report) {
+             const std::vector<ContentEvent>& changes, devices::ServoReport& report) {
   Trace trace(path.size());
+  std::size_t next_change = 0;
   double last_time = path.front().t - 1.0 / settings.rate;
   devices::VirtualDevice device(std::move(path));
   const auto tick = [&](const devices::DeviceState& state) {
@@ -72,6 +99,10 @@ Trace follow(HapticRenderer& renderer, devices::Path path, const devices::ServoS
     row.hip = state.position;
     const double dt = state.time - last_time;
     last_time = state.time;
+    for (; next_change < changes.size() && changes[next_change].time <= state.time; ++next_change) {
+      // Each was tried on the scene before.
+      (void)renderer.setContent(changes[next_change].region, changes[next_change].change);
+    }
     const auto before = std::chrono::steady_clock::now();
     row.result = renderer.update({state.position, state.velocity, dt});
     const auto after = std::chrono::steady_clock::now();
@@ -100,12 +131,47 @@ void checkExit(devices::ServoExit exit) {
 
 }  // namespace
 
-Report run(const TouchOptions& options, const GeneralOptions& general, Console& console) {
+namespace {
+
+bool hasMotion(const TouchOptions& o) {
+  return !(o.path.empty() && o.press.empty() && o.stroke.empty() && o.tap.empty() &&
+           o.insert.empty());
+}
+
+/// Presses on a place of the shape's surface that is found from above.
+void pressOnSurface(const Scene& scene, TouchOptions& options, Console& console) {
+  const SurfacePoint found = findSurfacePoint(scene);
+  const auto text = [](const Vec3& v) {
+    return formatNumber(v.x, 17) + "," + formatNumber(v.y, 17) + "," + formatNumber(v.z, 17);
+  };
+  options.press = text(found.place / scene.metresPerUnit());
+  if (options.normal.empty()) options.normal = text(found.normal);
+  console.note("pressing on its surface at " +
+               formatVector(found.place / scene.metresPerUnit(), 6) + " " + scene.lengthUnit() +
+               "; --press X,Y,Z presses elsewhere");
+}
+
+}  // namespace
+
+Report run(const TouchOptions& asked, const GeneralOptions& general, Console& console) {
+  TouchOptions options = asked;
+  const bool is_shape = isShape(options.scene);
+  const bool finds_place = is_shape && !hasMotion(options);
+  std::string scene_text;
+  if (is_shape) {
+    scene_text = shapeSceneText(options);
+  } else {
+    refuseShapeOptions(options);
+  }
+  if (finds_place) options.press = "0,0,0";  // for now: its parameters apply
   checkMotion(options);
-  const ForceLimits limits = forceLimits(options);
-  OutputFiles files(general.force);
+  ForceLimits limits = forceLimits(options);
+  const std::vector<ContentSetting> content_settings = readSettings(options.set);
+  OutputFiles files(general);
   const std::vector<std::string> inputs = {options.scene, options.path};
-  if (!options.trace.empty()) files.announce(options.trace, inputs);
+  if (!options.trace.empty()) {
+    files.announce(options.trace, inputs, OutputFiles::Streams::kYes);
+  }
   if (!options.image.empty()) {
     if (!hasExtension(options.image, ".png")) {
       throw Error(ErrorKind::kUsage,
@@ -121,16 +187,39 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
     files.announce(options.plot, inputs);
   }
 
-  LoadedScene loaded(options.scene, console);
-  devices::Path path = makeMotion(options, loaded.unit());
+  if (!options.write_scene.empty()) {
+    if (!hasExtension(options.write_scene, ".yaml")) {
+      throw Error(ErrorKind::kUsage,
+                  {"usage.touch", "the scene " + options.write_scene + " must end in .yaml"});
+    }
+    files.announce(options.write_scene, inputs);
+    files.write(options.write_scene, scene_text);
+  }
+
+  LoadedScene loaded(options.scene, console, 0, scene_text);
   RendererSettings settings = rendererSettings(options.renderer);
   const bool is_paper =
       settings.kind.value_or(loaded.description().renderer) == RendererKind::kPaper;
+  if (!is_paper && givesPaperParameters(options)) {
+    throw Error(ErrorKind::kUsage,
+                {"usage.touch",
+                 "--epsilon, --halvings, --alpha, --alpha-form and --interior are parameters of "
+                 "the paper's renderer",
+                 "add --renderer paper"});
+  }
+  settings.paper = paperParameters(options, loaded.unit());
   // A picture shows all layers, and so does the paper's table.
   const bool wants_all = is_paper || !options.image.empty();
   const ScenePtr scene = loaded.compile(wants_all ? Purpose::kShow : Purpose::kTouch);
+  if (finds_place) pressOnSurface(*scene, options, console);
+  devices::Path path = makeMotion(options, loaded.unit());
+  limits.period = nominalPeriod(path, options.rate);
+  for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
+    console.warn(gapText(gap, scene->lengthUnit(), scene->metresPerUnit()));
+  }
   settings.limits = limits;
   const auto renderer = makeRenderer(scene, settings);
+  const std::vector<ContentEvent> changes = contentEvents(content_settings, *scene, path.back().t);
 
   devices::ServoSettings servo;
   servo.realtime = options.realtime;
@@ -141,7 +230,7 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
                  " in real time");
   }
   devices::ServoReport servo_report;
-  const Trace trace = follow(*renderer, std::move(path), servo, servo_report);
+  const Trace trace = follow(*renderer, std::move(path), servo, changes, servo_report);
   checkExit(servo_report.exit);
   TouchSummary summary = summarize(trace.rows());
   summary.source_work = renderer->sourceWork();
@@ -174,13 +263,25 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
                                {"worst_lateness_s", servo_report.worst_lateness},
                                {"elevated", servo_report.elevated}};
   }
+  // A hand that presses on a point means to meet something there.
+  const bool is_press = !options.press.empty() || !options.tap.empty();
+  report.is_yes = !is_press || summary.met_something;
+  report.json["met_something"] = summary.met_something;
+  report.json["set"] = settingsJson(content_settings);
   report.json["limits"] = limitsJson(limits);
   report.json["grids"] = loaded.gridsJson();
   report.json["trace"] = options.trace.empty() ? Json() : Json(options.trace);
   report.json["image"] = options.image.empty() ? Json() : Json(options.image);
+  report.json["written_scene"] = options.write_scene.empty() ? Json() : Json(options.write_scene);
   report.json["plot"] = options.plot.empty() ? Json() : Json(options.plot);
 
   report.text = summaryText(summary, *scene) + limitsText(limits);
+  if (!report.is_yes) {
+    report.text = std::string(options.press.empty() ? "The tap" : "The press") +
+                  " met nothing: no wall, no port and no content. Is the point on a surface, and "
+                  "does --normal point out of it?\n\n" +
+                  report.text;
+  }
   if (options.realtime) {
     report.text += "Real time   " + std::to_string(servo_report.overruns) +
                    " overruns, worst start " + formatSeconds(servo_report.worst_lateness) +
@@ -192,6 +293,7 @@ Report run(const TouchOptions& options, const GeneralOptions& general, Console& 
   if (!options.trace.empty()) written += "Trace    " + options.trace + "\n";
   if (!options.image.empty()) written += "Picture  " + options.image + "\n";
   if (!options.plot.empty()) written += "Plot     " + options.plot + "\n";
+  if (!options.write_scene.empty()) written += "Scene    " + options.write_scene + "\n";
   if (!written.empty()) report.text += "\n" + written;
   return report;
 }

@@ -14,7 +14,9 @@
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/grid_memory.h"
 #include "palpate/vdb/mesh.h"
+#include "palpate/vdb/polyhedron.h"
 #include "palpate/vdb/scan_surface.h"
+#include "palpate/vdb/sharp_edges.h"
 #include "scene_baked.h"
 #include "scene_grid.h"
 #include "scene_image.h"
@@ -26,6 +28,12 @@ namespace palpate::vdb {
 namespace {
 
 using GridMaker = std::function<LevelSet(const Progress&)>;
+/// Other ways than a grid alone.
+struct MeshWays {
+  std::function<FieldPtr(const Progress&)> instead =
+      {};  ///< tried first; null where a grid is needed
+  std::function<FieldPtr(FieldPtr, const LevelSet&)> finish = {};  ///< of the grid's whole field
+};
 using Measurer = FieldSource::Measurer;
 
 /// What the makers need after the scene file is read and its readers are gone.
@@ -61,7 +69,7 @@ CertifyOptions madeHere() {
 /// at `place` of the scene; `what` names the grid in progress and records.
 FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string summary,
                          SourcePlace place, Sampler sampler, GridMaker make, Measurer measure,
-                         CertifyOptions origin = madeHere()) {
+                         MeshWays ways = {}, CertifyOptions origin = madeHere()) {
   auto measurer = [place, measure = std::move(measure)](const Progress& progress) {
     try {
       return measure(progress);
@@ -70,9 +78,16 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     }
   };
   auto maker = [common, what = std::move(what), summary, place = std::move(place), sampler,
-                make = std::move(make),
+                make = std::move(make), ways = std::move(ways),
                 origin = std::move(origin)](const Box3& within, const Progress& progress) {
     const Progress named = namedProgress(progress, what);
+    if (ways.instead) {
+      try {
+        if (FieldPtr exact = ways.instead(named)) return exact;
+      } catch (const Error& error) {
+        throwAt(place, error);
+      }
+    }
     const auto start = std::chrono::steady_clock::now();
     LevelSet grid;
     LevelSetInfo made;
@@ -99,7 +114,13 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     if (common->options.on_grid) {
       common->options.on_grid({what + ": " + summary, made, took.count()});
     }
-    return gridField(grid, sampler, within, common->options.max_memory);
+    const std::uint64_t limit = common->options.max_memory;
+    if (!ways.finish) return gridField(grid, sampler, within, limit);
+    try {
+      return ways.finish(gridField(grid, sampler, Box3::everything(), limit), grid);
+    } catch (const Error& error) {
+      throwAt(place, error);
+    }
   };
   return std::make_shared<FieldSource>(std::move(summary), std::move(maker), std::move(measurer));
 }
@@ -139,27 +160,82 @@ Box3 boxOf(const Mesh& mesh) {
   return box;
 }
 
+/// Whether edges of a mesh of flat faces stay sharp: unless a grid is asked for.
+bool readEdges(MapReader& reader) {
+  const bool asks_for_grid =
+      reader.optional("voxel") != nullptr || reader.optional("half_width") != nullptr ||
+      reader.optional("sampler") != nullptr || reader.optional("shell") != nullptr ||
+      reader.optional("smooth") != nullptr;
+  const std::string edges = reader.textOr("edges", asks_for_grid ? "rounded" : "sharp");
+  if (edges != "sharp" && edges != "rounded") {
+    throw reader.errorAt("edges", "scene.kind", "'edges' is `" + edges + "`",
+                         "write edges: sharp or edges: rounded");
+  }
+  return edges == "sharp";
+}
+
+/// [rad] The angle at `sharp`; 0 if it is not there.
+double readSharp(MapReader& reader) {
+  if (reader.optional("sharp") == nullptr) return 0.0;
+  const double degrees = reader.requireNumber("sharp");
+  if (!(degrees > 0.0 && degrees <= 180.0)) {
+    throw reader.errorAt("sharp", "scene.range",
+                         "'sharp' must be more than 0 and at most 180 degrees");
+  }
+  for (const char* key : {"shell", "smooth"}) {
+    if (reader.optional(key) == nullptr) continue;
+    throw reader.errorAt("sharp", "scene.kind",
+                         std::string("'sharp' and '") + key + "' exclude one another",
+                         "sharp edges are those of the triangles as they are");
+  }
+  return degrees * std::numbers::pi / 180.0;
+}
+
 FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
   const std::string path = readExistingFile(reader, "file");
+  const bool is_sharp = readEdges(reader);
+  const double sharp_angle = readSharp(reader);
   BakeOptions bake;
   bake.max_memory = common->options.max_memory;
   bake.length_unit = reader.loader().lengthUnit();
-  const double metres = *metresPer(lengthUnitOr(reader, bake.length_unit));
+  const std::string prescribed = prescribedUnit(path);
+  const double metres =
+      *metresPer(lengthUnitOr(reader, prescribed.empty() ? bake.length_unit : prescribed));
   bake.voxel_size = readPositiveOrNone(reader, "voxel");
   bake.half_width = readHalfWidth(reader, bake.half_width);
   readMeshKeys(reader, bake);
   const Space space = readSpace(reader);
   bake.metadata["source"] = path;
   const Sampler sampler = readSampler(reader);
+  const auto read = [common, path, metres, space](const Progress& progress) {
+    report(progress, "read", 0.0);
+    Mesh mesh = readMesh(path, metres, space);
+    if (mesh.space_is_stated && mesh.space == Space::kLps) {
+      common->notes->add(path, {"coordinates are LPS, as the file says: x and y are negated"});
+    }
+    return mesh;
+  };
+  MeshWays ways;
+  if (sharp_angle > 0.0) {
+    ways.finish = [read, sharp_angle](FieldPtr baked, const LevelSet& grid) {
+      return withSharpEdges(std::move(baked), read({}), sharp_angle, grid.info().voxel_size);
+    };
+  }
+  if (is_sharp && bake.shell_thickness == 0.0 && bake.smooth_angle == 0.0) {
+    ways.instead = [common, path, read](const Progress& progress) {
+      FieldPtr solid = polyhedronField(read(progress));
+      if (solid) {
+        common->notes->add(path, {"its faces are flat and few: they are felt as they are, with "
+                                  "sharp edges; edges: rounded makes a grid"});
+      }
+      return solid;
+    };
+  }
   return lazyField(
       common, fileName(path), "mesh " + fileName(path),
       reader.loader().document().place(reader.node().mark), sampler,
-      [common, path, metres, space, bake](const Progress& progress) {
-        report(progress, "read", 0.0);
-        const Mesh mesh = readMesh(path, metres, space);
-        if (mesh.space_is_stated && mesh.space == Space::kLps) {
-          common->notes->add(path, {"coordinates are LPS, as the file says: x and y are negated"});
-        }
+      [read, bake](const Progress& progress) {
+        const Mesh mesh = read(progress);
         BakeOptions options = bake;
         if (!(options.voxel_size > 0.0)) {
           const Vec3 size = checkMesh(mesh).bounds.size();
@@ -169,7 +245,8 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
       },
       [path, metres, space, shell = bake.shell_thickness](const Progress&) {
         return boxOf(readMesh(path, metres, space)).grownBy(shell);
-      });
+      },
+      std::move(ways));
 }
 
 FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
@@ -196,7 +273,7 @@ FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
       [path, name, unit, unknown, limit = common->options.max_memory](const Progress&) {
         return readVdb(path, name, unit, unknown, limit).info().bounds;
       },
-      foreign);
+      {}, foreign);
 }
 
 FieldSourcePtr maskField(const CommonPtr& common, MapReader& reader) {

@@ -5,7 +5,6 @@
 namespace palpate {
 namespace {
 
-constexpr int kMaxHalvings = 48;
 constexpr int kMaxDescent = 32;
 
 /// -alpha S N / |N| or -alpha S N / (N.N); nothing where there is no gradient.
@@ -24,7 +23,7 @@ Vec3 ontoNormalLine(const Vec3& point, const Vec3& normal, const Vec3& probe) no
 
 Vec3 bisect(const PaperSurface& surface, Vec3 outside, Vec3 inside) noexcept {
   Vec3 middle = 0.5 * (outside + inside);
-  for (int i = 0; i < kMaxHalvings; ++i) {
+  for (int i = 0; i < surface.max_halvings; ++i) {
     const double value = surface.side * surface.field->value(middle);
     if (std::fabs(value) < surface.epsilon) break;
     (value > 0.0 ? outside : inside) = middle;

@@ -41,6 +41,7 @@ class HalfSpace final : public Field {
   [[nodiscard]] Metric metric() const noexcept override { return Metric::kExact; }
   [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
   [[nodiscard]] double featureSize() const noexcept override { return kPlaneFeature; }
+  [[nodiscard]] bool isFlat() const noexcept override { return true; }
 
  private:
   Vec3 point_;

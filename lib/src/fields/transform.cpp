@@ -48,6 +48,7 @@ class Placed final : public Field {
     return boxWithin(operand().lipschitzDomain());
   }
   [[nodiscard]] double featureSize() const noexcept override { return operand().featureSize(); }
+  [[nodiscard]] bool isFlat() const noexcept override { return operand().isFlat(); }
   [[nodiscard]] FieldStructure structure() const noexcept override {
     return {FieldStructure::Kind::kTransform, operands_, pose_};
   }

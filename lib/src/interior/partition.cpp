@@ -1,6 +1,7 @@
 #include "palpate/interior/partition.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <string>
@@ -13,8 +14,6 @@ namespace {
 
 constexpr std::size_t kMaxLeaves = std::numeric_limits<LeafId>::max();
 constexpr std::size_t kMaxLayers = std::numeric_limits<RegionId>::max() - 1;
-/// Depth of the evaluation stack; the builder refuses deeper trees, so evaluate() needs no check.
-constexpr std::size_t kMaxDepth = 64;
 
 bool isIdentity(const Pose& pose) {
   return pose.rotation == Mat3(1.0) && pose.translation == Vec3(0.0);
@@ -66,14 +65,16 @@ struct Partition::Builder {
       program.steps.push_back({Step::Op::kAnyOf, 0, 0});  // any of none
       return program;
     }
-    append(program, root, Pose{}, 1);
+    append(program, root, Pose{}, 1, kInfinity);
     std::sort(program.leaves.begin(), program.leaves.end());
     program.leaves.erase(std::unique(program.leaves.begin(), program.leaves.end()),
                          program.leaves.end());
     return program;
   }
 
-  void append(Program& program, const FieldPtr& field, const Pose& pose, std::size_t depth) {
+  /// `size` [m]: of the smallest solid so far that the field is a face of.
+  void append(Program& program, const FieldPtr& field, const Pose& pose, std::size_t depth,
+              double size) {
     if (depth >= kMaxDepth) {
       throw inputError("scene.csg_depth", "a field's CSG tree is nested deeper than 62 levels",
                        "flatten nested unions and intersections into one list");
@@ -82,14 +83,14 @@ struct Partition::Builder {
     const FieldStructure structure = field->structure();
     switch (structure.kind) {
       case FieldStructure::Kind::kLeaf:
-        program.leaves.push_back(leaf(field, pose));
+        program.leaves.push_back(leaf(field, pose, size));
         program.steps.push_back({Step::Op::kLeaf, program.leaves.back(), 0});
         break;
       case FieldStructure::Kind::kTransform:
-        append(program, structure.operands.front(), pose.after(structure.pose), depth);
+        append(program, structure.operands.front(), pose.after(structure.pose), depth, size);
         break;
       case FieldStructure::Kind::kComplement:
-        append(program, structure.operands.front(), pose, depth);
+        append(program, structure.operands.front(), pose, depth, size);
         program.steps.push_back({Step::Op::kNot, 0, 0});
         break;
       case FieldStructure::Kind::kUnion:
@@ -98,9 +99,11 @@ struct Partition::Builder {
         // Folding each operand in as it comes keeps the stack as deep as the tree, not as wide.
         const auto op =
             structure.kind == FieldStructure::Kind::kUnion ? Step::Op::kOr : Step::Op::kAnd;
+        const bool is_solid = structure.kind == FieldStructure::Kind::kFaces;
+        const double inner = is_solid ? std::min(size, field->featureSize()) : size;
         bool is_first = true;
         for (const FieldPtr& operand : structure.operands) {
-          append(program, operand, pose, depth + (is_first ? 0 : 1));
+          append(program, operand, pose, depth + (is_first ? 0 : 1), inner);
           if (!is_first) fold(program, op);
           is_first = false;
         }
@@ -128,9 +131,13 @@ struct Partition::Builder {
     steps.push_back({op, 0, 0});
   }
 
-  LeafId leaf(const FieldPtr& field, const Pose& pose) {
+  LeafId leaf(const FieldPtr& field, const Pose& pose, double size) {
     const auto known = ids.find({field.get(), pose});
-    if (known != ids.end()) return known->second;
+    if (known != ids.end()) {
+      Leaf& again = partition.leaves_[known->second];
+      if (again.is_flat) again.feature = std::min(again.feature, size);
+      return known->second;
+    }
     if (partition.leaves_.size() >= kMaxLeaves) {
       throw inputError("scene.too_many_leaves", "the scene has more than 65535 smooth leaf fields",
                        "combine some into one grid with `palpate bake`");
@@ -138,11 +145,24 @@ struct Partition::Builder {
     Leaf made;
     made.field = isIdentity(pose) ? field : place(field, pose);
     made.lipschitz = field->lipschitz();
-    made.feature = field->featureSize();
+    made.is_flat = field->isFlat();
+    made.feature = made.is_flat ? size : field->featureSize();
     const auto id = static_cast<LeafId>(partition.leaves_.size());
     partition.leaves_.push_back(std::move(made));
     ids.emplace(Placed{field.get(), pose}, id);
     return id;
+  }
+
+  /// Planes that are no solid's face take the scale of the scene, so that a scene in micrometers is the same scene.
+  void sizePlanes() {
+    double largest = 0.0;
+    for (const Leaf& leaf : partition.leaves_) {
+      if (std::isfinite(leaf.feature)) largest = std::max(largest, leaf.feature);
+    }
+    for (Leaf& leaf : partition.leaves_) {
+      if (std::isfinite(leaf.feature)) continue;
+      leaf.feature = largest > 0.0 ? largest : leaf.field->featureSize();
+    }
   }
 
   template <typename Iterator>
@@ -167,6 +187,8 @@ Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr>
   Builder builder(*this);
   for (const FieldPtr& layer : layers) programs_.push_back(builder.build(layer));
   for (const FieldPtr& mask : masks) programs_.push_back(builder.build(mask));
+  for (const Program& program : programs_) sides_.push_back(sidesOf(program));
+  builder.sizePlanes();
   parts_.assign(builder.parts.begin(), builder.parts.end());
 
   regions_of_leaf_.resize(leaves_.size());
@@ -190,6 +212,55 @@ Partition::Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr>
   std::vector<Box3> boxes;
   for (const Leaf& leaf : leaves_) boxes.push_back(leaf.field->bounds());
   tree_ = BoundsTree(boxes);
+}
+
+/// De Morgan's laws push each complement down to the leaves.
+Partition::Sides Partition::sidesOf(const Program& program) {
+  std::vector<Sides> stack;
+  const auto run = [&](const Step& step, bool is_any, std::uint16_t count) {
+    Sides both;
+    both[1] = {{is_any ? SideStep::Op::kAnyOf : SideStep::Op::kAllOf, true, step.leaf, count}};
+    both[0] = {{is_any ? SideStep::Op::kAllOf : SideStep::Op::kAnyOf, false, step.leaf, count}};
+    stack.push_back(std::move(both));
+  };
+  for (const Step& step : program.steps) {
+    switch (step.op) {
+      case Step::Op::kLeaf:
+        run(step, true, 1);
+        break;
+      case Step::Op::kAnyOf:
+        run(step, true, step.count);
+        break;
+      case Step::Op::kAllOf:
+        run(step, false, step.count);
+        break;
+      case Step::Op::kNot:
+        std::swap(stack.back()[0], stack.back()[1]);
+        break;
+      case Step::Op::kAnd:
+      case Step::Op::kOr: {
+        const Sides second = std::move(stack.back());
+        stack.pop_back();
+        Sides& first = stack.back();
+        for (const std::size_t holds : {0, 1}) {
+          const bool is_and = (step.op == Step::Op::kAnd) == (holds == 1);
+          first[holds].insert(first[holds].end(), second[holds].begin(), second[holds].end());
+          first[holds].push_back({is_and ? SideStep::Op::kAnd : SideStep::Op::kOr, true, 0, 0});
+        }
+        break;
+      }
+    }
+  }
+  return std::move(stack.front());
+}
+
+std::size_t Signs::countInside(LeafId first, std::size_t count) const noexcept {
+  std::size_t inside = 0;
+  (void)anyWord(words_, first, count, [&](std::uint64_t word, std::uint64_t mask) {
+    inside += static_cast<std::size_t>(std::popcount(word & mask));
+    return false;
+  });
+  return inside;
 }
 
 bool Signs::anyInside(LeafId first, std::size_t count) const noexcept {

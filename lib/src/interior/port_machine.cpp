@@ -1,10 +1,12 @@
 #include "palpate/interior/port_machine.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
-namespace palpate {
+#include "palpate/core/error.h"
 
+namespace palpate {
 namespace {
 
 bool holds(const std::vector<RegionId>& set, RegionId region) noexcept {
@@ -18,53 +20,6 @@ bool meets(const std::vector<LeafId>& leaves, std::span<const LeafId> crossed) n
 }
 
 }  // namespace
-
-bool PassedPorts::contains(PortId port) const noexcept {
-  for (std::size_t i = 0; i < size_; ++i) {
-    if (stack_[i].port == port) return true;
-  }
-  return false;
-}
-
-void PassedPorts::pass(PortId port, RegionId from, RegionId to, bool keep) noexcept {
-  if (keep) {
-    if (contains(port)) return;
-  } else if (to == kOutside) {
-    clear();
-    return;
-  } else if (size_ > 0 && stack_[size_ - 1].from == to) {
-    --size_;
-    return;
-  }
-  if (size_ == kCapacity) {
-    std::move(stack_.begin() + 1, stack_.end(), stack_.begin());
-    --size_;
-  }
-  stack_[size_++] = {port, from};
-}
-
-void PassedPorts::arrive(RegionId to, bool keep) noexcept {
-  if (keep) return;
-  if (to == kOutside) {
-    clear();
-    return;
-  }
-  // An absent wall counts for nothing: back where a passage began is back before it, and before all since.
-  for (std::size_t i = size_; i > 0; --i) {
-    if (stack_[i - 1].from == to) {
-      size_ = i - 1;
-      return;
-    }
-  }
-}
-
-bool operator==(const PassedPorts& a, const PassedPorts& b) noexcept {
-  if (a.size_ != b.size_) return false;
-  for (std::size_t i = 0; i < a.size_; ++i) {
-    if (a.stack_[i].port != b.stack_[i].port || a.stack_[i].from != b.stack_[i].from) return false;
-  }
-  return true;
-}
 
 bool Port::leadsInward(RegionId a, RegionId b) const noexcept {
   return direction != PortDirection::kOut && holds(from, a) && holds(to, b);
@@ -81,9 +36,15 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
       ports_(std::move(ports)),
       sheets_(std::move(sheets)),
       ports_of_(regions),
-      ways_of_(regions) {
+      ways_of_(regions),
+      ports_of_sheet_(sheets_.size()) {
+  giveSlots();
   for (std::size_t port = 0; port < ports_.size(); ++port) {
     const Port& way = ports_[port];
+    if (way.sheet >= 0) {
+      ports_of_sheet_[static_cast<std::size_t>(way.sheet)].push_back(static_cast<PortId>(port));
+      continue;
+    }
     const auto add = [&](const std::vector<RegionId>& from, const std::vector<RegionId>& to) {
       for (const RegionId a : from) {
         for (const RegionId b : to) {
@@ -109,6 +70,25 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
   }
 }
 
+void Passages::giveSlots() {
+  for (const Port& port : ports_) {
+    for (const PassedBefore& before : port.after) {
+      if (before.port >= ports_.size()) continue;  // never passed, and so never due
+      int& slot = ports_[before.port].slot;
+      if (slot >= 0) continue;
+      slot = static_cast<int>(counted_.size());
+      counted_.push_back(before.port);
+    }
+  }
+  if (counted_.size() <= PassedPorts::kCapacity) return;
+  throw inputError("scene.too_many_counted_ports",
+                   "`after` names " + std::to_string(counted_.size()) +
+                       " different ports, and passings are counted of " +
+                       std::to_string(PassedPorts::kCapacity) + " at most",
+                   "name fewer: a port that comes after another need not name what that one "
+                   "comes after");
+}
+
 Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond, const Signs& here,
                       const Signs& there, std::span<const LeafId> crossed,
                       const PassedPorts& passed, const Vec3& at,
@@ -116,15 +96,8 @@ Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond
   Facet facet;
   facet.beyond = beyond;
   if (facet.beyond == from) {
-    for (const Sheet& sheet : sheets_) {
-      if (!meets(sheet.leaves, crossed)) continue;
-      const auto solid = static_cast<std::size_t>(sheet.solid);
-      if (partition.maskHolds(solid, here) == partition.maskHolds(solid, there)) continue;
-      if (sheet.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(sheet.mask), there))
-        continue;
-      facet.kind = Facet::Kind::kClosed;
-      facet.material = sheet.material;
-      break;
+    if (!sheets_.empty()) {
+      lookThroughSheets(partition, here, there, crossed, passed, at, holes, facet);
     }
     return facet;
   }
@@ -139,40 +112,71 @@ Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond
   for (auto way = std::lower_bound(ways.begin(), ways.end(), beyond,
                                    [](const Way&a, RegionId to) { return a.to < to; });
        way != ways.end() && way->to == beyond; ++way) {
-    const PortId id = way->port;
-    const Port& port = ports_[id];
+    const Port& port = ports_[way->port];
     if (!port.on.empty() && !meets(port.on, crossed)) continue;
-    // The mask's own leaves are not among those crossed, so the far cell tells its state as well.
-    if (port.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(port.mask), there))
-      continue;
-    if (!std::all_of(port.after.begin(), port.after.end(),
-                     [&](PortId before) { return passed.contains(before); })) {
-      continue;
-    }
-    const Parameter& given = port.leadsInward(from, facet.beyond) ? port.opens_at : port.back;
-    double force = given.at(at);
-    const Hole* hole = holes == nullptr ? nullptr : holes->holeAt(id, at);
-    const bool in_hole = hole != nullptr && hole->reopens_at < force;
-    if (in_hole) force = hole->reopens_at;
-    // Where a map is 0 is no border of any cell: a port that has one is a wall until it is touched.
-    if (force <= 0.0 && (in_hole || given.isConstant())) {
-      facet.kind = Facet::Kind::kOpen;
-      facet.port = id;
-      facet.opens = false;
-      facet.varies = false;
-      facet.opens_at = 0.0;
-      facet.in_hole = in_hole;
-      return facet;
-    }
-    facet.varies = facet.varies || !given.isConstant();
-    if (!facet.opens || force < facet.opens_at) {
-      facet.opens = true;
-      facet.opens_at = force;
-      facet.port = id;
-      facet.in_hole = in_hole;
-    }
+    const Turn turn{port.leadsInward(from, beyond), port.countsInward(from, beyond)};
+    if (consider(partition, way->port, turn, there, passed, at, holes, facet)) return facet;
   }
   return facet;
+}
+
+bool Passages::consider(const Partition& partition, PortId id, Turn turn, const Signs& there,
+                        const PassedPorts& passed, const Vec3& at, const Punctures* holes,
+                        Facet& facet) const noexcept {
+  const Port& port = ports_[id];
+  // The mask's own leaves are not among those crossed, so the far cell tells its state as well.
+  if (port.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(port.mask), there)) {
+    return false;
+  }
+  if (!isDue(port, passed)) return false;
+  const Parameter& given = turn.is_way_in ? port.opens_at : port.back;
+  double force = given.at(at);
+  const Hole* hole = holes == nullptr ? nullptr : holes->holeAt(id, at);
+  const bool in_hole = hole != nullptr && hole->reopens_at < force;
+  if (in_hole) force = hole->reopens_at;
+  // Where a map is 0 is no border of any cell: a port that has one is a wall until it is touched.
+  if (force <= 0.0 && (in_hole || given.isConstant())) {
+    facet.kind = Facet::Kind::kOpen;
+    facet.port = id;
+    facet.inward = turn.counts_inward;
+    facet.opens = false;
+    facet.varies = false;
+    facet.opens_at = 0.0;
+    facet.in_hole = in_hole;
+    return true;
+  }
+  facet.varies = facet.varies || !given.isConstant();
+  if (!facet.opens || force < facet.opens_at) {
+    facet.opens = true;
+    facet.opens_at = force;
+    facet.port = id;
+    facet.inward = turn.counts_inward;
+    facet.in_hole = in_hole;
+  }
+  return false;
+}
+
+void Passages::lookThroughSheets(const Partition& partition, const Signs& here, const Signs& there,
+                                 std::span<const LeafId> crossed, const PassedPorts& passed,
+                                 const Vec3& at, const Punctures* holes,
+                                 Facet& facet) const noexcept {
+  for (std::size_t i = 0; i < sheets_.size(); ++i) {
+    const Sheet& sheet = sheets_[i];
+    if (!meets(sheet.leaves, crossed)) continue;
+    const auto solid = static_cast<std::size_t>(sheet.solid);
+    const bool inward = partition.maskHolds(solid, there);
+    if (partition.maskHolds(solid, here) == inward) continue;
+    if (sheet.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(sheet.mask), there))
+      continue;
+    facet.kind = Facet::Kind::kClosed;
+    facet.material = sheet.material;
+    for (const PortId id : ports_of_sheet_[i]) {
+      const PortDirection direction = ports_[id].direction;
+      if (direction == (inward ? PortDirection::kOut : PortDirection::kIn)) continue;
+      if (consider(partition, id, {inward, inward}, there, passed, at, holes, facet)) return;
+    }
+    return;
+  }
 }
 
 Facet Passages::facet(const Partition& partition, RegionId from, const Signs& there,
@@ -181,6 +185,36 @@ Facet Passages::facet(const Partition& partition, RegionId from, const Signs& th
   Signs here = there;
   for (const LeafId leaf : crossed) here.flip(leaf);
   return facet(partition, from, partition.regionOf(there), here, there, crossed, passed, at);
+}
+
+bool Passages::isDue(const Port& port, const PassedPorts& passed) const noexcept {
+  return std::all_of(port.after.begin(), port.after.end(), [&](const PassedBefore& before) {
+    if (before.port >= ports_.size()) return false;
+    const int slot = ports_[before.port].slot;
+    return slot >= 0 && passed.times(static_cast<std::size_t>(slot)) >= before.times;
+  });
+}
+
+void Passages::pass(PassedPorts& passed, PortId port, bool inward, RegionId from, RegionId to,
+                    bool keep) const noexcept {
+  if (!keep && to == kOutside && from != to) {
+    passed.clear();
+    return;
+  }
+  const int slot = ports_[port].slot;
+  if (slot >= 0) passed.pass(static_cast<std::size_t>(slot), inward, keep);
+}
+
+void Passages::arrive(PassedPorts& passed, RegionId from, RegionId to, bool keep) const noexcept {
+  if (keep) return;
+  if (to == kOutside) {
+    passed.clear();
+    return;
+  }
+  for (std::size_t slot = 0; slot < counted_.size(); ++slot) {
+    const Port& port = ports_[counted_[slot]];
+    if (port.leads(to, from)) passed.takeBack(slot, port.countsInward(to, from));
+  }
 }
 
 }  // namespace palpate

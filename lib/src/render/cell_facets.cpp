@@ -59,6 +59,12 @@ Facet CellWalker::facetAt(LeafId leaf) noexcept {
   Facet facet = scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_,
                                         beyond_, std::span(crossing_.data(), crossing_count_),
                                         passed_, x_, in_hole ? &punctures_ : nullptr);
+  if (leaves_[leaf].is_between && facet.beyond == kOutside && region_ != kOutside) {
+    // Where the walls between three labels meet, rounding sees a cell that is none of theirs. There is none.
+    facet.kind = Facet::Kind::kClosed;
+    facet.material = std::max(facet.material, 0);
+    facet.opens = false;
+  }
   if (is_sealed_ && facet.beyond != region_) {
     facet.kind = Facet::Kind::kClosed;
     facet.material = std::max(facet.material, 0);
@@ -112,11 +118,12 @@ void CellWalker::cross(LeafId leaf, const Facet& facet, double force) noexcept {
   updateHolding();
   --crossings_left_;
   ++state_;
-  if (facet.beyond == region_) return;
-  const bool keep = scene_.keepsMemory();
   const bool by_port = facet.kind == Facet::Kind::kOpen || facet.opens;
+  if (facet.beyond == region_ && !by_port) return;
+  const bool keep = scene_.keepsMemory();
+  const Passages& passages = scene_.passages();
   if (by_port) {
-    passed_.pass(facet.port, region_, facet.beyond, keep);
+    passages.pass(passed_, facet.port, facet.inward, region_, facet.beyond, keep);
     if (facet.opens) punctures_.puncture(facet.port, scene_.ports()[facet.port], x_);
     if (event_count_ < events_.size()) {
       using How = PortCrossing::How;
@@ -129,8 +136,9 @@ void CellWalker::cross(LeafId leaf, const Facet& facet, double force) noexcept {
       events_[event_count_++] = facet.port;
     }
   } else {
-    passed_.arrive(facet.beyond, keep);
+    passages.arrive(passed_, region_, facet.beyond, keep);
   }
+  if (facet.beyond == region_) return;  // a port of a sheet
   region_ = facet.beyond;
   mouth_ = leaf;
 }

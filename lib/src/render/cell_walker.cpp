@@ -4,21 +4,14 @@
 #include <cmath>
 
 #include "palpate/contact/sweep.h"
+#include "solver_limits.h"
 
 namespace palpate {
 namespace {
 
-/// Share of the feature size that counts as on the surface. Far above rounding (1e-16 of coordinates of
-/// a hundred feature sizes), far below what a force can show (1e-6 of a millimetre's depth).
-constexpr double kOnSurface = 1e-9;
-/// Sweeps let go of grazes shorter than this share of the feature size.
-constexpr double kGraze = 0.02;
-/// What slides on a wall may be this share of the feature size beyond it, and looks out for other sheets
-/// of that wall in steps of the share below.
-constexpr double kSlideDip = 1e-7;
-constexpr double kSlideStride = 0.4;
-constexpr int kEvaluationsPerSlide = 256;
-constexpr int kCrossingsPerTick = 32;
+/// Sweeps let go of grazes shorter than this share of the feature size: what they miss is no deeper than
+/// 5e-7 of it.
+constexpr double kGraze = 0.002;
 constexpr int kEvaluationsPerTick = 4096;
 constexpr int kEvaluationsPerSweep = 256;
 /// The hot list reaches this many times as far as the motion that made it.
@@ -32,6 +25,7 @@ CellWalker::CellWalker(const Scene& scene)
     : scene_(scene),
       leaves_(scene.partition().leaves()),
       domain_(leaves_.size()),
+      opens_(leaves_.size(), false),
       tolerance_(leaves_.size()),
       signs_(leaves_.size()),
       beyond_(leaves_.size()),
@@ -41,12 +35,19 @@ CellWalker::CellWalker(const Scene& scene)
       jets_(leaves_.size()),
       known_(leaves_.size()) {
   for (std::size_t i = 0; i < leaves_.size(); ++i) {
-    tolerance_[i] = kOnSurface * leaves_[i].feature * leaves_[i].lipschitz;
+    tolerance_[i] = limits::kOnSurface * leaves_[i].feature * leaves_[i].lipschitz;
     const Box3 box = leaves_[i].field->lipschitzDomain();
     const Box3 bounds = leaves_[i].field->bounds();
     domain_[i] = {box, box.lo == Vec3(-kInfinity) && box.hi == Vec3(kInfinity),
                   bounds.isEmpty() || (box.contains(bounds.lo) && box.contains(bounds.hi))};
     smallest_horizon_ = std::min(smallest_horizon_, kHorizonShare * leaves_[i].feature);
+  }
+  for (const Port& port : scene.ports()) {
+    if (port.mask < 0) continue;
+    for (const SideStep& step :
+         scene.partition().maskSides(static_cast<std::size_t>(port.mask), true)) {
+      for (std::size_t i = 0; i < step.count; ++i) opens_[step.first + i] = true;
+    }
   }
   holding_.reserve(scene.regions().size());
   place(Vec3(0.0));
@@ -72,7 +73,7 @@ void CellWalker::place(const Vec3& p) noexcept {
 void CellWalker::beginTick() noexcept {
   event_count_ = 0;
   punctures_.visit(x_);
-  crossings_left_ = kCrossingsPerTick;
+  crossings_left_ = limits::kCrossings;
   evaluations_left_ = kEvaluationsPerTick;
   // The odometer starts again now and then, so that its rounding stays below every tolerance.
   if (travel_ > 1.0) {
@@ -110,8 +111,7 @@ void CellWalker::jump(const Vec3& x) noexcept {
   ++stay_;
 }
 
-CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sliding,
-                                  bool stop_at_crossing) noexcept {
+CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noexcept {
   for (;;) {
     const double length = glm::length(target - x_);
     if (!(length > 0.0)) return Stop::kArrived;
@@ -128,9 +128,7 @@ CellWalker::Stop CellWalker::move(const Vec3& target, std::span<const LeafId> sl
       for (std::size_t k = 0; k < hot_count_; ++k) {
         const LeafId leaf = hot_[k];
         if (due_[leaf] > travel_ + nearest * length) continue;
-        if (isIdle(leaf) || std::find(sliding.begin(), sliding.end(), leaf) != sliding.end()) {
-          continue;
-        }
+        if (isIdle(leaf)) continue;
         const Vec3 end = nearest < 1.0 ? x_ + nearest * (target - x_) : target;
         if (is_second) {
           if (leaf == hit_leaf ||
@@ -229,19 +227,56 @@ SweepSurface CellWalker::surfaceOf(LeafId leaf) const noexcept {
   return surface;
 }
 
-double CellWalker::freeShare(LeafId leaf, const Vec3& a, const Vec3& b) noexcept {
-  const Leaf& own = leaves_[leaf];
-  if (glm::length(b - a) <= kGraze * own.feature) return 1.0;  // as short as what a sweep lets go
-  SweepSurface surface = surfaceOf(leaf);
-  // No sheet of the leaf is thinner than its feature size, so none fits between two steps.
-  surface.graze = kSlideStride * own.feature;
-  surface.allowance = kSlideDip * own.feature * own.lipschitz;
-  const double value = a == x_ ? valueHere(leaf) : own.field->value(a);
-  const double start = surface.side * value + surface.allowance;
-  const int budget = std::min(kEvaluationsPerSlide, evaluations_left_);
-  const SweepResult result = sweepLeaf(leaf, surface, a, b, start, budget);
-  if (result.kind == SweepResult::Kind::kUnsure) evaluations_left_ -= budget;
-  return result.kind == SweepResult::Kind::kFree ? 1.0 : result.at;
+void CellWalker::turn(LeafId leaf) noexcept {
+  crossing_[0] = leaf;
+  crossing_count_ = 1;
+  flip(leaf, signs_);
+  updateHolding();
+  ++state_;
+}
+
+CellWalker::Slid CellWalker::slideTo(const Vec3& target, const NearCell& cell,
+                                     std::span<const LeafId> near,
+                                     std::span<const LeafId> held) noexcept {
+  struct Change {
+    LeafId leaf = 0;
+    double at = 0.0;
+  };
+  std::array<Change, NearCells::kMaxNear> changes{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const LeafId leaf = near[i];
+    if (isIdle(leaf)) continue;
+    const std::uint32_t bit = std::uint32_t{1} << i;
+    if (((cell.inside | cell.outside) & bit) != 0) {
+      if (signs_.inside(leaf) != ((cell.inside & bit) != 0)) changes[count++] = {leaf, 0.0};
+      continue;
+    }
+    const double before = std::max(0.0, side(leaf) * valueHere(leaf));
+    const double after = side(leaf) * leaves_[leaf].field->value(target);
+    if (opens_[leaf] && !held.empty()) {
+      // An opening may be narrower than the way is long.
+      const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
+      const SweepResult swept = sweepLeaf(leaf, surfaceOf(leaf), x_, target, before, budget);
+      if (swept.kind != SweepResult::Kind::kFree) changes[count++] = {leaf, swept.at};
+    } else if (after < -tolerance_[leaf]) {
+      changes[count++] = {leaf, before / (before - after)};
+    }
+  }
+  std::sort(changes.begin(), changes.begin() + static_cast<std::ptrdiff_t>(count),
+            [](const Change& a, const Change& b) { return a.at < b.at; });
+  for (std::size_t i = 0; i < count; ++i) {
+    turn(changes[i].leaf);
+    for (const LeafId wall : held) {
+      if (!facetAt(wall).isClosed()) return {false, changes[i].leaf, changes[i].at};
+    }
+  }
+  jump(target);
+  for (std::size_t i = 0; i < count; ++i) {
+    const LeafId leaf = changes[i].leaf;
+    if (opens_[leaf] && side(leaf) * valueHere(leaf) < -tolerance_[leaf]) turn(leaf);
+  }
+  return {};
 }
 
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "palpate/contact/sweep.h"
+#include "palpate/interior/near_cells.h"
 #include "palpate/interior/port_machine.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene.h"
@@ -57,27 +58,37 @@ class CellWalker {
     return known.jet;
   }
 
-  /// Straight to `target` [m], through what is open. Facets of the leaves in `sliding` are not looked at:
-  /// they hold the point already.
-  Stop move(const Vec3& target, std::span<const LeafId> sliding, bool stop_at_crossing) noexcept;
-  /// How much of the straight way from `a` to `b` [m] is on the near side of `leaf`, 0 to 1. A leaf may have
-  /// several sheets: the one that holds a sliding point is not the one that stands in its way.
-  [[nodiscard]] double freeShare(LeafId leaf, const Vec3& a, const Vec3& b) noexcept;
+  /// Straight to `target` [m], through what is open; stops after a crossing if it is asked to.
+  Stop move(const Vec3& target, bool stop_at_crossing) noexcept;
+  /// To `target` [m], along the walls `held`: the solver found that the way keeps to the sides `cell` of
+  /// `near` leaves. Other leaves change side on the way, in order; where that opens one of the walls the
+  /// walker stays, on the far side of that leaf already, and says which this was and at about which share of
+  /// the way; else it arrives.
+  struct Slid {
+    bool arrived = true;
+    LeafId leaf = 0;
+    double share = 1.0;
+  };
+  [[nodiscard]] Slid slideTo(const Vec3& target, const NearCell& cell, std::span<const LeafId> near,
+                             std::span<const LeafId> held) noexcept;
+  /// To `x` [m], which slideTo() or a solver's way back onto the walls found.
+  void jump(const Vec3& x) noexcept;
   [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }
 
-  /// Calls f(leaf, value, facet) for each leaf within `reach` tolerances of the point, or beyond it.
+  /// Calls f(leaf) for each leaf whose surface may come within `radius` [m] of the point, a few of its
+  /// tolerances more, or lies beyond the point.
   template <typename F>
-  void forNear(double reach, F&& f) noexcept {
-    refresh(0.0);
+  void forWithin(double radius, F&& f) noexcept {
+    refresh(radius);
     for (std::size_t k = 0; k < hot_count_; ++k) {
       const LeafId leaf = hot_[k];
-      if (isIdle(leaf)) continue;
-      const double far = reach * tolerance_[leaf];
-      if (due_[leaf] - travel_ > far / leaves_[leaf].lipschitz) continue;
-      const double value = side(leaf) * measure(leaf);
-      if (value <= far) f(leaf, value, facetAt(leaf));
+      const double reach = travel_ + radius + kTouch * tolerance_[leaf] / leaves_[leaf].lipschitz;
+      if (due_[leaf] > reach) continue;
+      (void)measure(leaf);
+      if (due_[leaf] <= reach) f(leaf);
     }
   }
+  [[nodiscard]] const Signs& signs() const noexcept { return signs_; }
 
   /// What the facet of `leaf` at the point is, seen from here.
   [[nodiscard]] Facet facetAt(LeafId leaf) noexcept;
@@ -85,6 +96,9 @@ class CellWalker {
   /// hole if the facet gave way to a `force` [N].
   void cross(LeafId leaf, const Facet& facet, double force = 0.0) noexcept;
   [[nodiscard]] const Punctures& punctures() const noexcept { return punctures_; }
+
+  /// False if this tick has crossed as many facets as one may.
+  [[nodiscard]] bool mayCross() const noexcept { return crossings_left_ > 0; }
 
   [[nodiscard]] std::uint8_t eventCount() const noexcept { return event_count_; }
   [[nodiscard]] const std::array<PortId, TickResult::kMaxEvents>& events() const noexcept {
@@ -103,6 +117,8 @@ class CellWalker {
     const Leaf& own = leaves_[leaf];
     return own.is_between && !(signs_.inside(own.ends[0]) && signs_.inside(own.ends[1]));
   }
+  /// Goes to the other side of `leaf` within the region.
+  void turn(LeafId leaf) noexcept;
   /// Changes the side of `leaf`, and of those between it and another.
   void flip(LeafId leaf, Signs& signs) const noexcept;
   /// S of the leaf at the point, and until where that keeps it out of reach.
@@ -122,7 +138,6 @@ class CellWalker {
   void updateHolding() noexcept;
   /// The leaves that change side together with `leaf` where they coincide at the point.
   void gather(LeafId leaf) noexcept;
-  void jump(const Vec3& x) noexcept;
   [[nodiscard]] SweepSurface surfaceOf(LeafId leaf) const noexcept;
   /// [m] the surface of `leaf`, to whose free side the point lies by `value` >= 0, is at least that far away.
   [[nodiscard]] double reachOf(LeafId leaf, double value) const noexcept;
@@ -139,6 +154,7 @@ class CellWalker {
     bool holds_surface = true;  ///< then there is nothing to meet beyond it
   };
   std::vector<Domain> domain_;
+  std::vector<bool> opens_;        ///< by leaf: part of the extent of a port
   std::vector<double> tolerance_;  ///< of |S| by leaf: 1e-9 of the feature size, in units of S
   Vec3 x_{0.0, 0.0, 0.0};
   Signs signs_;
@@ -177,6 +193,7 @@ class CellWalker {
   };
   std::vector<Measured> measured_;  ///< by leaf
   std::vector<Jet> jets_;           ///< by leaf
+  static constexpr double kTouch = 4.0;
   /// A slide takes so many straight moves: to above where it lands, and down.
   static constexpr std::uint64_t kStaysOfSlide = 2;
 

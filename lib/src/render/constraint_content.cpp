@@ -50,7 +50,8 @@ Vec3 ConstraintRenderer::contentForce(const HipState& hip) noexcept {
   if (contents_.hasLattice(region)) {
     const Vec3 push = latticeForce(region, x);
     // On a wall the tip goes along with the hand's motion beside it only.
-    force += contact_.count > 0 ? gradientByHand(push, contact_.walls()) : push;
+    force +=
+        solver_.contact().count > 0 ? gradientByHand(push, solver_.contact().held().walls()) : push;
   }
   if (contents_.holdNeedles()) {
     force +=

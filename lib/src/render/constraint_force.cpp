@@ -24,16 +24,16 @@ Vec3 ConstraintRenderer::shaded(const HeldWall& held, const Facet& facet,
 
 /// The Maxwell branch of the wall that is pressed most: stretched by how deep the hand presses now.
 void ConstraintRenderer::relax(double dt) noexcept {
-  const Contact& c = contact_;
+  const ContactSet& c = solver_.contact();
   if (c.count == 0) {
     branch_ = {};
     return;
   }
   std::size_t most = 0;
   for (std::size_t i = 1; i < c.count; ++i) {
-    if (c.held[i].multiplier > c.held[most].multiplier) most = i;
+    if (c.wall[i].held.multiplier > c.wall[most].held.multiplier) most = i;
   }
-  const Facet& facet = c.facet[c.index[most]];
+  const Facet& facet = c.wall[most].facet;
   const Material& wall = wallMaterial(facet);
   const bool has_branch = wall.maxwell.time > 0.0;
   const double depth = has_branch ? c.load() : 0.0;
@@ -49,47 +49,56 @@ void ConstraintRenderer::relax(double dt) noexcept {
   branch_.state.step(depth - before, dt, wall.maxwell.time);
   const double stiffness = wall.maxwell.stiffness.at(walker_.position());
   // It slackens rather than to pull the wall's own spring below zero.
-  if (stiffness > 0.0) branch_.state.keepAbove(-springOf(most).force(depth) / stiffness);
+  if (stiffness > 0.0) branch_.state.keepAbove(-springOf(c.wall[most]).force(depth) / stiffness);
 }
 
 /// [N/m] What the held wall is pressed against, by the place of the proxy: its material's, or that of the
 /// layers behind it.
-MaterialMap::Sample ConstraintRenderer::stiffnessOf(std::size_t held) noexcept {
-  const std::size_t plane = contact_.index[held];
-  const Facet& facet = contact_.facet[plane];
-  const Material& wall = wallMaterial(facet);
-  if (wall.composite.radius > 0.0 && facet.beyond != walker_.region()) {
-    return beneath_.stiffness(contact_.leaf[plane], walker_.position(), contact_.held[held], facet,
-                              wall);
+MaterialMap::Sample ConstraintRenderer::stiffnessOf(const WallContact& contact) noexcept {
+  const Material& wall = wallMaterial(contact.facet);
+  if (wall.composite.radius > 0.0 && contact.facet.beyond != walker_.region()) {
+    return beneath_.stiffness(contact.leaf, walker_.position(), contact.held, contact.facet, wall);
   }
   return wall.stiffness.sample(walker_.position());
 }
 
-Vec3 ConstraintRenderer::wallForce(const Vec3& velocity) noexcept {
-  const Contact& c = contact_;
-  Vec3 force(0.0);
-  lean_ = Vec3(0.0);
-  if (c.count == 0) return force;
+/// What the walls push with: the springs between the proxy and the hand. Whatever the walls were found to
+/// be, for one stiffness it is that times the way from the hand to the proxy.
+Vec3 ConstraintRenderer::wallForce(const HipState& hip) noexcept {
+  const ContactSet& c = solver_.contact();
   const Vec3& x = walker_.position();
+  const Vec3 apart = x - hip.position;
+  friction_.lean = Vec3(0.0);
+  if (apart == Vec3(0.0)) {
+    pressed_ = -1;
+    return Vec3(0.0);
+  }
+  if (c.count == 0) {
+    // On its way, out of budget: it is drawn on by the wall that it was held by.
+    if (pressed_ < 0) return Vec3(0.0);
+    return scene_->materials()[static_cast<std::size_t>(pressed_)].stiffness.at(x) * apart;
+  }
+  pressed_ = c.wall[0].facet.material;
   double total = 0.0;
   Vec3 outward(0.0);
-  for (const HeldWall& held : c.walls()) {
-    outward += held.multiplier * held.normal;
-    total += held.multiplier;
+  for (const WallContact& each : c.walls()) {
+    outward += each.held.multiplier * each.held.normal;
+    total += each.held.multiplier;
   }
   const Vec3 n = unitOr(outward, Vec3(0.0));
   const double lag = glm::dot(c.lag, c.lag) / total;
+  Vec3 force(0.0);
   double stiffness = 0.0;
   double damping = 0.0;
   // What parameters that vary add: the energy of the springs as they are, by the place of the proxy, is handed
   // on to the hand.
   Vec3 rise(0.0);  // [N]
   bool varies = false;
-  for (std::size_t i = 0; i < c.count; ++i) {
-    const Material& wall = wallMaterial(c.facet[c.index[i]]);
-    const HeldWall& held = c.held[i];
+  for (const WallContact& each : c.walls()) {
+    const Material& wall = wallMaterial(each.facet);
+    const HeldWall& held = each.held;
     const double multiplier = held.multiplier;
-    const MaterialMap::Sample linear = stiffnessOf(i);
+    const MaterialMap::Sample linear = stiffnessOf(each);
     const MaterialMap::Sample stiffening = wall.curve.stiffening.sample(x);
     const WallSpring spring{linear.value, stiffening.value, wall.curve.exponent,
                             wall.curve.reference};
@@ -100,8 +109,7 @@ Vec3 ConstraintRenderer::wallForce(const Vec3& velocity) noexcept {
       length = std::sqrt(std::max(0.0, multiplier * (glm::dot(held.normal, outward) + lag)));
     }
     const double secant = spring.secant(length);
-    const Vec3 normal =
-        wall.shading > 0.0 ? shaded(held, c.facet[c.index[i]], wall.shading) : held.normal;
+    const Vec3 normal = wall.shading > 0.0 ? shaded(held, each.facet, wall.shading) : held.normal;
     force += secant * (multiplier + textureHeight(wall.texture, x, multiplier)) * normal;
     stiffness += secant * multiplier;
     damping += wall.damping.at(x) * multiplier;
@@ -112,7 +120,8 @@ Vec3 ConstraintRenderer::wallForce(const Vec3& velocity) noexcept {
   }
   stiffness /= total;
   damping /= total;
-  force -= stiffness * c.lag + damping * velocity;
+  // What the walls do not hold of the displacement: by friction, or because the proxy is not there yet.
+  force -= stiffness * c.left + damping * hip.velocity;
   if (branch_.state.stretch() != 0.0) {
     const Maxwell& branch = scene_->materials()[static_cast<std::size_t>(branch_.material)].maxwell;
     const MaterialMap::Sample own = branch.stiffness.sample(x);
@@ -121,10 +130,10 @@ Vec3 ConstraintRenderer::wallForce(const Vec3& velocity) noexcept {
     rise += 0.5 * stretch * stretch * own.gradient;
     varies = varies || !branch.stiffness.isConstant();
   }
-  if (has_friction_) {
-    lean_ = rise / stiffness;
+  if (friction_.is_felt) {
+    friction_.lean = rise / stiffness;
   } else if (varies) {
-    force -= gradientByHand(rise, c.walls());
+    force -= gradientByHand(rise, c.held().walls());
   }
   // A wall never pulls the hand towards itself.
   const double along = glm::dot(force, n);

@@ -71,7 +71,7 @@ void LayersBeneath::look(const Vec3& x, const HeldWall& held, const Material& ma
   probe_.beginTick();
   for (int i = 0; i < kMostCrossings && found_.count < kMostStackLayers; ++i) {
     const RegionId before = probe_.region();
-    const CellWalker::Stop stop = probe_.move(end, {}, true);
+    const CellWalker::Stop stop = probe_.move(end, true);
     if (stop == CellWalker::Stop::kArrived || stop == CellWalker::Stop::kSpent) return;
     LeafId leaf = probe_.blockedBy();
     if (stop == CellWalker::Stop::kCrossed) {

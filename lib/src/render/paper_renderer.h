@@ -1,25 +1,31 @@
 #pragma once
-/// The `paper` renderer: Table I driven by the HIP, generalised from one container to a list of layers.
-/// Per layer, A is its field without the faces that ports are on, and B those faces:
+/// The `paper` renderer: the source paper's states and ports, driven by the HIP, with Algorithms I and II. Its
+/// Table I, for a container of a sphere A with an opening in a half-space B, is generalised to layers and
+/// ports thus (tools/docs/paper.md says why). Of every layer, A are the faces that are walls for a probe in
+/// the present state, and B those that a port leaves open for it.
 ///
-///   | A   | B   | action                                                                            |
-///   | in  | in  | came from (in, out) by an open port: ENTER. Entered: content. Else: A from outside |
-///   | in  | out | came from (in, in): EXIT                                                          |
-///   | out | in  | entered: A from within. Else nothing                                              |
-///   | out | out | nothing (and ENTER is kept: the leak that the constraint renderer does not have)   |
+/// | the state | A   | B   | action                                                                   |
+/// | a layer   | in  | in  | its content                                                              |
+/// | a layer   | in  | out | nothing: the way out was missed                                          |
+/// | a layer   | out | in  | A from within, reversed, and its content                                 |
+/// | a layer   | out | out | nothing, and the state is kept: the leak of the table                    |
+/// | another   | in  | in  | A of the layer from outside, where a later layer was not entered         |
 ///
-/// A port that lies on no face is an opening of A itself: crossing A there is ENTER or EXIT.
+/// A tick that takes the HIP from one side of a port's face to the other, on the layer's side of its other
+/// faces before and after, passes the port, if the state is the region before it and the port lets through.
 
+#include <array>
 #include <vector>
 
 #include "palpate/contact/paper_contact.h"
 #include "palpate/render/haptic_renderer.h"
+#include "paper_faces.h"
 
 namespace palpate {
 
 class PaperRenderer final : public HapticRenderer {
  public:
-  /// @throws Error (kInput) for ports with an opening force, which the paper does not have.
+  /// @throws Error (kInput) for ports with an opening force and for sheets, which the paper does not have.
   PaperRenderer(ScenePtr scene, const RendererSettings& settings);
 
  private:
@@ -29,37 +35,53 @@ class PaperRenderer final : public HapticRenderer {
     return crossings_;
   }
 
-  /// Table I's view of one layer.
-  struct Table {
-    FieldPtr wall;                   ///< A
-    std::vector<FieldPtr> openings;  ///< B of every port that is on a face
-    std::vector<PortId> on_face;     ///< ports of those faces
-    std::vector<PortId> on_wall;     ///< ports in A itself
-    PaperSurface surface;            ///< of A, from outside
-    bool in_wall = false;            ///< the row of the last tick
-    bool in_openings = false;
-    bool entered = false;
+  struct Layer {
+    PaperWall wall;
+    PaperSurface surface;  ///< of its walls, from outside
+    double beneath = 0.0;  ///< [m] so far below the contact point one is in the region behind it
   };
 
-  void observe(const Vec3& hip) noexcept;
-  [[nodiscard]] bool pass(std::size_t layer, bool inward, const std::vector<PortId>& ports,
-                          const Vec3& from, const Vec3& to, TickResult& out) noexcept;
-  void advance(std::size_t layer, const Vec3& hip, TickResult& out) noexcept;
-  [[nodiscard]] RegionId state() const noexcept;
+  void start(const HipState& hip) noexcept;
+
+  // Ports: paper_ports.cpp
+  void advance(const Vec3& hip, TickResult& out) noexcept;
+  [[nodiscard]] bool tryPort(PortId id, const Vec3& hip, TickResult& out) noexcept;
+  [[nodiscard]] bool tryAbsentWalls() noexcept;
+  /// Gives the leaves that changed since cell_ their present signs there, into turned_. False if none did.
+  [[nodiscard]] bool turn(std::span<const LeafId> leaves) noexcept;
+  [[nodiscard]] Vec3 crossingPoint(const Vec3& hip) const noexcept;
+  void enter(RegionId region) noexcept;
+  void openFaces() noexcept;
+
+  // Forces: paper_renderer.cpp
   void feel(const HipState& hip, TickResult& out) noexcept;
+  void feelContent(const HipState& hip, TickResult& out) noexcept;
   void touch(std::size_t layer, double side, const HipState& hip, TickResult& out) noexcept;
+  [[nodiscard]] RegionId regionBehind(std::size_t layer, double side) noexcept;
 
   ScenePtr scene_;
-  std::vector<Table> tables_;  ///< by layer, outermost first
-  Signs scratch_;
-  PassedPorts passed_;
-  std::array<PortCrossing, TickResult::kMaxEvents> crossings_{};
+  PaperParameters parameters_;
+  std::vector<Layer> layers_;                        ///< by layer, outermost first
+  std::vector<std::vector<RegionId>> free_ways_of_;  ///< by region: what no wall stands before
+
+  // The state.
   bool started_ = false;
+  RegionId state_ = kOutside;
+  PassedPorts passed_;
   Vec3 last_{0.0, 0.0, 0.0};  ///< [m] the HIP of the last tick
+  Signs last_cell_;           ///< where that is
   bool in_contact_ = false;
   std::size_t contact_layer_ = 0;
   double contact_side_ = 1.0;
   PaperContact contact_;
+
+  // Of this tick.
+  std::array<PortCrossing, TickResult::kMaxEvents> crossings_{};
+  Signs now_;     ///< the cell of the HIP
+  Signs cell_;    ///< the cell before it, and behind the ports passed since
+  Signs turned_;  ///< the same behind a port that is looked at
+  Signs scratch_;
+  LeafId turned_leaf_ = 0;  ///< one of those that differ in turned_
 };
 
 }  // namespace palpate

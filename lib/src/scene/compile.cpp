@@ -11,17 +11,6 @@ namespace {
 /// Where a layer names no wall (documented in tools/docs/scene.md).
 constexpr double kDefaultStiffness = 1000.0;  // [N/m]
 
-/// The globs of a list that is written "a, b".
-std::vector<std::string> globsIn(const std::string& list) {
-  std::vector<std::string> globs;
-  for (std::size_t at = 0; at < list.size();) {
-    const std::size_t end = std::min(list.find(", ", at), list.size());
-    globs.push_back(list.substr(at, end - at));
-    at = end + 2;
-  }
-  return globs;
-}
-
 std::vector<FieldPtr> layerFields(const SceneDescription& description, const Box3& needed,
                                   const Progress& progress,
                                   const std::vector<std::string>& left_out,
@@ -75,8 +64,9 @@ ScenePtr SceneCompiler::build() {
   scene_->passages_ = Passages(count(), std::move(walls), std::move(ports), makeSheets());
   scene_->start_ = start();
   scene_->touch_ = survey_.touch;
-  markReachable();
   scene_->keep_memory_ = description_.keep_memory;
+  scene_->paper_ = description_.paper;
+  markReachable();
   scene_->renderer_ = description_.renderer;
   scene_->device_ = description_.device;
   scene_->length_unit_ = description_.length_unit;

@@ -24,6 +24,17 @@ PortId SceneCompiler::portNamed(const std::string& name, const PortDescription& 
                 near.empty() ? "" : "did you mean " + quoted(near) + "?");
 }
 
+int SceneCompiler::sheetNamed(const PortDescription& asker) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < description_.sheets.size(); ++i) {
+    if (description_.sheets[i].name == asker.sheet) return static_cast<int>(i);
+    names.push_back(description_.sheets[i].name);
+  }
+  const std::string near = suggest(asker.sheet, names);
+  throw errorAt(asker.place, "scene.unknown_sheet", "there is no sheet " + quoted(asker.sheet),
+                near.empty() ? "" : "did you mean " + quoted(near) + "?");
+}
+
 std::vector<LeafId> SceneCompiler::facetLeaves(const PortDescription& given, const Port& port) {
   std::vector<LeafId> leaves = scene_->partition_.leavesOf(made(given.on).get());
   const auto bounds = [&](const std::vector<RegionId>& sides) {
@@ -53,8 +64,12 @@ std::vector<Port> SceneCompiler::makePorts() {
     const PortDescription& given = description_.ports[i];
     Port port;
     port.name = given.name;
-    port.from = matching(given.from, given.place);
-    port.to = matching(given.to, given.place);
+    if (given.sheet.empty()) {
+      port.from = matching(given.from, given.place);
+      port.to = matching(given.to, given.place);
+    } else {
+      port.sheet = sheetNamed(given);
+    }
     port.mask = mask_of_[i];
     port.direction = given.direction;
     port.opens_at = given.opens_at;
@@ -78,7 +93,15 @@ std::vector<Port> SceneCompiler::makePorts() {
     leave_out(port.to);
     const bool is_real = !port.from.empty() && !port.to.empty();
     if (given.on && is_real) port.on = facetLeaves(given, port);
-    for (const std::string& before : given.after) port.after.push_back(portNamed(before, given));
+    for (const AfterDescription& before : given.after) {
+      if (before.times < 1) {
+        throw errorAt(given.place, "scene.range",
+                      "port " + quoted(given.name) + " comes after " + quoted(before.port) +
+                          " was passed " + std::to_string(before.times) + " times",
+                      "`times` must be 1 or more");
+      }
+      port.after.emplace_back(portNamed(before.port, given), before.times);
+    }
     if (is_real) requireTouching(given, port);
     ports.push_back(std::move(port));
   }
@@ -150,7 +173,7 @@ void SceneCompiler::refuseCycles(const std::vector<Port>& ports) {
     if (marks[i] == Visit::kDone) return;
     if (marks[i] == Visit::kOpen) refuse(description_.ports[i]);
     marks[i] = Visit::kOpen;
-    for (const PortId before : ports[i].after) visit(before);
+    for (const PassedBefore& before : ports[i].after) visit(before.port);
     marks[i] = Visit::kDone;
   };
   for (std::size_t i = 0; i < ports.size(); ++i) visit(i);

@@ -1,14 +1,19 @@
 // SceneCompiler's look at what touches what, and at what can be reached.
 
 #include <algorithm>
+#include <random>
 #include <span>
 
+#include "palpate/scene/transitions.h"
+#include "reach.h"
 #include "scene_compiler.h"
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t kSurveyLines = 192;
+constexpr int kShots = 2000;   // at a port or sheet
+constexpr int kHalvings = 40;  // a shot shrinks to 1e-12 of itself
 
 /// The layer boxes to look at, unbounded ones cut to what the others span.
 std::vector<Box3> surveyBoxes(std::span<const FieldPtr> layers, const Box3& needed) {
@@ -30,6 +35,31 @@ std::vector<Box3> surveyBoxes(std::span<const FieldPtr> layers, const Box3& need
   return boxes;
 }
 
+std::pair<RegionId, RegionId> pairOf(RegionId a, RegionId b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// Straight ways between random points of a box.
+class Shots {
+ public:
+  explicit Shots(const Box3& box) : box_(box) {}
+  std::pair<Vec3, Vec3> next() {
+    const Vec3 from = anywhere();
+    return {from, anywhere()};
+  }
+
+ private:
+  Vec3 anywhere() {
+    const double x = unit_(random_);
+    const double y = unit_(random_);
+    return box_.lo + Vec3(x, y, unit_(random_)) * box_.size();
+  }
+
+  Box3 box_;
+  std::mt19937_64 random_{20240301};  // fixed: the same scene gives the same answer
+  std::uniform_real_distribution<double> unit_{0.0, 1.0};
+};
+
 }  // namespace
 
 void SceneCompiler::lookAround() {
@@ -44,43 +74,132 @@ RegionId SceneCompiler::start() {
   throw unknownRegion(description_.start_region, description_.start_place);
 }
 
-void SceneCompiler::markReachable() {
-  for (std::size_t i = 0; i < count(); ++i) {
-    Region& region = scene_->regions_[i];
-    region.reachable = false;
-    region.has_seed = survey_.has_seed[i];
-    region.seed = survey_.seed[i];
+/// The regions that the sheet was seen to lie in, within `part` if that is given: shoots through where it may be.
+std::vector<bool> SceneCompiler::regionsOfSheet(std::size_t sheet,
+                                                const FieldSourcePtr& part) const {
+  std::vector<bool> in(count(), false);
+  const SheetDescription& given = description_.sheets[sheet];
+  const Field& on = *made(given.on);
+  Box3 box = on.bounds();
+  for (const FieldSourcePtr& limit : {given.where, part}) {
+    if (limit) box = box.intersectedWith(made(limit)->bounds());
   }
-  scene_->regions_[scene_->start_].reachable = true;
-  std::vector<bool> passable(scene_->ports().size(), false);
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t a = 0; a < count(); ++a) {
-      if (!scene_->regions_[a].reachable) continue;
-      for (std::size_t b = 0; b < count(); ++b) {
-        if (a == b || !survey_.touches(static_cast<RegionId>(a), static_cast<RegionId>(b)))
-          continue;
-        changed |= spread(static_cast<RegionId>(a), static_cast<RegionId>(b), passable);
+  if (!box.isBounded()) box = box.intersectedWith(boxes_.front());
+  if (box.isEmpty() || !box.isBounded()) return in;
+  Shots shots(box.grownBy(1e-3 * glm::length(box.size())));
+  for (int shot = 0; shot < kShots; ++shot) {
+    auto [a, b] = shots.next();
+    const bool is_inside = on.value(a) < 0.0;
+    if ((on.value(b) < 0.0) == is_inside) continue;
+    for (int k = 0; k < kHalvings; ++k) {
+      const Vec3 middle = 0.5 * (a + b);
+      ((on.value(middle) < 0.0) == is_inside ? a : b) = middle;
+    }
+    if ((given.where && !(made(given.where)->value(a) < 0.0)) ||
+        (part && !(made(part)->value(a) < 0.0))) {
+      continue;
+    }
+    const RegionId region = scene_->regionAt(a);
+    if (region == scene_->regionAt(b)) in[region] = true;
+  }
+  return in;
+}
+
+std::set<std::pair<RegionId, RegionId>> SceneCompiler::findPort(PortId id) const {
+  const Port& port = scene_->ports()[id];
+  std::set<std::pair<RegionId, RegionId>> wanted;
+  Box3 box;
+  for (const std::vector<RegionId>* side : {&port.from, &port.to}) {
+    for (const RegionId region : *side) {
+      if (region != kOutside) box = box.unitedWith(layers_[region - 1U]->bounds());
+    }
+  }
+  for (const RegionId a : port.from) {
+    for (const RegionId b : port.to) {
+      if (a != b && survey_.touches(a, b)) wanted.insert(pairOf(a, b));
+    }
+  }
+  if (port.on.empty() && port.mask < 0) return wanted;  // all of the wall
+  const FieldSourcePtr& where = description_.ports[id].where;
+  if (where) box = box.intersectedWith(made(where)->bounds());
+  if (!box.isBounded()) box = box.intersectedWith(boxes_.front());
+  std::set<std::pair<RegionId, RegionId>> found;
+  if (box.isEmpty() || !box.isBounded()) return found;
+  const Partition& partition = scene_->partition_;
+  Shots shots(box.grownBy(0.02 * glm::length(box.size())));
+  Signs here(partition.leaves().size());
+  Signs there = here;
+  for (int shot = 0; shot < kShots && found.size() < wanted.size(); ++shot) {
+    auto [a, b] = shots.next();
+    partition.signsAt(a, here);
+    partition.signsAt(b, there);
+    const RegionId from = partition.regionOf(here);
+    if (partition.regionOf(there) == from) continue;
+    Signs between = here;
+    for (int k = 0; k < kHalvings; ++k) {
+      const Vec3 middle = 0.5 * (a + b);
+      partition.signsAt(middle, between);
+      const bool is_before = partition.regionOf(between) == from;
+      (is_before ? a : b) = middle;
+      (is_before ? here : there) = between;
+    }
+    const auto pair = pairOf(from, partition.regionOf(there));
+    if (!wanted.contains(pair)) continue;
+    if (port.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(port.mask), there)) {
+      continue;
+    }
+    const bool is_on =
+        port.on.empty() || std::any_of(port.on.begin(), port.on.end(), [&](LeafId leaf) {
+          return here.inside(leaf) != there.inside(leaf);
+        });
+    if (is_on) found.insert(pair);
+  }
+  return found;
+}
+
+void SceneCompiler::markReachable() {
+  ReachTable table;
+  table.regions = count();
+  table.start = scene_->start_;
+  table.keeps_memory = scene_->keep_memory_;
+  std::vector<std::set<std::pair<RegionId, RegionId>>> found;
+  for (std::size_t id = 0; id < scene_->ports().size(); ++id) {
+    table.after.push_back(scene_->ports()[id].after);
+    found.push_back(findPort(static_cast<PortId>(id)));
+  }
+  for (const Transition& t : transitions(*scene_)) {
+    if (!t.port) {
+      table.ways.push_back({t.from, t.to, -1, false, false});
+      continue;
+    }
+    // The regions touch, but whether they do so where the port is open was not seen.
+    const bool is_doubtful = !found[*t.port].contains(pairOf(t.from, t.to));
+    table.ways.push_back(
+        {t.from, t.to, *t.port, scene_->ports()[*t.port].countsInward(t.from, t.to), is_doubtful});
+  }
+  for (std::size_t id = 0; id < scene_->ports().size(); ++id) {
+    const Port& port = scene_->ports()[id];
+    if (port.sheet < 0) continue;
+    const std::vector<bool> lies_in =
+        regionsOfSheet(static_cast<std::size_t>(port.sheet), description_.ports[id].where);
+    for (std::size_t i = 0; i < count(); ++i) {
+      const auto region = static_cast<RegionId>(i);
+      const bool is_doubtful = !lies_in[i];  // a small opening escapes the look
+      for (const bool inward : {true, false}) {
+        if (port.direction == (inward ? PortDirection::kOut : PortDirection::kIn)) continue;
+        table.ways.push_back({region, region, static_cast<int>(id), inward, is_doubtful});
       }
     }
   }
-}
-
-bool SceneCompiler::spread(RegionId a, RegionId b, std::vector<bool>& passable) {
-  bool open = scene_->passages_.wall(a, b).absent;
-  bool changed = false;
-  for (const PortId id : scene_->passages_.portsOf(a)) {
-    const Port& port = scene_->ports()[id];
-    if (!port.leads(a, b) || !std::all_of(port.after.begin(), port.after.end(),
-                                          [&](PortId before) { return passable[before]; })) {
-      continue;
-    }
-    open = true;
-    if (!passable[id]) changed = passable[id] = true;
+  const Reached reached = reach(table);
+  for (std::size_t i = 0; i < count(); ++i) {
+    Region& region = scene_->regions_[i];
+    region.reach = reached.regions[i];
+    region.reachable = region.reach != Reach::kNo;
+    region.has_seed = survey_.has_seed[i];
+    region.seed = survey_.seed[i];
   }
-  Region& region = scene_->regions_[b];
-  if (open && !region.reachable) changed = region.reachable = true;
-  return changed;
+  scene_->reach_of_port_ = reached.ports;
 }
 
 }  // namespace palpate

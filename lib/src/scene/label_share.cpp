@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "palpate/core/stop.h"
 #include "palpate/fields/csg.h"
 
 namespace palpate {
@@ -156,6 +157,7 @@ SharedLabels shareLabels(const std::vector<LabelField>& layers) {
   std::vector<std::vector<FieldPtr>> others(count);
   std::vector<std::vector<FieldPtr>> faces(count);
   for (std::size_t i = 0; i < count; ++i) {
+    pollStop();
     for (std::size_t j = i + 1; j < count; ++j) {
       if (haveCommon(layers[i].labels, layers[j].labels)) continue;
       // Labels whose boxes stay apart cannot meet.

@@ -1,6 +1,7 @@
 #pragma once
 /// Lists of what a scene gives names to.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,10 @@
 #include "scene/messages.h"
 
 namespace palpate {
+
+/// Layers, walls, ports and sheets of a scene, of each: what is kept of pairs of regions grows with
+/// their square.
+inline constexpr std::size_t kMostItems = 4096;
 
 template <typename Items>
 std::vector<std::string_view> namesOf(const Items& items) {

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "globs.h"
+#include "palpate/core/stop.h"
 #include "palpate/scene/scene_file.h"
+#include "reach.h"
 
 namespace palpate {
 namespace {
@@ -109,8 +112,8 @@ class Needs {
   [[nodiscard]] bool isAbsent(std::size_t a, std::size_t b) const {
     bool absent = scene_.layers[std::max(a, b) - 1].wall.absent;
     for (const WallOverride& wall : scene_.walls) {
-      const bool forth = matchesGlob(wall.a, names_[a]) && matchesGlob(wall.b, names_[b]);
-      const bool back = matchesGlob(wall.a, names_[b]) && matchesGlob(wall.b, names_[a]);
+      const bool forth = matchesAnyOf(wall.a, names_[a]) && matchesAnyOf(wall.b, names_[b]);
+      const bool back = matchesAnyOf(wall.a, names_[b]) && matchesAnyOf(wall.b, names_[a]);
       if (!forth && !back) continue;
       if (wall.felt_from.empty() || matchesGlob(wall.felt_from, names_[a])) {
         absent = wall.wall.absent;
@@ -119,42 +122,73 @@ class Needs {
     return absent;
   }
 
-  [[nodiscard]] bool leads(const PortDescription& port, std::size_t a, std::size_t b) const {
-    const auto joins = [&](const std::string& from, const std::string& to) {
-      return matchesGlob(from, names_[a]) && matchesGlob(to, names_[b]);
-    };
-    return (port.direction != PortDirection::kOut && joins(port.from, port.to)) ||
-           (port.direction != PortDirection::kIn && joins(port.to, port.from));
-  }
-
-  /// Which regions the names of ports and walls let the probe into, whatever touches what; ports before others
-  /// are taken to be passed.
+  /// Which regions the names of ports and walls let the probe into, whatever touches what.
   void follow() {
-    entered_.assign(names_.size(), false);
-    std::vector<std::size_t> next;
+    const auto matches = [&](const std::string& globs) {
+      std::vector<bool> out;
+      for (const std::string& name : names_) out.push_back(matchesAnyOf(globs, name));
+      return out;
+    };
+    ReachTable table;
+    table.regions = names_.size();
+    table.keeps_memory = scene_.keep_memory;
     for (std::size_t i = 0; i < names_.size(); ++i) {
-      if (names_[i] != scene_.start_region) continue;
-      entered_[i] = true;
-      next.push_back(i);
-    }
-    while (!next.empty()) {
-      const std::size_t a = next.back();
-      next.pop_back();
-      for (std::size_t b = 0; b < names_.size(); ++b) {
-        if (entered_[b] || a == b) continue;
-        const bool is_open = isAbsent(a, b) || std::any_of(scene_.ports.begin(), scene_.ports.end(),
-                                                           [&](const PortDescription& port) {
-                                                             return leads(port, a, b);
-                                                           });
-        if (!is_open) continue;
-        entered_[b] = true;
-        next.push_back(b);
+      if (names_[i] == scene_.start_region) table.start = static_cast<RegionId>(i);
+      for (std::size_t j = 0; j < names_.size(); ++j) {
+        if (i != j && isAbsent(i, j)) addWay(table, i, j, -1, false);
       }
     }
+    for (std::size_t id = 0; id < scene_.ports.size(); ++id) {
+      const PortDescription& port = scene_.ports[id];
+      table.after.push_back(before(port));
+      if (!port.sheet.empty()) {
+        for (std::size_t i = 0; i < names_.size(); ++i) {
+          for (const bool inward : {true, false}) addWay(table, i, i, static_cast<int>(id), inward);
+        }
+        continue;
+      }
+      const std::vector<bool> from = matches(port.from);
+      const std::vector<bool> to = matches(port.to);
+      for (std::size_t a = 0; a < names_.size(); ++a) {
+        for (std::size_t b = 0; b < names_.size(); ++b) {
+          const bool forth = from[a] && to[b];
+          const bool back = to[a] && from[b];
+          if (a == b || !((forth && port.direction != PortDirection::kOut) ||
+                          (back && port.direction != PortDirection::kIn))) {
+            continue;
+          }
+          addWay(table, a, b, static_cast<int>(id),
+                 forth && (a < b || !back) && port.direction != PortDirection::kOut);
+        }
+      }
+    }
+    const Reached reached = reach(table);
+    entered_.clear();
+    // What is undecided may be: only what is certain is left out.
+    for (const Reach answer : reached.regions) entered_.push_back(answer != Reach::kNo);
+  }
+
+  static void addWay(ReachTable& table, std::size_t from, std::size_t to, int port, bool inward) {
+    table.ways.push_back(
+        {static_cast<RegionId>(from), static_cast<RegionId>(to), port, inward, false});
+  }
+
+  /// Names that there are none of are refused later.
+  [[nodiscard]] std::vector<PassedBefore> before(const PortDescription& port) const {
+    std::vector<PassedBefore> out;
+    for (const AfterDescription& given : port.after) {
+      for (std::size_t i = 0; i < scene_.ports.size(); ++i) {
+        if (scene_.ports[i].name == given.port) {
+          out.emplace_back(static_cast<PortId>(i), std::max(given.times, 1));
+        }
+      }
+    }
+    return out;
   }
 
   /// Empty if it may be touched.
   std::string whyUntouchable(std::size_t region) {
+    pollStop();
     // What it is felt through may be that thick.
     const Box3 box = boxOf(region)->grownBy(felt_).intersectedWith(needed_);
     for (std::size_t other = 1; other < names_.size(); ++other) {

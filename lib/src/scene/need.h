@@ -15,7 +15,8 @@ namespace palpate {
 /// By layer: why it need not be made; empty if it is needed. Only layers that cost work are ever left out, and
 /// only where it is certain that the probe cannot feel the difference:
 /// - its box lies beyond the device's workspace; or
-/// - no way of ports and absent walls, by their names, leads from the start into it, no region that one
+/// - no way of ports and absent walls, by their names and in the order that `after` asks for, leads from the
+///   start into it (undecided: one may), no region that one
 ///   leads into comes near its box, and neither does the space outside: that is out of reach as well, or
 ///   another such layer lies all around the box.
 /// May make the layers that lie around others.

@@ -1,6 +1,7 @@
 // RegionReader's ports, and its sheets.
 
 #include <algorithm>
+#include <cmath>
 
 #include "scene/messages.h"
 #include "scene/named_items.h"
@@ -10,6 +11,8 @@
 
 namespace palpate {
 namespace {
+
+constexpr int kMostTimes = 1000;
 
 /// [N] at which the port opens, either way, anywhere.
 double mostForceOf(const PortDescription& port) {
@@ -28,16 +31,20 @@ double RegionReader::readForce(MapReader& reader, std::string_view key, double f
 
 void RegionReader::readPorts(const Node& ports) {
   const Document& document = loader_.document();
-  const auto& nodes = readList(document, ports, "'ports'", 1, 0);
+  const auto& nodes = readList(document, ports, "'ports'", 1, kMostItems);
   for (const Node& node : nodes) {
     MapReader reader(loader_, node, "a port");
     PortDescription port;
     port.name = readName(reader, "port");
     port.place = document.place(node.find("name")->mark);
     refuseSecond("port", port, scene_.ports);
-    const Between between = readBetween(reader);
-    port.from = between.a;
-    port.to = between.b;
+    if (const Node* sheet = reader.optional("sheet")) {
+      port.sheet = readSheetName(reader, *sheet);
+    } else {
+      const Between between = readBetween(reader);
+      port.from = between.a;
+      port.to = between.b;
+    }
     if (const Node* on = reader.optional("on")) {
       port.on = fields_.readName(*on, "'on'");
       port.on_name = on->text;
@@ -99,29 +106,74 @@ void RegionReader::readPuncture(MapReader& reader, PortDescription& port) const 
   }
 }
 
+/// Of the sheet that a port is in.
+std::string RegionReader::readSheetName(MapReader& reader, const Node& sheet) const {
+  const Document& document = loader_.document();
+  for (const std::string_view key : {"between", "on"}) {
+    if (!reader.has(key)) continue;
+    throw reader.errorAt(key, "scene.one_of",
+                         inQuotes(key) + " and 'sheet' do not go together in a port",
+                         "a port in a sheet has the same region on both sides; say where in the "
+                         "sheet it is with 'where'");
+  }
+  std::string name = readText(document, sheet, "'sheet'");
+  const std::vector<std::string_view> names = namesOf(scene_.sheets);
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    throw document.error(sheet.mark, "scene.unknown_sheet", "there is no sheet " + inQuotes(name),
+                         suggestOrList(name, names, "sheets: "));
+  }
+  return name;
+}
+
+/// A name, or {port, times}.
+AfterDescription RegionReader::readBefore(const Node& item) const {
+  const Document& document = loader_.document();
+  if (item.kind != Node::Kind::kMap) return {readText(document, item, "a port")};
+  MapReader reader(loader_, item, "an item of 'after'");
+  AfterDescription before(reader.requireText("port"));
+  if (reader.optional("times") != nullptr) {
+    const double times = reader.numberOr("times", 1.0);
+    if (times != std::floor(times) || times < 1.0 || times > kMostTimes) {
+      throw reader.errorAt(
+          "times", "scene.range",
+          "'times' must be a whole number from 1 to " + std::to_string(kMostTimes));
+    }
+    before.times = static_cast<int>(times);
+  }
+  reader.finish();
+  return before;
+}
+
 void RegionReader::readAfter(const Node& after, PortDescription& port) const {
   const Document& document = loader_.document();
   const std::vector<std::string_view> names = namesOf(scene_.ports);
   for (const Node& item : readList(document, after, "'after'", 1, 0)) {
-    const std::string name = readText(document, item, "a port");
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
-      throw document.error(item.mark, "scene.unknown_port", "there is no port " + inQuotes(name),
-                           suggestOrList(name, names, "ports: "));
+    AfterDescription before = readBefore(item);
+    const Node* named = item.kind == Node::Kind::kMap ? item.find("port") : &item;
+    if (std::find(names.begin(), names.end(), before.port) == names.end()) {
+      throw document.error(named->mark, "scene.unknown_port",
+                           "there is no port " + inQuotes(before.port),
+                           suggestOrList(before.port, names, "ports: "));
     }
-    if (name == port.name) {
-      throw document.error(item.mark, "scene.cycle",
-                           "the port " + inQuotes(name) + " cannot come after itself");
+    if (before.port == port.name) {
+      throw document.error(named->mark, "scene.cycle",
+                           "the port " + inQuotes(before.port) + " cannot come after itself");
     }
-    if (std::find(port.after.begin(), port.after.end(), name) != port.after.end()) {
-      throw document.error(item.mark, "scene.duplicate_name", inQuotes(name) + " is listed twice");
+    const bool is_listed =
+        std::any_of(port.after.begin(), port.after.end(),
+                    [&](const AfterDescription& other) { return other.port == before.port; });
+    if (is_listed) {
+      throw document.error(
+          named->mark, "scene.duplicate_name", inQuotes(before.port) + " is listed twice",
+          "to ask for more than one passing: {port: " + before.port + ", times: 2}");
     }
-    port.after.push_back(name);
+    port.after.push_back(std::move(before));
   }
 }
 
 void RegionReader::readSheets(const Node& sheets) {
   const Document& document = loader_.document();
-  for (const Node& node : readList(document, sheets, "'sheets'", 1, 0)) {
+  for (const Node& node : readList(document, sheets, "'sheets'", 1, kMostItems)) {
     MapReader reader(loader_, node, "a sheet");
     SheetDescription sheet;
     sheet.name = readName(reader, "sheet");

@@ -126,7 +126,7 @@ void RegionReader::readSurface(MapReader& reader, LayerDescription& layer) const
 
 void RegionReader::readLayers(const Node& layers) {
   const Document& document = loader_.document();
-  for (const Node& node : readList(document, layers, "'layers'", 1, 0)) {
+  for (const Node& node : readList(document, layers, "'layers'", 1, kMostItems)) {
     MapReader reader(loader_, node, "a layer");
     LayerDescription layer;
     layer.name = readName(reader, "layer");
@@ -201,7 +201,7 @@ RegionReader::Between RegionReader::readBetween(MapReader& reader) const {
 
 void RegionReader::readWalls(const Node& walls) {
   const Document& document = loader_.document();
-  for (const Node& node : readList(document, walls, "'walls'", 1, 0)) {
+  for (const Node& node : readList(document, walls, "'walls'", 1, kMostItems)) {
     MapReader reader(loader_, node, "a wall");
     const Between between = readBetween(reader);
     WallOverride wall{between.a,

@@ -36,6 +36,8 @@ class RegionReader {
   static void requireOpeningForce(const MapReader& reader, std::string_view key,
                                   const PortDescription& port);
   void readPuncture(MapReader& reader, PortDescription& port) const;
+  [[nodiscard]] std::string readSheetName(MapReader& reader, const Node& sheet) const;
+  [[nodiscard]] AfterDescription readBefore(const Node& item) const;
   void readAfter(const Node& after, PortDescription& port) const;
   [[nodiscard]] double readForce(MapReader& reader, std::string_view key, double fallback) const;
 

@@ -1,9 +1,12 @@
 #pragma once
 /// How a description becomes a Scene; a step for each kind of thing.
 
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "globs.h"
 #include "label_share.h"
 #include "palpate/scene/scene.h"
 #include "palpate/scene/scene_file.h"
@@ -39,6 +42,7 @@ class SceneCompiler {
   std::vector<Sheet> makeSheets();
   std::vector<LeafId> facetLeaves(const PortDescription& given, const Port& port);
   PortId portNamed(const std::string& name, const PortDescription& asker);
+  int sheetNamed(const PortDescription& asker);
   void requireTouching(const PortDescription& given, const Port& port);
   static void refuse(const PortDescription& given);
   void refuseCycles(const std::vector<Port>& ports);
@@ -46,9 +50,12 @@ class SceneCompiler {
   // compile_reach.cpp
   void lookAround();
   RegionId start();
-  /// Follows absent walls and ports from the start; a port counts once those before it can be passed.
+  [[nodiscard]] std::vector<bool> regionsOfSheet(std::size_t sheet,
+                                                 const FieldSourcePtr& part) const;
+  /// Pairs of regions, the lower one first, that were seen to touch where the port is.
+  [[nodiscard]] std::set<std::pair<RegionId, RegionId>> findPort(PortId id) const;
+  /// Follows absent walls and ports from the start.
   void markReachable();
-  bool spread(RegionId a, RegionId b, std::vector<bool>& passable);
 
   [[nodiscard]] bool isLeftOut(RegionId region) const {
     return region != kOutside && !left_out_[region - 1U].empty();

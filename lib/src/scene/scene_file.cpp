@@ -8,6 +8,7 @@
 #include "scene/grids_reader.h"
 #include "scene/material_reader.h"
 #include "scene/messages.h"
+#include "scene/paper_reader.h"
 #include "scene/region_reader.h"
 #include "scene/unit_table.h"
 #include "scene/values.h"
@@ -18,7 +19,7 @@ namespace {
 // Every key of a scene's top level. The keys of what lies below are where they are read.
 constexpr std::string_view kSections[] = {
     "palpate", "length", "renderer", "description", "fields", "images", "materials", "layers",
-    "walls",   "ports",  "sheets",   "start",       "memory", "device", "grids"};
+    "walls",   "ports",  "sheets",   "start",       "memory", "device", "grids",     "paper"};
 
 }  // namespace
 
@@ -134,10 +135,11 @@ SceneDescription FileLoader::read() {
   RegionReader regions(*this, registry_, fields_, scene);
   if (const Node* layers = top.optional("layers")) regions.readLayers(*layers);
   if (const Node* walls = top.optional("walls")) regions.readWalls(*walls);
-  if (const Node* ports = top.optional("ports")) regions.readPorts(*ports);
   if (const Node* sheets = top.optional("sheets")) regions.readSheets(*sheets);
+  if (const Node* ports = top.optional("ports")) regions.readPorts(*ports);
   if (const Node* start = top.optional("start")) regions.readStart(*start);
   if (const Node* device = top.optional("device")) scene.device = readDevice(*this, *device);
+  if (const Node* paper = top.optional("paper")) scene.paper = readPaper(*this, *paper);
   if (const Node* grids = top.optional("grids")) readGrids(*this, registry_, *grids, scene);
   return scene;
 }

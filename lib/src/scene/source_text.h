@@ -9,6 +9,8 @@
 namespace palpate {
 
 inline constexpr std::size_t kLargestDocument = std::size_t{16} << 20U;  ///< [bytes]
+/// Values, lists and maps: a byte of a file may come to a hundred as a tree.
+inline constexpr std::size_t kMostNodes = 250'000;
 inline constexpr int kDeepestNesting = 64;  ///< of lists and maps; more is a mistake or an attack
 
 /// `text` without byte order mark and with "\n" line ends; fills document.lines.

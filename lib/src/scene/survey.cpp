@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "palpate/core/stop.h"
+
 namespace palpate {
 namespace {
 
@@ -146,6 +148,7 @@ class Surveyor {
   }
 
   void walk(const Vec3& from, const Vec3& to) {
+    pollStop();  // of hundreds of labels a line takes milliseconds, and there are thousands
     line_.begin(from, to);
     Vec3 last = from;
     RegionId region = line_.at(from);

@@ -174,9 +174,11 @@ const std::vector<Node>& readList(const Document& document, const Node& node,
     throw wrongKind(document, node, what, "a list", std::move(hint));
   }
   if (node.items.size() < least || (most != 0 && node.items.size() > most)) {
+    // A limit in the thousands guards against abuse: who gave too few need not read of it.
+    const bool is_open = most == 0 || (most >= 1000 && node.items.size() < least);
     const std::string wanted = least == most ? std::to_string(least)
-                               : most == 0   ? std::to_string(least) + " or more"
-                                           : std::to_string(least) + " to " + std::to_string(most);
+                               : is_open     ? std::to_string(least) + " or more"
+                                         : std::to_string(least) + " to " + std::to_string(most);
     throw document.error(
         node.mark, "scene.length",
         what + " wants a list of " + wanted + ", not of " + std::to_string(node.items.size()));

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <unordered_set>
 
+#include "palpate/core/stop.h"
 #include "scene/messages.h"
 #include "scene/source_text.h"
 
@@ -212,6 +213,12 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   void add(Node node) {
+    if (++nodes_ % 1024 == 0) pollStop();
+    if (nodes_ > kMostNodes) {
+      throw document_.error(node.mark, "document.size",
+                            "more than " + std::to_string(kMostNodes) + " values, lists and maps",
+                            "a scene names its meshes, grids and scans; it does not hold them");
+    }
     if (frames_.empty()) {
       document_.root = std::move(node);
       return;
@@ -244,6 +251,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   const std::string& text_;
   Document& document_;
+  std::size_t nodes_ = 0;
   bool has_document_ = false;
   std::vector<Frame> frames_;
 };

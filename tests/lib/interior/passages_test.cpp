@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "palpate/core/error.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/interior/port_machine.h"
 
@@ -10,81 +11,163 @@ namespace {
 
 using Kind = Facet::Kind;
 
-std::vector<PortId> idsOf(const PassedPorts& passed) {
-  std::vector<PortId> ids;
-  for (std::size_t i = 0; i < passed.size(); ++i) ids.push_back(passed[i]);
-  return ids;
-}
 using Ids = std::vector<PortId>;
 
-TEST(PassedPorts, PushOnTheWayInPopOnTheWayBackClearOutside) {
-  PassedPorts passed;
-  passed.pass(7, 0, 1, false);
-  passed.pass(8, 1, 2, false);
-  passed.pass(9, 2, 3, false);
-  EXPECT_EQ(idsOf(passed), (Ids{7, 8, 9}));
-  EXPECT_TRUE(passed.contains(8));
-  EXPECT_FALSE(passed.contains(6));
-  passed.pass(9, 3, 2, false);
-  EXPECT_EQ(idsOf(passed), (Ids{7, 8})) << "back where the last passage came from";
-  passed.pass(5, 2, 1, false);
-  EXPECT_EQ(idsOf(passed), (Ids{7})) << "by another port too";
-  passed.pass(8, 1, 2, false);
-  passed.pass(6, 2, 0, false);
-  EXPECT_EQ(passed.size(), 0U) << "outside clears all";
+Port portOf(Ids from, Ids to) {
+  Port out;
+  out.name = "p";
+  out.from = std::move(from);
+  out.to = std::move(to);
+  return out;
 }
 
-TEST(PassedPorts, AWayRoundIsNoWayBack) {
-  PassedPorts passed;
-  passed.pass(1, 0, 1, false);
-  passed.pass(2, 1, 2, false);
-  passed.pass(3, 2, 3, false);
-  passed.pass(4, 3, 1, false);  // 1 was left by passage 2, which is not the last
-  EXPECT_EQ(idsOf(passed), (Ids{1, 2, 3, 4}));
+/// Chambers 1, 2, 3 in a ring behind a door from outside: port 0 is the door, 1, 2, 3 lead on (1 to 2, 2 to 3,
+/// 3 to 1), 4 leads back from 2 to 1. All are counted.
+class Ring : public testing::Test {
+ protected:
+  Ring() {
+    std::vector<Port> ports{portOf({0}, {1}), portOf({1}, {2}), portOf({2}, {3}), portOf({3}, {1}),
+                            portOf({2}, {1})};
+    ports[4].direction = PortDirection::kIn;
+    Port last = portOf({3}, {0});
+    for (PortId id = 0; id < 5; ++id) last.after.emplace_back(id);
+    ports.push_back(last);
+    passages_ = Passages(4, std::vector<Wall>(16), std::move(ports));
+  }
+
+  void pass(PortId port, RegionId from, RegionId to) {
+    passages_.pass(passed_, port, from, to, keep_);
+  }
+  void arrive(RegionId from, RegionId to) { passages_.arrive(passed_, from, to, keep_); }
+  [[nodiscard]] std::vector<std::int64_t> counts() const {
+    std::vector<std::int64_t> out;
+    for (PortId id = 0; id < 5; ++id) {
+      out.push_back(passed_.times(static_cast<std::size_t>(passages_.ports()[id].slot)));
+    }
+    return out;
+  }
+  using Counts = std::vector<std::int64_t>;
+
+  Passages passages_;
+  PassedPorts passed_;
+  bool keep_ = false;
+};
+
+TEST_F(Ring, CrossingBackTakesTheCrossingBackAndOutsideClearsAll) {
+  pass(0, 0, 1);
+  pass(1, 1, 2);
+  EXPECT_EQ(counts(), (Counts{1, 1, 0, 0, 0}));
+  pass(1, 2, 1);
+  EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0}));
+  pass(1, 1, 2);
+  pass(0, 1, 0);
+  EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0}));
+  EXPECT_TRUE(passed_ == PassedPorts());
 }
 
-TEST(PassedPorts, AbsentWallsClearOnlyOutside) {
-  PassedPorts passed;
-  passed.pass(1, 0, 1, false);
-  passed.arrive(2, false);
-  EXPECT_EQ(passed.size(), 1U);
-  passed.arrive(kOutside, true);
-  EXPECT_EQ(passed.size(), 1U);
-  passed.arrive(kOutside, false);
-  EXPECT_EQ(passed.size(), 0U);
+TEST_F(Ring, ManyLapsForgetNothing) {
+  pass(0, 0, 1);
+  for (int lap = 0; lap < 1000; ++lap) {
+    pass(1, 1, 2);
+    pass(2, 2, 3);
+    pass(3, 3, 1);
+  }
+  EXPECT_EQ(counts(), (Counts{1, 1000, 1000, 1000, 0}));
+  for (int lap = 0; lap < 1000; ++lap) {
+    pass(3, 1, 3);
+    pass(2, 3, 2);
+    pass(1, 2, 1);
+  }
+  EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0})) << "unwound";
 }
 
-TEST(PassedPorts, KeepNeverForgetsNorRepeats) {
-  PassedPorts passed;
+TEST_F(Ring, APortThatLeadsBackIsPassedAsAnyOther) {
+  pass(0, 0, 1);
+  pass(1, 1, 2);
+  pass(4, 2, 1);
+  EXPECT_EQ(counts(), (Counts{1, 1, 0, 0, 1})) << "another port takes nothing back";
+  pass(1, 1, 2);
+  pass(4, 2, 1);
+  EXPECT_EQ(counts(), (Counts{1, 2, 0, 0, 2}));
+}
+
+TEST_F(Ring, PassedTheOtherWayFirstCountsThatWay) {
+  pass(3, 1, 3);
+  pass(3, 1, 3);
+  EXPECT_EQ(counts(), (Counts{0, 0, 0, 2, 0}));
+  pass(3, 3, 1);
+  EXPECT_EQ(counts(), (Counts{0, 0, 0, 1, 0}));
+}
+
+TEST_F(Ring, AnAbsentWallBackTakesThePassageOff) {
+  // 1 and 2 touch by port 1 in one half and by an absent wall in the other.
+  pass(0, 0, 1);
+  pass(1, 1, 2);
+  pass(2, 2, 3);
+  arrive(3, 1);
+  EXPECT_EQ(counts(), (Counts{1, 1, 1, 0, 0})) << "round by where none was passed is not back";
+  pass(2, 3, 2);
+  arrive(2, 1);
+  EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0}));
+  arrive(2, 1);
+  EXPECT_EQ(counts(), (Counts{1, 0, 0, 0, 0})) << "none is left to take back";
+  arrive(1, kOutside);
+  EXPECT_EQ(counts(), (Counts{0, 0, 0, 0, 0})) << "outside clears all, by whatever way";
+}
+
+TEST_F(Ring, KeepCountsEveryPassingAndTakesNoneBack) {
+  keep_ = true;
   for (int round = 0; round < 100; ++round) {
-    passed.pass(1, 0, 1, true);
-    passed.pass(1, 1, 0, true);
-    passed.arrive(kOutside, true);
+    pass(0, 0, 1);
+    pass(1, 1, 2);
+    pass(1, 2, 1);
+    arrive(2, 1);
+    pass(0, 1, 0);
+    arrive(1, kOutside);
   }
-  EXPECT_EQ(idsOf(passed), (Ids{1}));
+  EXPECT_EQ(counts(), (Counts{200, 200, 0, 0, 0}));
 }
 
-TEST(PassedPorts, ForgetsTheOldestWhenFull) {
+TEST_F(Ring, AfterHoldsFromTheNumberAskedForOn) {
+  Port often = portOf({1}, {2});
+  often.after = {{1, 3}};
+  for (int lap = 0; lap < 5; ++lap) {
+    EXPECT_EQ(passages_.isDue(often, passed_), lap >= 3) << lap;
+    pass(1, 1, 2);
+    pass(2, 2, 3);
+    pass(3, 3, 1);
+  }
+  EXPECT_TRUE(passages_.isDue(portOf({1}, {2}), passed_));
+  EXPECT_FALSE(passages_.isDue(passages_.ports()[5], passed_)) << "4 was not passed";
+}
+
+TEST(PassedPorts, APortThatJoinsARegionToItselfByGlobsIsComeBackThrough) {
+  // between: ["*", "*"]: both ways are in, and still the second is back.
+  std::vector<Port> ports{portOf({0, 1, 2}, {0, 1, 2}), portOf({1}, {2})};
+  ports[1].after = {0};
+  const Passages passages(3, std::vector<Wall>(9), ports);
   PassedPorts passed;
-  const std::size_t more = PassedPorts::kCapacity + 3;
-  for (std::size_t i = 0; i < more; ++i) {
-    passed.pass(static_cast<PortId>(i), static_cast<RegionId>(i), static_cast<RegionId>(i + 1),
-                false);
-  }
-  EXPECT_EQ(passed.size(), PassedPorts::kCapacity);
-  EXPECT_EQ(passed[0], 3);
-  EXPECT_EQ(passed[passed.size() - 1], more - 1);
+  passages.pass(passed, 0, 1, 2, false);
+  EXPECT_TRUE(passages.isDue(passages.ports()[1], passed));
+  passages.pass(passed, 0, 2, 1, false);
+  EXPECT_FALSE(passages.isDue(passages.ports()[1], passed));
 }
 
-TEST(PassedPorts, EqualByWhatIsOnTheStackOnly) {
-  PassedPorts a;
-  PassedPorts b;
-  a.pass(4, 0, 1, false);
-  a.pass(4, 1, 0, false);
-  EXPECT_TRUE(a == b) << "what was popped does not count";
-  a.pass(4, 0, 1, false);
-  b.pass(4, 2, 1, false);
-  EXPECT_FALSE(a == b);
+TEST(PassedPorts, MoreThanThereIsRoomForAreRefused) {
+  for (const std::size_t more : {0, 1}) {
+    std::vector<Port> ports;
+    Port last = portOf({0}, {1});
+    for (std::size_t i = 0; i < PassedPorts::kCapacity + more; ++i) {
+      ports.push_back(portOf({0}, {1}));
+      last.after.emplace_back(static_cast<PortId>(i));
+    }
+    ports.push_back(last);
+    if (more == 0) {
+      EXPECT_NO_THROW(Passages(2, std::vector<Wall>(4), ports));
+    } else {
+      EXPECT_THROW(Passages(2, std::vector<Wall>(4), ports), Error);
+    }
+  }
 }
 
 TEST(Port, LeadsByItsDirection) {
@@ -129,13 +212,7 @@ class Facets : public testing::Test {
     return passages_.facet(partition_, region, signs, crossed, passed, here);
   }
 
-  static Port port(Ids from, Ids to) {
-    Port out;
-    out.name = "p";
-    out.from = std::move(from);
-    out.to = std::move(to);
-    return out;
-  }
+  static Port port(Ids from, Ids to) { return portOf(std::move(from), std::move(to)); }
 
   const Vec3 outside_{0.3, 0, 0};
   const Vec3 shell_{0.15, 0, 0};
@@ -193,12 +270,14 @@ TEST_F(Facets, PortsByDirectionFaceMaskAndOrder) {
 
   Port later = both;
   later.after = {1, 2};
+  const Port before = port({1}, {2});
   PassedPorts passed;
-  EXPECT_EQ(look(outside_, {0}, {later}, passed).kind, Kind::kClosed);
-  passed.pass(2, 0, 1, true);
-  EXPECT_EQ(look(outside_, {0}, {later}, passed).kind, Kind::kClosed) << "one of two";
-  passed.pass(1, 0, 1, true);
-  EXPECT_EQ(look(outside_, {0}, {later}, passed).kind, Kind::kOpen);
+  EXPECT_EQ(look(outside_, {0}, {later, before, before}, passed).kind, Kind::kClosed);
+  passages_.pass(passed, 2, 1, 2, true);
+  EXPECT_EQ(look(outside_, {0}, {later, before, before}, passed).kind, Kind::kClosed)
+      << "one of two";
+  passages_.pass(passed, 1, 1, 2, true);
+  EXPECT_EQ(look(outside_, {0}, {later, before, before}, passed).kind, Kind::kOpen);
 }
 
 TEST_F(Facets, OpeningForces) {

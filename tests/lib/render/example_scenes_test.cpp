@@ -84,7 +84,8 @@ TEST(ExampleScenes, TheSpongesMazesAreApart) {
     ASSERT_EQ(hand.region(), "jelly");
     if (tick.contact) ++contacts;
     ASSERT_GT(foam->value(tick.proxy), -1e-9) << i;
-    const bool in_block = block->value(tick.proxy) < 0.0;
+    // Well within: from a face of the block the proxy may go around outside in one tick.
+    const bool in_block = block->value(tick.proxy) < -0.5e-3;
     const bool on_side = side->value(tick.proxy) > 0.0;
     if (in_block) ++ticks_in_block;
     if (in_block && was_in_block && on_side != last_side) ++changes;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,28 +13,23 @@
 
 namespace palpate::test {
 
-/// The ports passed, as the scene file's page says it.
+/// The ports passed, as the scene file's page says it: how often one way, less the other.
 class PassedNames {
  public:
   [[nodiscard]] bool has(const std::string& port) const {
-    return std::any_of(stack_.begin(), stack_.end(), [&](const auto& e) { return e.port == port; });
+    const auto found = net_.find(port);
+    return found != net_.end() && found->second != 0;
   }
   void pass(const std::string& port, int from, int to) {
     if (to == 0) {
-      stack_.clear();
-    } else if (!stack_.empty() && stack_.back().from == to) {
-      stack_.pop_back();
+      net_.clear();
     } else {
-      stack_.push_back({port, from});
+      net_[port] += from < to ? 1 : -1;
     }
   }
 
  private:
-  struct Entry {
-    std::string port;
-    int from;
-  };
-  std::vector<Entry> stack_;
+  std::map<std::string, int> net_;
 };
 
 struct Figure {

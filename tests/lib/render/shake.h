@@ -111,7 +111,7 @@ inline void shake(const Bag& bag) {
     } else {
       ASSERT_LE(glm::length(out.force), glm::length(spring) * (1.0 + 1e-6) + 1e-6);
     }
-    if (glm::length(out.force - spring) > 1e-6 * glm::length(spring) + 1e-6) {
+    if (!out.settled) {
       ++unsettled;
     } else if (out.region == kOutside) {
       ASSERT_LE(glm::length(out.force), bag.most_outside);

@@ -1,5 +1,4 @@
-// What the state remembers and what content does at its openings: passages taken off by absent walls, drag
-// behind a shut valve, more crossings in a tick than a hand makes, and where a scene starts.
+// What content does at its openings, what a tick makes of many crossings, and where a scene starts.
 
 #include <gtest/gtest.h>
 
@@ -51,18 +50,6 @@ ports: [{name: mouth, between: [outside, liquid], where: gate}]
     largest = std::max(largest, drag);
   }
   EXPECT_NEAR(largest, 1.0, 1e-3) << "beside the mouth the drag is there in full";
-}
-
-TEST(Memory, AnAbsentWallBackTakesThePassageOff) {
-  // a and b touch by a door in one half and by an absent wall in the other; after it c opens from a.
-  PassedPorts passed;
-  passed.pass(1, kOutside, 1, false);
-  passed.pass(2, 1, 2, false);
-  passed.pass(3, 2, 3, false);
-  passed.arrive(1, false);
-  EXPECT_TRUE(passed.contains(1));
-  EXPECT_FALSE(passed.contains(2));
-  EXPECT_FALSE(passed.contains(3));
 }
 
 TEST(Events, NoneOfManyCrossingsIsLost) {

@@ -84,6 +84,26 @@ TEST_F(Need, APortOrAnAbsentWallIntoItMakesIt) {
   EXPECT_EQ(leftOut(*compile(one_way)), "marrow");
 }
 
+TEST_F(Need, APortThatNamesSeveralRegionsMakesThem) {
+  for (const char* way : {"ports: [{name: p, between: [[nail, outside], bone]}]\n",
+                          "walls: [{between: [[nail, outside], bone], wall: absent}]\n"}) {
+    EXPECT_EQ(leftOut(*compile(read(bone(way)))), "") << way;
+  }
+}
+
+TEST_F(Need, WhatOnlyPortsThatAreNeverDueLeadIntoIsNotMade) {
+  // A hall and, after the way back out of it, the bone: outside nothing is passed any more.
+  const auto rooms = [&](const std::string& memory) {
+    return read(memory +
+                bone("  - {name: hall, inside: {sphere: {center: [100, 0, 0], radius: 9}}}\n"
+                     "ports:\n"
+                     "  - {name: in, between: [outside, hall]}\n"
+                     "  - {name: p, between: [outside, bone], after: [in]}\n"));
+  };
+  EXPECT_EQ(leftOut(*compile(rooms(""))), "marrow");
+  EXPECT_EQ(leftOut(*compile(rooms("memory: keep\n"))), "");
+}
+
 TEST_F(Need, WhatSticksOutIsMade) {
   for (const double x : {19.0, 21.0, 100.0}) {
     made_ = 0;

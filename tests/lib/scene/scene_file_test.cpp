@@ -312,7 +312,7 @@ TEST(SceneFile, WallsPortsAndTheRest) {
   EXPECT_TRUE(scene.walls[1].wall.absent);
   EXPECT_EQ(scene.walls[1].felt_from, "");
   ASSERT_EQ(scene.ports.size(), 2U);
-  EXPECT_EQ(scene.ports[0].after, std::vector<std::string>{"first"});
+  EXPECT_EQ(scene.ports[0].after, std::vector<AfterDescription>{"first"});
   EXPECT_EQ(scene.ports[0].direction, PortDirection::kOut);
   EXPECT_EQ(scene.ports[0].opens_at, 0.5);
   EXPECT_EQ(scene.ports[1].from, "out*");

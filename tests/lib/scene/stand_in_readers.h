@@ -24,6 +24,8 @@ inline SceneRegistry standInReaders() {
     (void)reader.numberOr("half_width", 6.0);
     (void)reader.textOr("sampler", "");
     (void)reader.textOr("sign", "");
+    (void)reader.textOr("edges", "");
+    (void)reader.numberOr("sharp", 0.0);
     (void)reader.lengthOr("shell", 1.0);
     (void)reader.numberOr("smooth", 30.0);
     return later("mesh " + file, reader.lengthOr("voxel", 1.0));

@@ -87,6 +87,10 @@ const std::vector<Probe>& probes() {
       {"sheet", "sheets:\n  - {name: s, on: " + ball + ", @}\n"},
       {"port", layers + "ports:\n  - {name: p, between: [a, outside], @}\n"},
       {"device", "device: {scale: 1, @}\n"},
+      {"paper", "paper: {alpha: 1, @}\n"},
+      {"passed_before", layers +
+                            "ports:\n  - {name: q, between: [a, outside]}\n  - {name: p, between: "
+                            "[a, outside], after: [{port: q, @}]}\n"},
       {"grids", layers + "grids: {tolerance: 1, @}\n"},
       {"hole", layers +
                    "ports:\n  - {name: p, between: [a, outside], opens_at: 1 N, hole: {radius: "

@@ -1,5 +1,6 @@
 #include "check/file_check.h"
 #include "loaded_scene.h"
+#include "map_coverage.h"
 #include "palpate/vdb/scan_surface.h"
 
 namespace palpate::tools {
@@ -25,6 +26,10 @@ FileCheck checkSceneFile(const std::string& file, Console& console) {
   const ScenePtr scene = loaded.compile();
   std::vector<Finding> findings;
   for (const vdb::GridRecord& grid : loaded.grids()) findLoss(grid, findings);
+  for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
+    findings.push_back({gap.misses() ? "scene.map_misses" : "scene.map_partial",
+                        gapText(gap, scene->lengthUnit(), scene->metresPerUnit())});
+  }
   const std::size_t layers = scene->regions().size() - 1;
   FileCheck out;
   out.json = {{"file", file},

@@ -51,6 +51,8 @@ void addBaking(CLI::App& app, BakeOptions& o) {
   addScan(app, "What a scan or a mesh leaves open", o.scan, true);
   g = "From an image, or a grid of densities or labels";
   add(app, g, "--above", "VALUE", o.above, "the surface around all voxels greater than this");
+  addFlag(app, g, "--distances", o.distances,
+          "the voxels are signed distances, negative inside: the surface where they are zero");
   add(app, g, "--keep", "largest|all", o.keep, "--above: which pieces (default largest)")
       ->check(CLI::IsMember({"largest", "all"}));
   addFlag(app, g, "--fill", o.fill, "--above: close enclosed cavities");

@@ -36,11 +36,30 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1.0, 100000.0));
   addFlag(app, g, "--realtime", o.realtime,
           "keep to the clock (default: as fast as the machine goes)");
+  addList(
+      app, g, "--set", "MATERIAL.KEY=VALUE@TIME", o.set,
+      "change a content while the hand moves, may be repeated: syrup.viscosity=9@0.5 (N.s/m, s); "
+      "also flow, lattice.force, cutting");
+  g = "The paper's renderer (default: as the scene's `paper` says)";
+  add(app, g, "--epsilon", "LENGTH", o.epsilon,
+      "so near to the surface a contact point is on it (default 1 um)");
+  add(app, g, "--halvings", "N", o.halvings,
+      "of the way in which the surface is searched, at most (default 48)")
+      ->check(CLI::Range(1, 1000));
+  add(app, g, "--alpha", "SHARE", o.alpha, "of the step back onto the surface (default 1)")
+      ->check(CLI::Range(0.0, 1e6));
+  add(app, g, "--alpha-form", "FORM", o.alpha_form,
+      "printed, newton, or by_field: newton where the field is not a distance (default)")
+      ->check(CLI::IsMember({"by_field", "printed", "newton"}));
+  add(app, g, "--interior", "HOW", o.interior,
+      "at a wall from within: wall and content together (default), or the wall alone")
+      ->check(CLI::IsMember({"together", "wall"}));
   g = "Limits of the force, in this order (default: none)";
   add(app, g, "--max-force", "FORCE", o.max_force,
       "shorten longer forces to this, direction kept: 3 (N), 500mN");
   add(app, g, "--slew", "FORCE/s", o.slew,
-      "let the force grow by no more than this a second: 100 (N/s); it may drop at once");
+      "let the force grow, in any direction, by no more than this a second: 100 (N/s); it may drop "
+      "at once");
   add(app, g, "--ramp", "TIME", o.ramp,
       "start without force, and reach all of it after this: "
       "0.2 (s), 200ms");
@@ -49,6 +68,24 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   add(app, g, "--image", "FILE.png", o.image,
       "draw the scene cut open, with the path and the forces");
   add(app, g, "--plot", "FILE.svg", o.plot, "draw the force over the depth of the hand");
+  add(app, g, "--write-scene", "FILE.yaml", o.write_scene,
+      "a mesh, image or grid: the scene that it is touched as");
+  g = "A mesh, an image or a grid instead of a scene (without a motion: pressed on from above)";
+  add(app, g, "--above", "VALUE", o.above,
+      "image, grid of densities: the surface around what is greater");
+  add(app, g, "--labels", "NAME,...", o.labels,
+      "image: a layer for each of these labels, values or names")
+      ->expected(1)
+      ->delimiter(',')
+      ->take_all()
+      ->allow_extra_args(false);
+  add(app, g, "--names", "FILE", o.names, "image: table of names of its labels");
+  add(app, g, "--layer", "NAME", o.layer, "grid: this one of a file (default: every level set)");
+  add(app, g, "--voxel", "LENGTH", o.voxel,
+      "mesh, image: of the grid that is made, in mm or with a unit (default: as in a scene)");
+  add(app, g, "--units", "UNIT", o.units,
+      "mesh, or grid that does not say: what one unit is (default: mm; glTF and GLB are metres)");
+  addScan(app, "What an image or a mesh leaves open", o.scan, true);
 }
 
 void defineQuery(CLI::App& app, Invocation& invocation) {
@@ -95,18 +132,20 @@ Verb touchVerb() {
       "touch",
       "Move a probe through a scene and feel it",
       "palpate touch data/scenes/container.yaml --insert 0,0,60 0,0,0 --back --trace trace.csv",
-      "palpate touch SCENE MOTION [OPTIONS]",
+      "palpate touch SCENE|MESH|IMAGE|GRID.vdb MOTION [OPTIONS]",
       "Prints the regions in the order in which they were entered, with the depth below the "
       "first\n"
       "surface met and the peak force in each; the ports passed; how long a tick takes; and what "
       "each\n"
-      "grid cost. A trace has the header\n"
+      "grid cost. A press or tap that meets nothing ends with 1. A trace has the header\n"
       "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,"
       "tick_ns\n"
       "and the same input gives the same trace, bit for bit except tick_ns.",
       {"--stroke", "--insert"},
       defineTouch,
-      [](const Invocation& i) { need(!chosen<TouchOptions>(i).scene.empty(), "SCENE"); },
+      [](const Invocation& i) {
+        need(!chosen<TouchOptions>(i).scene.empty(), "SCENE, MESH, IMAGE or GRID");
+      },
       true};
 }
 

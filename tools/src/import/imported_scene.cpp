@@ -22,7 +22,17 @@ constexpr double kBytesPerMapVoxel = 2.0 * (10.0 * 10.0 * 10.0) / (8.0 * 8.0 * 8
 // With two cores.
 constexpr double kSecondsPerVoxel = 5e-6;
 
-std::string quoted(const std::string& text) { return Json(text).dump(); }
+/// Scene files are UTF-8. @throws Error (kUsage): what a file is called need not be.
+std::string quoted(const std::string& text) {
+  try {
+    return Json(text).dump();
+  } catch (const Json::exception&) {
+    const std::string shown = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+    throw Error(ErrorKind::kUsage,
+                {"scene.not_utf8", shown + " is not UTF-8, as a scene file must be",
+                 "rename the file or folder"});
+  }
+}
 
 /// As a key or a plain name, quoted only where it must be.
 std::string word(const std::string& text) {

@@ -195,8 +195,11 @@ Boundary classify(const Scene& scene, const Signs& here, const Signs& there) {
     if (here.inside(leaf) != there.inside(leaf)) crossed.push_back(leaf);
   }
   PassedPorts all;  // a port that waits for others is shown as a port all the same
-  for (std::size_t i = 0; i < scene.ports().size(); ++i) {
-    all.pass(static_cast<PortId>(i), line.a, line.b, true);
+  for (const Port& port : scene.ports()) {
+    for (const PassedBefore& before : port.after) {
+      const auto slot = static_cast<std::size_t>(scene.ports()[before.port].slot);
+      while (all.times(slot) < before.times) all.pass(slot, true, true);
+    }
   }
   const Vec3 anywhere(0.0);  // an opening force that varies is one all the same
   const Facet inward = scene.passages().facet(partition, line.a, *second, crossed, all, anywhere);

@@ -11,6 +11,7 @@
 #include "bake/columns.h"
 #include "bake/curved.h"
 #include "bake/edges.h"
+#include "bake/empty_solid.h"
 #include "bake/facet.h"
 #include "bake/leaf_distance.h"
 #include "bake/lost_plates.h"
@@ -67,9 +68,10 @@ void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& colum
                          placeText(columns.doubt()->place, plan.voxel) + " " + columns.doubt()->why,
                      hint, mesh.source);
   }
+  CrossingSearch crossings(solid);
   for (const Columns::Pocket& pocket : columns.pockets()) {
     // A space whose way out is narrower than a voxel is enclosed as well, and rightly outside.
-    const std::optional<Vec3> crossing = findCrossing(solid, pocket.box.grownBy(1.5));
+    const std::optional<Vec3> crossing = crossings.in(pocket.box.grownBy(1.5));
     if (!crossing) continue;
     throw inputError("mesh.ambiguous",
                      "the mesh passes through itself at " + placeText(*crossing, plan.voxel) +
@@ -147,13 +149,25 @@ class MeshBaker {
     if (columns_) fillInside();
     report(progress_, "bake mesh", 1.0);
     if (options_.mesh_sign == MeshSign::kUnsigned) return finishUnsigned(grid_, options_);
-    const LevelSet result = finishGrid(grid_, plan_, options_);
-    if (!columns_) return result;
-    const BakedMesh baked{solid_, bins, faces_itself_, whole ? *whole : solid_, *columns_};
-    return withLostParts(result, refuseLostPlates(baked, result, plan_, options_));
+    if (!columns_) return finishGrid(grid_, plan_, options_);
+    const Solid& told = whole ? *whole : solid_;
+    const LevelSet result = finished(told);
+    const BakedMesh baked{solid_, bins, faces_itself_, told, *columns_};
+    std::string lost = refuseLostPlates(baked, result, plan_, options_);
+    if (!solid_.dropped.empty()) lost = solid_.dropped + (lost.empty() ? "" : "; ") + lost;
+    return withLostParts(result, lost);
   }
 
  private:
+  [[nodiscard]] LevelSet finished(const Solid& solid) const {
+    try {
+      return finishGrid(grid_, plan_, options_);
+    } catch (const Error& error) {
+      if (error.problem().code != "bake.empty") throw;
+      throw emptySolidError(mesh_, solid, plan_);
+    }
+  }
+
   /// Lists by place, below, have a limit that only parts far from each other reach before the memory's.
   void refuseTooLong() const {
     constexpr int kMost = 1 << 24;

@@ -67,6 +67,15 @@ BakePlan checkOptions(const BakeOptions& options) {
     throw inputError("unit.unknown", "unknown length unit '" + options.length_unit + "'",
                      "use m, cm, mm or um");
   }
+  // OpenVDB takes a transform whose determinant is below 3e-15 for singular.
+  constexpr double kLeastVoxel = 1.5e-5;  // [units]
+  if (options.voxel_size < kLeastVoxel * *metres) {
+    throw inputError("bake.voxel_size",
+                     "the voxel size is " + inMillimetres(options.voxel_size) + "; a grid in " +
+                         options.length_unit + " holds voxels of " +
+                         inMillimetres(kLeastVoxel * *metres) + " and more",
+                     "check the length unit; or write the grid in a smaller unit");
+  }
   BakePlan plan;
   plan.voxel = options.voxel_size;
   plan.half_width = options.half_width;

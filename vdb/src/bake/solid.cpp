@@ -14,6 +14,10 @@ namespace {
 
 /// A lid may have this share of the closed part's area: beyond, the form does not tell where a wall was.
 constexpr double kMostLid = 0.125;
+/// [voxels] An open part that is no larger than this, or no wider than a quarter of a voxel on the mean, is a
+/// speck: closed by whatever lid, a grid would hardly show it.
+constexpr double kSpeck = 4.0;
+constexpr double kSliver = 0.25;
 /// A vertex farther out than this many times the size of what all others fill is a slip.
 constexpr double kFar = 1000.0;
 
@@ -110,7 +114,8 @@ Solid cleaned(const Mesh& mesh, double voxel, std::vector<Side>& sides) {
   };
   require_some();
   sides = sortedSides(solid.triangles);
-  if (weldRims(solid, sides)) {
+  for (const double reach : weldReaches(solid)) {
+    if (!weldRims(solid, sides, reach)) continue;
     require_some();
     sides = sortedSides(solid.triangles);
   }
@@ -147,7 +152,7 @@ void findParts(Solid& solid) {
     std::uint32_t& part = name[root(t[0])];
     if (part == kNone) {
       part = static_cast<std::uint32_t>(solid.parts.size());
-      solid.parts.push_back({0.0, 0.0, 0.0, solid.vertices[t[0]]});
+      solid.parts.push_back({0.0, 0.0, 0.0, solid.vertices[t[0]], {}});
     }
     solid.part_of.push_back(part);
     SolidPart& here = solid.parts[part];
@@ -156,16 +161,73 @@ void findParts(Solid& solid) {
     const Vec3 w = solid.vertices[t[2]] - here.place;
     here.volume += glm::dot(u, glm::cross(v, w)) / 6.0;
     here.area += areaOf(solid.vertices, t);
+    for (const std::uint32_t vertex : t) here.box.include(solid.vertices[vertex]);
   }
+}
+
+/// [voxels^2] Of each part, its lids: triangles from `first_lid` on.
+std::vector<double> lidsOf(const Solid& solid, std::size_t first_lid) {
+  std::vector<double> lids(solid.parts.size(), 0.0);
+  for (std::size_t t = first_lid; t < solid.triangles.size(); ++t) {
+    lids[solid.part_of[t]] += areaOf(solid.vertices, solid.triangles[t]);
+  }
+  return lids;
+}
+
+/// Whether an open part is none that a grid could show.
+bool isSpeck(const SolidPart& part, double lid) {
+  if (lid <= kMostLid * part.area) return false;
+  const double length = glm::length(part.box.size());
+  return length <= kSpeck || part.area - lid <= kSliver * length;
+}
+
+/// Takes the triangles of open specks away, with their lids, unless nothing else is there. `first_lid` and
+/// `holes` are those of what is left.
+void dropSpecks(Solid& solid, std::vector<Hole>& holes, std::size_t& first_lid,
+                std::vector<bool>& turned, double voxel) {
+  const std::vector<double> lids = lidsOf(solid, first_lid);
+  std::vector<bool> is_speck(solid.parts.size());
+  std::size_t count = 0;
+  const SolidPart* largest = nullptr;
+  const auto size = [](const SolidPart& part) { return glm::length(part.box.size()); };
+  for (std::size_t part = 0; part < lids.size(); ++part) {
+    is_speck[part] = isSpeck(solid.parts[part], lids[part]);
+    if (!is_speck[part]) continue;
+    ++count;
+    if (largest == nullptr || size(solid.parts[part]) > size(*largest)) {
+      largest = &solid.parts[part];
+    }
+  }
+  if (count == 0 || count == solid.parts.size()) return;
+  solid.dropped = std::to_string(count) + (count == 1 ? " open fragment, " : " open fragments, ") +
+                  (count == 1 ? "" : "the largest ") + inMillimetres(size(*largest) * voxel) +
+                  " across near " + placeText(largest->box.center(), voxel);
+  std::size_t lid = first_lid;
+  std::erase_if(holes, [&](const Hole& hole) {
+    const bool is_gone = is_speck[solid.part_of[lid]];
+    lid += hole.lid.size();
+    return is_gone;
+  });
+  std::size_t kept = 0;
+  std::size_t kept_first_lid = 0;
+  for (std::size_t t = 0; t < solid.triangles.size(); ++t) {
+    if (is_speck[solid.part_of[t]]) continue;
+    if (t < first_lid) {
+      turned[kept] = turned[t];
+      ++kept_first_lid;
+    }
+    solid.triangles[kept++] = solid.triangles[t];
+  }
+  solid.triangles.resize(kept);
+  first_lid = kept_first_lid;
+  solid.parts.clear();
+  findParts(solid);
 }
 
 /// Lids must be small beside what they close. @throws Error naming the largest hole.
 void requireSmallLids(const Mesh& mesh, const Solid& solid, const std::vector<Hole>& holes,
                       std::size_t first_lid, double voxel) {
-  std::vector<double> lids(solid.parts.size(), 0.0);
-  for (std::size_t t = first_lid; t < solid.triangles.size(); ++t) {
-    lids[solid.part_of[t]] += areaOf(solid.vertices, solid.triangles[t]);
-  }
+  const std::vector<double> lids = lidsOf(solid, first_lid);
   for (std::size_t part = 0; part < lids.size(); ++part) {
     if (lids[part] <= kMostLid * solid.parts[part].area) continue;
     const Hole* worst = nullptr;
@@ -216,14 +278,15 @@ Solid makeSolid(const Mesh& mesh, double voxel, MeshSign sign) {
     return solid;
   }
   solid.was_closed = false;
-  const std::vector<bool> turned = turnAlike(solid.vertices, sides, solid.triangles);
+  std::vector<bool> turned = turnAlike(solid.vertices, sides, solid.triangles);
   sides = sortedSides(solid.triangles);
-  const std::vector<Hole> holes = closeHoles(solid.vertices, sides);
-  const std::size_t first_lid = solid.triangles.size();
+  std::vector<Hole> holes = closeHoles(solid.vertices, sides);
+  std::size_t first_lid = solid.triangles.size();
   for (const Hole& hole : holes) {
     solid.triangles.insert(solid.triangles.end(), hole.lid.begin(), hole.lid.end());
   }
   findParts(solid);
+  if (sign == MeshSign::kVote) dropSpecks(solid, holes, first_lid, turned, voxel);
   for (std::size_t t = 0; t < first_lid; ++t) {
     SolidPart& part = solid.parts[solid.part_of[t]];
     if (turned[t]) part.minority += areaOf(solid.vertices, solid.triangles[t]) / part.area;

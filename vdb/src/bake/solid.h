@@ -17,6 +17,7 @@ struct SolidPart {
   double area = 0.0;          ///< [voxels^2]
   double minority = 0.0;      ///< share of the area that was turned to agree with the rest
   Vec3 place{0.0, 0.0, 0.0};  ///< [voxels] a vertex
+  Box3 box;                   ///< [voxels]
 };
 
 /// Along every edge as many triangles run one way as the other, so that the winding number is whole
@@ -27,8 +28,10 @@ struct Solid {
   std::vector<std::uint32_t> part_of;  ///< of each triangle
   std::vector<SolidPart> parts;
   bool was_closed = true;  ///< as it came: two triangles on each edge, turned alike
+  std::string dropped;     ///< "3 open fragments, ..."; empty if there were none
 };
 
+/// Unless `sign` says what closes them, parts that are open and too small for the voxels to hold are dropped.
 /// @throws Error (kInput): no faces, index out of range, vertex not finite or far from all others,
 /// open by more than its form tells (mesh.open; only if `sign` is kVote); each with a place.
 [[nodiscard]] Solid makeSolid(const Mesh& mesh, double voxel, MeshSign sign);

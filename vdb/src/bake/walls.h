@@ -8,18 +8,30 @@
 
 #include "bake/columns.h"
 #include "bake/solid.h"
+#include "mesh/box_tree.h"
 #include "palpate/core/progress.h"
 
 namespace palpate::vdb {
 
 /// Without the parts of triangles that have the solid, or nothing, on both sides: where parts overlap,
-/// and walls that stand in the solid. A triangle that is partly such is cut into pieces of a
-/// tenth of a voxel along the border. Vertices are added; triangles that are whole keep their order.
+/// and walls that stand in the solid. A triangle that is partly such is cut along the lines where others cross it
+/// (of a solid that a flood filled, to a tenth of a voxel). Vertices are added; triangles that are whole keep
+/// their order.
 /// @throws Error (kCancelled).
 void dropIdleWalls(Solid& solid, const Columns& columns, const Progress& progress);
 
-/// A place [voxels] within `box` where two triangles of one part, without a common vertex, meet; exact,
-/// and touching counts (mesh/triangles_meet.h).
-[[nodiscard]] std::optional<Vec3> findCrossing(const Solid& solid, const Box3& box);
+/// Where the walls of a solid, which must outlive it, pass through each other.
+class CrossingSearch {
+ public:
+  explicit CrossingSearch(const Solid& solid);
+
+  /// A place [voxels] near `box` where two triangles of one part, without a common vertex, meet; exact,
+  /// and touching counts (mesh/triangles_meet.h).
+  [[nodiscard]] std::optional<Vec3> in(const Box3& box);
+
+ private:
+  const Solid& solid_;
+  std::optional<BoxTree> tree_;  ///< made when it is first needed
+};
 
 }  // namespace palpate::vdb

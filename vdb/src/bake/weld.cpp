@@ -1,15 +1,18 @@
 #include "bake/weld.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
-#include <unordered_map>
 #include <utility>
 
 namespace palpate::vdb {
 namespace {
 
-/// Of the mesh's size: what rounding to floats, or to seven digits of a text, moves a vertex by.
-constexpr double kRounding = 1e-6;
+/// Of the mesh's size. Copies of a corner that are each off by up to 1e-5 along each axis are up to 3.5e-5 apart.
+constexpr std::array<double, 3> kReaches{1e-6, 1e-5, 4e-5};
+/// [voxels] What is joined is not felt.
+constexpr double kLargestReach = 0.1;
 constexpr std::uint32_t kNone = 0xffffffffU;
 
 std::size_t hashOf(const Vec3& p) noexcept {
@@ -51,41 +54,84 @@ void weld(const Mesh& mesh, double voxel, Solid& solid) {
   }
 }
 
-bool weldRims(Solid& solid, const std::vector<Side>& sides) {
+namespace {
+
+Box3 boundsOf(const Solid& solid) {
+  Box3 bounds;
+  for (const Triangle& t : solid.triangles) {
+    for (const std::uint32_t v : t) bounds.include(solid.vertices[v]);
+  }
+  return bounds;
+}
+
+}  // namespace
+
+std::vector<double> weldReaches(const Solid& solid) {
+  const double size = glm::length(boundsOf(solid).size());
+  std::vector<double> reaches;
+  for (const double share : kReaches) {
+    const double reach = std::min(share * size, kLargestReach);
+    if (reaches.empty() || reach > reaches.back()) reaches.push_back(reach);
+  }
+  return reaches;
+}
+
+bool weldRims(Solid& solid, const std::vector<Side>& sides, double reach) {
   std::vector<bool> on_rim(solid.vertices.size(), false);
   bool any = false;
   forEachEdge(sides, [&](std::size_t begin, std::size_t end) {
     if (end - begin == 2) return;
     on_rim[sides[begin].low] = on_rim[sides[begin].high] = any = true;
   });
-  if (!any) return false;
-  Box3 bounds;
-  for (const Triangle& t : solid.triangles) {
-    for (const std::uint32_t v : t) bounds.include(solid.vertices[v]);
-  }
-  const double reach = kRounding * glm::length(bounds.size());
-  // Cells as large as the reach: what is near is in the same one or in one beside it.
-  const auto cell_of = [&](const Vec3& p) { return glm::floor((p - bounds.lo) / reach); };
-  std::unordered_map<std::size_t, std::vector<std::uint32_t>> cells;
+  if (!any || !(reach > 0.0)) return false;
+  const Box3 bounds = boundsOf(solid);
+  // Cells much larger than the reach, so that few vertices are near a border and look into a second one.
+  const double size = 16.0 * reach;
+  struct Cell {
+    Vec3 place;
+    std::size_t hash;
+  };
+  const auto cell_at = [&](const Vec3& place) { return Cell{place, hashOf(place)}; };
+  std::size_t slots = 16;
+  while (slots < 2 * solid.vertices.size()) slots *= 2;
+  std::vector<std::uint32_t> table(slots, kNone);                 // first vertex of a cell
+  std::vector<std::uint32_t> next(solid.vertices.size(), kNone);  // of the same cell
+  std::vector<Vec3> cell_of(solid.vertices.size());
+  /// The slot of a cell: with its first vertex, or empty.
+  const auto slot_of = [&](const Cell& cell) {
+    std::size_t slot = cell.hash & (slots - 1);
+    while (table[slot] != kNone && cell_of[table[slot]] != cell.place)
+      slot = (slot + 1) & (slots - 1);
+    return slot;
+  };
   std::vector<std::uint32_t> name(solid.vertices.size(), kNone);
   bool joined = false;
   for (std::uint32_t v = 0; v < solid.vertices.size(); ++v) {
     name[v] = v;
     if (!on_rim[v]) continue;
     const Vec3& place = solid.vertices[v];
-    const Vec3 cell = cell_of(place);
-    for (int n = 0; n < 27 && name[v] == v; ++n) {
-      const Vec3 beside = cell + Vec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-      const auto there = cells.find(hashOf(beside));
-      if (there == cells.end()) continue;
-      for (const std::uint32_t other : there->second) {
-        if (glm::distance(solid.vertices[other], place) > reach) continue;
-        name[v] = other;
-        joined = true;
-        break;
+    const Vec3 in_cells = (place - bounds.lo) / size;
+    const Vec3 own = glm::floor(in_cells);
+    const Vec3 lowest = glm::floor(in_cells - reach / size);
+    const Vec3 highest = glm::floor(in_cells + reach / size);
+    for (double x = lowest.x; x <= highest.x && name[v] == v; ++x) {
+      for (double y = lowest.y; y <= highest.y && name[v] == v; ++y) {
+        for (double z = lowest.z; z <= highest.z && name[v] == v; ++z) {
+          const std::size_t slot = slot_of(cell_at(Vec3(x, y, z)));
+          for (std::uint32_t other = table[slot]; other != kNone; other = next[other]) {
+            if (glm::distance(solid.vertices[other], place) > reach) continue;
+            name[v] = other;
+            joined = true;
+            break;
+          }
+        }
       }
     }
-    if (name[v] == v) cells[hashOf(cell)].push_back(v);
+    if (name[v] != v) continue;
+    cell_of[v] = own;
+    const std::size_t slot = slot_of(cell_at(own));
+    next[v] = table[slot];
+    table[slot] = v;
   }
   if (!joined) return false;
   std::size_t kept = 0;

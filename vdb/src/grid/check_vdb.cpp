@@ -4,6 +4,7 @@
 
 #include "grid/grid_tally.h"
 #include "grid/vdb_file.h"
+#include "grid/vdb_walk.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/grid_check.h"
 #include "palpate/vdb/openvdb_access.h"
@@ -94,7 +95,9 @@ std::vector<GridCheck> checkVdb(const std::string& path, const std::string& name
                        info.bounds.hi * info.metres_per_unit};
       }
     }
-    const openvdb::GridBase::Ptr grid = file.read(entry);
+    // Points and the like are refused by their kind; their trees are not read.
+    const bool is_known = VdbWalk::canWalk(entry.descriptor.gridType());
+    const openvdb::GridBase::Ptr grid = is_known ? file.read(entry) : entry.grid;
     if (mayHoldDistances(*grid)) {
       look(static_cast<const openvdb::FloatGrid&>(*grid), info.metres_per_unit, check);
     }

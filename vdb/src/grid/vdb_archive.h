@@ -1,6 +1,7 @@
 #pragma once
 /// .vdb streams with errors. OpenVDB's own io::File never looks at its streams, so that a full disk and a
-/// file cut short pass for success; here every short read or write throws std::ios_base::failure.
+/// file cut short pass for success; here every short read or write throws std::ios_base::failure,
+/// and every length is checked (vdb_walk.h) before OpenVDB takes it for true.
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -26,11 +27,12 @@ class VdbArchive : public openvdb::io::Archive {
   };
 
   /// What is in the file. `stream` must be seekable and have its exceptions on.
-  /// @throws std::exception of many kinds for what is no .vdb file or a damaged one.
+  /// @throws std::exception of many kinds for what is not a .vdb file or a damaged one.
   void open(std::istream& stream);
   [[nodiscard]] const std::vector<Entry>& entries() const noexcept { return entries_; }
 
-  /// Reads the whole tree of an entry, also if that is another entry's.
+  /// Reads the whole tree of an entry, also if that is another entry's. @throws std::exception as
+  /// open() does.
   openvdb::GridBase::Ptr readGridOf(std::istream& stream, const Entry& entry) const;
 
   /// Reads an entry's tree without the values of its leaves.

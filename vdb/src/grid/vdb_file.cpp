@@ -11,7 +11,7 @@
 namespace palpate::vdb {
 namespace {
 
-std::ifstream openToRead(const std::string& path) {
+void openToRead(const std::string& path, StopBuffer& buffer) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
@@ -20,11 +20,9 @@ std::ifstream openToRead(const std::string& path) {
   if (!std::filesystem::is_regular_file(status)) {
     throw inputError("vdb.unreadable", "this is not a file", "", path);
   }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
+  if (buffer.open(path, std::ios::in | std::ios::binary) == nullptr) {
     throw inputError("vdb.unreadable", "the file cannot be opened for reading", "", path);
-  stream.exceptions(std::ios::failbit | std::ios::badbit);
-  return stream;
+  }
 }
 
 std::string textOf(const openvdb::GridBase& grid, const std::string& key) {
@@ -120,7 +118,9 @@ std::string unitOf(const openvdb::GridBase& grid, const std::string& unit_if_mis
                    path);
 }
 
-VdbFile::VdbFile(std::string path) : path_(std::move(path)), stream_(openToRead(path_)) {
+VdbFile::VdbFile(std::string path) : path_(std::move(path)) {
+  openToRead(path_, buffer_);
+  stream_.exceptions(std::ios::failbit | std::ios::badbit);
   readingFrom(path_, [&] { archive_.open(stream_); });
 }
 

@@ -2,11 +2,12 @@
 /// A .vdb file that is open for reading: what is in it, with one kind of error for what is damaged.
 
 #include <exception>
-#include <fstream>
 #include <ios>
+#include <istream>
 #include <new>
 #include <string>
 
+#include "grid/stop_file.h"
 #include "grid/vdb_archive.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/io.h"
@@ -50,7 +51,8 @@ class VdbFile {
 
  private:
   std::string path_;
-  std::ifstream stream_;
+  StopBuffer buffer_;
+  std::istream stream_{&buffer_};
   VdbArchive archive_;
 };
 

@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -32,6 +33,11 @@ class TemporaryFile {
       if (file < 0 && errno != EEXIST) {
         throw writeError(target_, std::string("cannot be written: ") + strerror(errno));
       }
+    }
+    // A file that is replaced keeps its mode.
+    struct stat old = {};
+    if (stat(target_.c_str(), &old) == 0 && S_ISREG(old.st_mode)) {
+      static_cast<void>(!fchmod(file, old.st_mode & 0777U));
     }
     close(file);
   }
@@ -76,6 +82,10 @@ void writeVdb(const std::string& path, std::span<const LevelSet> grids, bool ove
   if (!overwrite && std::filesystem::exists(path, error)) {
     throw Error(ErrorKind::kOperation, {"file.exists", "the file exists already",
                                         "allow overwriting, or name another", path});
+  }
+  // Renaming over a device or a pipe would destroy it, and a .vdb file cannot be streamed into one.
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    throw writeError(path, "this is not a file; a .vdb file cannot be written to it");
   }
   openvdb::GridCPtrVec pointers;
   for (const LevelSet& grid : grids) pointers.push_back(grid.impl().grid);

@@ -7,10 +7,12 @@
 #include <string_view>
 #include <system_error>
 
+#include "palpate/core/stop.h"
+
 namespace palpate::vdb {
 namespace {
 
-constexpr std::size_t kBufferSize = std::size_t{1} << 18U;
+constexpr std::size_t kBufferSize = std::size_t{1} << 16U;
 constexpr int kLargestWindow = 15;
 constexpr int kGzipOnly = kLargestWindow + 16;  // zlib: gzip's wrapper with its checksum
 constexpr const char* kFetchAgain = "fetch or write the file again";
@@ -28,6 +30,9 @@ void ByteStream::open() {
   if (!fs::exists(status)) throw fail("missing", "no such file");
   if (fs::is_directory(status)) {
     throw fail("directory", "this is a directory, not an image", "name the image file in it");
+  }
+  if (!fs::is_regular_file(status)) {  // a pipe would keep its reader waiting for ever
+    throw fail("unreadable", "this is not a file", "write the data to a file first");
   }
   file_.open(path_, std::ios::binary);
   if (!file_) throw fail("unreadable", "the file cannot be opened for reading");
@@ -70,6 +75,7 @@ ByteStream::~ByteStream() {
 }
 
 std::size_t ByteStream::refill() {
+  pollStop();
   file_.read(reinterpret_cast<char*>(buffer_.data()), static_cast<std::streamsize>(buffer_.size()));
   const auto got = static_cast<std::size_t>(file_.gcount());
   zlib_.next_in = buffer_.data();
@@ -136,11 +142,15 @@ std::size_t ByteStream::read(std::span<unsigned char> out) {
   return done;
 }
 
-std::uint64_t ByteStream::verifyEnd() {
+std::uint64_t ByteStream::verifyEnd(std::uint64_t most) {
   if (!isPacked()) return 0;
   std::vector<unsigned char> rest(kBufferSize);
   std::uint64_t passed = 0;
-  for (std::size_t got = 0; (got = read(rest)) > 0;) passed += got;
+  for (std::size_t got = 0; (got = read(rest)) > 0;) {
+    pollStop();  // what packs well comes without a refill
+    passed += got;
+    if (passed > most) return passed;
+  }
   if (broken_off_) {
     throw fail("truncated",
                std::string("the ") + (packing_ == Packing::kGzip ? "gzip" : "zlib") +

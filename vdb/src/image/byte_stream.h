@@ -37,11 +37,12 @@ class ByteStream {
   /// @throws Error (kInput) for damaged packed data. Such that break off just end.
   std::size_t read(std::span<unsigned char> out);
 
-  /// Reads on to the end of packed data, so that their checksum is verified; nothing to do for plain
-  /// files.
-  /// Returns how many bytes of content that was. @throws Error (kInput) if the data break off or the checksum is
-  /// wrong.
-  std::uint64_t verifyEnd();
+  /// Reads on to the end of packed data, so that their checksum is verified; nothing to do for
+  /// plain files. Returns how many bytes of content that was. Of more than `most` it reads no
+  /// further: who asked for no more will refuse them, and four megabytes may unpack to four
+  /// gigabytes.
+  /// @throws Error (kInput) if the data break off or the checksum is wrong.
+  std::uint64_t verifyEnd(std::uint64_t most);
 
   [[nodiscard]] bool isPacked() const noexcept { return packing_ != Packing::kNone; }
   /// True once reading came to where packed data end before their proper end.

@@ -11,7 +11,9 @@ namespace palpate::vdb {
 Image readDicom(const std::string& path, const ImageOptions& options) try {
   const DicomSeries series = findDicomSeries(path, options.series);
   Image image = emptyImage(path, series.size, series.place, series.notes);
-  for (const DicomElements& slice : series.slices) {
+  const std::vector<std::vector<std::int32_t>> pixels = readDicomPixels(series.slices);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const DicomElements& slice = series.slices[i];
     const auto number = [&](std::uint32_t tag, double otherwise) {
       return slice.text(tag).empty() ? otherwise : slice.numbers(tag, 1).front();
     };
@@ -21,7 +23,7 @@ Image readDicom(const std::string& path, const ImageOptions& options) try {
       throw inputError("dicom.value", "RescaleSlope is 0, which would make all voxels the same", {},
                        slice.path);
     }
-    for (const std::int32_t stored : readDicomPixels(slice)) {
+    for (const std::int32_t stored : pixels[i]) {
       image.values.push_back(static_cast<float>(stored * slope + intercept));
     }
   }

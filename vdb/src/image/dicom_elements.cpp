@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string_view>
+#include <system_error>
 
 #include "image/header_text.h"
 #include "palpate/core/error.h"
+#include "palpate/core/stop.h"
 
 namespace palpate::vdb {
 namespace {
@@ -93,11 +95,16 @@ class Walker {
     if (explicit_) {
       if (at_ + 4 > bytes_.size()) failShort();
       vr = std::string_view(bytes_).substr(at_, 2);
-      if (vr[0] < 'A' || vr[0] > 'Z' || vr[1] < 'A' || vr[1] > 'Z') {
-        failDamaged("no value representation");
-      }
+      // All of PS3.5, table 6.2-1. With any other nothing says how its length is written.
+      constexpr std::array<std::string_view, 21> kShort = {
+          "AE", "AS", "AT", "CS", "DA", "DS", "DT", "FL", "FD", "IS", "LO",
+          "LT", "PN", "SH", "SL", "SS", "ST", "TM", "UI", "UL", "US"};
       constexpr std::array<std::string_view, 13> kLong = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
                                                           "SV", "UC", "UN", "UR", "UT", "UV"};
+      if (std::find(kShort.begin(), kShort.end(), vr) == kShort.end() &&
+          std::find(kLong.begin(), kLong.end(), vr) == kLong.end()) {
+        failDamaged("no value representation");
+      }
       if (std::find(kLong.begin(), kLong.end(), vr) != kLong.end()) {
         at_ += 4;
         length = takeLength();
@@ -108,7 +115,11 @@ class Walker {
     } else {
       length = takeLength();
     }
-    if (tag == dicom::kPixelData && depth == 0) return pixels(length);
+    if (++elements_ % 1024 == 0) pollStop();
+    if (tag == dicom::kPixelData && depth == 0) {
+      out_.pixels_are_words = vr != "OB";
+      return pixels(length);
+    }
     if (length == kUndefined) {
       // An unknown sequence within an explicit file is implicit.
       const bool was_explicit = explicit_;
@@ -156,9 +167,11 @@ class Walker {
   }
 
   void pixels(std::uint32_t length) {
+    if (out_.has_pixels) failDamaged("pixel data for the second time");
     out_.has_pixels = true;
     if (length != kUndefined) {
       out_.pixel_bytes = length;
+      out_.pixels = {{at_, length}};
       skip(length, bytes_.size());
       return;
     }
@@ -168,6 +181,7 @@ class Walker {
       const std::uint32_t size = takeLength();
       if (tag == kSequenceEnd) return;
       if (tag != kItem || size == kUndefined) failDamaged("no fragment of pixel data");
+      out_.pixels.push_back({at_, size});
       skip(size, bytes_.size());
     }
   }
@@ -175,6 +189,7 @@ class Walker {
   const std::string& bytes_;
   DicomElements& out_;
   std::size_t at_ = 0;
+  std::uint64_t elements_ = 0;
   bool explicit_ = true;
   bool big_ = false;
 };
@@ -220,11 +235,19 @@ std::optional<int> DicomElements::shortAt(std::uint32_t tag) const {
 }
 
 DicomElements readDicomElements(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
+  std::error_code failure;
+  std::ifstream file;
+  if (std::filesystem::is_regular_file(path, failure)) file.open(path, std::ios::binary);
+  if (!file.is_open()) {
     throw inputError("dicom.unreadable", "the file cannot be opened for reading", {}, path);
   }
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string bytes;
+  std::vector<char> chunk(std::size_t{1} << 16U);
+  while (file) {
+    pollStop();
+    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
+    bytes.append(chunk.data(), static_cast<std::size_t>(file.gcount()));
+  }
   if (bytes.size() < kPreamble + 4 || bytes.compare(kPreamble, 4, "DICM") != 0) {
     throw inputError("dicom.format", "this is not a DICOM file: DICM is not at byte 128",
                      "name a folder with one DICOM series, or a file of it", path);

@@ -9,8 +9,15 @@
 
 namespace palpate::vdb {
 
-/// GDCM takes what is missing of a file for zeros, or ends the process on an assertion. So every file is walked
-/// before GDCM sees it: every length must fit, every sequence end.
+/// Where the pixels lie in a file.
+struct PixelPart {
+  std::uint64_t begin = 0;  ///< [bytes]
+  std::uint64_t size = 0;
+};
+
+/// GDCM takes what is missing of a file for zeros, or ends the process on an assertion. So every
+/// file is walked by this code: every length must fit, every sequence end. GDCM sees none of these
+/// bytes but those of packed pixels.
 struct DicomElements {
   std::string path;
   std::map<std::uint32_t, std::string>
@@ -19,7 +26,9 @@ struct DicomElements {
   bool big_endian = false;
   bool has_pixels = false;
   bool packed = false;            ///< pixel data in fragments
-  std::uint64_t pixel_bytes = 0;  ///< of pixel data that are not
+  bool pixels_are_words = false;  ///< written as words of 16 bits (OW)
+  std::uint64_t pixel_bytes = 0;  ///< of pixel data that are not packed
+  std::vector<PixelPart> pixels;  ///< one part, or the fragments with their table of offsets first
 
   [[nodiscard]] bool has(std::uint32_t tag) const { return texts.contains(tag); }
   /// The text, without the blanks around it; empty if there is none.

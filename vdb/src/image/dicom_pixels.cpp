@@ -1,71 +1,118 @@
 #include "image/dicom_pixels.h"
 
-#include <gdcmImageReader.h>
-#include <gdcmTrace.h>
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <utility>
 
-#include <cstring>
-
+#include "child/child.h"
+#include "image/dicom_unpack.h"
 #include "palpate/core/error.h"
+#include "palpate/core/stop.h"
+#include "palpate/vdb/library_limits.h"
 
 namespace palpate::vdb {
 namespace {
 
-template <typename T>
-void widen(const std::vector<char>& raw, std::vector<std::int32_t>& out) {
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    T value;
-    std::memcpy(&value, raw.data() + i * sizeof(T), sizeof(T));
-    out[i] = static_cast<std::int32_t>(value);
-  }
-}
-
 /// Bits above the stored ones may hold overlays, and of negative numbers anything.
-void keepStoredBits(std::vector<std::int32_t>& values, int bits, bool is_signed) {
+std::int32_t storedBits(std::uint32_t value, int bits, bool is_signed) noexcept {
   const std::uint32_t mask = (std::uint32_t{1} << static_cast<unsigned>(bits)) - 1;
   const std::uint32_t sign = std::uint32_t{1} << static_cast<unsigned>(bits - 1);
-  for (std::int32_t& value : values) {
-    std::uint32_t v = static_cast<std::uint32_t>(value) & mask;
-    if (is_signed && (v & sign) != 0) v |= ~mask;
-    value = static_cast<std::int32_t>(v);
+  std::uint32_t v = value & mask;
+  if (is_signed && (v & sign) != 0) v |= ~mask;
+  return static_cast<std::int32_t>(v);
+}
+
+std::string bytesOf(std::ifstream& file, const PixelPart& part, const std::string& path) {
+  std::string bytes(part.size, '\0');
+  file.seekg(static_cast<std::streamoff>(part.begin));
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!file) {
+    throw inputError("dicom.truncated", "the file became shorter while it was read",
+                     "fetch or write the file again", path);
   }
+  return bytes;
+}
+
+/// Low byte first, as GDCM hands pixels out, whatever the file's order is.
+std::string plainPixels(const DicomElements& slice, int allocated) {
+  std::ifstream file(slice.path, std::ios::binary);
+  std::string bytes = bytesOf(file, slice.pixels.front(), slice.path);
+  // Of words in big endian order the bytes come in pairs, also where a pixel is one byte.
+  if (slice.big_endian && (allocated == 16 || slice.pixels_are_words)) {
+    for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) std::swap(bytes[i], bytes[i + 1]);
+  }
+  return bytes;
+}
+
+/// Nothing that is of use packs better; what claims to is damaged, and would be given memory for
+/// it.
+void requireLikely(const DicomElements& slice, std::uint64_t bytes) {
+  constexpr std::uint64_t kBestRatio = 4096;
+  constexpr std::uint64_t kAlwaysLikely = std::uint64_t{1} << 24U;
+  std::uint64_t packed = 0;
+  for (const PixelPart& part : slice.pixels) packed += part.size;
+  if (bytes <= kAlwaysLikely || bytes / kBestRatio <= packed) return;
+  throw inputError("dicom.pixels",
+                   "the pixels cannot be unpacked: " + std::to_string(packed) +
+                       " bytes are to become " + std::to_string(bytes),
+                   "fetch or write the file again", slice.path);
+}
+
+std::string packedPixels(const DicomElements& slice) {
+  std::ifstream file(slice.path, std::ios::binary);
+  std::vector<std::string> fragments;
+  for (const PixelPart& part : slice.pixels) fragments.push_back(bytesOf(file, part, slice.path));
+  return unpackDicom(slice, fragments);
+}
+
+std::vector<std::int32_t> valuesOf(const DicomElements& slice) {
+  const auto rows = static_cast<std::size_t>(slice.shortAt(dicom::kRows).value_or(0));
+  const auto columns = static_cast<std::size_t>(slice.shortAt(dicom::kColumns).value_or(0));
+  const int bits = slice.shortAt(dicom::kBitsStored).value_or(0);
+  const int allocated = slice.shortAt(dicom::kBitsAllocated).value_or(0);
+  const bool is_signed = slice.shortAt(dicom::kPixelRepresentation).value_or(0) == 1;
+  if (slice.packed) requireLikely(slice, std::uint64_t{2} * rows * columns);
+  const std::string raw = slice.packed ? packedPixels(slice) : plainPixels(slice, allocated);
+  std::vector<std::int32_t> out(rows * columns);
+  const std::size_t step = allocated == 8 ? 1 : 2;
+  if (raw.size() < out.size() * step) {
+    throw inputError("dicom.pixels", "the pixels cannot be unpacked: some are missing",
+                     "fetch or write the file again", slice.path);
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    std::uint32_t value = static_cast<unsigned char>(raw[i * step]);
+    if (step == 2)
+      value |= static_cast<std::uint32_t>(static_cast<unsigned char>(raw[2 * i + 1])) << 8U;
+    out[i] = storedBits(value, bits, is_signed);
+  }
+  return out;
 }
 
 }  // namespace
 
-std::vector<std::int32_t> readDicomPixels(const DicomElements& elements) {
-  const auto fail = [&](const std::string& what) {
-    return inputError("dicom.pixels", "the pixels cannot be unpacked: " + what,
-                      "save the series uncompressed (gdcmconv --raw)", elements.path);
-  };
-  gdcm::Trace::WarningOff();  // it talks on stderr
-  gdcm::Trace::ErrorOff();
-  gdcm::Trace::DebugOff();
-  gdcm::ImageReader reader;
-  reader.SetFileName(elements.path.c_str());
-  if (!reader.Read()) throw fail("GDCM does not read the file");
-  const gdcm::Image& image = reader.GetImage();
-  const auto rows = static_cast<unsigned>(elements.shortAt(dicom::kRows).value_or(0));
-  const auto columns = static_cast<unsigned>(elements.shortAt(dicom::kColumns).value_or(0));
-  const int bits = elements.shortAt(dicom::kBitsStored).value_or(0);
-  const int allocated = elements.shortAt(dicom::kBitsAllocated).value_or(0);
-  const gdcm::PixelFormat& format = image.GetPixelFormat();
-  const std::size_t count = std::size_t{rows} * columns;
-  const std::size_t bytes = format.GetPixelSize();
-  std::vector<char> raw(image.GetBufferLength());
-  if (image.GetDimension(0) != columns || image.GetDimension(1) != rows ||
-      format.GetSamplesPerPixel() != 1 || raw.size() != count * bytes ||
-      format.GetBitsAllocated() != allocated) {
-    throw fail("they are not those that the header describes");
+std::vector<std::vector<std::int32_t>> readDicomPixels(const std::vector<DicomElements>& slices) {
+  std::vector<std::vector<std::int32_t>> out(slices.size());
+  const bool any_packed =
+      std::any_of(slices.begin(), slices.end(), [](const DicomElements& s) { return s.packed; });
+  if (!any_packed || !libraryLimits().in_child) {
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+      pollStop();
+      out[i] = valuesOf(slices[i]);
+    }
+    return out;
   }
-  if (!image.GetBuffer(raw.data())) throw fail("their data are damaged");
-  std::vector<std::int32_t> out(count);
-  const bool is_signed = elements.shortAt(dicom::kPixelRepresentation).value_or(0) == 1;
-  if (bytes == 1) {
-    is_signed ? widen<std::int8_t>(raw, out) : widen<std::uint8_t>(raw, out);
-  } else {
-    is_signed ? widen<std::int16_t>(raw, out) : widen<std::uint16_t>(raw, out);
+  // One child for them all; which slice it was at when it ended, nobody knows.
+  ChildTask task{0, "dicom.pixels", "GDCM",
+                 "the file may be damaged; save the series uncompressed (gdcmconv --raw)",
+                 slices.front().path};
+  for (const DicomElements& slice : slices) {
+    for (const PixelPart& part : slice.pixels) task.file_bytes += part.size;
   }
-  keepStoredBits(out, bits, is_signed);
+  ChildReader result = runInChild(task, [&](ChildWriter& child) {
+    for (const DicomElements& slice : slices) child.put(valuesOf(slice));
+  });
+  for (auto& values : out) values = result.takeAll<std::int32_t>();
   return out;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Pixels of one DICOM file, by GDCM.
+/// The pixels of a DICOM slice.
 
 #include <cstdint>
 #include <vector>
@@ -8,8 +8,12 @@
 
 namespace palpate::vdb {
 
-/// Rows * columns whole numbers as stored, before slope and intercept. `elements` are those of the file, so it
-/// is whole. @throws Error (kInput, dicom.pixels): what is compressed cannot be unpacked.
-[[nodiscard]] std::vector<std::int32_t> readDicomPixels(const DicomElements& elements);
+/// Pixel values of each slice as stored, without slope and intercept, in order. Rows, columns and
+/// bits of the elements must have been checked, and be the same for all. Plain pixels are read by
+/// our own code; packed ones are unpacked by GDCM, in a child process if libraryLimits() say so.
+/// @throws Error (kInput, dicom.pixels): not unpacked, or not those that the elements describe;
+/// dicom.truncated.
+[[nodiscard]] std::vector<std::vector<std::int32_t>> readDicomPixels(
+    const std::vector<DicomElements>& slices);
 
 }  // namespace palpate::vdb

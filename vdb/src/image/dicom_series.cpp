@@ -265,6 +265,8 @@ std::vector<DicomElements> chosenSeries(const std::string& path, const std::stri
 }  // namespace
 
 bool isDicomFile(const std::string& path) {
+  std::error_code failure;
+  if (!fs::is_regular_file(path, failure)) return false;  // a pipe would keep its reader waiting
   std::ifstream file(path, std::ios::binary);
   char head[132] = {};
   file.read(head, sizeof head);

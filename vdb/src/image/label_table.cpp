@@ -6,7 +6,9 @@
 #include <string_view>
 
 #include "image/header_text.h"
+#include "image/utf8.h"
 #include "palpate/core/error.h"
+#include "palpate/core/stop.h"
 #include "palpate/vdb/image.h"
 
 namespace palpate::vdb {
@@ -222,12 +224,20 @@ LabelTable readLabelTable(const std::string& path) {
   if (std::filesystem::is_directory(path, failure)) {
     throw inputError("labels.table_missing", "this is a directory, not a table of names", {}, path);
   }
+  if (std::filesystem::exists(path, failure) &&
+      !std::filesystem::is_regular_file(path, failure)) {  // a pipe may never end
+    throw inputError("labels.table_missing", "this is not a file",
+                     "write the table to a file first", path);
+  }
   std::ifstream file(path, std::ios::binary);
   if (!file)
     throw inputError("labels.table_missing", "the table of names cannot be read", {}, path);
   if (isImageFile(path)) return tableOfImage(path);
   TableReader reader(path);
-  for (std::string line; std::getline(file, line);) reader.addLine(line);
+  for (std::string line; std::getline(file, line);) {
+    pollStop();
+    reader.addLine(asUtf8(line));
+  }
   return reader.finish();
 }
 

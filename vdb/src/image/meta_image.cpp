@@ -9,6 +9,7 @@
 #include "image/meta_image_header.h"
 #include "image/readers.h"
 #include "palpate/core/error.h"
+#include "palpate/core/stop.h"
 
 namespace palpate::vdb {
 namespace {
@@ -56,6 +57,7 @@ std::vector<float> readText(const MetaImageHeader& header, const std::string& pa
   std::vector<float> values;
   std::uint64_t met = 0;
   for (std::string word; values.size() < header.voxelCount() && file >> word; ++met) {
+    if (met % 1024 == 0) pollStop();
     const auto value = numberIn<double>(word);
     if (!value) {
       throw fail(path, "metaimage.damaged",
@@ -87,10 +89,10 @@ Image readMetaImage(const std::string& path, const ImageOptions& options) try {
   skipBytes(*stream, passed * bytesOf(header.coding.type), header.voxelCount());
   Oddities odd;
   image.values = readVoxels(*stream, header.voxelCount(), header.coding, odd);
-  const std::uint64_t more = stream->verifyEnd();
   const auto later_frames =
       static_cast<std::uint64_t>(header.frames - 1 - options.frame.value_or(0));
-  if (more > later_frames * header.voxelCount() * bytesOf(header.coding.type)) {
+  const std::uint64_t most = later_frames * header.voxelCount() * bytesOf(header.coding.type);
+  if (stream->verifyEnd(most) > most) {
     throw fail(path, "metaimage.size",
                "the file holds more voxels than its header asks for: sizes or type may be wrong");
   }

@@ -12,6 +12,9 @@ namespace {
 /// More than any table of names takes; a longer gap before the voxels is passed over.
 constexpr std::uint64_t kLongestExtensions = std::uint64_t{1} << 24U;
 
+/// Some writers fill up behind the voxels; more than this is not theirs.
+constexpr std::uint64_t kMostPadding = std::uint64_t{1} << 20U;
+
 /// The names of labels between header and voxels; returns how many bytes were read for them.
 std::uint64_t readLabels(ByteStream& stream, const NiftiHeader& header, const std::string& path,
                          LabelTable& labels) {
@@ -33,7 +36,11 @@ Image readNifti(const std::string& path, const ImageOptions& options) try {
   skipBytes(stream, header.data_offset - done, header.voxelCount());
   Oddities odd;
   image.values = readVoxels(stream, header.voxelCount(), header.coding, odd);
-  stream.verifyEnd();
+  if (const std::uint64_t most = header.later_bytes + kMostPadding; stream.verifyEnd(most) > most) {
+    throw inputError("nifti.size",
+                     "the file holds far more than its header asks for: sizes or type may be wrong",
+                     "write the file again", path);
+  }
   odd.tell(image.notes);
   return image;
 } catch (const std::bad_alloc&) {

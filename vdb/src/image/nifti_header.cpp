@@ -283,6 +283,12 @@ NiftiHeader interpret(Header raw, int version, bool swapped, const std::string& 
   out.extension_bytes = out.data_offset - sizeof(Header);
   out.data_offset += static_cast<std::uint64_t>(options.frame.value_or(0)) * out.voxelCount() *
                      bytesOf(out.coding.type);
+  const auto frames = raw.dim[0] >= 4 ? static_cast<std::int64_t>(raw.dim[4]) : 1;
+  const double later = static_cast<double>(frames - 1 - options.frame.value_or(0)) *
+                       static_cast<double>(out.size[0]) * static_cast<double>(out.size[1]) *
+                       static_cast<double>(out.size[2]) *
+                       static_cast<double>(bytesOf(out.coding.type));
+  out.later_bytes = static_cast<std::uint64_t>(std::clamp(later, 0.0, 1e18));
   applyScaling(out, *nim);
 
   const double scale = metresPerSpaceUnit(nim->xyz_units, path, out.notes);
@@ -309,7 +315,7 @@ NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path,
            other_order == static_cast<std::int32_t>(size);
   };
   if (!is(kNifti1Size) && !is(kNifti2Size)) {
-    if (consumed < sizeof header_size && stream.brokeOff()) stream.verifyEnd();
+    if (consumed < sizeof header_size && stream.brokeOff()) stream.verifyEnd(0);
     throw notNifti(path);
   }
   const std::size_t wanted = is(kNifti1Size) ? kNifti1Size : kNifti2Size;

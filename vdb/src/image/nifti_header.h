@@ -20,6 +20,7 @@ struct NiftiHeader {
   std::uint64_t data_offset = 0;  ///< [bytes] of the first voxel, of the frame that was chosen
   std::uint64_t header_bytes = 0;
   std::uint64_t extension_bytes = 0;  ///< between the header and the first voxel of the file
+  std::uint64_t later_bytes = 0;      ///< of the frames behind the one that was chosen
   Place place;                        ///< [m], RAS
   std::string length_unit;
   bool is_labels = false;  ///< intent code 1002

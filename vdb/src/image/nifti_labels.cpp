@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "image/utf8.h"
 #include "palpate/core/error.h"
 
 namespace palpate::vdb {
@@ -90,7 +91,7 @@ LabelTable tableIn(std::string_view xml, const std::string& path) {
     const std::string_view tag = xml.substr(at, close - at);
     const auto key = numberIn<int>(attribute(tag, "Key"));
     if (!key) throw fail(path, "an entry of its table of labels has no value: " + std::string(tag));
-    const std::string name = unescaped(trimmed(xml.substr(close + 1, end - close - 1)));
+    const std::string name = asUtf8(unescaped(trimmed(xml.substr(close + 1, end - close - 1))));
     if (name.empty()) continue;
     const auto [entry, is_new] = table.names.emplace(*key, name);
     if (!is_new && entry->second != name) {

@@ -11,6 +11,7 @@
 #include "image/nrrd_segments.h"
 #include "image/readers.h"
 #include "palpate/core/error.h"
+#include "palpate/core/stop.h"
 
 namespace palpate::vdb {
 namespace {
@@ -25,8 +26,8 @@ std::vector<float> readText(const NrrdHeader& header, Oddities& odd) {
   file.seekg(static_cast<std::streamoff>(header.data_begin) +
              static_cast<std::streamoff>(header.byte_skip));
   std::vector<float> values;
-  values.reserve(header.count());
   for (std::string word; values.size() < header.count() && file >> word;) {
+    if (values.size() % 1024 == 0) pollStop();
     if (word.ends_with(',')) word.pop_back();
     const std::string lower = lowerCase(word);
     const auto value =
@@ -75,11 +76,11 @@ std::vector<float> readAll(const NrrdHeader& header, const std::string& path, Od
   skipBytes(*stream, static_cast<std::uint64_t>(std::max<std::int64_t>(header.byte_skip, 0)),
             header.count());
   std::vector<float> values = readVoxels(*stream, header.count(), header.coding, odd);
-  if (const std::uint64_t more = stream->verifyEnd(); more > 0) {
-    throw inputError("nrrd.size",
-                     "the file holds " + std::to_string(more) +
-                         " bytes more than its header asks for: sizes or type may be wrong",
-                     "write the file again", path);
+  if (stream->verifyEnd(0) > 0) {
+    throw inputError(
+        "nrrd.size",
+        "the file holds more bytes than its header asks for: sizes or type may be wrong",
+        "write the file again", path);
   }
   return values;
 }

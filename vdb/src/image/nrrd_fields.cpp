@@ -7,6 +7,7 @@
 
 #include "image/byte_stream.h"
 #include "image/header_text.h"
+#include "image/utf8.h"
 
 namespace palpate::vdb {
 namespace {
@@ -94,7 +95,8 @@ NrrdFields readNrrdFields(const std::string& path) {
       throw fail("`" + line.substr(0, 40) + "` is no line of a NRRD header");
     }
     if (line[colon + 1] == '=') {
-      out.pairs[line.substr(0, colon)] = unescaped(std::string_view(line).substr(colon + 2));
+      out.pairs[line.substr(0, colon)] =
+          asUtf8(unescaped(std::string_view(line).substr(colon + 2)));
       continue;
     }
     const std::string key = canonical(std::string_view(line).substr(0, colon));

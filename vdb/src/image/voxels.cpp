@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "palpate/core/stop.h"
+
 namespace palpate::vdb {
 namespace {
 
@@ -119,14 +121,18 @@ void convertVoxels(std::span<unsigned char> raw, const VoxelCoding& coding, floa
 
 std::vector<float> readVoxels(ByteStream& stream, std::uint64_t count, const VoxelCoding& coding,
                               Oddities& odd) {
-  std::vector<float> values(count);
+  // Memory is touched as voxels come, not as the header promises them.
+  std::vector<float> values;
+  values.reserve(count);
   const std::size_t bytes = bytesOf(coding.type);
-  std::vector<unsigned char> raw(std::size_t{1} << 20U);  // a multiple of every voxel size
+  std::vector<unsigned char> raw(std::size_t{1} << 16U);  // a multiple of every voxel size
   for (std::uint64_t done = 0; done < count;) {
+    pollStop();
     const auto here =
         static_cast<std::size_t>(std::min<std::uint64_t>(raw.size() / bytes, count - done));
     const std::size_t got = stream.read(std::span(raw).first(here * bytes));
     if (got < here * bytes) stream.failShort(done + got / bytes, count);
+    values.resize(done + here);
     convertVoxels(std::span(raw).first(got), coding, values.data() + done, odd);
     done += here;
   }
@@ -134,8 +140,9 @@ std::vector<float> readVoxels(ByteStream& stream, std::uint64_t count, const Vox
 }
 
 void skipBytes(ByteStream& stream, std::uint64_t bytes, std::uint64_t count) {
-  std::vector<unsigned char> scratch(4096);
+  std::vector<unsigned char> scratch(std::size_t{1} << 16U);
   while (bytes > 0) {
+    pollStop();
     const auto step = static_cast<std::size_t>(std::min<std::uint64_t>(bytes, scratch.size()));
     const std::size_t got = stream.read(std::span(scratch).first(step));
     if (got == 0) stream.failShort(0, count);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "palpate/core/error.h"
+#include "palpate/core/stop.h"
 
 namespace palpate::vdb {
 namespace {
@@ -11,6 +12,16 @@ namespace {
 /// Twice the area of a, b, c seen against `normal`; positive if they turn left.
 double turn(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
   return glm::dot(glm::cross(b - a, c - a), normal);
+}
+
+/// Whether `n` corners are strictly convex and go round once: a fan then needs no search for ears.
+template <typename At>
+bool isFan(const At& at, std::size_t n, const Vec3& normal) {
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(turn(at(i + n - 1), at(i), at(i + 1), normal) > 0.0)) return false;
+    if (i + 2 < n && !(turn(at(n - 1), at(i), at(i + 1), normal) > 0.0)) return false;
+  }
+  return true;
 }
 
 bool holdsPoint(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& normal) {
@@ -57,8 +68,25 @@ void MeshBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c)
   }
 }
 
+/// The search for ears takes the cube of a face's corners in the worst case, and their square as a
+/// rule.
+void MeshBuilder::spend(std::size_t tests, std::size_t corners) {
+  constexpr std::uint64_t kMost =
+      200'000'000;  // seconds; faces of a thousand corners by the hundred
+  constexpr std::uint64_t kPoll = 1U << 20U;
+  const std::uint64_t before = spent_;
+  spent_ += tests;
+  if (before / kPoll != spent_ / kPoll) pollStop();
+  if (spent_ <= kMost) return;
+  throw inputError("mesh.polygon",
+                   "faces of too many corners (one of " + std::to_string(corners) +
+                       ") take too long to cut into triangles",
+                   "export the mesh with triangles", mesh_.source);
+}
+
 void MeshBuilder::addPolygon(std::span<const std::uint32_t> corners) {
   if (corners.size() < 3) return;
+  if (++polygons_ % 1024 == 0) pollStop();
   std::vector<std::uint32_t> rest(corners.begin(), corners.end());
   const auto at = [&](std::size_t i) -> const Vec3& {
     return mesh_.vertices[rest[i % rest.size()]];
@@ -67,11 +95,18 @@ void MeshBuilder::addPolygon(std::span<const std::uint32_t> corners) {
   for (std::size_t i = 1; rest.size() > 3 && i + 1 < rest.size(); ++i) {
     normal += glm::cross(at(i) - at(0), at(i + 1) - at(0));
   }
+  if (rest.size() > 3 && isFan(at, rest.size(), normal)) {
+    for (std::size_t i = 0; i + 2 < rest.size(); ++i) {
+      addTriangle(rest.back(), rest[i], rest[i + 1]);
+    }
+    return;
+  }
   for (std::size_t n = rest.size(); n > 3; n = rest.size()) {
     std::size_t ear = n;
     for (std::size_t i = 0; i < n && ear == n; ++i) {
       const std::size_t before = i + n - 1;
       bool is_ear = turn(at(before), at(i), at(i + 1), normal) > 0.0;
+      spend(is_ear ? n : 1, corners.size());
       for (std::size_t k = i + 2; is_ear && k < before; ++k) {
         is_ear = !holdsPoint(at(before), at(i), at(i + 1), at(k), normal);
       }

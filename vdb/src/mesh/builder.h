@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "palpate/core/stop.h"
 #include "palpate/vdb/mesh.h"
 
 namespace palpate::vdb {
@@ -24,10 +25,13 @@ class MeshBuilder {
   template <typename Where>
   std::uint32_t addVertex(const Vec3& p, const Where& where, int line = 0) {
     if (!isFinite(p)) refuseVertex(p, where(), line);
+    if (++vertices_ % 1024 == 0) pollStop();
     return weld(p * metres_per_unit_);
   }
 
   /// Corners are numbers from addVertex(); polygons are cut into triangles by their ears.
+  /// @throws Error (kInput, mesh.polygon) once that takes too long, kCancelled once a stop was
+  /// asked for.
   void addPolygon(std::span<const std::uint32_t> corners);
 
   /// @throws Error (kInput, mesh.no_faces)
@@ -48,7 +52,11 @@ class MeshBuilder {
   [[noreturn]] void refuseVertex(const Vec3& p, const std::string& where, int line) const;
   std::uint32_t weld(const Vec3& p);
   void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+  void spend(std::size_t tests, std::size_t corners);
 
+  std::uint64_t spent_ = 0;  ///< tests of ears
+  std::uint64_t polygons_ = 0;
+  std::uint64_t vertices_ = 0;
   double metres_per_unit_;
   Mesh mesh_;
   std::unordered_map<std::array<std::uint64_t, 3>, std::uint32_t, BitsHash> numbers_;

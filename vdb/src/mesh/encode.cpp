@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cstring>
 #include <limits>
 #include <string_view>
+#include <unordered_map>
+#include <vector>
 
 #include "palpate/core/error.h"
 #include "palpate/vdb/surface_mesh.h"
@@ -34,6 +37,46 @@ class Bytes {
   std::string out_;
 };
 
+/// As it is in a file of floats: vertices in one place then are one, and triangles with two corners there are
+/// left out. A side that is gone takes both its triangles with it, so that what was closed stays so.
+Mesh inFloats(const Mesh& mesh, double per_unit) {
+  struct Hash {
+    std::size_t operator()(const std::array<std::uint32_t, 3>& bits) const noexcept {
+      std::uint64_t hash = 0;
+      for (const std::uint32_t word : bits) {
+        hash = (hash ^ word) * 0x9E3779B97F4A7C15U;
+        hash ^= hash >> 32;
+      }
+      return hash;
+    }
+  };
+  Mesh out;
+  out.source = mesh.source;
+  std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, Hash> numbers;
+  numbers.reserve(mesh.vertices.size());
+  std::vector<std::uint32_t> name;
+  name.reserve(mesh.vertices.size());
+  for (const Vec3& v : mesh.vertices) {
+    std::array<std::uint32_t, 3> bits{};
+    Vec3 place(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float value = static_cast<float>(v[axis] / per_unit) + 0.0F;  // -0 and 0 are one place
+      bits[static_cast<std::size_t>(axis)] = std::bit_cast<std::uint32_t>(value);
+      place[axis] = value;
+    }
+    const auto number = static_cast<std::uint32_t>(out.vertices.size());
+    const auto [at, is_new] = numbers.try_emplace(bits, number);
+    if (is_new) out.vertices.push_back(place);
+    name.push_back(at->second);
+  }
+  out.triangles.reserve(mesh.triangles.size());
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const std::uint32_t a = name[i], b = name[j], c = name[k];
+    if (a != b && b != c && c != a) out.triangles.push_back({a, b, c});
+  }
+  return out;
+}
+
 Vec3 corner(const Mesh& mesh, std::size_t triangle, std::size_t n) {
   return mesh.vertices[mesh.triangles[triangle][n]];
 }
@@ -42,7 +85,8 @@ void addFloats(Bytes& out, const Vec3& v) {
   for (int axis = 0; axis < 3; ++axis) out.add(static_cast<float>(v[axis]));
 }
 
-std::string encodeStl(const Mesh& mesh, double per_unit) {
+std::string encodeStl(const Mesh& exact, double per_unit) {
+  const Mesh mesh = inFloats(exact, per_unit);
   Bytes out;
   out.reserve(84 + 50 * mesh.triangles.size());
   std::string header = "palpate";  // must not begin with "solid", as ASCII files do
@@ -54,7 +98,7 @@ std::string encodeStl(const Mesh& mesh, double per_unit) {
     const Vec3 normal = glm::cross(b - a, c - a);
     const double length = glm::length(normal);
     addFloats(out, length > 0.0 ? normal / length : Vec3(0.0));
-    for (const Vec3& v : {a, b, c}) addFloats(out, v / per_unit);
+    for (const Vec3& v : {a, b, c}) addFloats(out, v);
     out.add(std::uint16_t{0});
   }
   return out.take();
@@ -97,7 +141,8 @@ std::string encodePly(const Mesh& mesh, double per_unit) {
 }
 
 /// glTF 2.0, section 4.4 (binary): a header, a chunk of JSON padded with blanks, a chunk of data.
-std::string encodeGlb(const Mesh& mesh) {
+std::string encodeGlb(const Mesh& exact) {
+  const Mesh mesh = inFloats(exact, 1.0);
   Vec3 lo(std::numeric_limits<double>::infinity()), hi = -lo;
   for (const Vec3& v : mesh.vertices) {
     // The bounds are of what is written, to the last bit.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <string_view>
 
@@ -28,10 +29,27 @@ class Obj {
                 {"mesh.unreadable", what, "export the mesh again", path_, scanner_.line});
   }
 
+  /// The next word of this line, and of the next one where this ends in a backslash; empty at the end.
+  std::string_view wordOfLine() {
+    for (;;) {
+      std::string_view word = scanner_.wordOfLine();
+      if (!word.ends_with('\\') || !endsLine()) return word;
+      scanner_.at = std::min(scanner_.text.find('\n', scanner_.at), scanner_.text.size() - 1) + 1;
+      ++scanner_.line;
+      word.remove_suffix(1);
+      if (!word.empty()) return word;
+    }
+  }
+
+  [[nodiscard]] bool endsLine() const {
+    const std::size_t next = scanner_.text.find_first_not_of(" \t\r", scanner_.at);
+    return next == std::string_view::npos || scanner_.text[next] == '\n';
+  }
+
   void readVertex() {
     Vec3 p(0.0);
     for (int axis = 0; axis < 3; ++axis) {
-      const std::string_view word = scanner_.wordOfLine();
+      const std::string_view word = wordOfLine();
       if (word.empty()) refuse("a vertex has fewer than three coordinates");
       const std::optional<double> value = numberOf(word);
       if (!value) refuse("'" + std::string(word.substr(0, 40)) + "' is not a number");
@@ -45,8 +63,7 @@ class Obj {
   /// Corners are `vertex`, `vertex/texture/normal` and the like; negative ones count from the last.
   void readFace() {
     corners_.clear();
-    for (std::string_view word = scanner_.wordOfLine(); !word.empty();
-         word = scanner_.wordOfLine()) {
+    for (std::string_view word = wordOfLine(); !word.empty(); word = wordOfLine()) {
       const std::string_view text = word.substr(0, word.find('/'));
       long long number = 0;
       const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

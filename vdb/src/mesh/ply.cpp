@@ -8,6 +8,7 @@
 #include "mesh/builder.h"
 #include "mesh/scanner.h"
 #include "palpate/core/error.h"
+#include "palpate/core/stop.h"
 
 namespace palpate::vdb {
 namespace {
@@ -46,7 +47,9 @@ class Ply {
   Mesh read() {
     readHeader();
     for (const Element& element : elements_) {
+      if (element.properties.empty()) continue;  // nothing to read, however many there are
       for (std::size_t i = 0; i < element.count; ++i) {
+        if (i % 1024 == 0) pollStop();
         if (is_text_) input_.skipBlanks();
         const int line = is_text_ ? input_.line : 0;
         readItem(element);

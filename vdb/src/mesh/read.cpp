@@ -11,8 +11,11 @@
 #include <mutex>
 #include <system_error>
 
+#include "child/child.h"
 #include "mesh/builder.h"
+#include "mesh/gltf_guard.h"
 #include "palpate/core/error.h"
+#include "palpate/vdb/library_limits.h"
 
 namespace palpate::vdb {
 namespace {
@@ -92,7 +95,7 @@ class Collector {
   MeshBuilder& builder_;
 };
 
-Mesh readWithAssimp(const std::string& path, double metres_per_unit) {
+Mesh parseWithAssimp(const std::string& path, double metres_per_unit) {
   const DroppedFaces dropped;
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(path, 0);
@@ -114,6 +117,31 @@ Mesh readWithAssimp(const std::string& path, double metres_per_unit) {
   return builder.take();
 }
 
+void put(ChildWriter& out, const Mesh& mesh) {
+  out.put(mesh.source);
+  out.put(mesh.vertices);
+  out.put(mesh.triangles);
+  out.put(mesh.dropped_triangles);
+}
+
+Mesh takeMesh(ChildReader& in) {
+  Mesh mesh;
+  mesh.source = in.takeText();
+  mesh.vertices = in.takeAll<Vec3>();
+  mesh.triangles = in.takeAll<std::array<std::uint32_t, 3>>();
+  mesh.dropped_triangles = in.take<std::size_t>();
+  return mesh;
+}
+
+Mesh readWithAssimp(const std::string& path, double metres_per_unit) {
+  if (!libraryLimits().in_child) return parseWithAssimp(path, metres_per_unit);
+  const ChildTask task{std::filesystem::file_size(path), "mesh.unreadable", "Assimp",
+                       "the file may be damaged; export the mesh again, as STL, OBJ or PLY", path};
+  ChildReader result =
+      runInChild(task, [&](ChildWriter& out) { put(out, parseWithAssimp(path, metres_per_unit)); });
+  return takeMesh(result);
+}
+
 std::string extensionOf(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -129,6 +157,10 @@ std::ifstream openFile(const std::string& path) {
   }
   if (std::filesystem::is_directory(status)) {
     throw inputError("mesh.unreadable", "this is a folder, not a mesh", "", path);
+  }
+  if (!std::filesystem::is_regular_file(status)) {  // a pipe has no length
+    throw inputError("mesh.unreadable", "this is not a file", "write the mesh to a file first",
+                     path);
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
@@ -158,10 +190,16 @@ Mesh readAsItIs(const std::string& path, double metres_per_unit) {
   if (extension == ".obj") return readObj(path, metres_per_unit);
   if (extension == ".vtk") return readVtk(path, metres_per_unit);
   openFile(path);
+  if (extension == ".gltf" || extension == ".glb") checkGltf(readBytes(path), extension, path);
   return readWithAssimp(path, metres_per_unit);
 }
 
 }  // namespace
+
+std::string prescribedUnit(const std::string& path) {
+  const std::string extension = extensionOf(path);
+  return extension == ".gltf" || extension == ".glb" ? "m" : "";
+}
 
 Mesh readMesh(const std::string& path, double metres_per_unit, Space space) {
   Mesh mesh = readAsItIs(path, metres_per_unit);

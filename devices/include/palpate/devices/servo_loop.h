@@ -14,10 +14,16 @@ using ServoTick = std::function<Vec3(const DeviceState&)>;
 
 struct ServoSettings {
   bool realtime = false;  ///< false: as fast as possible, one reading after the other
-  double rate = 1000.0;   ///< [Hz] if realtime; 1 to 1e5
+  double rate = 1000.0;   ///< [Hz] 1 to 1e5; without `realtime` only the watchdog asks for it
   /// Try for a real-time priority of the calling thread (SCHED_FIFO) and for locked memory, for as
   /// long as the loop runs; what was refused is in the report.
   bool elevate = false;
+  /// [s] without a new reading after which the force is zero; above 0. Without `realtime` a turn of
+  /// the loop counts as 1 / rate. At least one turn may pass without a reading, however slow the
+  /// loop is.
+  double watchdog = 0.02;
+  /// [s] from zero to full force once readings come again after that; 0 or more.
+  double recovery = 0.1;
 };
 
 enum class ServoExit : std::uint8_t { kEnd, kStopped, kTimeout, kDisconnected, kFault };
@@ -32,6 +38,7 @@ struct ServoReport {
   bool elevated = false;           ///< both
   std::uint64_t zeroed = 0;        ///< forces that were not finite and were written as zero
   std::uint64_t shortened = 0;  ///< forces longer than the device's maximum, written at that length
+  std::uint64_t stale = 0;  ///< turns of the loop that wrote zero because no new reading had come
 };
 
 /// Runs the loop on the calling thread until the path ends, the device fails or `stop` becomes true.
@@ -41,12 +48,17 @@ struct ServoReport {
 /// - A force that is not finite, or that answers a position or velocity that is not finite, is written
 ///   as zero. One longer than DeviceInfo::max_force is shortened to it, its direction kept.
 /// - kStale: the tick gets the previous reading again; before the first reading it is not called.
+/// - Watchdog: once the last new reading is `watchdog` old, zero is written and the tick is not
+///   called, until a new reading comes; from then on forces grow from zero to their full length
+///   within `recovery`.
+/// - A device whose maximum force is NaN, zero or below is written zero.
 /// - kTimeout, kDisconnected, kFault and kEnd, from read() or write(), end the loop.
 /// - realtime: tick k is due at start + k / rate by the monotonic clock. After an overrun the ticks
 ///   that were missed are skipped, never made up for.
 ///
 /// The loop itself never allocates, locks or throws.
-/// @throws Error (kDevice) from opening; Error (kUsage) for an empty `tick` or a bad rate.
+/// @throws Error (kDevice) from opening; Error (kUsage) for an empty `tick`, a bad rate (realtime),
+/// watchdog or recovery.
 [[nodiscard]] ServoReport runServo(Device& device, const ServoTick& tick,
                                    const ServoSettings& settings, const std::atomic<bool>& stop);
 

@@ -3,6 +3,7 @@
 /// an implicit object", to the letter. The contact point Po is driven by the probe's own motion, so it
 /// drifts and re-acquires where the surface is curved: that is the method, kept for comparison.
 
+#include "palpate/contact/paper_parameters.h"
 #include "palpate/fields/field.h"
 
 namespace palpate {
@@ -14,6 +15,7 @@ struct PaperSurface {
   double epsilon = 1e-6;     ///< |S| that counts as on the surface, in units of S
   double alpha = 1.0;        ///< [-] share of the nudge
   bool newton_form = false;  ///< alpha S N / (N.N) instead of the printed alpha S N / |N|
+  int max_halvings = PaperParameters::kMaxHalvings;  ///< MAX_N: of the segment that is searched
 
   /// S and N with the side applied: negative beyond the wall, N towards the hand's side.
   [[nodiscard]] FieldSample at(const Vec3& p) const noexcept;

@@ -102,6 +102,10 @@ class Field {
   /// the shape, or the voxel size of a grid. Positive and finite.
   [[nodiscard]] virtual double featureSize() const noexcept = 0;
 
+  /// True if the surface is one plane and S the distance to it, everywhere: it has no size of its own, and
+  /// featureSize() stands in for one.
+  [[nodiscard]] virtual bool isFlat() const noexcept { return false; }
+
   /// The default is a leaf.
   [[nodiscard]] virtual FieldStructure structure() const noexcept { return {}; }
 };

@@ -24,7 +24,10 @@ inline constexpr RegionId kOutside = 0;
 struct Leaf {
   FieldPtr field;
   double lipschitz = 1.0;  ///< Field::lipschitz()
-  double feature = 1.0;    ///< [m] Field::featureSize(): the unit of tolerances at this leaf
+  /// [m] the unit of tolerances at this leaf: Field::featureSize(); of a plane, that of the solid it is a face
+  /// of, or else the largest of the other leaves
+  double feature = 1.0;
+  bool is_flat = false;  ///< Field::isFlat()
   /// A leaf between two others means something only where both of them are inside; where just one is, it is
   /// inside with the first of them and outside with the second.
   bool is_between = false;
@@ -65,6 +68,8 @@ class Signs {
       }
     }
   }
+  /// How many of `count` leaves from `first` on are inside.
+  [[nodiscard]] std::size_t countInside(LeafId first, std::size_t count) const noexcept;
   /// True if any (all) of `count` leaves from `first` on are inside.
   [[nodiscard]] bool anyInside(LeafId first, std::size_t count) const noexcept;
   [[nodiscard]] bool allInside(LeafId first, std::size_t count) const noexcept;
@@ -72,6 +77,15 @@ class Signs {
 
  private:
   std::vector<std::uint64_t> words_;
+};
+
+/// One step of an expression whose negations stand at the leaves only, in postfix order: a leaf's side
+/// or what a run of leaves has in common is pushed; kAnd and kOr take two off the stack.
+struct SideStep {
+  enum class Op : std::uint8_t { kAnyOf, kAllOf, kAnd, kOr } op = Op::kAnyOf;
+  bool inside = true;       ///< of a run: which side of its leaves is meant
+  LeafId first = 0;         ///< of a run
+  std::uint16_t count = 0;  ///< of a run; 1 for a leaf, 0 for none: false of any, true of all
 };
 
 /// Leaves and the layers' expressions over them. Immutable; every const member is real-time safe.
@@ -116,6 +130,17 @@ class Partition {
   /// The last layer that holds the cell, or outside.
   [[nodiscard]] RegionId regionOf(const Signs& signs) const noexcept;
 
+  /// Where `region`'s own layer is (`holds`), or where it is not. Not for outside.
+  [[nodiscard]] std::span<const SideStep> layerSides(RegionId region, bool holds) const noexcept {
+    return sides_[region - 1U][holds ? 1 : 0];
+  }
+  /// The same of mask `index`.
+  [[nodiscard]] std::span<const SideStep> maskSides(std::size_t index, bool holds) const noexcept {
+    return sides_[layer_count_ + index][holds ? 1 : 0];
+  }
+  /// Stack entries that evaluating any of these takes at most.
+  static constexpr std::size_t kMaxDepth = 64;
+
   /// Signs of all leaves at `p` [m]; zero counts as outside. `out` must have room for all leaves.
   void signsAt(const Vec3& p, Signs& out) const noexcept;
 
@@ -132,11 +157,15 @@ class Partition {
     std::vector<LeafId> leaves;
   };
   struct Builder;
+  /// By program: where it does not hold, and where it does.
+  using Sides = std::array<std::vector<SideStep>, 2>;
+  [[nodiscard]] static Sides sidesOf(const Program& program);
 
   [[nodiscard]] static bool evaluate(const Program& program, const Signs& signs) noexcept;
 
   std::vector<Leaf> leaves_;
   std::vector<Program> programs_;  ///< the layers', then the masks'
+  std::vector<Sides> sides_;       ///< by program
   std::size_t layer_count_ = 0;
   std::vector<std::vector<RegionId>> regions_of_leaf_;
   std::vector<std::vector<LeafId>> between_;  ///< by either end

@@ -1,5 +1,5 @@
 #pragma once
-/// Ports: the openings in walls, compiled for the loop (DESIGN.md section 2, "Port").
+/// Ports: the openings in walls and sheets, compiled for the loop.
 
 #include <cstdint>
 #include <string>
@@ -15,15 +15,26 @@ using PortId = std::uint16_t;
 /// Which way a port lets the proxy through. `in` is from the first region named to the second.
 enum class PortDirection : std::uint8_t { kBoth, kIn, kOut };
 
+/// A port that must have been passed before, and how often.
+struct PassedBefore {
+  PortId port = 0;
+  int times = 1;  ///< 1 or more
+
+  PassedBefore(PortId before = 0, int at_least = 1) : port(before), times(at_least) {}
+};
+
 /// One opening. Regions may be several on each side (globs). Immutable after set-up.
 struct Port {
   std::string name;
-  std::vector<RegionId> from;  ///< the first of `between`, resolved
-  std::vector<RegionId> to;    ///< the second of `between`, resolved
-  std::vector<LeafId> on;      ///< open only on facets of these leaves; empty: on any facet
-  int mask = -1;               ///< open only within this mask of the partition; -1: everywhere
+  std::vector<RegionId> from;  ///< the first of `between`, resolved; empty in a sheet
+  std::vector<RegionId> to;    ///< the second of `between`, resolved; empty in a sheet
+  int sheet =
+      -1;  ///< opens this sheet of the scene, which has one region on both sides; -1: a wall
+  std::vector<LeafId> on;  ///< open only on facets of these leaves; empty: on any facet
+  int mask = -1;           ///< open only within this mask of the partition; -1: everywhere
   PortDirection direction = PortDirection::kBoth;
-  std::vector<PortId> after;  ///< ports that must have been passed before
+  std::vector<PassedBefore> after;  ///< ports that must have been passed before
+  int slot = -1;  ///< of PassedPorts; -1: no `after` names this port. Given by Passages
   Parameter
       opens_at;  ///< [N] elastic normal force at which it opens; 0: always open. A map holds at the
                  ///< point touched; where it is 0, the lightest touch opens
@@ -37,6 +48,12 @@ struct Port {
 
   /// True if going from `a` to `b` is the way in: from the first region named to the second.
   [[nodiscard]] bool leadsInward(RegionId a, RegionId b) const noexcept;
+
+  /// True if going from `a` to `b`, which the port joins, counts as inward. As leadsInward(), but where that
+  /// holds both ways (globs) only towards the later layer, so that the way back is the other way.
+  [[nodiscard]] bool countsInward(RegionId a, RegionId b) const noexcept {
+    return leadsInward(a, b) && (a < b || !leadsInward(b, a));
+  }
 
   /// True if the port joins `a` to `b` in this direction of travel.
   [[nodiscard]] bool leads(RegionId a, RegionId b) const noexcept;

@@ -1,14 +1,14 @@
 #pragma once
 /// The port machine: what a facet between two cells is for the proxy that stands in one of them, and
-/// what passing it does to the state (DESIGN.md section 2, "Wall", "Port", "State").
+/// what passing it does to the state.
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "palpate/interior/partition.h"
+#include "palpate/interior/passed_ports.h"
 #include "palpate/interior/port.h"
 #include "palpate/interior/punctures.h"
 
@@ -29,39 +29,10 @@ struct Sheet {
   int material = -1;           ///< index into the scene's materials
 };
 
-/// The ports passed on the way to where the proxy is. A value of fixed size: copy it to rewind.
-class PassedPorts {
- public:
-  static constexpr std::size_t kCapacity = 64;
-
-  [[nodiscard]] bool contains(PortId port) const noexcept;
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] PortId operator[](std::size_t i) const noexcept { return stack_[i].port; }
-
-  /// Records the crossing of `port` from region `from` to `to`. Coming back to the region that the last
-  /// passage left takes that passage off again; reaching outside clears all; with `keep`
-  /// neither happens, and a port once passed stays passed. When full, the oldest is forgotten.
-  void pass(PortId port, RegionId from, RegionId to, bool keep) noexcept;
-  /// Records that `to` was reached without a port (an absent wall). Back in a region that a passage left, that
-  /// passage and all after it are taken off; reaching outside clears all; with `keep` neither happens.
-  void arrive(RegionId to, bool keep) noexcept;
-  void clear() noexcept { size_ = 0; }
-
-  friend bool operator==(const PassedPorts& a, const PassedPorts& b) noexcept;
-
- private:
-  struct Entry {
-    PortId port = 0;
-    RegionId from = kOutside;
-  };
-  std::array<Entry, kCapacity> stack_{};
-  std::size_t size_ = 0;
-};
-
 /// What a facet is for the proxy on its near side.
 struct Facet {
   enum class Kind : std::uint8_t {
-    kInternal,  ///< the same region on both sides: nothing is there
+    kInternal,  ///< the same region on both sides, and no sheet: nothing is there
     kAbsent,    ///< another region, no wall: crossed freely
     kOpen,      ///< a port that lets the proxy through now
     kClosed,    ///< a wall
@@ -70,6 +41,7 @@ struct Facet {
   RegionId beyond = kOutside;  ///< the region on the far side
   PortId port = 0;             ///< kOpen: the port; kClosed and opens: the port that would open
   int material = -1;           ///< kClosed: of the wall, as felt from the near side
+  bool inward = false;         ///< with a port: which way it is passed, as PassedPorts counts
   bool opens = false;          ///< kClosed: a port opens it when it is pressed with opens_at
   bool varies = false;         ///< elsewhere on the same facet opens_at and port may be others
   double opens_at = 0.0;       ///< [N] elastic normal force that opens it
@@ -83,6 +55,7 @@ class Passages {
  public:
   Passages() = default;
   /// `walls[from * regions + to]`; `ports` in the author's order, which decides where several are open.
+  /// @throws Error (kInput) if `after` names more ports than PassedPorts has room for.
   Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Port> ports,
            std::vector<Sheet> sheets = {});
 
@@ -91,7 +64,7 @@ class Passages {
   [[nodiscard]] const Wall& wall(RegionId from, RegionId to) const noexcept {
     return walls_[from * regions_ + to];
   }
-  /// The ports that lead out of `region`: all that a tick tests.
+  /// The ports that lead out of `region`: all that a tick tests, but for those of sheets.
   [[nodiscard]] std::span<const PortId> portsOf(RegionId region) const noexcept {
     return ports_of_[region];
   }
@@ -110,7 +83,39 @@ class Passages {
                             std::span<const LeafId> crossed, const PassedPorts& passed,
                             const Vec3& at) const;
 
+  /// True if all that comes before `port` was passed.
+  [[nodiscard]] bool isDue(const Port& port, const PassedPorts& passed) const noexcept;
+
+  /// Records that `port` was passed from region `from` to `to` (the same for a port of a sheet), inward or not.
+  /// Reaching outside clears all, unless `keep`.
+  void pass(PassedPorts& passed, PortId port, bool inward, RegionId from, RegionId to,
+            bool keep) const noexcept;
+  /// The same for a port of a wall: the regions tell which way.
+  void pass(PassedPorts& passed, PortId port, RegionId from, RegionId to,
+            bool keep) const noexcept {
+    pass(passed, port, ports_[port].countsInward(from, to), from, to, keep);
+  }
+  /// Records that the proxy came from region `from` to `to` where there is no wall. That never counts as
+  /// passing a port, but it takes one passing back of each port that was passed from `to` to `from`, and
+  /// reaching outside clears all; with `keep` neither.
+  void arrive(PassedPorts& passed, RegionId from, RegionId to, bool keep) const noexcept;
+
  private:
+  /// Which way a port would be passed: to its force, and to PassedPorts.
+  struct Turn {
+    bool is_way_in;
+    bool counts_inward;
+  };
+  /// Whether `port`, which leads through the facet, has its mask and what comes before it; then what it
+  /// makes of the facet. True if it stands open: no other can do better.
+  bool consider(const Partition& partition, PortId id, Turn turn, const Signs& there,
+                const PassedPorts& passed, const Vec3& at, const Punctures* holes,
+                Facet& facet) const noexcept;
+  void lookThroughSheets(const Partition& partition, const Signs& here, const Signs& there,
+                         std::span<const LeafId> crossed, const PassedPorts& passed, const Vec3& at,
+                         const Punctures* holes, Facet& facet) const noexcept;
+  void giveSlots();
+
   std::size_t regions_ = 0;
   std::vector<Wall> walls_;
   std::vector<Port> ports_;
@@ -122,6 +127,8 @@ class Passages {
     PortId port = 0;
   };
   std::vector<std::vector<Way>> ways_of_;
+  std::vector<std::vector<PortId>> ports_of_sheet_;
+  std::vector<PortId> counted_;  ///< ports by slot of PassedPorts
 };
 
 }  // namespace palpate

@@ -47,23 +47,18 @@ struct TickResult {
   Vec3 force{0.0, 0.0, 0.0};  ///< [N, world] on the hand; always finite
   Vec3 proxy{0.0, 0.0, 0.0};  ///< [m, world] the tip held in its region
   RegionId region = kOutside;
-  bool contact = false;          ///< a closed wall is pressed
+  bool contact = false;  ///< a closed wall is pressed
+  /// The proxy rests where it is closest to the hand, within the stated tolerances; false: it is on its way
+  /// there, at a point that is allowed and no further from the hand than the last one, out of budget for this tick.
+  bool settled = true;
   std::uint8_t event_count = 0;  ///< crossings of this tick that passed a port, in path order
   std::array<PortId, kMaxEvents> events{};
 };
 
-/// How the paper's algorithms nudge the contact point back onto the surface (its alpha term).
-enum class AlphaForm {
-  kByMetric,  ///< kLength for distances (exact and bound fields), kNewton for implicit ones
-  kLength,    ///< alpha S N / |N|, as printed: its strength depends on the field's scale
-  kNewton,    ///< alpha S N / (N . N)
-};
-
 struct RendererSettings {
-  std::optional<RendererKind> kind = {};        ///< not given: as the scene says
-  AlphaForm alpha_form = AlphaForm::kByMetric;  ///< paper's renderer only
-  double alpha = 1.0;                           ///< [-] paper's renderer only
-  ForceLimits limits = {};  ///< none unless asked for, so that closed forms hold
+  std::optional<RendererKind> kind = {};  ///< not given: as the scene says
+  PaperParameters paper = {};             ///< paper's renderer only; goes before the scene's own
+  ForceLimits limits = {};                ///< none unless asked for, so that closed forms hold
 };
 
 /// One algorithm of section 3 of DESIGN.md. Construction may throw and allocate; update() and reset()

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "palpate/contact/paper_parameters.h"
 #include "palpate/core/progress.h"
 #include "palpate/fields/field.h"
 #include "palpate/interior/port.h"
@@ -109,10 +110,24 @@ struct WallOverride {
   SourcePlace place = {};
 };
 
+/// A port that must have been passed before, and at least how often.
+struct AfterDescription {
+  std::string port;
+  int times = 1;  ///< 1 or more
+
+  AfterDescription(std::string before, int at_least = 1)
+      : port(std::move(before)), times(at_least) {}
+  AfterDescription(const char* before) : port(before) {}
+  friend bool operator==(const AfterDescription&, const AfterDescription&) = default;
+};
+
 struct PortDescription {
   std::string name;
-  std::string from;          ///< region names and globs, with ", " between them
-  std::string to;            ///< the same
+  std::string from;  ///< region names and globs, with ", " between them
+  std::string to;    ///< the same
+  /// It opens this sheet and no wall: `from` and `to` are empty, there is no `on`, and inward is against the
+  /// gradient of what the sheet is on.
+  std::string sheet = {};
   FieldSourcePtr on = {};    ///< null: any facet
   std::string on_name = {};  ///< how the author called it
   /// Why `on` may be no face though the scene uses it (it went into a blend), for compile() to say
@@ -120,7 +135,7 @@ struct PortDescription {
   std::string on_note = {};
   FieldSourcePtr where = {};  ///< null: everywhere
   PortDirection direction = PortDirection::kBoth;
-  std::vector<std::string> after = {};
+  std::vector<AfterDescription> after = {};
   Parameter opens_at = 0.0;            ///< [N]
   std::optional<Parameter> back = {};  ///< [N]; not given: as opens_at
   double hole_radius = 0.0;            ///< [m] 0: opening it by force leaves no hole
@@ -154,8 +169,9 @@ struct SceneDescription {
   std::vector<SheetDescription> sheets = {};
   std::string start_region = "outside";
   SourcePlace start_place = {};
-  bool keep_memory = false;  ///< `memory: keep`: reaching outside does not clear the passed ports
+  bool keep_memory = false;  ///< `memory: keep`: what was passed is never taken back nor cleared
   RendererKind renderer = RendererKind::kConstraint;
+  PaperParameters paper = {};
   DeviceMapping device = {};
 };
 

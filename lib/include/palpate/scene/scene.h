@@ -1,6 +1,7 @@
 #pragma once
 /// Scene: what compile() makes of a description. Immutable, shared, and all that the loop reads.
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -13,13 +14,22 @@
 
 namespace palpate {
 
+/// Whether there is a sequence of transitions, from the start and with the ports in their order, that leads
+/// somewhere. Of the shapes it looks at what touches what: a region in two parts counts as one.
+enum class Reach : std::uint8_t {
+  kNo,         ///< none, however long
+  kUndecided,  ///< none was found, nor that there is none
+  kYes,        ///< one was found
+};
+
 /// A region as the loop and the reports see it.
 struct Region {
   std::string name;
   int content = -1;  ///< index into Scene::materials(); -1: nothing is felt
   int wall = -1;     ///< own wall's material; -1 where absent (and for outside)
   bool wall_absent = false;
-  bool reachable = true;  ///< by ports and absent walls from the start region
+  Reach reach = Reach::kYes;  ///< by ports and absent walls from the start region
+  bool reachable = true;      ///< unless reach is kNo
   FieldPtr
       field;  ///< the layer's whole field (label group share applied); null for outside and for
               ///< what was left out
@@ -37,6 +47,8 @@ class Scene {
   [[nodiscard]] std::span<const Material> materials() const noexcept { return materials_; }
   [[nodiscard]] const Passages& passages() const noexcept { return passages_; }
   [[nodiscard]] std::span<const Port> ports() const noexcept { return passages_.ports(); }
+  /// Whether the port can ever be passed.
+  [[nodiscard]] Reach reachOf(PortId port) const { return reach_of_port_[port]; }
   /// True if the two regions were found to have a wall (or an absent one) between them.
   [[nodiscard]] bool touches(RegionId a, RegionId b) const {
     return a != b && touch_[a * regions_.size() + b];
@@ -44,6 +56,8 @@ class Scene {
   [[nodiscard]] RegionId startRegion() const noexcept { return start_; }
   [[nodiscard]] bool keepsMemory() const noexcept { return keep_memory_; }
   [[nodiscard]] RendererKind renderer() const noexcept { return renderer_; }
+  /// For the paper's renderer.
+  [[nodiscard]] const PaperParameters& paper() const noexcept { return paper_; }
   [[nodiscard]] const DeviceMapping& device() const noexcept { return device_; }
   [[nodiscard]] const std::string& lengthUnit() const noexcept { return length_unit_; }
   [[nodiscard]] double metresPerUnit() const noexcept { return metres_per_unit_; }
@@ -67,6 +81,8 @@ class Scene {
   Passages passages_;
   Box3 sheet_bounds_;        ///< [m]
   std::vector<bool> touch_;  ///< [a * regions + b], symmetric
+  std::vector<Reach> reach_of_port_;
+  PaperParameters paper_;
   std::vector<NamedField> fields_;
   RegionId start_ = kOutside;
   bool keep_memory_ = false;

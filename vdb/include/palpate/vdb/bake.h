@@ -57,9 +57,10 @@ struct BakeOptions {
 /// A solid out of a mesh as it comes. Values are the distance to the closest triangle, to 1e-5 voxel;
 /// the result does not depend on the number of threads.
 ///
-/// Vertices in one place are joined (where edges are open, also those within a millionth of the mesh's
+/// Vertices in one place are joined (where edges are open, also those within 4e-5 of the mesh's
 /// size), doubled triangles dropped, triangles turned as most of their
-/// neighbors are; holes get lids of least area. Parts that overlap are one solid, a part within another
+/// neighbors are; holes get lids of least area, open parts that are too small for the voxels are dropped
+/// (`lost_parts` says how many). Parts that overlap are one solid, a part within another
 /// one and turned against it is a cavity, a mesh that is inside out is the same mesh.
 /// `lost_parts` as of bake().
 ///

@@ -124,7 +124,8 @@ struct ImageInfo {
 ///   `index R G B A visible mesh "name"` (ITK-SNAP)
 ///   CSV `value,name` with or without a header line, with Color_R, Color_G, Color_B (Slicer .csv)
 ///   an image with a table of its own (.seg.nrrd, .nii.gz)
-/// LF or CR LF; a byte order mark, blank lines and lines from # on are skipped.
+/// LF or CR LF; a byte order mark, blank lines and lines from # on are skipped. Lines that are not
+/// UTF-8 are taken for Latin-1.
 /// @throws Error (kInput, codes "labels.*") naming file and line: a value that is no integer or has
 /// two names, a missing name, a column that does not belong, a colour out of range.
 [[nodiscard]] LabelTable readLabelTable(const std::string& path);

@@ -41,6 +41,10 @@ struct MeshReport {
 [[nodiscard]] Mesh readMesh(const std::string& path, double metres_per_unit,
                             Space space = Space::kStated);
 
+/// The length unit that a mesh file's format prescribes: "m" for glTF and GLB, by their standard; empty for those that
+/// have none, and for what callers know better.
+[[nodiscard]] std::string prescribedUnit(const std::string& path);
+
 /// Half-edges counted, components by shared vertices. Every index must be in range.
 [[nodiscard]] MeshReport checkMesh(const Mesh& mesh);
 

@@ -40,7 +40,9 @@ struct RegisterOptions {
 };
 
 /// Adds to a scene's vocabulary (paths are relative to the scene file, lengths in its unit):
-///   fields  mesh: {file, units, space, voxel, half_width, sampler}  units: the scene's; voxel: longest side / 128
+///   fields  mesh: {file, units, space, voxel, half_width, edges: sharp | rounded, sharp, sampler}  units: the
+///                  scene's, of glTF metres; voxel: longest side / 128; edges: see polyhedron.h; sharp: [degrees] see
+///                  sharp_edges.h
 ///           grid: {file, name, units, sampler}               units: only if the file does not say
 ///           baked: {field, voxel, half_width, sampler, parts, tolerance}   parts: auto | operands | whole,
 ///                  see hybrid.h

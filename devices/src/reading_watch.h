@@ -1,0 +1,49 @@
+#pragma once
+// How old the last reading is, and what of a force may be written because of that.
+
+#include <cstdint>
+
+namespace palpate::devices {
+
+/// Times are in [ns] of one clock.
+class ReadingWatch {
+ public:
+  ReadingWatch(std::int64_t longest, std::int64_t recovery) noexcept
+      : longest_(longest), recovery_(recovery) {}
+
+  /// A turn of the loop at `now`, with a new reading or without.
+  void turn(std::int64_t now, bool is_new) noexcept {
+    if (is_new) {
+      if (has_expired_ && !is_recovering_) {
+        is_recovering_ = true;
+        recovered_from_ = now;
+      }
+      has_expired_ = false;
+      last_new_ = now;
+    } else if (now - last_new_ >= longest_) {
+      has_expired_ = true;
+      is_recovering_ = false;
+    }
+    now_ = now;
+    if (is_recovering_ && now_ - recovered_from_ >= recovery_) is_recovering_ = false;
+  }
+
+  /// Nothing new for too long: zero is to be written.
+  [[nodiscard]] bool hasExpired() const noexcept { return has_expired_; }
+  /// From 0 when readings came again to 1.
+  [[nodiscard]] double share() const noexcept {
+    if (!is_recovering_) return 1.0;
+    return static_cast<double>(now_ - recovered_from_) / static_cast<double>(recovery_);
+  }
+
+ private:
+  std::int64_t longest_;
+  std::int64_t recovery_;
+  std::int64_t now_ = 0;
+  std::int64_t last_new_ = 0;
+  std::int64_t recovered_from_ = 0;
+  bool has_expired_ = false;
+  bool is_recovering_ = false;
+};
+
+}  // namespace palpate::devices

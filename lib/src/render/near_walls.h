@@ -1,0 +1,67 @@
+#pragma once
+/// NearWalls: the leaves near the proxy, what they are like there, and the cells that its region consists of
+/// around it. Scratch: made anew for each place.
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "cell_walker.h"
+#include "palpate/interior/near_cells.h"
+
+namespace palpate {
+
+/// A leaf at one place, as a distance: S over the length of its gradient.
+struct NearWall {
+  LeafId leaf = 0;
+  double distance = 0.0;       ///< [m] S / |grad S|, negative inside
+  double tolerance = 0.0;      ///< [m] how near is on the surface
+  double slope = 0.0;          ///< [-] |grad S|; 0: the leaf has no normal here
+  Vec3 normal{0.0, 0.0, 0.0};  ///< [-] outward
+  Mat3 bend{0.0};              ///< [1/m] Hessian of S over the slope
+  double bend_size = 0.0;      ///< [1/m] its norm
+
+  /// [m] what is left on the side that is asked for
+  [[nodiscard]] double gap(bool inside) const noexcept { return inside ? -distance : distance; }
+};
+
+class NearWalls {
+ public:
+  static constexpr std::size_t kMax = NearCells::kMaxNear;
+
+  NearWalls(const Scene& scene, CellWalker& walker)
+      : walker_(walker), cells_(scene.partition(), scene.passages()) {}
+
+  /// Looks for leaves whose surface may come within `radius` [m] of the walker's point; false if there are
+  /// more than kMax (then nothing is known). With `trust_sides`, a leaf that the point is beyond of
+  /// counts as where the walker has it: the way back from where the point must not be.
+  [[nodiscard]] bool look(double radius, bool trust_sides) noexcept;
+
+  [[nodiscard]] std::span<const NearWall> walls() const noexcept { return {wall_.data(), count_}; }
+  [[nodiscard]] std::span<const NearCell> cells() const noexcept {
+    return {cell_.data(), cell_count_};
+  }
+
+ private:
+  /// True if the cell's walls at the point leave no room between them: faces of neighbors that touch, or the line
+  /// where the walls between three labels meet.
+  [[nodiscard]] bool isSliver(const NearCell& cell) const noexcept;
+
+  CellWalker& walker_;
+  NearCells cells_;
+  std::array<NearWall, kMax> wall_{};
+  std::size_t count_ = 0;
+  std::array<NearCell, NearCells::kMaxCells> cell_{};
+  std::size_t cell_count_ = 0;
+};
+
+/// Where `leaf`'s distance bends more than its feature size lets it, its differences straddle a fold. Then its
+/// bend is asked for a little way further beyond the surface, seen from `side`, where only the wall with
+/// `normal` (outward) is felt; a cone near its tip, which does bend like that, keeps `bend`.
+void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal,
+                Mat3& bend) noexcept;
+
+/// The leaf `id` at a place where its field has the sample `s`; without its bend.
+[[nodiscard]] NearWall wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept;
+
+}  // namespace palpate

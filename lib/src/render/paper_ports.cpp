@@ -1,0 +1,138 @@
+// PaperRenderer's ports: which are passed, and which faces they leave open.
+
+#include <algorithm>
+
+#include "paper_renderer.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kHalvings = 40;  // of a tick's way, to where a face is crossed
+
+}  // namespace
+
+/// The ports of the present state are tried, and when one is passed those of the next: so the paper's
+/// conditions "can be tested iteratively".
+void PaperRenderer::advance(const Vec3& hip, TickResult& out) noexcept {
+  const Partition& partition = scene_->partition();
+  partition.signsAt(hip, now_);
+  cell_ = last_cell_;
+  bool goes_on = now_ != last_cell_;
+  for (std::size_t tries = 0; goes_on && tries < TickResult::kMaxEvents; ++tries) {
+    goes_on = partition.regionOf(cell_) == state_;
+    if (!goes_on) break;
+    const auto ports = scene_->passages().portsOf(state_);
+    goes_on =
+        std::any_of(ports.begin(), ports.end(), [&](PortId id) { return tryPort(id, hip, out); }) ||
+        tryAbsentWalls();
+  }
+  last_cell_ = now_;
+}
+
+bool PaperRenderer::turn(std::span<const LeafId> leaves) noexcept {
+  turned_ = cell_;
+  bool is_changed = false;
+  for (const LeafId leaf : leaves) {
+    if (cell_.inside(leaf) == now_.inside(leaf)) continue;
+    turned_.flip(leaf);
+    turned_leaf_ = leaf;
+    is_changed = true;
+  }
+  return is_changed;
+}
+
+bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcept {
+  const Port& port = scene_->ports()[id];
+  const Partition& partition = scene_->partition();
+  if (!scene_->passages().isDue(port, passed_)) return false;
+  for (const std::vector<RegionId>* side : {&port.to, &port.from}) {
+    for (const RegionId to : *side) {
+      if (to == state_ || !port.leads(state_, to)) continue;
+      const RegionId inner = std::max(state_, to);
+      const bool is_on_face = !port.on.empty();
+      if (!turn(is_on_face ? std::span<const LeafId>(port.on) : partition.leavesOfRegion(inner)) ||
+          partition.regionOf(turned_) != to) {
+        continue;
+      }
+      if (is_on_face) {
+        // The walls beside the face must have been passed neither before nor now.
+        scratch_ = now_;
+        if (inner == state_) {
+          for (const LeafId leaf : port.on) scratch_.set(leaf, cell_.inside(leaf));
+        }
+        if (!partition.layerHolds(inner, scratch_)) continue;
+      }
+      const Vec3 point = crossingPoint(hip);
+      if (port.mask >= 0) {
+        partition.signsAt(point, scratch_);
+        if (!partition.maskHolds(static_cast<std::size_t>(port.mask), scratch_)) continue;
+      }
+      scene_->passages().pass(passed_, id, state_, to, scene_->keepsMemory());
+      crossings_[out.event_count] = {.port = id,
+                                     .from = state_,
+                                     .to = to,
+                                     .point = point,
+                                     .normal = unitOr(last_ - hip, Vec3(0.0))};
+      out.events[out.event_count++] = id;
+      enter(to);
+      return true;
+    }
+  }
+  return false;
+}
+
+bool PaperRenderer::tryAbsentWalls() noexcept {
+  const Partition& partition = scene_->partition();
+  for (const RegionId to : free_ways_of_[state_]) {
+    const RegionId inner = std::max(state_, to);
+    if (!turn(partition.leavesOfRegion(inner)) || partition.regionOf(turned_) != to) continue;
+    scene_->passages().arrive(passed_, state_, to, scene_->keepsMemory());
+    enter(to);
+    return true;
+  }
+  return false;
+}
+
+/// Where the way of this tick comes through the face that was crossed.
+Vec3 PaperRenderer::crossingPoint(const Vec3& hip) const noexcept {
+  const Field& face = *scene_->partition().leaves()[turned_leaf_].field;
+  const bool began_inside = cell_.inside(turned_leaf_);
+  Vec3 before = last_;
+  Vec3 behind = hip;
+  for (int k = 0; k < kHalvings; ++k) {
+    const Vec3 middle = 0.5 * (before + behind);
+    ((face.value(middle) < 0.0) == began_inside ? before : behind) = middle;
+  }
+  return behind;
+}
+
+void PaperRenderer::enter(RegionId region) noexcept {
+  cell_ = turned_;
+  state_ = region;
+  openFaces();
+}
+
+/// A face is open where a port on it lets through from the present state: out of the layer, or into it.
+void PaperRenderer::openFaces() noexcept {
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    const auto self = static_cast<RegionId>(i + 1);
+    PaperWall& wall = layers_[i].wall;
+    for (std::size_t f = 0; f < wall.faces().size(); ++f) {
+      const std::vector<PortId>& ports = wall.faces()[f].ports;
+      const bool is_open = std::any_of(ports.begin(), ports.end(), [&](PortId id) {
+        const Port& port = scene_->ports()[id];
+        const auto leads_out = [&](const std::vector<RegionId>& side) {
+          return std::any_of(side.begin(), side.end(),
+                             [&](RegionId to) { return to != self && port.leads(self, to); });
+        };
+        const bool leads =
+            state_ != self ? port.leads(state_, self) : leads_out(port.from) || leads_out(port.to);
+        return leads && scene_->passages().isDue(port, passed_);
+      });
+      // What was felt was another surface.
+      if (wall.setOpen(f, is_open) && in_contact_ && contact_layer_ == i) in_contact_ = false;
+    }
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,296 @@
+#include "proxy_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+// The tick: look around, and go on until the proxy rests. How one step is made: proxy_step.cpp.
+
+namespace palpate {
+
+double ContactSet::load() const noexcept {
+  Vec3 sum(0.0);
+  for (const WallContact& each : walls()) sum += each.held.multiplier * each.held.normal;
+  return glm::length(sum);
+}
+
+HeldWalls ContactSet::held() const noexcept {
+  HeldWalls out;
+  for (const WallContact& each : walls()) out.wall[out.count++] = each.held;
+  return out;
+}
+
+bool ProxySolver::CellProblem::holds(std::size_t plane_index) const noexcept {
+  for (int k = 0; k < solution.count; ++k) {
+    if (solution.plane[static_cast<std::size_t>(k)] == static_cast<int>(plane_index)) return true;
+  }
+  return false;
+}
+
+bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& opener) noexcept {
+  batches_left_ = limits::kMaxBatches;
+  trusts_sides_ = false;
+  contact_ = {};
+  bool may_fly = true;
+  for (bool is_first = true; batches_left_ > 0; is_first = false) {
+    x_ = walker_.position();
+    wish_ = hip - x_;
+    aim_ = wish_;
+    if (wish_ == Vec3(0.0)) {
+      contact_ = {};
+      friction.sticks = false;
+      return true;
+    }
+    Try outcome = Try::kMoved;
+    switch (lookAround(friction, is_first)) {
+      case Look::kNowhere:
+        return false;
+      case Look::kCrossed:
+        may_fly = true;
+        continue;
+      case Look::kFree: {
+        friction.sticks = false;
+        contact_ = {};
+        if (may_fly) {
+          const CellWalker::Stop stop = walker_.move(hip, false);
+          if (stop == CellWalker::Stop::kArrived) return true;
+          const double flown = glm::length(walker_.position() - x_);
+          if (stop == CellWalker::Stop::kSpent && flown <= rest_) return false;
+          // Stopped at once by a wall that it leads along: from here in steps that keep to the walls.
+          may_fly = flown > rest_;
+          continue;
+        }
+        outcome = moveOn();
+        break;
+      }
+      case Look::kMoves:
+        outcome = moveOn();
+        break;
+      case Look::kRests:
+        outcome = Try::kRests;
+        break;
+    }
+    if (outcome == Try::kMoved) {
+      may_fly = true;
+      continue;
+    }
+    // Only at rest does the spring of the wall have the length that is felt: a tangent plane that one tick's
+    // motion left behind may be pressed harder, and must not open what was never pressed so.
+    if (opener.open(contact_)) continue;
+    if (outcome == Try::kRefused) return false;
+    if (friction.sticks || !kick()) return true;
+  }
+  takeLastContact(hip);
+  return false;
+}
+
+/// Out of budget on the way: the walls that hold the proxy where it got to.
+void ProxySolver::takeLastContact(const Vec3& hip) noexcept {
+  x_ = walker_.position();
+  wish_ = hip - x_;
+  cuts_ = 0;
+  const Vec3 lag = contact_.lag;
+  const bool is_known = lookWithin(rest_);
+  if (is_known) poseAll(wish_);
+  if (!is_known || problems_ == 0 || problem_[0].solution.count == 0) {
+    contact_ = {};
+    return;
+  }
+  takeContact(problem_[0]);
+  contact_.lag = lag;
+}
+
+/// Looks at what touches the proxy: whether it is free to go, rests, stands at an opening, or has to slide.
+ProxySolver::Look ProxySolver::lookAround(FrictionState& friction, bool is_first) noexcept {
+  --batches_left_;
+  const double depth = glm::length(wish_);
+  const double size = std::max({std::fabs(x_.x), std::fabs(x_.y), std::fabs(x_.z)});
+  rest_ = std::max(limits::kSettled * depth, limits::kRounding * size);
+  cuts_ = 0;
+  if (!lookWithin(rest_)) return Look::kNowhere;
+  poseAll(wish_);
+  for (std::size_t i = 0; i < problems_; ++i) {
+    if (problem_[i].solution.count == 0) return Look::kFree;
+  }
+  for (std::size_t i = 0; i < problems_; ++i) {
+    const CellProblem& problem = problem_[i];
+    for (int k = 0; k < problem.solution.count; ++k) {
+      const Source& from = problem.source[static_cast<std::size_t>(
+          problem.solution.plane[static_cast<std::size_t>(k)])];
+      const NearWall& wall = near_.walls()[from.near];
+      if (wall.gap(from.inside) > limits::kOnWall * wall.tolerance + rest_) continue;
+      const Facet facet = walker_.facetAt(wall.leaf);
+      if (facet.isClosed() || facet.kind == Facet::Kind::kInternal) continue;
+      if (!walker_.mayCross()) return Look::kNowhere;
+      walker_.cross(wall.leaf, facet);
+      return Look::kCrossed;
+    }
+  }
+  takeContact(problem_[0]);
+  holdByFriction(friction, is_first);
+  if (contact_.lag != Vec3(0.0)) {
+    aim_ = wish_ - contact_.lag;
+    for (std::size_t i = 0; i < problems_; ++i) solve(problem_[i], aim_);
+  }
+  for (std::size_t i = 0; i < problems_; ++i) {
+    if (glm::length(problem_[i].solution.step) > rest_) return Look::kMoves;
+  }
+  return Look::kRests;
+}
+
+/// Near walls and cells within `radius` [m]. Where no cell holds the proxy (a field that lies about its bound
+/// let it through), the walker's sides say where it belongs. False if it cannot be told.
+bool ProxySolver::lookWithin(double radius) noexcept {
+  trusts_sides_ = false;
+  if (!near_.look(radius, false)) return false;
+  if (!near_.cells().empty()) return true;
+  trusts_sides_ = true;
+  return near_.look(radius, true) && !near_.cells().empty();
+}
+
+void ProxySolver::poseAll(const Vec3& wish) noexcept {
+  problems_ = 0;
+  for (const NearCell& cell : near_.cells()) {
+    CellProblem& problem = problem_[problems_++];
+    pose(cell, problem);
+    solve(problem, wish);
+  }
+  if (problems_ > 1) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < problems_; ++i) {
+      if (problem_[i].gain > problem_[best].gain) best = i;
+    }
+    if (best != 0) std::swap(problem_[0], problem_[best]);
+  }
+}
+
+void ProxySolver::pose(const NearCell& cell, CellProblem& out) const noexcept {
+  out.cell = cell;
+  out.planes = 0;
+  const std::span<const NearWall> walls = near_.walls();
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const std::uint32_t bit = std::uint32_t{1} << i;
+    if (((cell.inside | cell.outside) & bit) == 0 || !(walls[i].slope > 0.0)) continue;
+    const bool inside = (cell.inside & bit) != 0;
+    const NearWall& wall = walls[i];
+    const double left = wall.gap(inside) - limits::kRest * wall.tolerance;
+    const bool is_on = std::fabs(left) <= (limits::kOnWall - limits::kRest) * wall.tolerance;
+    out.add({inside ? -wall.normal : wall.normal, is_on ? 0.0 : left},
+            {static_cast<std::uint8_t>(i), inside, -1});
+    for (std::size_t c = 0; c < cuts_; ++c) {
+      if (cut_[c].leaf == wall.leaf && cut_[c].inside == inside) {
+        out.add(cut_[c].plane, {static_cast<std::uint8_t>(i), inside, static_cast<std::int8_t>(c)});
+      }
+    }
+  }
+}
+
+void ProxySolver::solve(CellProblem& problem, const Vec3& wish) const noexcept {
+  problem.solution = closestStep(wish, problem.given());
+  const Vec3 left = wish - problem.solution.step;
+  problem.gain = glm::dot(wish, wish) - glm::dot(left, left);
+}
+
+namespace {
+
+/// The part of `wish` along the planes that hold `solution`.
+Vec3 tangentialStep(const Vec3& wish, const std::array<Plane, 3>& planes,
+                    const PlaneSolution& solution) noexcept {
+  HeldWalls held;
+  for (int k = 0; k < solution.count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    held.wall[held.count++].normal = planes[static_cast<std::size_t>(solution.plane[i])].normal;
+  }
+  return tangentialPart(wish, held.walls());
+}
+
+}  // namespace
+
+/// The walls that hold the solution. How hard each is pressed is measured from its surface: the proxy stands
+/// off by half a tolerance.
+void ProxySolver::takeContact(const CellProblem& problem) noexcept {
+  const PlaneSolution& s = problem.solution;
+  const int material = contact_.count > 0 ? contact_.wall[0].facet.material : 0;
+  contact_.count = 0;
+  contact_.lag = Vec3(0.0);
+  contact_.snug = Vec3(0.0);
+  double most = 0.0;
+  std::array<Plane, 3> planes{};
+  std::array<const Source*, 3> source{};
+  const auto count = static_cast<std::size_t>(s.count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto index = static_cast<std::size_t>(s.plane[k]);
+    source[k] = &problem.source[index];
+    planes[k] = problem.plane[index];
+    const NearWall& wall = near_.walls()[source[k]->near];
+    if (!source[k]->isCut() && planes[k].gap == 0.0) planes[k].gap = wall.gap(source[k]->inside);
+    most = std::max(most, limits::kNoise * wall.tolerance + planes[k].gap);
+  }
+  PlaneSolution exact = closestStep(wish_, {planes.data(), count});
+  // Walls that are almost parallel may meet far off: then they are taken to meet where the proxy stands.
+  const Vec3 onto = exact.step - tangentialStep(wish_, planes, exact);
+  if (glm::length(onto) > most) {
+    for (Plane& plane : planes) plane.gap = 0.0;
+    exact = closestStep(wish_, {planes.data(), count});
+  } else {
+    contact_.snug = onto;
+  }
+  for (std::size_t e = 0; e < static_cast<std::size_t>(exact.count); ++e) {
+    const auto k = static_cast<std::size_t>(exact.plane[e]);
+    const Source& from = *source[k];
+    const NearWall& wall = near_.walls()[from.near];
+    WallContact& out = contact_.wall[contact_.count++];
+    out.leaf = wall.leaf;
+    out.facet = walker_.facetAt(wall.leaf);
+    // On the rim of a union the facet of one part leads into the other: the wall is the same.
+    if (out.facet.material < 0) out.facet.material = material;
+    out.held.field = walker_.leaf(wall.leaf).field.get();
+    out.held.side = from.inside ? -1.0 : 1.0;
+    out.held.jet = walker_.jetHere(wall.leaf);
+    out.held.normal = planes[k].normal;
+    if (from.isCut()) {
+      out.held.jet.gradient = out.held.side * wall.slope * out.held.normal;
+      out.held.jet.hessian = wall.slope * cut_[static_cast<std::size_t>(from.cut)].bend;
+    }
+    out.held.multiplier = exact.multiplier[e];
+  }
+  contact_.left = tangentialPart(wish_, contact_.held().walls());
+}
+
+/// The cone: while it sticks the proxy may lag by static_ratio of the load, else it slides until it lags
+/// by kinetic_ratio of it. Where stiffness varies, its own lean pulls at the proxy too: the cone is about where the
+/// proxy would rest without friction. So the lean is felt through the lag, the same whether it sticks or slides.
+/// Of several walls the roughest counts, for the load of all.
+void ProxySolver::holdByFriction(FrictionState& friction, bool is_first) noexcept {
+  ContactSet& c = contact_;
+  double static_ratio = 0.0;
+  double kinetic_ratio = 0.0;
+  for (const WallContact& each : c.walls()) {
+    const Friction& own =
+        scene_.materials()[static_cast<std::size_t>(each.facet.material)].friction;
+    static_ratio = std::max(static_ratio, own.static_ratio.at(x_));
+    kinetic_ratio = std::max(kinetic_ratio, own.kinetic_ratio.at(x_));
+  }
+  if (static_ratio <= 0.0 || walker_.isSealed()) {
+    friction.sticks = false;
+    friction.is_felt = false;
+    return;
+  }
+  friction.is_felt = true;
+  kinetic_ratio = std::min(kinetic_ratio, static_ratio);
+  const Vec3 rest = tangentialPart(friction.lean, c.held().walls());
+  const Vec3& pulled = c.left;
+  const Vec3 off = pulled - rest;
+  const double pull = glm::length(off);
+  const double load = c.load();
+  const double kinetic = kinetic_ratio * load;
+  if (friction.sticks && pull > static_ratio * load) friction.sticks = false;
+  // What slides sticks again when the hand no longer pulls it on, which shows when a tick begins: at the
+  // end of its own slide it is always where the cone just holds it, and a hand that moves on would
+  // feel a saw.
+  if (!friction.sticks && is_first && pull <= kinetic * (1.0 + limits::kSticksWithin)) {
+    friction.sticks = true;
+  }
+  c.lag = friction.sticks || pull <= kinetic ? pulled : rest + off * (kinetic / pull);
+}
+
+}  // namespace palpate

@@ -1,0 +1,170 @@
+#pragma once
+/// ProxySolver: where the proxy goes. It minimizes |x - P|^2 over the proxy's region along a connected path:
+/// at each place the region is a union of cells, each a conjunction of sides of smooth leaves, and x rests if
+/// and only if it rests in every cell that holds it. So edges, corners of any number of walls, apexes and
+/// the rims of unions need no rule of their own.
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "near_walls.h"
+#include "palpate/contact/planes.h"
+#include "palpate/contact/slide.h"
+#include "solver_limits.h"
+
+namespace palpate {
+
+/// A closed wall that holds the proxy.
+struct WallContact {
+  LeafId leaf = 0;
+  Facet facet;
+  HeldWall held;
+};
+
+/// What friction leaves from one tick to the next.
+struct FrictionState {
+  bool sticks = false;
+  bool is_felt = false;  ///< some wall that holds the proxy has friction
+  /// [m] how far the springs would draw the proxy along the walls to where they are softer
+  Vec3 lean{0.0, 0.0, 0.0};
+};
+
+struct HeldWalls {
+  std::array<HeldWall, 3> wall{};
+  std::size_t count = 0;
+  [[nodiscard]] std::span<const HeldWall> walls() const noexcept { return {wall.data(), count}; }
+};
+
+/// What holds the proxy.
+struct ContactSet {
+  std::array<WallContact, 3> wall{};
+  std::size_t count = 0;
+  Vec3 lag{0.0, 0.0, 0.0};  ///< [m] of P - x: the part along the walls that friction holds
+  /// [m] from the proxy, which stands off its walls by half a tolerance, onto their surfaces
+  Vec3 snug{0.0, 0.0, 0.0};
+  Vec3 left{0.0, 0.0, 0.0};  ///< [m] of P - x: the part along the walls, held or still to go
+
+  [[nodiscard]] std::span<const WallContact> walls() const noexcept { return {wall.data(), count}; }
+  [[nodiscard]] HeldWalls held() const noexcept;
+  [[nodiscard]] double load() const noexcept;  ///< [m] length of the sum of multiplier * normal
+};
+
+/// Asked at rest whether a wall that is pressed gives way.
+class WallOpener {
+ public:
+  /// True if one did, and the walker went through it.
+  virtual bool open(const ContactSet& contact) noexcept = 0;
+
+ protected:
+  ~WallOpener() = default;
+};
+
+class ProxySolver {
+ public:
+  ProxySolver(const Scene& scene, CellWalker& walker)
+      : scene_(scene), walker_(walker), near_(scene, walker) {}
+
+  /// Brings the proxy to where |x - P| is smallest in its region, as far as one tick's budget goes; never
+  /// further from P than it was, but for what friction holds. True if it came to rest there.
+  bool track(const Vec3& hip, FrictionState& friction, WallOpener& opener) noexcept;
+
+  /// As of the last track(): what holds the proxy; empty where it is at P.
+  [[nodiscard]] const ContactSet& contact() const noexcept { return contact_; }
+
+ private:
+  static constexpr std::size_t kMaxCells = NearCells::kMaxCells;
+  static constexpr std::size_t kMaxNear = NearWalls::kMax;
+  static constexpr std::size_t kMaxSeen =
+      6;  ///< planes of folds that a way back onto the walls keeps
+
+  /// A plane of a cell's problem: the side of a near wall, or a tangent plane met further on (a cut).
+  struct Source {
+    std::uint8_t near = 0;  ///< index of the near wall
+    bool inside = false;    ///< the side of it that the cell is on
+    std::int8_t cut = -1;   ///< index of the cut; -1: the wall as it is here
+
+    [[nodiscard]] bool isCut() const noexcept { return cut >= 0; }
+  };
+  struct CellProblem {
+    NearCell cell;
+    std::array<Plane, kMaxPlanes> plane{};
+    std::array<Source, kMaxPlanes> source{};
+    std::size_t planes = 0;
+    PlaneSolution solution;
+    double gain = 0.0;  ///< [m^2] of the solution
+
+    void add(const Plane& added, const Source& from) noexcept {
+      if (planes == kMaxPlanes) return;
+      plane[planes] = added;
+      source[planes++] = from;
+    }
+    [[nodiscard]] std::span<const Plane> given() const noexcept { return {plane.data(), planes}; }
+    [[nodiscard]] bool holds(std::size_t plane_index) const noexcept;
+  };
+  struct Cut {
+    Plane plane;  ///< from where the look is
+    Mat3 bend{
+        0.0};  ///< [1/m] of the distance to that wall, outward; zero where it is not known here
+    LeafId leaf = 0;
+    bool inside = false;
+    double away = 0.0;  ///< [m] how far off it was met
+  };
+
+  enum class Look { kFree, kRests, kCrossed, kMoves, kNowhere };
+  enum class Try { kMoved, kRests, kRefused };
+
+  [[nodiscard]] Look lookAround(FrictionState& friction, bool is_first) noexcept;
+  [[nodiscard]] Try moveOn() noexcept;
+  [[nodiscard]] bool lookWithin(double radius) noexcept;
+  void poseAll(const Vec3& wish) noexcept;
+  void pose(const NearCell& cell, CellProblem& out) const noexcept;
+  void solve(CellProblem& problem, const Vec3& wish) const noexcept;
+  [[nodiscard]] double turningLength(const CellProblem& problem) const noexcept;
+  [[nodiscard]] Mat3 bendOf(const CellProblem& problem) const noexcept;
+  [[nodiscard]] Try tryCell(CellProblem& problem, double ball) noexcept;
+  [[nodiscard]] bool tryStep(const CellProblem& problem, const Vec3& step, double ball,
+                             bool must_gain) noexcept;
+  [[nodiscard]] Vec3 limited(const CellProblem& problem, const Vec3& step,
+                             double ball) const noexcept;
+  [[nodiscard]] Vec3 bentBack(const CellProblem& problem, const Vec3& step) const noexcept;
+  [[nodiscard]] bool restore(const CellProblem& problem, Vec3& y, double length) noexcept;
+  [[nodiscard]] bool keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept;
+  [[nodiscard]] bool go(const CellProblem& problem, const Vec3& y) noexcept;
+  [[nodiscard]] bool isCut(const CellProblem& problem, std::size_t i, Cut& out) const noexcept;
+  [[nodiscard]] bool foundCrease(const CellProblem& problem, double length) const noexcept;
+  [[nodiscard]] bool addCuts(const CellProblem& problem) noexcept;
+  [[nodiscard]] bool lookClose(const CellProblem& problem, const Vec3& way) noexcept;
+  [[nodiscard]] bool kick() noexcept;
+  void takeLastContact(const Vec3& hip) noexcept;
+  void takeContact(const CellProblem& problem) noexcept;
+  void holdByFriction(FrictionState& friction, bool is_first) noexcept;
+  [[nodiscard]] bool isReached(std::size_t plane) const noexcept {
+    return ((reached_ >> plane) & 1U) != 0;
+  }
+  [[nodiscard]] NearWall wallAt(std::size_t near, const Vec3& p) const noexcept;
+
+  const Scene& scene_;
+  CellWalker& walker_;
+  NearWalls near_;
+  ContactSet contact_;
+
+  // Scratch of one tick.
+  Vec3 x_{0.0, 0.0, 0.0};     ///< [m] where the look is
+  Vec3 wish_{0.0, 0.0, 0.0};  ///< [m] from there to P
+  Vec3 aim_{0.0, 0.0, 0.0};   ///< [m] the same less what friction holds
+  double rest_ = 0.0;         ///< [m] a step as short as this is none
+  std::array<CellProblem, kMaxCells> problem_{};
+  std::size_t problems_ = 0;
+  std::array<Cut, limits::kMaxCuts> cut_{};
+  std::size_t cuts_ = 0;
+  std::array<NearWall, kMaxPlanes> landed_{};  ///< by plane: its wall where the last step landed
+  Vec3 landed_at_{0.0, 0.0, 0.0};              ///< [m]
+  bool has_landed_ = false;
+  std::uint64_t reached_ = 0;  ///< by plane, a bit: the step at hand ends on it
+  int rim_ = -1;  ///< leaf that a way back onto the walls has to end on as well; -1: none
+  bool trusts_sides_ = false;
+  int batches_left_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,154 @@
+// palpate_damage_sweep [MUTANTS] [SEED]: damages files of every format in every way, MUTANTS times
+// each, and gives each to the command with 4 GB of address space and 20 s. Told are signals, hangs,
+// exit codes that are not documented, and runs that took more than 1 GB for an input of less than
+// 10 MB; such inputs are kept beside. Exit 1 if there are any.
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "fuzz/damage.h"
+#include "fuzz/readers.h"
+#include "fuzz/seeds.h"
+
+namespace {
+
+using palpate::fuzz::Damage;
+using palpate::fuzz::Reader;
+namespace fs = std::filesystem;
+
+constexpr rlim_t kMemory = rlim_t{4} << 30U;
+constexpr int kSeconds = 20;
+constexpr long kMostResident = 1L << 20U;  // [kB]
+
+struct Run {
+  int status = 0;
+  bool timed_out = false;
+  long resident = 0;  ///< [kB]
+};
+
+Run run(const std::vector<std::string>& arguments) {
+  const std::string program = PALPATE_BINARY_DIR "/bin/palpate";
+  std::vector<char*> argv = {const_cast<char*>(program.c_str())};
+  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  const pid_t process = fork();
+  if (process == 0) {
+    const int nowhere = open("/dev/null", O_RDWR);
+    for (const int end : {0, 1, 2}) dup2(nowhere, end);
+    const rlimit memory{kMemory, kMemory};
+    setrlimit(RLIMIT_AS, &memory);
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_CORE, &none);
+    execv(program.c_str(), argv.data());
+    _exit(127);
+  }
+  Run result;
+  rusage usage{};
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(kSeconds);
+  while (wait4(process, &result.status, WNOHANG, &usage) == 0) {
+    if (!result.timed_out && std::chrono::steady_clock::now() > end) {
+      result.timed_out = true;
+      kill(process, SIGKILL);
+    }
+    poll(nullptr, 0, 2);
+  }
+  result.resident = usage.ru_maxrss;
+  return result;
+}
+
+/// What the command is asked to do with a file of that kind: read all of it.
+std::vector<std::string> commandFor(const Reader& reader, const std::string& file,
+                                    const std::string& image) {
+  const std::string name = reader.name;
+  if (name == "yaml") return {"check", file};
+  if (name == "path")
+    return {"touch", PALPATE_SOURCE_DIR "/data/scenes/container.yaml", "--path", file};
+  if (name == "labels") return {"info", image, "--names", file};
+  if (name == "vdb" || name == "stl" || name == "obj" || name == "ply" || name == "vtk" ||
+      name == "gltf" || name == "glb") {
+    return {"check", file};
+  }
+  return {"query", file, "--at", "0,0,0"};
+}
+
+/// "" if all is well.
+std::string faultOf(const Run& run, std::size_t input) {
+  if (run.timed_out) return "hangs";
+  if (WIFSIGNALED(run.status)) return "signal " + std::to_string(WTERMSIG(run.status));
+  const int code = WEXITSTATUS(run.status);
+  if (code != 0 && code != 1 && code != 2 && code != 3) return "exit code " + std::to_string(code);
+  if (run.resident > kMostResident && input < 10'000'000) {
+    return std::to_string(run.resident / 1024) + " MB";
+  }
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int mutants = argc > 1 ? std::atoi(argv[1]) : 20;
+  const auto seed = static_cast<std::uint64_t>(argc > 2 ? std::atoll(argv[2]) : 1);
+  const fs::path folder = fs::current_path() / "damage_sweep";
+  fs::create_directories(folder);
+  const std::string image = folder / "image.nii";
+  std::ofstream(image, std::ios::binary) << palpate::fuzz::seedsOf("nifti").front();
+  int runs = 0;
+  int faults = 0;
+  std::printf("%-10s %8s %8s %8s %8s %10s %8s\n", "format", "runs", "exit 0", "exit 1", "exit 3",
+              "most MB", "faults");
+  for (const Reader& reader : palpate::fuzz::readers()) {
+    const std::vector<std::string> seeds = palpate::fuzz::seedsOf(reader.name);
+    std::map<int, int> codes;
+    long most = 0;
+    int own_runs = 0;
+    int own_faults = 0;
+    // A folder of its own: DICOM series are all that is in one.
+    const fs::path own = folder / reader.name;
+    fs::create_directories(own);
+    if (std::string(reader.name) == "dicom") {
+      std::string second = seeds.front();
+      second.replace(second.find("0\\0\\0"), 5, "0\\0\\1");
+      std::ofstream(own / "second.dcm", std::ios::binary) << second;
+    }
+    const std::string file = own / (std::string("mutant") + reader.extension);
+    for (const Damage& damage : palpate::fuzz::damages()) {
+      palpate::fuzz::Random random(seed);
+      for (int i = 0; i < mutants; ++i) {
+        std::string bytes = seeds[static_cast<std::size_t>(i) % seeds.size()];
+        damage.apply(bytes, random);
+        std::ofstream(file, std::ios::binary) << bytes;
+        const Run result = run(commandFor(reader, file, image));
+        ++own_runs;
+        most = std::max(most, result.resident);
+        if (WIFEXITED(result.status)) ++codes[WEXITSTATUS(result.status)];
+        const std::string fault = faultOf(result, bytes.size());
+        if (fault.empty()) continue;
+        ++own_faults;
+        const std::string kept = folder / (std::string(reader.name) + "_" + damage.name + "_" +
+                                           std::to_string(i) + reader.extension);
+        fs::copy_file(file, kept, fs::copy_options::overwrite_existing);
+        std::printf("  %s: %s\n", kept.c_str(), fault.c_str());
+      }
+    }
+    std::printf("%-10s %8d %8d %8d %8d %10ld %8d\n", reader.name, own_runs, codes[0], codes[1],
+                codes[3], most / 1024, own_faults);
+    std::fflush(stdout);
+    runs += own_runs;
+    faults += own_faults;
+  }
+  std::printf("%d runs, %zu kinds of damage, %zu formats: %d faults\n", runs,
+              palpate::fuzz::damages().size(), palpate::fuzz::readers().size(), faults);
+  return faults == 0 ? 0 : 1;
+}

@@ -1,0 +1,229 @@
+#include "support/region_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpate::testing {
+namespace {
+
+constexpr std::size_t kMostLiterals = 32;
+constexpr std::size_t kMostCells = 64;
+
+/// Drops what is implied: a conjunction that asks all that another one asks, and more.
+void absorb(std::vector<std::uint32_t>& cells) {
+  std::vector<std::uint32_t> kept;
+  for (const std::uint32_t cell : cells) {
+    const bool implied = std::any_of(kept.begin(), kept.end(),
+                                     [&](std::uint32_t other) { return (cell & other) == other; });
+    if (implied) continue;
+    kept.erase(std::remove_if(kept.begin(), kept.end(),
+                              [&](std::uint32_t other) { return (cell & other) == cell; }),
+               kept.end());
+    kept.push_back(cell);
+  }
+  cells = std::move(kept);
+}
+
+}  // namespace
+
+RegionTree::RegionTree(const Scene& scene, RegionId region) {
+  Node all{Kind::kAll};
+  const auto add = [&](const FieldPtr& field, double sign) {
+    layers_.push_back({field, sign});
+    all.operands.push_back(addField(field, sign, {}, false));
+  };
+  const auto regions = scene.regions();
+  if (region != kOutside) add(regions[region].field, -1.0);
+  for (std::size_t later = region + 1U; later < regions.size(); ++later) {
+    if (regions[later].field) add(regions[later].field, 1.0);
+  }
+  root_ = static_cast<int>(nodes_.size());
+  nodes_.push_back(std::move(all));
+  state_.resize(literals_.size());
+  for (const Literal& literal : literals_) {
+    feature_ = std::min(feature_, literal.feature);
+    largest_feature_ = std::max(largest_feature_, literal.feature);
+  }
+}
+
+int RegionTree::addLiteral(Literal literal) {
+  for (std::size_t i = 0; i < literals_.size(); ++i) {
+    const Literal& known = literals_[i];
+    if (known.field == literal.field && known.sign == literal.sign &&
+        known.pose.rotation == literal.pose.rotation &&
+        known.pose.translation == literal.pose.translation) {
+      return static_cast<int>(i);
+    }
+  }
+  literals_.push_back(std::move(literal));
+  return static_cast<int>(literals_.size()) - 1;
+}
+
+int RegionTree::addField(const FieldPtr& field, double sign, const Pose& pose, bool is_moved) {
+  const FieldStructure structure = field->structure();
+  using Structure = FieldStructure::Kind;
+  Node node;
+  switch (structure.kind) {
+    case Structure::kComplement:
+      return addField(structure.operands[0], -sign, pose, is_moved);
+    case Structure::kTransform:
+      return addField(structure.operands[0], sign, pose.after(structure.pose), true);
+    case Structure::kUnion:
+    case Structure::kIntersection:
+    case Structure::kFaces:
+      // Outside a union is outside all its operands; inside it, inside any.
+      node.kind = (structure.kind == Structure::kUnion) == (sign > 0.0) ? Kind::kAll : Kind::kAny;
+      for (const FieldPtr& operand : structure.operands) {
+        node.operands.push_back(addField(operand, sign, pose, is_moved));
+      }
+      break;
+    case Structure::kLeaf:
+      node.literal =
+          addLiteral({field, sign, pose, is_moved, field->featureSize(), field->lipschitz()});
+      break;
+  }
+  nodes_.push_back(std::move(node));
+  return static_cast<int>(nodes_.size()) - 1;
+}
+
+double RegionTree::value(const Vec3& p) const noexcept {
+  double out = kInfinity;
+  for (const Layer& layer : layers_) out = std::min(out, layer.sign * layer.field->value(p));
+  return out;
+}
+
+Slope RegionTree::slopeAt(const Literal& literal, const Vec3& p) const noexcept {
+  Slope best;
+  best.gap = literal.value(p);
+  best.doubt = kInfinity;
+  // Order 4 over h, order 2 over h / 4; both near 1e-9 on a smooth surface. A seam or an apex within reach shows
+  // in their difference, and asks for a smaller h.
+  for (double h = 1e-3 * literal.feature; best.doubt > 1e-8 && h > 5e-10; h *= 0.1) {
+    Vec3 fine(0.0);
+    Vec3 check(0.0);
+    for (int i = 0; i < 3; ++i) {
+      Vec3 step(0.0);
+      step[i] = h;
+      const double near = literal.value(p + step) - literal.value(p - step);
+      const double far = literal.value(p + 2.0 * step) - literal.value(p - 2.0 * step);
+      fine[i] = (8.0 * near - far) / (12.0 * h);
+      step[i] = h / 32.0;
+      check[i] = (literal.value(p + step) - literal.value(p - step)) / (h / 16.0);
+    }
+    const double steepness = glm::length(fine);
+    const double doubt = glm::length(fine - check) / std::max(steepness, 1e-300);
+    if (doubt >= best.doubt || !(steepness > 0.0)) continue;
+    best.doubt = doubt;
+    best.normal = fine / steepness;
+    best.steepness = steepness;
+  }
+  best.gap /= best.steepness;
+  // Neither difference is that much off where they agree to the rounding of the shorter one.
+  if (best.doubt < 3e-7) best.doubt = 1e-9;
+  return best;
+}
+
+Mat3 RegionTree::hessianAt(const Literal& literal, const Vec3& p, double steepness) const noexcept {
+  const double h = 1e-3 * literal.feature;
+  const double center = literal.value(p);
+  Mat3 out(0.0);
+  for (int i = 0; i < 3; ++i) {
+    Vec3 a(0.0);
+    a[i] = h;
+    out[i][i] = (literal.value(p + a) + literal.value(p - a) - 2.0 * center) / (h * h);
+    for (int j = 0; j < i; ++j) {
+      Vec3 b(0.0);
+      b[j] = h;
+      out[i][j] = out[j][i] = (literal.value(p + a + b) + literal.value(p - a - b) -
+                               literal.value(p + a - b) - literal.value(p - a + b)) /
+                              (4.0 * h * h);
+    }
+  }
+  return out / steepness;
+}
+
+RegionTree::State RegionTree::reduce(int index, std::vector<std::uint32_t>& cells,
+                                     Nearby& out) const {
+  const Node& node = nodes_[static_cast<std::size_t>(index)];
+  if (node.kind == Kind::kLiteral) {
+    const int state = state_[static_cast<std::size_t>(node.literal)];
+    if (state == 1) return State::kAllowed;
+    if (state == -1) return State::kForbidden;
+    cells.push_back(std::uint32_t{1} << static_cast<unsigned>(state - 2));
+    return State::kOpen;
+  }
+  const bool is_all = node.kind == Kind::kAll;
+  bool is_open = false;
+  for (const int operand : node.operands) {
+    std::vector<std::uint32_t> more;
+    const State state = reduce(operand, more, out);
+    if (state == (is_all ? State::kForbidden : State::kAllowed)) {
+      cells.clear();
+      return state;
+    }
+    if (state != State::kOpen) continue;
+    if (!is_open) {
+      cells = std::move(more);
+      is_open = true;
+      continue;
+    }
+    if (!is_all) {
+      cells.insert(cells.end(), more.begin(), more.end());
+    } else {
+      std::vector<std::uint32_t> product;
+      for (const std::uint32_t a : cells) {
+        for (const std::uint32_t b : more) product.push_back(a | b);
+      }
+      cells = std::move(product);
+    }
+    absorb(cells);
+    if (cells.size() > kMostCells) {
+      out.is_too_much = true;
+      cells.resize(kMostCells);
+    }
+  }
+  if (is_open) return State::kOpen;
+  return is_all ? State::kAllowed : State::kForbidden;
+}
+
+void RegionTree::nearby(const Vec3& center, double radius, Nearby& out) const {
+  out.literals.clear();
+  out.cells.clear();
+  out.is_too_much = false;
+  for (std::size_t i = 0; i < literals_.size(); ++i) {
+    const double value = literals_[i].value(center);
+    const double reach = 1.25 * literals_[i].lipschitz * radius;
+    if (value > reach) {
+      state_[i] = 1;
+    } else if (value < -reach) {
+      state_[i] = -1;
+    } else if (out.literals.size() == kMostLiterals) {
+      out.is_too_much = true;
+      state_[i] = -1;
+    } else {
+      state_[i] = 2 + static_cast<int>(out.literals.size());
+      out.literals.push_back(static_cast<int>(i));
+    }
+  }
+  const State state = reduce(root_, out.cells, out);
+  // What asks for both sides of one surface is that surface, not a place to be: labels that touch.
+  for (std::size_t i = 0; i < out.literals.size(); ++i) {
+    for (std::size_t j = i + 1; j < out.literals.size(); ++j) {
+      const Literal& a = literals_[static_cast<std::size_t>(out.literals[i])];
+      const Literal& b = literals_[static_cast<std::size_t>(out.literals[j])];
+      if (a.field != b.field || a.sign == b.sign || a.pose.rotation != b.pose.rotation ||
+          a.pose.translation != b.pose.translation) {
+        continue;
+      }
+      const std::uint32_t both = (std::uint32_t{1} << i) | (std::uint32_t{1} << j);
+      out.cells.erase(std::remove_if(out.cells.begin(), out.cells.end(),
+                                     [&](std::uint32_t cell) { return (cell & both) == both; }),
+                      out.cells.end());
+    }
+  }
+  if (state == State::kAllowed) out.cells = {0};
+  if (state == State::kForbidden) out.cells.clear();
+}
+
+}  // namespace palpate::testing

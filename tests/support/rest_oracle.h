@@ -1,0 +1,87 @@
+#pragma once
+// Where a proxy comes to rest, restarted from where it was: by values of fields alone.
+
+#include <optional>
+#include <vector>
+
+#include "support/plane_problem.h"
+#include "support/region_tree.h"
+
+namespace palpate::testing {
+
+/// How far a point is from being a local minimum of |x - P|.
+struct RestCheck {
+  /// [m] How far the nearest point of the linearized region, in the worst cell that holds x, lies from x; walls
+  /// nearer than 4 RegionTree::onSurface() count as touched.
+  double residual = 0.0;
+  double doubt = 0.0;  ///< [-] of the normals that decided it
+  bool is_judged =
+      true;  ///< false: too many walls at once, or a kink that is neither convex nor concave
+  int touching = 0;       ///< walls that hold it, in the worst cell
+  bool has_kink = false;  ///< one of them has no normal there: an apex, a crease of a black box
+};
+
+struct Rest {
+  Vec3 point{0.0, 0.0, 0.0};
+  bool has_settled = false;  ///< the flow came to a point that passes the check
+  std::vector<Vec3> others =
+      {};  ///< where it ends with steps of a tenth, or off a saddle the other way
+  double blunt =
+      1.0;  ///< [-] least singular value of the normals that hold it: 1 for one wall, small in wedges
+};
+
+class RestOracle {
+ public:
+  explicit RestOracle(const RegionTree& tree) : tree_(tree) {}
+
+  [[nodiscard]] RestCheck check(const Vec3& x, const Vec3& hip) const;
+
+  /// The limit h -> 0 of x <- nearest allowed point to x + h (P - x) / |P - x|, to a second-order minimum.
+  [[nodiscard]] Rest solve(const Vec3& previous, const Vec3& hip) const;
+  /// One run of it, with the coarser step: a tenth of the time.
+  [[nodiscard]] Rest solveOnce(const Vec3& previous, const Vec3& hip) const;
+
+  /// [-] Most that |x - P| falls on the way to a point `radius` away, as a share of it, by the tree's value
+  /// alone: directions tried, then refined. Nothing if all of them are closed.
+  [[nodiscard]] double gainNear(const Vec3& x, const Vec3& hip, double radius) const;
+
+  /// Least curvature of |x - P|^2 / 2 along the walls that hold x, of the worst cell; infinite at a corner.
+  [[nodiscard]] double leastCurvature(const Vec3& x, const Vec3& hip) const;
+
+ private:
+  struct Cell {
+    std::vector<int> literals;
+    std::vector<HalfSpaceBound> planes;
+    std::vector<int> owner;  ///< of each plane: its literal
+    bool holds = true;       ///< x is in it
+    bool is_judged = true;
+    double doubt = 0.0;
+  };
+  struct Newton {
+    Vec3 step{0.0, 0.0, 0.0};
+    double residual = 0.0;
+    double least = kInfinity;  ///< curvature
+    Vec3 least_way{0.0, 0.0, 0.0};
+    double blunt = 1.0;
+  };
+  [[nodiscard]] Cell cellAt(const Vec3& x, const Nearby& nearby, std::uint32_t bits, double radius,
+                            double granted) const;
+  [[nodiscard]] bool addKink(Cell& cell, const Literal& literal, int index, const Vec3& x,
+                             double radius) const;
+  [[nodiscard]] std::optional<Vec3> project(const Vec3& goal, const Vec3& from, double h) const;
+  [[nodiscard]] Newton newton(const Vec3& x, const Vec3& hip, double radius) const;
+  [[nodiscard]] std::optional<Vec3> polish(const Vec3& x, const Vec3& hip, double h) const;
+  struct Flow {
+    Vec3 point;
+    bool has_settled = false;
+    bool was_kicked = false;
+  };
+  [[nodiscard]] double stepFor(const Vec3& previous, const Vec3& hip) const;
+  void measureBluntness(Rest& rest, const Vec3& hip) const;
+  [[nodiscard]] Flow flow(const Vec3& previous, const Vec3& hip, double h, double kick) const;
+
+  const RegionTree& tree_;
+  mutable Nearby nearby_;
+};
+
+}  // namespace palpate::testing

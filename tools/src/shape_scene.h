@@ -1,0 +1,35 @@
+#pragma once
+/// A mesh, a scan or a grid as a scene of its own, so that it can be touched as it is.
+
+#include <string>
+
+#include "options.h"
+#include "palpate/scene/scene.h"
+#include "text.h"
+
+namespace palpate::tools {
+
+/// True unless `path` is a scene already. @throws Error as inputKind() does.
+[[nodiscard]] bool isShape(const std::string& path);
+
+/// The scene's text; paths in it are absolute. A layer for the mesh, for what is --above, for each of --labels,
+/// or for each surface of a .vdb.
+/// @throws Error: kUsage for options that are missing or do not apply to this kind of file; kInput for a .vdb
+/// without a surface.
+[[nodiscard]] std::string shapeSceneText(const TouchOptions& options);
+
+/// For a scene: that none of the options was given which only shapes have. @throws Error (kUsage).
+void refuseShapeOptions(const TouchOptions& options);
+
+/// A place on the outermost surface, found from above, and the surface's normal there.
+struct SurfacePoint {
+  Vec3 place{0.0};   ///< [m]
+  Vec3 normal{0.0};  ///< [-] outward, of length 1
+};
+
+/// The highest place of the scene's layers on the line down through their middle, or, where that meets none, on
+/// the nearest line that does and whose normal looks up.
+/// @throws Error (kOperation) if no line meets a surface.
+[[nodiscard]] SurfacePoint findSurfacePoint(const Scene& scene);
+
+}  // namespace palpate::tools

@@ -1,0 +1,58 @@
+#include "bake/empty_solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "bake/lost_plates.h"
+
+namespace palpate::vdb {
+namespace {
+
+std::string inVoxels(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g voxels", length);
+  return text;
+}
+
+}  // namespace
+
+Error emptySolidError(const Mesh& mesh, const Solid& solid, const BakePlan& plan) {
+  Box3 box;
+  double volume = 0.0;
+  double area = 0.0;
+  for (const SolidPart& part : solid.parts) {
+    box.include(part.box.lo);
+    box.include(part.box.hi);
+    volume += std::abs(part.volume);
+    area += part.area;
+  }
+  const Vec3 size = box.size();
+  const double longest = std::max({size.x, size.y, size.z});
+  // Of a plate: its two faces are the area.
+  const double thickness = area > 0.0 ? 2.0 * volume / area : 0.0;
+  const std::string none = "no voxel lies inside: ";
+  const auto lengthText = [&](double voxels) {
+    return inMillimetres(voxels * plan.voxel) + " (" + inVoxels(voxels) + ")";
+  };
+  if (longest < 2.0) {
+    return inputError("bake.empty",
+                      none + "the whole mesh is only " + lengthText(longest) + " long",
+                      "it may have been read in the wrong length unit; else use voxels of " +
+                          inMillimetres(longest * plan.voxel / 64.0),
+                      mesh.source);
+  }
+  if (thickness < 1e-6 * longest) {
+    return inputError(
+        "bake.empty", none + "the mesh encloses no volume, its sides lie in one another",
+        "make it a shell of some thickness (--shell 2mm, in a scene shell: 2 mm)", mesh.source);
+  }
+  return inputError(
+      "bake.empty",
+      none + "the mesh is about " + lengthText(thickness) + " thick, and passes between the voxels",
+      "use voxels of " + inMillimetres(thickness * plan.voxel / kHeld) +
+          ", or make it a shell of some thickness",
+      mesh.source);
+}
+
+}  // namespace palpate::vdb

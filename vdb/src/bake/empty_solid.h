@@ -1,0 +1,14 @@
+#pragma once
+/// Why no voxel lies inside of a mesh.
+
+#include "bake/bake_plan.h"
+#include "bake/solid.h"
+#include "palpate/core/error.h"
+
+namespace palpate::vdb {
+
+/// `bake.empty` (kInput) with its cause: the mesh is smaller than a voxel, encloses nothing, or is too thin; and
+/// with a voxel that holds it.
+[[nodiscard]] Error emptySolidError(const Mesh& mesh, const Solid& solid, const BakePlan& plan);
+
+}  // namespace palpate::vdb

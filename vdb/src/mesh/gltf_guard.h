@@ -1,0 +1,13 @@
+#pragma once
+/// What of a glTF file is checked before Assimp sees it.
+
+#include <string>
+
+namespace palpate::vdb {
+
+/// Assimp follows brackets by calling itself, and believes every length. Checked here: the head and
+/// the chunks of a GLB file, and how deep the JSON text goes. Files that are neither pass.
+/// @throws Error (kInput): mesh.truncated, mesh.unreadable.
+void checkGltf(const std::string& bytes, const std::string& extension, const std::string& path);
+
+}  // namespace palpate::vdb
