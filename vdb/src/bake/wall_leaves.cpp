@@ -33,6 +33,8 @@ class LeafMaker {
         index < 0 ? nullptr : &leaves_.all()[static_cast<std::size_t>(index)];
     const bool by_wall = domain_.is_cut && wallReaches(origin);
     if (from == nullptr && !by_wall) return nullptr;
+    // Distances are also known some way beyond the faces, of surface that they cut off.
+    if (domain_.is_cut && !by_wall && isBeyond(origin)) return nullptr;
     auto leaf = std::make_unique<BandLeaf>(origin, plan_.background, false);
     for (std::size_t n = 0; n < kVoxels; ++n) {
       if (from != nullptr && from->distance[n] != DistanceLeaf::kNowhere) {
@@ -84,11 +86,17 @@ class LeafMaker {
   [[nodiscard]] double wallAt(const Coord& origin, std::size_t n) const noexcept {
     return source_.boxDistance(position(origin, n));
   }
-  /// Whether the wall changes what some voxel of the leaf holds.
+  [[nodiscard]] Vec3 centerOf(const Coord& origin) const noexcept {
+    return (Vec3(origin.x(), origin.y(), origin.z()) + Vec3(3.5)) * plan_.voxel;
+  }
+  /// Whether the wall changes voxels of the leaf, and leaves some in the band.
   [[nodiscard]] bool wallReaches(const Coord& origin) const noexcept {
-    const Vec3 center = (Vec3(origin.x(), origin.y(), origin.z()) + Vec3(3.5)) * plan_.voxel;
     const double radius = 3.5 * std::sqrt(3.0) * plan_.voxel;
-    return std::fabs(source_.boxDistance(center)) < plan_.band + radius;
+    return std::fabs(source_.boxDistance(centerOf(origin))) < plan_.band + radius;
+  }
+  /// Whether the leaf's middle is out of the box.
+  [[nodiscard]] bool isBeyond(const Coord& origin) const noexcept {
+    return source_.boxDistance(centerOf(origin)) > 0.0;
   }
   void set(BandLeaf& leaf, std::size_t n, double metres) const {
     const auto value = static_cast<float>(metres / plan_.metres_per_unit);
