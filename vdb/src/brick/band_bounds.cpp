@@ -15,8 +15,8 @@ constexpr std::size_t kFine = 3 * kCells + 1;  ///< control values along an axis
 constexpr std::size_t kFineRow = kFine + 3;    ///< floats, so that four can be read at the last
 /// [voxels] A cell whose coefficients are all beyond that needs no closer look.
 constexpr float kClear = 2.5F;
-/// Where no slope of a brick is above that, it is not worth to know it cell by cell.
-constexpr double kNotSteep = 1.3;
+/// What rounding to floats leaves of a slope: some six roundings of values up to 20 voxels, three times each.
+constexpr double kRounding = 5e-5;
 
 /// The control values of the cells along one axis, out of 11 coefficients `step` apart; `to` likewise.
 template <typename From, typename To>
@@ -79,6 +79,12 @@ class Controls {
   float by_x_[kFine][kRows][kRows];
   float by_xy_[kFine][kFine][kRows];
 };
+
+/// Too large for the stack of some threads.
+Controls& controlsOfThread() noexcept {
+  thread_local Controls controls;
+  return controls;
+}
 
 /// Of |slope along a direction|, from the ranges of three components: the direction is their middle.
 double leastSlope(const std::array<Range, 3>& d) noexcept {
@@ -217,6 +223,22 @@ double BandBounds::within() const noexcept {
   return std::min(least_unknown, kNear) / steepest_near;
 }
 
+double steepestInCells(const Brick& brick) noexcept {
+  Controls& controls = controlsOfThread();
+  controls.take(brick);
+  double most = 0.0;
+  for (std::size_t i = 0; i < kCells; ++i) {
+    for (std::size_t j = 0; j < kCells; ++j) {
+      for (std::size_t k = 0; k < kCells; ++k) {
+        float c[4][4][4];
+        controls.of(i, j, k, c);
+        most = std::max(most, steepest(slopesOf(c)));
+      }
+    }
+  }
+  return most + kRounding;
+}
+
 void BandBounds::add(const Brick& brick, const Voxel& first, bool cubic,
                      double steepest_of_brick) noexcept {
   BandBounds own;
@@ -231,8 +253,7 @@ void BandBounds::add(const Brick& brick, const Voxel& first, bool cubic,
     if (!all_known) add(own);
     return;
   }
-  // Made for the first cell that asks for them; too large for the stack of some threads.
-  thread_local Controls controls;
+  Controls& controls = controlsOfThread();
   bool has_controls = false;
   for (int i = 0; i < kCells; ++i) {
     for (int j = 0; j < kCells; ++j) {

@@ -110,7 +110,7 @@ void gather(const Accessor& accessor, const Coord& block, Neighborhood& to) {
 struct Part {
   Neighborhood neighborhood;
   double steepest_square = 0.0;
-  double last_square = 0.0;  ///< of the last brick made
+  double last_square = 0.0;  ///< of the last brick made, by its coefficients
   CoordBBox negative;
   BandBounds bounds;
 };
@@ -180,7 +180,13 @@ class BrickMaker {
     gather(accessor, block, part.neighborhood);
     (cubic_ ? fillCubic : fillLinear)(part.neighborhood, plateau_, units_per_voxel_, brick);
     part.last_square = steepestSquareIn(brick, cubic_);
-    part.steepest_square = std::max(part.steepest_square, part.last_square);
+    double square = part.last_square;
+    // Cell by cell only what could be the steepest of all; what is left out could not, in whatever order bricks are made.
+    if (cubic_ && square > std::max(kNotSteep * kNotSteep, part.steepest_square)) {
+      const double slope = steepestInCells(brick);
+      square = std::min(square, slope * slope);
+    }
+    part.steepest_square = std::max(part.steepest_square, square);
   }
 
   /// Of all that was made. The slope of a distance is 1, though a grid whose surface is flat may measure less. The

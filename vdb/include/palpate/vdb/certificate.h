@@ -18,7 +18,7 @@ struct BandCertificate {
   double within =
       0.0;  ///< [m] every point that near to the surface answers with value and gradient
   double lipschitz =
-      1.0;  ///< [-] of what is sampled, everywhere; up to 6 where distances to all sides meet
+      1.0;  ///< [-] of what is sampled, everywhere; up to 4 where distances to all sides meet
   double steepest = 1.0;  ///< [-] no slope is above where |value| is below 1.5 voxels
   /// [-] In each cell that may hold the surface the value grows at least so fast along some direction. Not above 0: there is an
   /// edge, a cusp or a part as thin as the cell.
