@@ -15,6 +15,7 @@ constexpr double kLeash = 1.5;         ///< of one step
 constexpr double kFarthest = 2.5;      ///< from the start
 constexpr double kModelEnough = 3e-4;  ///< of a step that the next one would only square
 constexpr double kOnSurface = 1e-5;
+constexpr double kLeastGain = 1e-3;  ///< of a step along the surface
 /// [voxels] A step s through a surface that bends by k a voxel leaves some k^2 s^3 / 6, if its bend changes over the same way
 /// as it turns; a surface that is flat where it is looked at is taken for one that bends by kLeastBend. That may be
 /// kMostLeft, and a tenth of what a cubic spline leaves of such a bend, 0.037 k^3.
@@ -138,7 +139,9 @@ Vec3 ClosestPoint::creptTo(const Vec3& p, const Vec3& foot) const noexcept {
     const Vec3 apart = p - best;
     Vec3 along = apart - (glm::dot(apart, here.gradient) / square) * here.gradient;
     const double length = glm::length(along);
-    if (!(length > 1e-3 * voxel_)) return best;
+    // On a tangent plane the step would gain length^2 / (2 |apart|).
+    const double gain = 0.5 * length * length / std::max(glm::length(apart), voxel_);
+    if (!(gain > kLeastGain * voxel_)) return best;
     along *= share * std::min(1.0, 0.5 * voxel_ / length);
     const std::optional<Vec3> next = onto(best + along);
     const Vec3 left = next ? p - *next : Vec3(kInfinity);
