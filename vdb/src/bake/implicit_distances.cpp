@@ -16,6 +16,7 @@
 #include "bake/wall_leaves.h"
 #include "scan/distance_leaves.h"
 #include "scan/for_blocks.h"
+#include "scan/leaf_places.h"
 
 namespace palpate::vdb {
 namespace {
@@ -33,44 +34,11 @@ constexpr double kSamePlace = 2e-3;
 /// [voxels] A neighbor's point this near to the one that two in a row lead to is one of a smooth surface.
 constexpr double kInLine = 1.0;
 
-Coord placeOf(std::size_t n) noexcept {
-  const auto place = static_cast<int>(n);
-  return {place >> 6, place >> 3 & 7, place & 7};
-}
-
-std::size_t placeIn(const Coord& voxel) noexcept {
-  return static_cast<std::size_t>(((voxel.x() & 7) << 6) | ((voxel.y() & 7) << 3) |
-                                  (voxel.z() & 7));
-}
-
 /// What is known of a voxel [voxels].
 struct Found {
   std::size_t place = 0;
   Vec3 foot{0.0, 0.0, 0.0};
   bool inside = false;
-};
-
-/// Feet of voxels around one, by their steps from it.
-class Around {
- public:
-  Around(const DistanceLeaves& leaves, const DistanceLeaf& leaf) : leaves_(leaves), leaf_(leaf) {}
-
-  struct Voxel {
-    const DistanceLeaf* leaf;
-    std::size_t place;
-  };
-  /// Null: there is none. `at` counts from the leaf's first voxel, -8 to 15.
-  [[nodiscard]] Voxel at(const Coord& at) const noexcept {
-    const auto side = [](int i) { return (i >> 3) + 1; };
-    const int n = 9 * side(at.x()) + 3 * side(at.y()) + side(at.z());
-    const std::int32_t index = leaf_.near[static_cast<std::size_t>(n)];
-    if (index < 0) return {nullptr, 0};
-    return {&leaves_.all()[static_cast<std::size_t>(index)], placeIn(at)};
-  }
-
- private:
-  const DistanceLeaves& leaves_;
-  const DistanceLeaf& leaf_;
 };
 
 class Spreading {
