@@ -106,10 +106,14 @@ class HybridBaker {
       }
       CertifyOptions certify;
       certify.sampler = options_.sampler;
+      certify.max_memory = options_.bake.max_memory;
       const LevelSet wide = certified(grid, certify, progress_).grid;
-      part->made = gridField(wide, options_.sampler);
+      const std::uint64_t limit = options_.bake.max_memory;
+      part->made = gridField(wide, options_.sampler, Box3::everything(), limit);
       refuseOther(*part, wide);
-      if (part->within.isBounded()) part->made = gridField(wide, options_.sampler, part->within);
+      if (part->within.isBounded()) {
+        part->made = gridField(wide, options_.sampler, part->within, limit);
+      }
       made_.emplace(part->field.get(), part->made);
     }
     return rebuilt(root_);
@@ -376,11 +380,12 @@ Hybrid bakeHybrid(const FieldPtr& field, const HybridOptions& options, const Pro
 }
 
 FieldPtr recombined(const FieldPtr& field, const std::map<std::string, LevelSet>& grids,
-                    Sampler sampler, const Box3& within) {
+                    Sampler sampler, const Box3& within, std::uint64_t max_memory) {
   if (!field) throw inputError("bake.null_field", "there is no field to put grids into");
   HybridOptions options;
   options.sampler = sampler;
   options.within = within;
+  options.bake.max_memory = max_memory;
   const Progress silent;
   return HybridBaker(field, options, silent).runOn(grids);
 }
