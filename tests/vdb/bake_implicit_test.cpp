@@ -18,6 +18,7 @@
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
+#include "palpate/vdb/grid_error.h"
 #include "palpate/vdb/openvdb_access.h"
 #include "vdb/shapes.h"
 
@@ -26,7 +27,6 @@ namespace {
 
 using palpate::test::Drive;
 using palpate::test::kDefaultK;
-using palpate::test::kDegree;
 using palpate::test::sceneOfSolid;
 using test::voxels;
 
@@ -128,7 +128,7 @@ TEST_P(BakeImplicit, VoxelsHoldTrueDistances) {
   const Shape& shape = GetParam();
   const LevelSet grid = bake(*shape.field, optionsOf(shape, 1 * kMm));
   // A tenth of what the cubic sampler leaves of a bend over 8 voxels, 0.037 / 8^3, and of the heart's, which bends within a voxel.
-  const double tolerance = (shape.name == "heart" ? 1e-2 : 1e-5) * kMm;
+  const double tolerance = (shape.name == "heart" ? 5e-3 : 1e-5) * kMm;
   std::uint64_t compared = 0;
   std::uint64_t nearer = 0;
   double worst = 0.0;
@@ -193,8 +193,7 @@ TEST_P(BakeImplicit, TakesAtMostFiveLooksAVoxel) {
     const LevelSet grid = bake(counted, optionsOf(shape, voxel));
     const double each = counted.looks() / static_cast<double>(grid.info().active_voxels);
     std::printf("%s at %.1f mm: %.2f looks a voxel\n", shape.name.c_str(), voxel / kMm, each);
-    // A heart 15 voxels across is little but cusps, where points creep along the surface.
-    EXPECT_LE(each, shape.name == "heart" && voxel > 1.5 * kMm ? 6.0 : 5.0);
+    EXPECT_LE(each, 5.0);
   }
 }
 
@@ -217,38 +216,56 @@ TEST_P(BakeImplicit, LipschitzBoundIsThatOfADistance) {
     const FieldPtr made = gridField(bake(*shape.field, optionsOf(shape, voxel)));
     std::printf("%s at %.1f mm: slopes up to %.3f\n", shape.name.c_str(), voxel / kMm,
                 made->lipschitz());
-    // What the spline's filter makes of the places where distances to all sides meet, as in any grid (certificate.h).
-    EXPECT_LE(made->lipschitz(), 6.0);
+    // 1 but where distances to several sides meet, which the spline rounds off: its cells' control values are bounded by 2.6 at a
+    // crease along their diagonal, and at the tip of a cone.
+    EXPECT_LE(made->lipschitz(), 3.0);
   }
 }
 
-/// A hand that presses `depth` into the surface at random points, against the true surface.
+/// A hand that presses 1 mm into the surface at random points, against the true surface.
 struct Touched {
   int points = 0;
+  int smooth = 0;  // of these, where the surface is smooth over four voxels
   int without_force = 0;
-  double worst_force = 0.0;  // [N] off K times the true depth, where the surface is smooth
-  double strongest = 0.0;    // [N] anywhere
+  double worst_force = 0.0;   // [N] |force| off K times the true depth
+  double worst_smooth = 0.0;  // [N] force off K times the way to the true surface
+  double strongest = 0.0;     // [N]
 };
 
-/// Whether the true surface bends over less than some voxels around the point.
-bool isSmooth(const Field& field, const Vec3& on, double least_radius) {
-  const auto foot = footPoint(field, on);
-  if (!foot) return false;
-  const double sum = std::fabs(foot->curvature_sum);
-  const double spread = std::sqrt(std::max(0.0, sum * sum - 4.0 * foot->curvature_product));
-  return 0.5 * (sum + spread) * least_radius < 1.0;
+/// Whether the true surface bends over no less than `least_radius` anywhere within `reach` of the point.
+bool isSmooth(const Field& field, const Vec3& on, double reach, double least_radius) {
+  const auto bendsEnough = [&](const Vec3& p) {
+    const auto foot = footPoint(field, p);
+    if (!foot) return false;
+    const double sum = std::fabs(foot->curvature_sum);
+    const double spread = std::sqrt(std::max(0.0, sum * sum - 4.0 * foot->curvature_product));
+    return 0.5 * (sum + spread) * least_radius < 1.0;
+  };
+  if (!bendsEnough(on)) return false;
+  const Vec3 normal = glm::normalize(field.sample(on).gradient);
+  palpate::test::Random random(1);
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 direction = random.direction();
+    const Vec3 along = direction - glm::dot(direction, normal) * normal;
+    const auto there = onSurface(field, on + reach * along);
+    if (!there || !bendsEnough(*there)) return false;
+    // A cusp is too small to be met itself, but turns the normal by more than such a bend on the way past it.
+    const double turn =
+        std::acos(std::min(1.0, glm::dot(normal, glm::normalize(field.sample(*there).gradient))));
+    if (turn * least_radius > reach) return false;
+  }
+  return true;
 }
 
-Touched touched(const Shape& shape, double voxel) {
+Touched touched(const Shape& shape, const FieldPtr& made, double voxel) {
   const double depth = 1 * kMm;
   Touched out;
-  const ScenePtr scene = sceneOfSolid(gridField(bake(*shape.field, optionsOf(shape, voxel))));
+  const ScenePtr scene = sceneOfSolid(made);
   palpate::test::Random random(11);
   const int wanted = std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 2000 : 300;
   for (int i = 0; out.points < wanted && i < 20 * wanted; ++i) {
     const auto on = onSurface(*shape.field, random.in(shape.touched));
     if (!on || !shape.touched.contains(*on)) continue;
-    if (!isSmooth(*shape.field, *on, std::max(6.0 * voxel, 3.0 * depth))) continue;
     const Vec3 normal = glm::normalize(shape.field->sample(*on).gradient);
     const Vec3 hip = *on - depth * normal;
     const auto foot = footPoint(*shape.field, hip);
@@ -264,7 +281,10 @@ Touched touched(const Shape& shape, double voxel) {
     out.without_force += force == 0.0 ? 1 : 0;
     out.strongest = std::max(out.strongest, force);
     const Vec3 due = kDefaultK * (foot->point - hip);
-    out.worst_force = std::max(out.worst_force, glm::length(tick.force - due));
+    out.worst_force = std::max(out.worst_force, std::fabs(force - glm::length(due)));
+    if (!isSmooth(*shape.field, *on, 4.0 * voxel, std::max(6.0 * voxel, 3.0 * depth))) continue;
+    ++out.smooth;
+    out.worst_smooth = std::max(out.worst_smooth, glm::length(tick.force - due));
   }
   return out;
 }
@@ -273,15 +293,24 @@ TEST_P(BakeImplicit, TouchedEverywhereItGivesTheForceOfTheTrueSurface) {
   // Metaballs at 2 mm gave 43.9 N instead of 1 N, a heart no force for 1117 of 1549 ticks of contact.
   const Shape& shape = GetParam();
   for (const double voxel : {2 * kMm, 1 * kMm, 0.5 * kMm}) {
-    const Touched t = touched(shape, voxel);
-    std::printf("%s at %.1f mm: %d points, %d without force, force off by %.1e N, up to %.2f N\n",
-                shape.name.c_str(), voxel / kMm, t.points, t.without_force, t.worst_force,
-                t.strongest);
+    const LevelSet grid = bake(*shape.field, optionsOf(shape, voxel));
+    const FieldPtr made = gridField(grid);
+    const GridError stated = gridError(*shape.field, grid, *made, shape.touched);
+    const GridError smooth = smoothGridError(Sampler::kCubic, voxel);
+    const Touched t = touched(shape, made, voxel);
+    std::printf(
+        "%s at %.1f mm, stated to be off by %.1e mm: %d points, %d without force, up to %.2f N, "
+        "off by %.1e N; by %.1e N at %d smooth points\n",
+        shape.name.c_str(), voxel / kMm, stated.off / kMm, t.points, t.without_force, t.strongest,
+        t.worst_force, t.worst_smooth, t.smooth);
     EXPECT_GT(t.points, 100);
+    // Nothing of a heart 15 voxels wide is smooth over eight of them.
+    EXPECT_GT(t.smooth, shape.name == "heart" && voxel > 1.5 * kMm ? -1 : 0);
     EXPECT_EQ(t.without_force, 0);
-    // 0.02 voxel of the surface, and 1 degree of 1 N.
-    EXPECT_LE(t.worst_force, kDefaultK * 0.02 * voxel + kDefaultK * 1 * kMm * kDegree);
-    EXPECT_LE(t.strongest, 1.1 * kDefaultK * 1 * kMm);
+    // The force is K times the way to the surface, and that is off by no more than the surface is.
+    EXPECT_LE(t.worst_force, kDefaultK * stated.off);
+    // Where it is smooth over what the spline looks at, 0.02 voxel of the surface and 1 degree of 1 N are stated of any grid.
+    EXPECT_LE(t.worst_smooth, kDefaultK * (smooth.off + 1 * kMm * smooth.turn));
   }
 }
 
@@ -349,7 +378,25 @@ TEST(BakeImplicitEdges, WhatIsCutFromAnImplicitFieldHasItsEdgesAndWalls) {
   // Beside a medial axis a voxel knows of the other side by the closest points of its neighbors, up to a voxel off its own:
   // 1 / (2 d) farther, at some three voxels.
   EXPECT_LE(farthest, 0.17 * voxel);
-  EXPECT_LE(gridField(grid)->lipschitz(), 6.0);
+  EXPECT_LE(gridField(grid)->lipschitz(), 3.0);
+}
+
+TEST(BakeImplicitEdges, NothingIsLeftBeyondTheFacesThatCutIt) {
+  // The maze goes on out there, and closest points are searched some way beyond the faces.
+  const Shape maze = shapes()[2];
+  for (const double voxel : {2 * kMm, 1 * kMm, 0.7 * kMm}) {
+    const LevelSet grid = bake(*maze.field, optionsOf(maze, voxel));
+    const Box3 band = maze.box->grownBy(kCubicHalfWidth * voxel);
+    std::uint64_t beyond = 0;
+    for (auto value = grid.impl().grid->cbeginValueAll(); value; ++value) {
+      if (!value.isValueOn() && *value > 0.0F) continue;
+      const openvdb::CoordBBox at = value.getBoundingBox();
+      const Vec3 lo = Vec3(at.min().x(), at.min().y(), at.min().z()) * voxel;
+      const Vec3 hi = Vec3(at.max().x(), at.max().y(), at.max().z()) * voxel;
+      beyond += band.contains(lo) && band.contains(hi) ? 0 : 1;
+    }
+    EXPECT_EQ(beyond, 0U) << voxel;
+  }
 }
 
 }  // namespace
