@@ -82,7 +82,7 @@ TEST_P(WrongUsage, ExitsTwoAndSaysWhy) {
 INSTANTIATE_TEST_SUITE_P(
     All, WrongUsage,
     ::testing::Values(
-        Wrong{{}, "verb"}, Wrong{{"touch"}, "SCENE is missing"},
+        Wrong{{}, "verb"}, Wrong{{"touch"}, "GRID is missing"},
         Wrong{{"touch", "c.yaml"}, "exactly one of --path"},
         Wrong{{"touch", "c.yaml", "--tap", "0,0,0", "--press", "0,0,0"}, "more than one motion"},
         Wrong{{"touch", "c.yaml", "--press", "0,0"}, "not three numbers"},

@@ -362,7 +362,7 @@ TEST(VdbIo, DamagedFilesAreErrorsNotCrashes) {
     EXPECT_EQ(error.problem().file, cut);
     EXPECT_THROW(static_cast<void>(listVdb(cut)), Error);
   }
-  // A flipped bit in the place of a part of the tree, at a multiple of 4096: its voxels are found no more.
+  // A flipped bit in the place of a part of the tree, which is at multiples of 4096.
   const std::string at_minus_4096("\x00\xF0\xFF\xFF", 4);
   int misplaced = 0;
   for (std::size_t at = 0; (at = good.find(at_minus_4096, at)) != std::string::npos; ++at) {
@@ -373,7 +373,7 @@ TEST(VdbIo, DamagedFilesAreErrorsNotCrashes) {
     } catch (const Error& error) {
       ASSERT_EQ(error.kind(), ErrorKind::kInput) << error.what();
       const std::string& told = error.problem().message;
-      misplaced += told.find("not where its tree has them") != std::string::npos ? 1 : 0;
+      misplaced += told.find("at a place where none can be") != std::string::npos ? 1 : 0;
     }
   }
   EXPECT_GT(misplaced, 0);

@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMaxLeaves = std::numeric_limits<LeafId>::max();
+constexpr std::size_t kMaxLeaves = Signs::kMaxLeaves;
 constexpr std::size_t kMaxLayers = std::numeric_limits<RegionId>::max() - 1;
 
 bool isIdentity(const Pose& pose) {
@@ -21,7 +21,7 @@ bool isIdentity(const Pose& pose) {
 
 /// True if f(word, mask) is for any of the words that hold `count` bits from `first` on, which are those of `mask`.
 template <typename F>
-bool anyWord(const std::vector<std::uint64_t>& words, std::size_t first, std::size_t count,
+bool anyWord(std::span<const std::uint64_t> words, std::size_t first, std::size_t count,
              const F& f) noexcept {
   for (std::size_t i = first; i < first + count;) {
     const std::size_t bit = i & 63U;

@@ -43,6 +43,15 @@ void Punctures::visit(const Vec3& p) noexcept {
   resting_count_ = static_cast<std::uint8_t>(kept - resting_.data());
 }
 
+bool Punctures::isOf(std::size_t ports) const noexcept {
+  if (hole_count_ > kMaxHoles || next_hole_ >= kMaxHoles || resting_count_ > kMaxResting) {
+    return false;
+  }
+  const auto is_port = [&](const auto& entry) { return entry.port < ports; };
+  return std::all_of(holes_.begin(), holes_.begin() + hole_count_, is_port) &&
+         std::all_of(resting_.begin(), resting_.begin() + resting_count_, is_port);
+}
+
 bool Punctures::anyAt(const Vec3& p) const noexcept {
   return std::any_of(holes_.begin(), holes_.begin() + hole_count_,
                      [&](const Hole& hole) { return isWithin(p, hole.point, hole.radius); });

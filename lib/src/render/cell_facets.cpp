@@ -7,13 +7,6 @@
 #include "cell_walker.h"
 
 namespace palpate {
-namespace {
-
-/// Leaves are one facet where both are on the surface and their normals are parallel to this.
-constexpr double kParallel = 1e-6;
-
-}  // namespace
-
 void CellWalker::gather(LeafId leaf) noexcept {
   crossing_[0] = leaf;
   crossing_count_ = 1;
@@ -24,17 +17,18 @@ void CellWalker::gather(LeafId leaf) noexcept {
   for (std::size_t k = 0; k < hot_count_ && crossing_count_ < crossing_.size(); ++k) {
     const LeafId other = hot_[k];
     if (other == leaf || isIdle(other)) continue;
-    const double near = 4.0 * (tolerance_[other] / leaves_[other].lipschitz +
-                               tolerance_[leaf] / leaves_[leaf].lipschitz);
+    const double near = limits::kTouch * (tolerance_[other] / leaves_[other].lipschitz +
+                                          tolerance_[leaf] / leaves_[leaf].lipschitz);
     if (due_[other] - travel_ > near) continue;
     if (std::fabs(measure(other)) > near * leaves_[other].lipschitz) continue;
     if (!measured) {
-      normal = side(leaf) * unitOr(leaves_[leaf].field->sample(x_).gradient, Vec3(0.0));
+      normal = side(leaf) * unitOr(leaves_[leaf].field->sample(here_.point).gradient, Vec3(0.0));
       measured = true;
     }
-    const Vec3 theirs = side(other) * unitOr(leaves_[other].field->sample(x_).gradient, Vec3(0.0));
+    const Vec3 theirs =
+        side(other) * unitOr(leaves_[other].field->sample(here_.point).gradient, Vec3(0.0));
     // Going against `normal`, the other changes side too where its own side lies the same way.
-    if (glm::dot(normal, theirs) > 1.0 - kParallel) crossing_[crossing_count_++] = other;
+    if (glm::dot(normal, theirs) > 1.0 - limits::kParallel) crossing_[crossing_count_++] = other;
   }
 }
 
@@ -49,23 +43,24 @@ void CellWalker::flip(LeafId leaf, Signs& signs) const noexcept {
 Facet CellWalker::facetAt(LeafId leaf) noexcept {
   gather(leaf);
   Known& known = known_[leaf];
-  const bool in_hole = punctures_.anyAt(x_);
+  const bool in_hole = here_.punctures.anyAt(here_.point);
   if (crossing_count_ == 1 && !in_hole && known.state == state_ &&
       (!known.facet.varies || known.stay == stay_)) {
     return known.facet;
   }
-  beyond_ = signs_;  // same size: copies words, allocates nothing
+  beyond_.assign(here_.sides);
   for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], beyond_);
-  Facet facet = scene_.passages().facet(scene_.partition(), region_, regionBeyond(), signs_,
-                                        beyond_, std::span(crossing_.data(), crossing_count_),
-                                        passed_, x_, in_hole ? &punctures_ : nullptr);
-  if (leaves_[leaf].is_between && facet.beyond == kOutside && region_ != kOutside) {
+  Facet facet =
+      scene_.passages().facet(scene_.partition(), here_.region, regionBeyond(), here_.sides,
+                              beyond_, std::span(crossing_.data(), crossing_count_), here_.passed,
+                              here_.point, in_hole ? &here_.punctures : nullptr);
+  if (leaves_[leaf].is_between && facet.beyond == kOutside && here_.region != kOutside) {
     // Where the walls between three labels meet, rounding sees a cell that is none of theirs. There is none.
     facet.kind = Facet::Kind::kClosed;
     facet.material = std::max(facet.material, 0);
     facet.opens = false;
   }
-  if (is_sealed_ && facet.beyond != region_) {
+  if (is_sealed_ && facet.beyond != here_.region) {
     facet.kind = Facet::Kind::kClosed;
     facet.material = std::max(facet.material, 0);
     facet.opens = false;
@@ -104,7 +99,7 @@ void CellWalker::updateHolding() noexcept {
     for (const RegionId region : partition.regionsOf(crossing_[i])) {
       const auto at = std::lower_bound(holding_.begin(), holding_.end(), region, std::greater<>());
       const bool was = at != holding_.end() && *at == region;
-      const bool is = partition.layerHolds(region, signs_);
+      const bool is = partition.layerHolds(region, here_.sides);
       if (is && !was) holding_.insert(at, region);  // room for all regions was reserved
       if (was && !is) holding_.erase(at);
     }
@@ -114,33 +109,33 @@ void CellWalker::updateHolding() noexcept {
 void CellWalker::cross(LeafId leaf, const Facet& facet, double force) noexcept {
   gather(leaf);
   const double came_from = side(leaf);
-  for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], signs_);
+  for (std::size_t i = 0; i < crossing_count_; ++i) flip(crossing_[i], here_.sides);
   updateHolding();
   --crossings_left_;
   ++state_;
   const bool by_port = facet.kind == Facet::Kind::kOpen || facet.opens;
-  if (facet.beyond == region_ && !by_port) return;
+  if (facet.beyond == here_.region && !by_port) return;
   const bool keep = scene_.keepsMemory();
   const Passages& passages = scene_.passages();
   if (by_port) {
-    passages.pass(passed_, facet.port, facet.inward, region_, facet.beyond, keep);
-    if (facet.opens) punctures_.puncture(facet.port, scene_.ports()[facet.port], x_);
+    passages.pass(here_.passed, facet.port, facet.inward, here_.region, facet.beyond, keep);
+    if (facet.opens) here_.punctures.puncture(facet.port, scene_.ports()[facet.port], here_.point);
     if (event_count_ < events_.size()) {
       using How = PortCrossing::How;
       const How forced = facet.opens ? How::kPuncture : How::kOpen;
-      const Vec3 gradient = leaves_[leaf].field->sample(x_).gradient;
-      crossings_[event_count_] = {facet.port,   region_,
+      const Vec3 gradient = leaves_[leaf].field->sample(here_.point).gradient;
+      crossings_[event_count_] = {facet.port,   here_.region,
                                   facet.beyond, facet.in_hole ? How::kHole : forced,
-                                  x_,           unitOr(came_from * gradient, Vec3(0.0)),
+                                  here_.point,  unitOr(came_from * gradient, Vec3(0.0)),
                                   force};
       events_[event_count_++] = facet.port;
     }
   } else {
-    passages.arrive(passed_, region_, facet.beyond, keep);
+    passages.arrive(here_.passed, here_.region, facet.beyond, keep);
   }
-  if (facet.beyond == region_) return;  // a port of a sheet
-  region_ = facet.beyond;
-  mouth_ = leaf;
+  if (facet.beyond == here_.region) return;  // a port of a sheet
+  here_.region = facet.beyond;
+  here_.mouth = leaf;
 }
 
 }  // namespace palpate

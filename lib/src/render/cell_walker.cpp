@@ -7,27 +7,13 @@
 #include "solver_limits.h"
 
 namespace palpate {
-namespace {
-
-/// Sweeps let go of grazes shorter than this share of the feature size: what they miss is no deeper than
-/// 5e-7 of it.
-constexpr double kGraze = 0.002;
-constexpr int kEvaluationsPerTick = 4096;
-constexpr int kEvaluationsPerSweep = 256;
-/// The hot list reaches this many times as far as the motion that made it.
-constexpr double kHorizon = 16.0;
-/// ... and at least this share of the smallest feature.
-constexpr double kHorizonShare = 0.1;
-
-}  // namespace
-
-CellWalker::CellWalker(const Scene& scene)
+CellWalker::CellWalker(const Scene& scene, PlaceState& state)
     : scene_(scene),
       leaves_(scene.partition().leaves()),
       domain_(leaves_.size()),
       opens_(leaves_.size(), false),
       tolerance_(leaves_.size()),
-      signs_(leaves_.size()),
+      here_(state),
       beyond_(leaves_.size()),
       due_(leaves_.size()),
       hot_(leaves_.size()),
@@ -40,7 +26,7 @@ CellWalker::CellWalker(const Scene& scene)
     const Box3 bounds = leaves_[i].field->bounds();
     domain_[i] = {box, box.lo == Vec3(-kInfinity) && box.hi == Vec3(kInfinity),
                   bounds.isEmpty() || (box.contains(bounds.lo) && box.contains(bounds.hi))};
-    smallest_horizon_ = std::min(smallest_horizon_, kHorizonShare * leaves_[i].feature);
+    smallest_horizon_ = std::min(smallest_horizon_, limits::kHorizonShare * leaves_[i].feature);
   }
   for (const Port& port : scene.ports()) {
     if (port.mask < 0) continue;
@@ -50,31 +36,35 @@ CellWalker::CellWalker(const Scene& scene)
     }
   }
   holding_.reserve(scene.regions().size());
-  place(Vec3(0.0));
 }
 
 void CellWalker::place(const Vec3& p) noexcept {
-  x_ = p;
+  here_.point = p;
+  if (here_.sides.size() != leaves_.size()) here_.sides = Signs(leaves_.size());
+  scene_.partition().signsAt(p, here_.sides);
+  resume();
+  here_.region = holding_.empty() ? kOutside : holding_.front();
+  here_.mouth = -1;
+}
+
+void CellWalker::resume() noexcept {
   ++stay_;
+  ++state_;
   travel_ = 0.0;
   cold_due_ = 0.0;
   hot_count_ = 0;
-  scene_.partition().signsAt(p, signs_);
   holding_.clear();
   for (std::size_t i = scene_.regions().size() - 1; i > 0; --i) {
     const auto region = static_cast<RegionId>(i);
-    if (scene_.partition().layerHolds(region, signs_)) holding_.push_back(region);
+    if (scene_.partition().layerHolds(region, here_.sides)) holding_.push_back(region);
   }
-  region_ = holding_.empty() ? kOutside : holding_.front();
-  mouth_ = -1;
-  ++state_;
 }
 
 void CellWalker::beginTick() noexcept {
   event_count_ = 0;
-  punctures_.visit(x_);
+  here_.punctures.visit(here_.point);
   crossings_left_ = limits::kCrossings;
-  evaluations_left_ = kEvaluationsPerTick;
+  evaluations_left_ = limits::kEvaluationsPerTick;
   // The odometer starts again now and then, so that its rounding stays below every tolerance.
   if (travel_ > 1.0) {
     travel_ = 0.0;
@@ -82,7 +72,9 @@ void CellWalker::beginTick() noexcept {
   }
   // One leaf a tick is looked at whether it can have been met or not: a field whose bound is false may
   // have let the point through, and a hand at rest would leave it there.
-  if (hot_count_ > 0) (void)measure(hot_[audited_++ % hot_count_]);
+  if (hot_count_ == 0) return;
+  const LeafId leaf = hot_[here_.audited++ % hot_count_];
+  if (due_[leaf] > travel_) (void)measure(leaf);
 }
 
 double CellWalker::measure(LeafId leaf) noexcept {
@@ -95,9 +87,9 @@ double CellWalker::measure(LeafId leaf) noexcept {
 
 void CellWalker::refresh(double length) noexcept {
   if (travel_ + length < cold_due_) return;
-  const double horizon = std::max(kHorizon * length, smallest_horizon_);
+  const double horizon = std::max(limits::kHorizon * length, smallest_horizon_);
   hot_count_ = 0;
-  scene_.partition().tree().visit(x_, horizon, [&](std::uint32_t item) {
+  scene_.partition().tree().visit(here_.point, horizon, [&](std::uint32_t item) {
     const auto leaf = static_cast<LeafId>(item);
     due_[leaf] = travel_;
     hot_[hot_count_++] = leaf;
@@ -105,15 +97,29 @@ void CellWalker::refresh(double length) noexcept {
   cold_due_ = travel_ + horizon;
 }
 
+bool CellWalker::isAlone(LeafId leaf, double radius) noexcept {
+  refresh(radius);
+  for (std::size_t k = 0; k < hot_count_; ++k) {
+    const LeafId other = hot_[k];
+    if (other == leaf) continue;
+    const double reach =
+        travel_ + radius + limits::kTouch * tolerance_[other] / leaves_[other].lipschitz;
+    if (due_[other] > reach) continue;
+    (void)measure(other);
+    if (due_[other] <= reach) return false;
+  }
+  return true;
+}
+
 void CellWalker::jump(const Vec3& x) noexcept {
-  travel_ += glm::length(x - x_);
-  x_ = x;
+  travel_ += glm::length(x - here_.point);
+  here_.point = x;
   ++stay_;
 }
 
 CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noexcept {
   for (;;) {
-    const double length = glm::length(target - x_);
+    const double length = glm::length(target - here_.point);
     if (!(length > 0.0)) return Stop::kArrived;
     refresh(length);
     double nearest = 1.0;
@@ -129,7 +135,7 @@ CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noe
         const LeafId leaf = hot_[k];
         if (due_[leaf] > travel_ + nearest * length) continue;
         if (isIdle(leaf)) continue;
-        const Vec3 end = nearest < 1.0 ? x_ + nearest * (target - x_) : target;
+        const Vec3 end = nearest < 1.0 ? here_.point + nearest * (target - here_.point) : target;
         if (is_second) {
           if (leaf == hit_leaf ||
               side(leaf) * leaves_[leaf].field->value(end) >= -tolerance_[leaf]) {
@@ -137,9 +143,10 @@ CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noe
           }
         }
         const double start = side(leaf) * measure(leaf);
-        const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
+        const int budget = std::min(limits::kEvaluationsPerSweep, evaluations_left_);
         if (budget <= 8) return Stop::kSpent;
-        const SweepResult result = sweepLeaf(leaf, surfaceOf(leaf), x_, end, start, budget);
+        const SweepResult result =
+            sweepLeaf(leaf, surfaceOf(leaf), here_.point, end, start, budget);
         if (result.kind == SweepResult::Kind::kFree) continue;
         evaluations_left_ -= 8;
         nearest *= result.at;
@@ -155,7 +162,7 @@ CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noe
       jump(target);
       return Stop::kArrived;
     }
-    jump(x_ + nearest * (target - x_));
+    jump(here_.point + nearest * (target - here_.point));
     if (unsure) return Stop::kSpent;
     const Facet facet = facetAt(hit_leaf);
     if (facet.isClosed()) {
@@ -172,12 +179,12 @@ double CellWalker::reachOf(LeafId leaf, double value) const noexcept {
   const double bound = value / leaves_[leaf].lipschitz;
   const Domain& domain = domain_[leaf];
   if (domain.is_everywhere) return bound;
-  if (domain.box.contains(x_)) {
+  if (domain.box.contains(here_.point)) {
     if (domain.holds_surface) return bound;
-    const Vec3 room = glm::min(x_ - domain.box.lo, domain.box.hi - x_);
+    const Vec3 room = glm::min(here_.point - domain.box.lo, domain.box.hi - here_.point);
     return std::min(bound, std::min({room.x, room.y, room.z}));
   }
-  return domain.holds_surface ? leaves_[leaf].field->bounds().distanceTo(x_) : 0.0;
+  return domain.holds_surface ? leaves_[leaf].field->bounds().distanceTo(here_.point) : 0.0;
 }
 
 SweepResult CellWalker::sweepLeaf(LeafId leaf, SweepSurface surface, const Vec3& a, const Vec3& b,
@@ -223,14 +230,14 @@ SweepSurface CellWalker::surfaceOf(LeafId leaf) const noexcept {
   surface.side = side(leaf);
   surface.lipschitz = leaves_[leaf].lipschitz;
   surface.tolerance = tolerance_[leaf];
-  surface.graze = kGraze * leaves_[leaf].feature;
+  surface.graze = limits::kGraze * leaves_[leaf].feature;
   return surface;
 }
 
 void CellWalker::turn(LeafId leaf) noexcept {
   crossing_[0] = leaf;
   crossing_count_ = 1;
-  flip(leaf, signs_);
+  flip(leaf, here_.sides);
   updateHolding();
   ++state_;
 }
@@ -249,15 +256,16 @@ CellWalker::Slid CellWalker::slideTo(const Vec3& target, const NearCell& cell,
     if (isIdle(leaf)) continue;
     const std::uint32_t bit = std::uint32_t{1} << i;
     if (((cell.inside | cell.outside) & bit) != 0) {
-      if (signs_.inside(leaf) != ((cell.inside & bit) != 0)) changes[count++] = {leaf, 0.0};
+      if (here_.sides.inside(leaf) != ((cell.inside & bit) != 0)) changes[count++] = {leaf, 0.0};
       continue;
     }
     const double before = std::max(0.0, side(leaf) * valueHere(leaf));
     const double after = side(leaf) * leaves_[leaf].field->value(target);
     if (opens_[leaf] && !held.empty()) {
       // An opening may be narrower than the way is long.
-      const int budget = std::min(kEvaluationsPerSweep, evaluations_left_);
-      const SweepResult swept = sweepLeaf(leaf, surfaceOf(leaf), x_, target, before, budget);
+      const int budget = std::min(limits::kEvaluationsPerSweep, evaluations_left_);
+      const SweepResult swept =
+          sweepLeaf(leaf, surfaceOf(leaf), here_.point, target, before, budget);
       if (swept.kind != SweepResult::Kind::kFree) changes[count++] = {leaf, swept.at};
     } else if (after < -tolerance_[leaf]) {
       changes[count++] = {leaf, before / (before - after)};

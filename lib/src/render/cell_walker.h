@@ -1,6 +1,7 @@
 #pragma once
-/// CellWalker: a point that moves through sign cells and never passes a closed facet. It owns where the
-/// proxy is, on which side of every leaf it stands, its region, and the ports passed.
+/// CellWalker: moves a point through sign cells and never past a closed facet. Where the point is, on which side of
+/// every leaf, in which region and by which ports, is a PlaceState that the walker works on; all else here only saves
+/// evaluations.
 
 #include <array>
 #include <cstdint>
@@ -10,8 +11,9 @@
 #include "palpate/contact/sweep.h"
 #include "palpate/interior/near_cells.h"
 #include "palpate/interior/port_machine.h"
-#include "palpate/render/haptic_renderer.h"
+#include "palpate/render/renderer_state.h"
 #include "palpate/scene/scene.h"
+#include "solver_limits.h"
 
 namespace palpate {
 
@@ -24,17 +26,13 @@ class CellWalker {
     kSpent,    ///< out of budget, at the last point known to be free
   };
 
-  explicit CellWalker(const Scene& scene);
+  /// `state` outlives the walker. place() or resume() comes first.
+  CellWalker(const Scene& scene, PlaceState& state);
 
   /// Puts the point at `p` [m] as if it had always been there: signs and region are taken from `p`.
   void place(const Vec3& p) noexcept;
-  /// Forgets ports passed and holes made.
-  void forget() noexcept {
-    passed_.clear();
-    punctures_.clear();
-    audited_ = 0;
-    ++state_;
-  }
+  /// The state was replaced: goes on from there.
+  void resume() noexcept;
   /// While sealed, whatever leads out of the region is a wall.
   void seal(bool is_sealed) noexcept {
     is_sealed_ = is_sealed;
@@ -44,17 +42,19 @@ class CellWalker {
   /// A new tick: no events yet, fresh budgets.
   void beginTick() noexcept;
 
-  [[nodiscard]] const Vec3& position() const noexcept { return x_; }
-  [[nodiscard]] RegionId region() const noexcept { return region_; }
-  [[nodiscard]] const PassedPorts& passed() const noexcept { return passed_; }
-  [[nodiscard]] double side(LeafId leaf) const noexcept { return signs_.inside(leaf) ? -1.0 : 1.0; }
+  [[nodiscard]] const Vec3& position() const noexcept { return here_.point; }
+  [[nodiscard]] RegionId region() const noexcept { return here_.region; }
+  [[nodiscard]] const PassedPorts& passed() const noexcept { return here_.passed; }
+  [[nodiscard]] double side(LeafId leaf) const noexcept {
+    return here_.sides.inside(leaf) ? -1.0 : 1.0;
+  }
   [[nodiscard]] const Leaf& leaf(LeafId id) const noexcept { return leaves_[id]; }
   [[nodiscard]] double tolerance(LeafId leaf) const noexcept { return tolerance_[leaf]; }
 
   /// The leaf's field at the point; computed once as long as the point stays there.
   [[nodiscard]] const FieldJet& jetHere(LeafId leaf) noexcept {
     Jet& known = jets_[leaf];
-    if (known.stay != stay_) known = {leaves_[leaf].field->jet(x_), stay_};
+    if (known.stay != stay_) known = {leaves_[leaf].field->jet(here_.point), stay_};
     return known.jet;
   }
 
@@ -73,6 +73,11 @@ class CellWalker {
                              std::span<const LeafId> held) noexcept;
   /// To `x` [m], which slideTo() or a solver's way back onto the walls found.
   void jump(const Vec3& x) noexcept;
+  /// To `x` [m] on the surface of `leaf`, whose jet there is `jet`; no other leaf comes within the way there.
+  void glideTo(const Vec3& x, LeafId leaf, const FieldJet& jet) noexcept {
+    jump(x);
+    jets_[leaf] = {jet, stay_};
+  }
   [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }
 
   /// Calls f(leaf) for each leaf whose surface may come within `radius` [m] of the point, a few of its
@@ -82,20 +87,23 @@ class CellWalker {
     refresh(radius);
     for (std::size_t k = 0; k < hot_count_; ++k) {
       const LeafId leaf = hot_[k];
-      const double reach = travel_ + radius + kTouch * tolerance_[leaf] / leaves_[leaf].lipschitz;
+      const double reach =
+          travel_ + radius + limits::kTouch * tolerance_[leaf] / leaves_[leaf].lipschitz;
       if (due_[leaf] > reach) continue;
       (void)measure(leaf);
       if (due_[leaf] <= reach) f(leaf);
     }
   }
-  [[nodiscard]] const Signs& signs() const noexcept { return signs_; }
+  /// True if no surface but that of `leaf` can come within `radius` [m] of the point.
+  [[nodiscard]] bool isAlone(LeafId leaf, double radius) noexcept;
+  [[nodiscard]] const Signs& signs() const noexcept { return here_.sides; }
 
   /// What the facet of `leaf` at the point is, seen from here.
   [[nodiscard]] Facet facetAt(LeafId leaf) noexcept;
   /// Goes through the facet of `leaf` where the point stands, whatever it is; a port is recorded, and the
   /// hole if the facet gave way to a `force` [N].
   void cross(LeafId leaf, const Facet& facet, double force = 0.0) noexcept;
-  [[nodiscard]] const Punctures& punctures() const noexcept { return punctures_; }
+  [[nodiscard]] const Punctures& punctures() const noexcept { return here_.punctures; }
 
   /// False if this tick has crossed as many facets as one may.
   [[nodiscard]] bool mayCross() const noexcept { return crossings_left_ > 0; }
@@ -109,13 +117,13 @@ class CellWalker {
     return {crossings_.data(), event_count_};
   }
   /// The leaf whose facet the region was last entered through; -1 if it was not entered.
-  [[nodiscard]] int mouth() const noexcept { return mouth_; }
+  [[nodiscard]] int mouth() const noexcept { return here_.mouth; }
 
  private:
   /// True if the leaf means nothing here (Leaf::is_between).
   [[nodiscard]] bool isIdle(LeafId leaf) const noexcept {
     const Leaf& own = leaves_[leaf];
-    return own.is_between && !(signs_.inside(own.ends[0]) && signs_.inside(own.ends[1]));
+    return own.is_between && !(here_.sides.inside(own.ends[0]) && here_.sides.inside(own.ends[1]));
   }
   /// Goes to the other side of `leaf` within the region.
   void turn(LeafId leaf) noexcept;
@@ -126,9 +134,9 @@ class CellWalker {
   /// S of the leaf at the point, asked for once as long as the point stays there.
   double valueHere(LeafId leaf) noexcept {
     // A leaf that held the point a slide ago does so again: its jet will be asked for as well.
-    if (stay_ - jets_[leaf].stay <= kStaysOfSlide) return jetHere(leaf).value;
+    if (stay_ - jets_[leaf].stay <= limits::kStaysOfSlide) return jetHere(leaf).value;
     Measured& known = measured_[leaf];
-    if (known.stay != stay_) known = {leaves_[leaf].field->value(x_), stay_};
+    if (known.stay != stay_) known = {leaves_[leaf].field->value(here_.point), stay_};
     return known.value;
   }
   /// Sees to it that every leaf that a motion of `length` could reach is in the hot list.
@@ -156,15 +164,10 @@ class CellWalker {
   std::vector<Domain> domain_;
   std::vector<bool> opens_;        ///< by leaf: part of the extent of a port
   std::vector<double> tolerance_;  ///< of |S| by leaf: 1e-9 of the feature size, in units of S
-  Vec3 x_{0.0, 0.0, 0.0};
-  Signs signs_;
+  PlaceState& here_;
   Signs beyond_;                   ///< scratch of facetAt()
   std::vector<RegionId> holding_;  ///< layers that hold the cell, innermost (last) first
-  RegionId region_ = kOutside;
   bool is_sealed_ = false;
-  PassedPorts passed_;
-  Punctures punctures_;
-  int mouth_ = -1;
   LeafId blocked_by_ = 0;
   std::uint8_t event_count_ = 0;
   std::array<PortId, TickResult::kMaxEvents> events_{};
@@ -179,7 +182,6 @@ class CellWalker {
   std::vector<double> due_;
   std::vector<LeafId> hot_;
   std::size_t hot_count_ = 0;
-  std::size_t audited_ = 0;  ///< leaves of the hot list looked at out of turn, one a tick
   double cold_due_ = 0.0;
   double smallest_horizon_ = kInfinity;  ///< [m]
 
@@ -191,13 +193,9 @@ class CellWalker {
     FieldJet jet;
     std::uint64_t stay = 0;
   };
-  std::vector<Measured> measured_;  ///< by leaf
-  std::vector<Jet> jets_;           ///< by leaf
-  static constexpr double kTouch = 4.0;
-  /// A slide takes so many straight moves: to above where it lands, and down.
-  static constexpr std::uint64_t kStaysOfSlide = 2;
-
-  std::uint64_t stay_ = 1 + kStaysOfSlide;  ///< counts the places where the point was
+  std::vector<Measured> measured_;                  ///< by leaf
+  std::vector<Jet> jets_;                           ///< by leaf
+  std::uint64_t stay_ = 1 + limits::kStaysOfSlide;  ///< counts the places where the point was
 
   /// A facet looked up in the present state, valid while nothing was crossed; one that varies from place to
   /// place, as long as the point stays where it was.

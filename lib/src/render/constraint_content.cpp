@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraint_renderer.h"
+#include "feel.h"
 
 // What the hand feels of what is inside a region.
 
@@ -14,7 +14,7 @@ constexpr double kFadeLength = 0.25e-3;
 
 }  // namespace
 
-double ConstraintRenderer::contentShare() noexcept {
+double Feel::contentShare() noexcept {
   if (walker_.mouth() < 0) return 1.0;
   const auto mouth = static_cast<LeafId>(walker_.mouth());
   const FieldSample s = walker_.leaf(mouth).field->sample(walker_.position());
@@ -29,35 +29,17 @@ double ConstraintRenderer::contentShare() noexcept {
 }
 
 /// The share of the content that is felt changes no faster than the hand moves, wherever an opening ends.
-void ConstraintRenderer::fadeContent(const Vec3& hip) noexcept {
+void Feel::fadeContent(const Vec3& hip) noexcept {
   const double share = contentShare();
-  if (is_first_) {
-    content_share_ = share;
+  FadeState& fade = state_.fade;
+  if (!state_.has_begun) {
+    fade.share = share;
   } else {
-    const double most = glm::length(hip - last_hip_) / kFadeLength;
-    if (walker_.region() != felt_region_) content_share_ = 0.0;
-    content_share_ = std::clamp(share, content_share_ - most, content_share_ + most);
+    const double most = glm::length(hip - state_.hip) / kFadeLength;
+    if (walker_.region() != fade.region) fade.share = 0.0;
+    fade.share = std::clamp(share, fade.share - most, fade.share + most);
   }
-  felt_region_ = walker_.region();
-  last_hip_ = hip;
-  is_first_ = false;
-}
-
-Vec3 ConstraintRenderer::contentForce(const HipState& hip) noexcept {
-  const RegionId region = walker_.region();
-  const Vec3& x = walker_.position();
-  Vec3 force = dragForce(region, x, hip.velocity, content_share_);
-  if (contents_.hasLattice(region)) {
-    const Vec3 push = latticeForce(region, x);
-    // On a wall the tip goes along with the hand's motion beside it only.
-    force +=
-        solver_.contact().count > 0 ? gradientByHand(push, solver_.contact().held().walls()) : push;
-  }
-  if (contents_.holdNeedles()) {
-    force +=
-        insertion_.step(contents_, scene_->ports(), {x, hip.velocity, region, walker_.crossings()});
-  }
-  return force;
+  fade.region = walker_.region();
 }
 
 }  // namespace palpate

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraint_renderer.h"
+#include "feel.h"
 #include "palpate/contact/surface_effects.h"
 
 // What the hand feels of the walls that hold the proxy.
@@ -9,24 +9,23 @@
 namespace palpate {
 
 /// The wall's normal smoothed, over the whole solid that the wall bounds: its facets may be leaves.
-Vec3 ConstraintRenderer::shaded(const HeldWall& held, const Facet& facet,
-                                double radius) const noexcept {
+Vec3 Feel::shaded(const HeldWall& held, const Facet& facet, double radius) const noexcept {
   const RegionId here = walker_.region();
   const Field* solid = held.field;
   double side = held.side;
   if (here != facet.beyond) {
     const RegionId inner = std::max(here, facet.beyond);
-    solid = scene_->regions()[inner].field.get();
+    solid = scene_.regions()[inner].field.get();
     side = here == inner ? -1.0 : 1.0;
   }
   return shadedNormal(*solid, side, walker_.position(), held.normal, radius);
 }
 
 /// The Maxwell branch of the wall that is pressed most: stretched by how deep the hand presses now.
-void ConstraintRenderer::relax(double dt) noexcept {
-  const ContactSet& c = solver_.contact();
+void Feel::relax(const ContactSet& c, double dt) noexcept {
+  RelaxationState& branch = state_.relaxation;
   if (c.count == 0) {
-    branch_ = {};
+    branch = {};
     return;
   }
   std::size_t most = 0;
@@ -37,24 +36,24 @@ void ConstraintRenderer::relax(double dt) noexcept {
   const Material& wall = wallMaterial(facet);
   const bool has_branch = wall.maxwell.time > 0.0;
   const double depth = has_branch ? c.load() : 0.0;
-  const bool goes_on = branch_.material == facet.material && branch_.region == walker_.region();
+  const bool goes_on = branch.material == facet.material && branch.region == walker_.region();
   // Pressed from free space it is stretched by all of the depth. A wall that the proxy was handed on to was not
   // pressed by the hand's motion of this tick: it is taken as relaxed.
-  const double before = goes_on || branch_.material < 0 ? branch_.depth : depth;
-  if (!goes_on) branch_.state.reset();
-  branch_.material = facet.material;
-  branch_.region = walker_.region();
-  branch_.depth = depth;
+  const double before = goes_on || branch.material < 0 ? branch.depth : depth;
+  if (!goes_on) branch.branch.reset();
+  branch.material = facet.material;
+  branch.region = walker_.region();
+  branch.depth = depth;
   if (!has_branch) return;
-  branch_.state.step(depth - before, dt, wall.maxwell.time);
+  branch.branch.step(depth - before, dt, wall.maxwell.time);
   const double stiffness = wall.maxwell.stiffness.at(walker_.position());
   // It slackens rather than to pull the wall's own spring below zero.
-  if (stiffness > 0.0) branch_.state.keepAbove(-springOf(c.wall[most]).force(depth) / stiffness);
+  if (stiffness > 0.0) branch.branch.keepAbove(-springOf(c.wall[most]).force(depth) / stiffness);
 }
 
 /// [N/m] What the held wall is pressed against, by the place of the proxy: its material's, or that of the
 /// layers behind it.
-MaterialMap::Sample ConstraintRenderer::stiffnessOf(const WallContact& contact) noexcept {
+MaterialMap::Sample Feel::stiffnessOf(const WallContact& contact) noexcept {
   const Material& wall = wallMaterial(contact.facet);
   if (wall.composite.radius > 0.0 && contact.facet.beyond != walker_.region()) {
     return beneath_.stiffness(contact.leaf, walker_.position(), contact.held, contact.facet, wall);
@@ -64,21 +63,21 @@ MaterialMap::Sample ConstraintRenderer::stiffnessOf(const WallContact& contact) 
 
 /// What the walls push with: the springs between the proxy and the hand. Whatever the walls were found to
 /// be, for one stiffness it is that times the way from the hand to the proxy.
-Vec3 ConstraintRenderer::wallForce(const HipState& hip) noexcept {
-  const ContactSet& c = solver_.contact();
+Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
+  relax(c, hip.dt);
   const Vec3& x = walker_.position();
   const Vec3 apart = x - hip.position;
-  friction_.lean = Vec3(0.0);
+  state_.friction.lean = Vec3(0.0);
   if (apart == Vec3(0.0)) {
-    pressed_ = -1;
+    state_.pressed = -1;
     return Vec3(0.0);
   }
   if (c.count == 0) {
     // On its way, out of budget: it is drawn on by the wall that it was held by.
-    if (pressed_ < 0) return Vec3(0.0);
-    return scene_->materials()[static_cast<std::size_t>(pressed_)].stiffness.at(x) * apart;
+    if (state_.pressed < 0) return Vec3(0.0);
+    return scene_.materials()[static_cast<std::size_t>(state_.pressed)].stiffness.at(x) * apart;
   }
-  pressed_ = c.wall[0].facet.material;
+  state_.pressed = c.wall[0].facet.material;
   double total = 0.0;
   Vec3 outward(0.0);
   for (const WallContact& each : c.walls()) {
@@ -122,16 +121,17 @@ Vec3 ConstraintRenderer::wallForce(const HipState& hip) noexcept {
   damping /= total;
   // What the walls do not hold of the displacement: by friction, or because the proxy is not there yet.
   force -= stiffness * c.left + damping * hip.velocity;
-  if (branch_.state.stretch() != 0.0) {
-    const Maxwell& branch = scene_->materials()[static_cast<std::size_t>(branch_.material)].maxwell;
+  if (state_.relaxation.branch.stretch() != 0.0) {
+    const Maxwell& branch =
+        scene_.materials()[static_cast<std::size_t>(state_.relaxation.material)].maxwell;
     const MaterialMap::Sample own = branch.stiffness.sample(x);
-    const double stretch = branch_.state.stretch();
+    const double stretch = state_.relaxation.branch.stretch();
     force += own.value * stretch * n;
     rise += 0.5 * stretch * stretch * own.gradient;
     varies = varies || !branch.stiffness.isConstant();
   }
-  if (friction_.is_felt) {
-    friction_.lean = rise / stiffness;
+  if (state_.friction.is_felt) {
+    state_.friction.lean = rise / stiffness;
   } else if (varies) {
     force -= gradientByHand(rise, c.held().walls());
   }

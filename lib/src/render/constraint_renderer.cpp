@@ -5,56 +5,47 @@
 namespace palpate {
 
 ConstraintRenderer::ConstraintRenderer(ScenePtr scene, const RendererSettings& settings)
-    : HapticRenderer(*scene, settings.limits),
-      scene_(std::move(scene)),
-      walker_(*scene_),
-      beneath_(*scene_),
-      solver_(*scene_, walker_) {}
+    : HapticRenderer(std::move(scene), settings.limits),
+      walker_(*scene_, state_.place),
+      solver_(*scene_, walker_),
+      feel_(*scene_, walker_, state_) {}
 
-void ConstraintRenderer::forget() noexcept {
-  started_ = false;
-  is_first_ = true;
-  friction_ = {};
-  pressed_ = -1;
-  walker_.forget();
-  branch_ = {};
-  insertion_.reset();
+void ConstraintRenderer::resume() noexcept {
+  if (state_.has_begun) walker_.resume();
 }
 
 TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   TickResult out;
-  if (!started_) start(hip.position);
+  if (!state_.has_begun) start(hip.position);
   walker_.beginTick();
-  out.settled = solver_.track(hip.position, friction_, *this);
-  fadeContent(hip.position);
-  relax(hip.dt);
+  out.settled = solver_.track(hip.position, state_.friction, *this);
+  feel_.fadeContent(hip.position);
 
   out.proxy = walker_.position() + solver_.contact().snug;
   out.region = walker_.region();
   out.event_count = walker_.eventCount();
   out.events = walker_.events();
-  out.force = wallForce(hip);
-  out.contact = pressed_ >= 0;
+  out.force = feel_.walls(solver_.contact(), hip);
+  out.contact = state_.pressed >= 0;
   out.force += contentForce(hip);
   return out;
 }
 
 void ConstraintRenderer::start(const Vec3& hip) noexcept {
   walker_.place(startPoint(*scene_, walker_, hip));
-  started_ = true;
   if (walker_.position() == hip) return;
   // From there the nearest point is found as any other: with all that leads out of the region shut.
   walker_.seal(true);
   walker_.beginTick();
-  (void)solver_.track(hip, friction_, *this);
+  (void)solver_.track(hip, state_.friction, *this);
   walker_.seal(false);
-  friction_.sticks = false;
+  state_.friction.sticks = false;
 }
 
 bool ConstraintRenderer::open(const ContactSet& contact) noexcept {
   for (const WallContact& each : contact.walls()) {
     if (!each.facet.opens) continue;
-    const double elastic = springOf(each).force(each.held.multiplier);
+    const double elastic = feel_.springOf(each).force(each.held.multiplier);
     if (elastic >= each.facet.opens_at &&
         each.held.multiplier >= walker_.punctures().restOf(each.facet.port)) {
       walker_.cross(each.leaf, each.facet, elastic);
@@ -62,6 +53,23 @@ bool ConstraintRenderer::open(const ContactSet& contact) noexcept {
     }
   }
   return false;
+}
+
+Vec3 ConstraintRenderer::contentForce(const HipState& hip) noexcept {
+  const RegionId region = walker_.region();
+  const Vec3& x = walker_.position();
+  Vec3 force = dragForce(region, x, hip.velocity, state_.fade.share);
+  if (contents_.hasLattice(region)) {
+    const Vec3 push = latticeForce(region, x);
+    // On a wall the tip goes along with the hand's motion beside it only.
+    force +=
+        solver_.contact().count > 0 ? gradientByHand(push, solver_.contact().held().walls()) : push;
+  }
+  if (contents_.holdNeedles()) {
+    force += state_.needle.step(contents_, scene_->ports(),
+                                {x, hip.velocity, region, walker_.crossings()});
+  }
+  return force;
 }
 
 }  // namespace palpate

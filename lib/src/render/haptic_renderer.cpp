@@ -19,37 +19,62 @@ bool isNear(const Vec3& p) noexcept {
 }  // namespace
 
 TickResult HapticRenderer::update(const HipState& hip) noexcept {
-  if (isNear(hip.position) && isFinite(hip.velocity)) {
-    if (has_hip_) source_work_ += glm::dot(flow_push_, hip.position - last_hip_);
-    has_hip_ = true;
-    last_hip_ = hip.position;
-    flow_push_ = Vec3(0.0);
-    const bool was_in_lattice = std::exchange(in_lattice_, false);
-    last_ = step(hip);
-    if (was_in_lattice && !in_lattice_) {
-      source_work_ -= std::exchange(lattice_energy_, 0.0);
-      lattice_region_ = kOutside;
-    }
-    last_.force = guard_.apply(last_.force, hip.dt);
-    return last_;
+  SourceState& source = state_.source;
+  if (!isNear(hip.position) || !isFinite(hip.velocity)) {
+    source.flow_push = Vec3(0.0);
+    state_.last.event_count = 0;
+    crossing_count_ = 0;
+    TickResult held = state_.last;
+    held.force = state_.guard.apply(Vec3(0.0), hip.dt);
+    return held;
   }
-  flow_push_ = Vec3(0.0);
-  last_.event_count = 0;
-  TickResult held = last_;
-  held.force = guard_.apply(Vec3(0.0), hip.dt);
-  return held;
+  if (state_.has_begun) source.work += glm::dot(source.flow_push, hip.position - state_.hip);
+  source.flow_push = Vec3(0.0);
+  const bool was_in_lattice = std::exchange(source.in_lattice, false);
+  TickResult out = step(hip);
+  if (was_in_lattice && !source.in_lattice) {
+    source.work -= std::exchange(source.lattice_energy, 0.0);
+    source.lattice_region = kOutside;
+  }
+  out.force = state_.guard.apply(out.force, hip.dt);
+  state_.has_begun = true;
+  state_.hip = hip.position;
+  state_.last = out;
+  crossing_count_ = out.event_count;
+  return out;
 }
 
 void HapticRenderer::reset() noexcept {
-  guard_.reset();
-  last_ = {};
-  last_.region = start_;
-  has_hip_ = false;
-  lattice_energy_ = 0.0;
-  in_lattice_ = false;
-  lattice_region_ = kOutside;
-  source_work_ = 0.0;
-  forget();
+  ForceGuard guard = state_.guard;
+  guard.reset();
+  state_ = {};
+  state_.guard = guard;
+  state_.last.region = scene_->startRegion();
+  crossing_count_ = 0;
+  resume();
+}
+
+bool HapticRenderer::setState(const RendererState& state) noexcept {
+  const auto regions = scene_->regions().size();
+  const auto leaves = scene_->partition().leaves().size();
+  const auto is_region = [&](std::size_t region) { return region < regions; };
+  const auto is_material = [&](int material) {
+    return material >= -1 && material < static_cast<int>(scene_->materials().size());
+  };
+  const PlaceState& place = state.place;
+  const bool fits = isNear(state.hip) && isNear(place.point) && is_region(place.region) &&
+                    is_region(state.last.region) && is_region(state.fade.region) &&
+                    is_region(state.relaxation.region) && is_region(state.source.lattice_region) &&
+                    is_region(state.paper.layer) && is_material(state.pressed) &&
+                    is_material(state.relaxation.material) && place.mouth >= -1 &&
+                    place.mouth < static_cast<int>(leaves) &&
+                    (!state.has_begun || place.sides.size() == leaves) &&
+                    place.punctures.isOf(scene_->ports().size()) && state.needle.isOf(regions);
+  if (!fits) return false;
+  state_ = state;
+  crossing_count_ = 0;
+  resume();
+  return true;
 }
 
 Vec3 HapticRenderer::dragForce(RegionId region, const Vec3& p, const Vec3& velocity,
@@ -57,7 +82,7 @@ Vec3 HapticRenderer::dragForce(RegionId region, const Vec3& p, const Vec3& veloc
   const double viscosity = contents_.viscosity(region, p);
   if (!(viscosity > 0.0)) return Vec3(0.0);
   const Vec3 flow = contents_.flow(region);
-  flow_push_ = share * viscosity * flow;
+  state_.source.flow_push = share * viscosity * flow;
   return -(share * viscosity * (velocity - flow));
 }
 
@@ -66,12 +91,14 @@ Vec3 HapticRenderer::latticeForce(RegionId region, const Vec3& p) noexcept {
   const LatticePush push =
       latticePush(contents_.material(region)->lattice, contents_.latticeForce(region, p), p);
   // What the hand's motion changes the potential by, the force gives or takes. All else comes from nowhere.
-  const bool goes_on = lattice_region_ == region && lattice_version_ == contents_.version();
-  if (!goes_on) source_work_ += push.energy - lattice_energy_;
-  lattice_energy_ = push.energy;
-  lattice_region_ = region;
-  lattice_version_ = contents_.version();
-  in_lattice_ = true;
+  SourceState& source = state_.source;
+  const bool goes_on =
+      source.lattice_region == region && source.lattice_version == contents_.version();
+  if (!goes_on) source.work += push.energy - source.lattice_energy;
+  source.lattice_energy = push.energy;
+  source.lattice_region = region;
+  source.lattice_version = contents_.version();
+  source.in_lattice = true;
   return push.force;
 }
 

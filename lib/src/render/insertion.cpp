@@ -1,4 +1,4 @@
-#include "insertion.h"
+#include "palpate/render/insertion.h"
 
 #include <algorithm>
 
@@ -21,6 +21,14 @@ ShaftLaw shaftLaw(const Material& material, const Vec3& p) noexcept {
 }
 
 }  // namespace
+
+bool Insertion::isOf(std::size_t regions) const noexcept {
+  if (count_ > kMaxLayers || cut_count_ > kMaxCuts || next_cut_ >= kMaxCuts) return false;
+  return region_ < regions &&
+         std::all_of(
+             layers_.begin(), layers_.begin() + static_cast<std::ptrdiff_t>(count_),
+             [&](const Layer& layer) { return layer.from < regions && layer.region < regions; });
+}
 
 Vec3 Insertion::step(const Contents& contents, std::span<const Port> ports,
                      const Tick& tick) noexcept {

@@ -66,7 +66,8 @@ MaterialMap::Sample LayersBeneath::stiffness(LeafId leaf, const Vec3& x, const H
 void LayersBeneath::look(const Vec3& x, const HeldWall& held, const Material& material) noexcept {
   const double depth = material.composite.depth;
   const Vec3 end = x - depth * held.normal;
-  probe_.forget();
+  place_.passed.clear();
+  place_.punctures.clear();
   probe_.place(x - kBehind * depth * held.normal);
   probe_.beginTick();
   for (int i = 0; i < kMostCrossings && found_.count < kMostStackLayers; ++i) {

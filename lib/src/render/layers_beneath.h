@@ -10,7 +10,9 @@ namespace palpate {
 /// Belongs to one renderer; const scene, scratch of its own.
 class LayersBeneath {
  public:
-  explicit LayersBeneath(const Scene& scene) : scene_(scene), probe_(scene) {}
+  explicit LayersBeneath(const Scene& scene) : scene_(scene), probe_(scene, place_) {}
+  LayersBeneath(const LayersBeneath&) = delete;  // the probe works on this one's place
+  LayersBeneath& operator=(const LayersBeneath&) = delete;
 
   /// The stiffness [N/m] of the layers behind the wall `held` of `leaf` at `x` [m], as `material`'s composite
   /// asks, and its gradient along the wall. The last answer is kept for the next question about the same
@@ -37,6 +39,7 @@ class LayersBeneath {
   void add(RegionId from, LeafId leaf, const Vec3& x, const HeldWall& held, double depth) noexcept;
 
   const Scene& scene_;
+  PlaceState place_;
   CellWalker probe_;
   Found found_;
   LeafId last_leaf_ = 0;

@@ -8,27 +8,6 @@
 
 namespace palpate {
 
-NearWall wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept {
-  NearWall out;
-  out.leaf = id;
-  out.slope = s.in_band ? glm::length(s.gradient) : 0.0;
-  const double share = std::clamp(out.slope / leaf.lipschitz, limits::kFlattest, 1.0);
-  const double tolerance = limits::kOnSurface * leaf.feature * leaf.lipschitz * share;
-  const double slope = std::max(out.slope, limits::kFlattest * leaf.lipschitz);
-  out.tolerance = tolerance / slope;
-  out.distance = s.value / slope;
-  if (out.slope > 0.0) out.normal = s.gradient / out.slope;
-  return out;
-}
-
-namespace {
-
-double sizeOf(const Mat3& m) noexcept {
-  return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
-}
-
-}  // namespace
-
 void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal,
                 Mat3& bend) noexcept {
   const double size = sizeOf(bend);

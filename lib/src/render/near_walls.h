@@ -3,11 +3,13 @@
 /// around it. Scratch: made anew for each place.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
 #include "cell_walker.h"
 #include "palpate/interior/near_cells.h"
+#include "solver_limits.h"
 
 namespace palpate {
 
@@ -61,7 +63,24 @@ class NearWalls {
 void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal,
                 Mat3& bend) noexcept;
 
+/// [1/m] The norm of a bend.
+[[nodiscard]] inline double sizeOf(const Mat3& m) noexcept {
+  return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+}
+
 /// The leaf `id` at a place where its field has the sample `s`; without its bend.
-[[nodiscard]] NearWall wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept;
+[[nodiscard]] inline NearWall wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept {
+  NearWall out;
+  out.leaf = id;
+  out.slope = s.in_band ? glm::length(s.gradient) : 0.0;
+  // A slope beyond the bound, which is false then, would make the tolerance longer than it is meant.
+  const double least = limits::kFlattest * leaf.lipschitz;
+  const double length = 1.0 / std::max(out.slope, least);
+  out.tolerance = limits::kOnSurface * leaf.feature;
+  if (out.slope > leaf.lipschitz) out.tolerance *= leaf.lipschitz * length;
+  out.distance = s.value * length;
+  if (out.slope > 0.0) out.normal = s.gradient * (out.slope > least ? length : 1.0 / out.slope);
+  return out;
+}
 
 }  // namespace palpate

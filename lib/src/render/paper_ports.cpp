@@ -16,21 +16,21 @@ constexpr int kHalvings = 40;  // of a tick's way, to where a face is crossed
 void PaperRenderer::advance(const Vec3& hip, TickResult& out) noexcept {
   const Partition& partition = scene_->partition();
   partition.signsAt(hip, now_);
-  cell_ = last_cell_;
-  bool goes_on = now_ != last_cell_;
+  cell_.assign(state_.place.sides);
+  bool goes_on = now_ != state_.place.sides;
   for (std::size_t tries = 0; goes_on && tries < TickResult::kMaxEvents; ++tries) {
-    goes_on = partition.regionOf(cell_) == state_;
+    goes_on = partition.regionOf(cell_) == state_.place.region;
     if (!goes_on) break;
-    const auto ports = scene_->passages().portsOf(state_);
+    const auto ports = scene_->passages().portsOf(state_.place.region);
     goes_on =
         std::any_of(ports.begin(), ports.end(), [&](PortId id) { return tryPort(id, hip, out); }) ||
         tryAbsentWalls();
   }
-  last_cell_ = now_;
+  state_.place.sides.assign(now_);
 }
 
 bool PaperRenderer::turn(std::span<const LeafId> leaves) noexcept {
-  turned_ = cell_;
+  turned_.assign(cell_);
   bool is_changed = false;
   for (const LeafId leaf : leaves) {
     if (cell_.inside(leaf) == now_.inside(leaf)) continue;
@@ -44,11 +44,11 @@ bool PaperRenderer::turn(std::span<const LeafId> leaves) noexcept {
 bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcept {
   const Port& port = scene_->ports()[id];
   const Partition& partition = scene_->partition();
-  if (!scene_->passages().isDue(port, passed_)) return false;
+  if (!scene_->passages().isDue(port, state_.place.passed)) return false;
   for (const std::vector<RegionId>* side : {&port.to, &port.from}) {
     for (const RegionId to : *side) {
-      if (to == state_ || !port.leads(state_, to)) continue;
-      const RegionId inner = std::max(state_, to);
+      if (to == state_.place.region || !port.leads(state_.place.region, to)) continue;
+      const RegionId inner = std::max(state_.place.region, to);
       const bool is_on_face = !port.on.empty();
       if (!turn(is_on_face ? std::span<const LeafId>(port.on) : partition.leavesOfRegion(inner)) ||
           partition.regionOf(turned_) != to) {
@@ -56,8 +56,8 @@ bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcep
       }
       if (is_on_face) {
         // The walls beside the face must have been passed neither before nor now.
-        scratch_ = now_;
-        if (inner == state_) {
+        scratch_.assign(now_);
+        if (inner == state_.place.region) {
           for (const LeafId leaf : port.on) scratch_.set(leaf, cell_.inside(leaf));
         }
         if (!partition.layerHolds(inner, scratch_)) continue;
@@ -67,12 +67,13 @@ bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcep
         partition.signsAt(point, scratch_);
         if (!partition.maskHolds(static_cast<std::size_t>(port.mask), scratch_)) continue;
       }
-      scene_->passages().pass(passed_, id, state_, to, scene_->keepsMemory());
+      scene_->passages().pass(state_.place.passed, id, state_.place.region, to,
+                              scene_->keepsMemory());
       crossings_[out.event_count] = {.port = id,
-                                     .from = state_,
+                                     .from = state_.place.region,
                                      .to = to,
                                      .point = point,
-                                     .normal = unitOr(last_ - hip, Vec3(0.0))};
+                                     .normal = unitOr(state_.hip - hip, Vec3(0.0))};
       out.events[out.event_count++] = id;
       enter(to);
       return true;
@@ -83,10 +84,10 @@ bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcep
 
 bool PaperRenderer::tryAbsentWalls() noexcept {
   const Partition& partition = scene_->partition();
-  for (const RegionId to : free_ways_of_[state_]) {
-    const RegionId inner = std::max(state_, to);
+  for (const RegionId to : free_ways_of_[state_.place.region]) {
+    const RegionId inner = std::max(state_.place.region, to);
     if (!turn(partition.leavesOfRegion(inner)) || partition.regionOf(turned_) != to) continue;
-    scene_->passages().arrive(passed_, state_, to, scene_->keepsMemory());
+    scene_->passages().arrive(state_.place.passed, state_.place.region, to, scene_->keepsMemory());
     enter(to);
     return true;
   }
@@ -97,7 +98,7 @@ bool PaperRenderer::tryAbsentWalls() noexcept {
 Vec3 PaperRenderer::crossingPoint(const Vec3& hip) const noexcept {
   const Field& face = *scene_->partition().leaves()[turned_leaf_].field;
   const bool began_inside = cell_.inside(turned_leaf_);
-  Vec3 before = last_;
+  Vec3 before = state_.hip;
   Vec3 behind = hip;
   for (int k = 0; k < kHalvings; ++k) {
     const Vec3 middle = 0.5 * (before + behind);
@@ -107,8 +108,8 @@ Vec3 PaperRenderer::crossingPoint(const Vec3& hip) const noexcept {
 }
 
 void PaperRenderer::enter(RegionId region) noexcept {
-  cell_ = turned_;
-  state_ = region;
+  cell_.assign(turned_);
+  state_.place.region = region;
   openFaces();
 }
 
@@ -125,12 +126,13 @@ void PaperRenderer::openFaces() noexcept {
           return std::any_of(side.begin(), side.end(),
                              [&](RegionId to) { return to != self && port.leads(self, to); });
         };
-        const bool leads =
-            state_ != self ? port.leads(state_, self) : leads_out(port.from) || leads_out(port.to);
-        return leads && scene_->passages().isDue(port, passed_);
+        const bool leads = state_.place.region != self ? port.leads(state_.place.region, self)
+                                                       : leads_out(port.from) || leads_out(port.to);
+        return leads && scene_->passages().isDue(port, state_.place.passed);
       });
       // What was felt was another surface.
-      if (wall.setOpen(f, is_open) && in_contact_ && contact_layer_ == i) in_contact_ = false;
+      if (wall.setOpen(f, is_open) && state_.paper.holds && state_.paper.layer == i)
+        state_.paper.holds = false;
     }
   }
 }

@@ -44,14 +44,12 @@ bool isOn(const Port& port, const PaperFace& face) {
 }  // namespace
 
 PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
-    : HapticRenderer(*scene, settings.limits),
-      scene_(std::move(scene)),
+    : HapticRenderer(std::move(scene), settings.limits),
       parameters_(settings.paper.over(scene_->paper())),
-      last_cell_(scene_->partition().leaves().size()),
-      now_(last_cell_),
-      cell_(last_cell_),
-      turned_(last_cell_),
-      scratch_(last_cell_) {
+      now_(scene_->partition().leaves().size()),
+      cell_(now_),
+      turned_(now_),
+      scratch_(now_) {
   refuseWhatThePaperHasNot(*scene_);
   const std::size_t count = scene_->regions().size();
   layers_.reserve(count - 1);
@@ -93,27 +91,28 @@ PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
   }
 }
 
-void PaperRenderer::forget() noexcept {
-  started_ = false;
-  in_contact_ = false;
-  passed_.clear();
+void PaperRenderer::resume() noexcept {
+  // What was felt goes on, although faces are opened and shut to be as they were.
+  const PaperTouch felt = state_.paper;
+  openFaces();
+  state_.paper = felt;
 }
 
 void PaperRenderer::start(const HipState& hip) noexcept {
-  started_ = true;
-  last_ = hip.position;
-  state_ = scene_->startRegion();
-  scene_->partition().signsAt(hip.position, last_cell_);
+  state_.hip = hip.position;
+  state_.place.sides = Signs(scene_->partition().leaves().size());
+  state_.place.region = scene_->startRegion();
+  scene_->partition().signsAt(hip.position, state_.place.sides);
   openFaces();
 }
 
 TickResult PaperRenderer::step(const HipState& hip) noexcept {
   TickResult out;
-  if (!started_) start(hip);
+  if (!state_.has_begun) start(hip);
   advance(hip.position, out);
   feel(hip, out);
-  last_ = hip.position;
-  out.region = state_;
+  state_.place.point = hip.position;
+  out.region = state_.place.region;
   return out;
 }
 
@@ -121,33 +120,33 @@ void PaperRenderer::feel(const HipState& hip, TickResult& out) noexcept {
   const Vec3& p = hip.position;
   out.proxy = p;
   if (out.event_count > 0) {  // "ENTER_PORT, else if ...": a tick that passes a port feels nothing
-    in_contact_ = false;
+    state_.paper.holds = false;
     return;
   }
-  if (state_ != kOutside) {
-    const PaperWall& own = layers_[state_ - 1U].wall;
+  if (state_.place.region != kOutside) {
+    const PaperWall& own = layers_[state_.place.region - 1U].wall;
     const bool in_openings = own.isWithinOpenings(p);
     const bool in_walls = own.value(p) <= 0.0;
-    if (!in_walls && in_openings) return touch(state_ - 1U, -1.0, hip, out);  // row 3
-    if (!in_walls || !in_openings) {                                          // rows 4 and 2
-      in_contact_ = false;
+    if (!in_walls && in_openings) return touch(state_.place.region - 1U, -1.0, hip, out);  // row 3
+    if (!in_walls || !in_openings) {  // rows 4 and 2
+      state_.paper.holds = false;
       return;
     }
   }
   // Only later layers take their place from the region of the state.
-  for (std::size_t i = state_; i < layers_.size(); ++i) {
+  for (std::size_t i = state_.place.region; i < layers_.size(); ++i) {
     const PaperWall& wall = layers_[i].wall;
     if (!wall.hasWalls() || !(wall.value(p) <= 0.0) || !wall.isWithinOpenings(p)) continue;
-    if (scene_->passages().wall(state_, static_cast<RegionId>(i + 1)).absent) continue;
+    if (scene_->passages().wall(state_.place.region, static_cast<RegionId>(i + 1)).absent) continue;
     return touch(i, 1.0, hip, out);
   }
-  in_contact_ = false;
+  state_.paper.holds = false;
   feelContent(hip, out);
 }
 
 void PaperRenderer::feelContent(const HipState& hip, TickResult& out) noexcept {
-  const Vec3 force =
-      dragForce(state_, hip.position, hip.velocity, 1.0) + latticeForce(state_, hip.position);
+  const Vec3 force = dragForce(state_.place.region, hip.position, hip.velocity, 1.0) +
+                     latticeForce(state_.place.region, hip.position);
   if (isFinite(force)) out.force += force;
 }
 
@@ -155,20 +154,22 @@ void PaperRenderer::touch(std::size_t layer, double side, const HipState& hip,
                           TickResult& out) noexcept {
   PaperSurface surface = layers_[layer].surface;
   surface.side = side;
-  const bool goes_on = in_contact_ && contact_layer_ == layer && contact_side_ == side;
-  contact_ = goes_on ? trackContact(surface, contact_, last_, hip.position)
-                     : firstContact(surface, last_, hip.position);
-  in_contact_ = true;
-  contact_layer_ = layer;
-  contact_side_ = side;
+  const bool goes_on =
+      state_.paper.holds && state_.paper.layer == layer && state_.paper.side == side;
+  state_.paper.contact = goes_on
+                             ? trackContact(surface, state_.paper.contact, state_.hip, hip.position)
+                             : firstContact(surface, state_.hip, hip.position);
+  state_.paper.holds = true;
+  state_.paper.layer = static_cast<std::uint16_t>(layer);
+  state_.paper.side = side;
 
-  out.proxy = contact_.surface_point;
+  out.proxy = state_.paper.contact.surface_point;
   out.contact = true;
-  const Wall& wall = scene_->passages().wall(state_, regionBehind(layer, side));
+  const Wall& wall = scene_->passages().wall(state_.place.region, regionBehind(layer, side));
   if (wall.material >= 0) {
     const Material& material = scene_->materials()[static_cast<std::size_t>(wall.material)];
-    const Vec3& x = contact_.surface_point;
-    const Vec3 force = material.stiffness.at(x) * (x - contact_.interaction_point) -
+    const Vec3& x = state_.paper.contact.surface_point;
+    const Vec3 force = material.stiffness.at(x) * (x - state_.paper.contact.interaction_point) -
                        material.damping.at(x) * hip.velocity;
     if (isFinite(force)) out.force = force;
   }
@@ -180,11 +181,12 @@ void PaperRenderer::touch(std::size_t layer, double side, const HipState& hip,
 /// The region that the wall touched keeps the probe out of.
 RegionId PaperRenderer::regionBehind(std::size_t layer, double side) noexcept {
   const PaperSurface& surface = layers_[layer].surface;
-  const Vec3& x = contact_.surface_point;
+  const Vec3& x = state_.paper.contact.surface_point;
   const Vec3 inward = -side * unitOr(surface.field->sample(x).gradient, Vec3(0.0));
   scene_->partition().signsAt(x + layers_[layer].beneath * inward, scratch_);
   const auto is_wall = [&](RegionId region) {
-    return region != state_ && !scene_->passages().wall(state_, region).absent;
+    return region != state_.place.region &&
+           !scene_->passages().wall(state_.place.region, region).absent;
   };
   const RegionId behind = scene_->partition().regionOf(scratch_);
   if (is_wall(behind)) return behind;

@@ -30,7 +30,7 @@ class PaperRenderer final : public HapticRenderer {
 
  private:
   [[nodiscard]] TickResult step(const HipState& hip) noexcept override;
-  void forget() noexcept override;
+  void resume() noexcept override;
   [[nodiscard]] std::span<const PortCrossing> details() const noexcept override {
     return crossings_;
   }
@@ -59,21 +59,9 @@ class PaperRenderer final : public HapticRenderer {
   void touch(std::size_t layer, double side, const HipState& hip, TickResult& out) noexcept;
   [[nodiscard]] RegionId regionBehind(std::size_t layer, double side) noexcept;
 
-  ScenePtr scene_;
   PaperParameters parameters_;
   std::vector<Layer> layers_;                        ///< by layer, outermost first
   std::vector<std::vector<RegionId>> free_ways_of_;  ///< by region: what no wall stands before
-
-  // The state.
-  bool started_ = false;
-  RegionId state_ = kOutside;
-  PassedPorts passed_;
-  Vec3 last_{0.0, 0.0, 0.0};  ///< [m] the HIP of the last tick
-  Signs last_cell_;           ///< where that is
-  bool in_contact_ = false;
-  std::size_t contact_layer_ = 0;
-  double contact_side_ = 1.0;
-  PaperContact contact_;
 
   // Of this tick.
   std::array<PortCrossing, TickResult::kMaxEvents> crossings_{};

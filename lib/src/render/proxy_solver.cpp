@@ -29,14 +29,15 @@ bool ProxySolver::CellProblem::holds(std::size_t plane_index) const noexcept {
 bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& opener) noexcept {
   batches_left_ = limits::kMaxBatches;
   trusts_sides_ = false;
-  contact_ = {};
+  contact_.clear();
+  if (goQuickly(hip, friction)) return true;
   bool may_fly = true;
   for (bool is_first = true; batches_left_ > 0; is_first = false) {
     x_ = walker_.position();
     wish_ = hip - x_;
     aim_ = wish_;
     if (wish_ == Vec3(0.0)) {
-      contact_ = {};
+      contact_.clear();
       friction.sticks = false;
       return true;
     }
@@ -49,7 +50,7 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
         continue;
       case Look::kFree: {
         friction.sticks = false;
-        contact_ = {};
+        contact_.clear();
         if (may_fly) {
           const CellWalker::Stop stop = walker_.move(hip, false);
           if (stop == CellWalker::Stop::kArrived) return true;
@@ -83,6 +84,11 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
   return false;
 }
 
+double ProxySolver::restLength(const Vec3& x, const Vec3& wish) noexcept {
+  const double size = std::max({std::fabs(x.x), std::fabs(x.y), std::fabs(x.z)});
+  return std::max(limits::kSettled * glm::length(wish), limits::kRounding * size);
+}
+
 /// Out of budget on the way: the walls that hold the proxy where it got to.
 void ProxySolver::takeLastContact(const Vec3& hip) noexcept {
   x_ = walker_.position();
@@ -92,7 +98,7 @@ void ProxySolver::takeLastContact(const Vec3& hip) noexcept {
   const bool is_known = lookWithin(rest_);
   if (is_known) poseAll(wish_);
   if (!is_known || problems_ == 0 || problem_[0].solution.count == 0) {
-    contact_ = {};
+    contact_.clear();
     return;
   }
   takeContact(problem_[0]);
@@ -102,9 +108,7 @@ void ProxySolver::takeLastContact(const Vec3& hip) noexcept {
 /// Looks at what touches the proxy: whether it is free to go, rests, stands at an opening, or has to slide.
 ProxySolver::Look ProxySolver::lookAround(FrictionState& friction, bool is_first) noexcept {
   --batches_left_;
-  const double depth = glm::length(wish_);
-  const double size = std::max({std::fabs(x_.x), std::fabs(x_.y), std::fabs(x_.z)});
-  rest_ = std::max(limits::kSettled * depth, limits::kRounding * size);
+  rest_ = restLength(x_, wish_);
   cuts_ = 0;
   if (!lookWithin(rest_)) return Look::kNowhere;
   poseAll(wish_);

@@ -22,14 +22,6 @@ struct WallContact {
   HeldWall held;
 };
 
-/// What friction leaves from one tick to the next.
-struct FrictionState {
-  bool sticks = false;
-  bool is_felt = false;  ///< some wall that holds the proxy has friction
-  /// [m] how far the springs would draw the proxy along the walls to where they are softer
-  Vec3 lean{0.0, 0.0, 0.0};
-};
-
 struct HeldWalls {
   std::array<HeldWall, 3> wall{};
   std::size_t count = 0;
@@ -46,6 +38,10 @@ struct ContactSet {
   Vec3 left{0.0, 0.0, 0.0};  ///< [m] of P - x: the part along the walls, held or still to go
 
   [[nodiscard]] std::span<const WallContact> walls() const noexcept { return {wall.data(), count}; }
+  void clear() noexcept {
+    count = 0;
+    lag = snug = left = Vec3(0.0);
+  }
   [[nodiscard]] HeldWalls held() const noexcept;
   [[nodiscard]] double load() const noexcept;  ///< [m] length of the sum of multiplier * normal
 };
@@ -114,6 +110,12 @@ class ProxySolver {
   enum class Look { kFree, kRests, kCrossed, kMoves, kNowhere };
   enum class Try { kMoved, kRests, kRefused };
 
+  /// [m] A step from `x` as short as this is none for a hand that is `wish` away.
+  [[nodiscard]] static double restLength(const Vec3& x, const Vec3& wish) noexcept;
+  [[nodiscard]] bool goQuickly(const Vec3& hip, FrictionState& friction) noexcept;
+  [[nodiscard]] bool glide(LeafId id, const Vec3& hip, FrictionState& friction) noexcept;
+  void takeOnly(LeafId id, const Facet& facet, const NearWall& wall, const FieldJet& jet,
+                const Vec3& wish) noexcept;
   [[nodiscard]] Look lookAround(FrictionState& friction, bool is_first) noexcept;
   [[nodiscard]] Try moveOn() noexcept;
   [[nodiscard]] bool lookWithin(double radius) noexcept;

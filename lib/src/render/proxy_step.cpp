@@ -156,7 +156,6 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
   return share < 1.0 ? share * step : step;
 }
 
-// DBG
 bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double ball,
                           bool must_gain) noexcept {
   const Vec3 by = limited(problem, step, ball);

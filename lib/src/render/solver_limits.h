@@ -3,6 +3,7 @@
 /// of a leaf's feature size, so that a scene in micrometers is the same scene.
 
 #include <cstddef>
+#include <cstdint>
 
 namespace palpate::limits {
 
@@ -103,14 +104,38 @@ inline constexpr double kNearer = 10.0;
 inline constexpr double kCarries = 0.3;
 /// ... if the proxy is then not further beyond it than this share of what the curvature moved it by.
 inline constexpr double kCarriedShare = 0.1;
+/// The quick way on one smooth wall is left to the general one after so many steps, ...
+inline constexpr int kGlides = 4;
+/// ... where the place of rest is a minimum by less than this (an eigenvalue: 0 at the wall's center of curvature), ...
+inline constexpr double kFirm = 0.02;
+/// ... and where the normal turns by more than this [rad] over twice what the wall's curvature explains.
+inline constexpr double kFirmTurn = 1e-6;
 /// What a refused step is shortened to, in turn; then the ball shrinks by kShrink, kShrinks times.
 inline constexpr double kShorter[] = {0.5, 0.125, 0.02};
 inline constexpr double kShrink = 0.2;
 inline constexpr int kShrinks = 4;
 
+// The way through cells ---------------------------------------------------------------------------
+
+/// Sweeps let go of grazes shorter than this share of the feature size: what they miss is no deeper than
+/// 5e-7 of it.
+inline constexpr double kGraze = 0.002;
+inline constexpr int kEvaluationsPerTick = 4096;
+inline constexpr int kEvaluationsPerSweep = 256;
+/// Leaves are listed that come within so many times the length of the motion that made the list, ...
+inline constexpr double kHorizon = 16.0;
+/// ... and at least within this share of the smallest feature.
+inline constexpr double kHorizonShare = 0.1;
+/// So many tolerances off a leaf the point counts as touching it.
+inline constexpr double kTouch = 4.0;
+/// Two leaves there are one facet where their normals are parallel to this (1 less the cosine).
+inline constexpr double kParallel = 1e-6;
+/// A slide takes so many straight moves: to above where it lands, and down.
+inline constexpr std::uint64_t kStaysOfSlide = 2;
+
 // One tick ----------------------------------------------------------------------------------------
 
-/// Places at which fields are asked. A smooth wall takes 3 or 4, corners 8; the rest waits for the next
+/// Places at which fields are asked. A smooth wall takes 2 or 3, corners 8; the rest waits for the next
 /// tick.
 inline constexpr int kMaxBatches = 160;
 /// Crossings of facets between cells; each takes some microseconds at most.

@@ -1,6 +1,6 @@
 #pragma once
 /// Layers out of one label image share its points: each point belongs to the label whose field is
-/// smallest, so that touching organs have one wall and no sliver between them (DESIGN.md section 2).
+/// smallest, so that touching organs have one wall and no sliver between them.
 
 #include <vector>
 

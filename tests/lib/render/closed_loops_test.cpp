@@ -96,8 +96,8 @@ TEST(ClosedLoops, OverRandomSolidsGiveNoEnergy) {
     for (int i = 0; i < 300; ++i) center = renderer->update({hand.next(center, tree)}).proxy;
     const Loop loop(random, center);
     ++loops;
-    const Lap coarse = lapOf(compiled, *start, loop, 4000);
-    const Lap fine = lapOf(compiled, *start, loop, 8000);
+    const Lap coarse = lapOf(compiled, *start, loop, 2000);
+    const Lap fine = lapOf(compiled, *start, loop, 4000);
     // The trapezoid's own error falls to a quarter with half the step.
     const double given = (4.0 * fine.given - coarse.given) / 3.0;
     contacts += fine.contacts;

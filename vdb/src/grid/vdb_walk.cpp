@@ -145,6 +145,7 @@ class VdbWalk::Impl {
 
   /// Two lists of one entry a leaf, each a count of bytes (0: not packed) and as many of them.
   void delayedLoad(std::uint32_t size, std::int64_t end) {
+    if (size == 0) return;  // a tree without leaves
     if (size < 4) fail("an index of leaves that is cut short");
     const auto leaves = bytes_.take<std::uint32_t>();
     // Every leaf has a mask of 64 bytes in the tree's shape and one among its values.

@@ -1,6 +1,6 @@
 #pragma once
 /// Boolean combinations. Values are min / max / negation of the operands' values: exact sign
-/// everywhere, a bound on the distance if the operands are exact or bounds (DESIGN.md section 2).
+/// everywhere, a bound on the distance if the operands are exact or bounds.
 /// The operands stay visible through Field::structure(), so contact can hold each smooth leaf. Of many
 /// exact operands only those near the point are asked, with the same result.
 

@@ -1,11 +1,12 @@
 #pragma once
 /// Space cut into regions. Each layer is a Boolean expression over smooth leaf fields; the leaves' signs
-/// at a point say which layers hold it, and the last of those is its region (DESIGN.md section 2).
+/// at a point say which layers hold it, and the last of those is its region.
 
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -42,11 +43,25 @@ struct LeafBetween {
   FieldPtr second;  ///< inside wherever the wall is outside and `first` is
 };
 
-/// One bit for each leaf: true is inside (negative). Its size is fixed at set-up.
+/// One bit for each leaf: true is inside (negative). A value with room for as many leaves as a scene may have.
 class Signs {
  public:
+  static constexpr std::size_t kMaxLeaves = 65535;
+
   Signs() = default;
-  explicit Signs(std::size_t leaves) : words_((leaves + 63) / 64) {}
+  /// `leaves`: at most kMaxLeaves
+  explicit Signs(std::size_t leaves) noexcept
+      : leaves_(static_cast<std::uint32_t>(leaves)),
+        used_(static_cast<std::uint32_t>((leaves + 63) / 64)) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return leaves_; }
+
+  /// As the defaulted copy, without the words that are not used.
+  void assign(const Signs& other) noexcept {
+    leaves_ = other.leaves_;
+    used_ = other.used_;
+    for (std::size_t w = 0; w < used_; ++w) words_[w] = other.words_[w];
+  }
 
   [[nodiscard]] bool inside(LeafId leaf) const noexcept {
     return ((words_[leaf >> 6U] >> (leaf & 63U)) & 1U) != 0;
@@ -57,12 +72,12 @@ class Signs {
   }
   void flip(LeafId leaf) noexcept { words_[leaf >> 6U] ^= std::uint64_t{1} << (leaf & 63U); }
   void clear() noexcept {
-    for (std::uint64_t& word : words_) word = 0;
+    for (std::size_t w = 0; w < used_; ++w) words_[w] = 0;
   }
   /// Calls f(leaf) for every leaf that is inside.
   template <typename F>
   void forInside(F&& f) const {
-    for (std::size_t w = 0; w < words_.size(); ++w) {
+    for (std::size_t w = 0; w < used_; ++w) {
       for (std::uint64_t rest = words_[w]; rest != 0; rest &= rest - 1) {
         f(static_cast<LeafId>(64 * w + static_cast<std::size_t>(std::countr_zero(rest))));
       }
@@ -73,11 +88,21 @@ class Signs {
   /// True if any (all) of `count` leaves from `first` on are inside.
   [[nodiscard]] bool anyInside(LeafId first, std::size_t count) const noexcept;
   [[nodiscard]] bool allInside(LeafId first, std::size_t count) const noexcept;
-  friend bool operator==(const Signs&, const Signs&) = default;
+  friend bool operator==(const Signs& a, const Signs& b) noexcept {
+    if (a.leaves_ != b.leaves_) return false;
+    for (std::size_t w = 0; w < a.used_; ++w) {
+      if (a.words_[w] != b.words_[w]) return false;
+    }
+    return true;
+  }
 
  private:
-  std::vector<std::uint64_t> words_;
+  std::array<std::uint64_t, (kMaxLeaves + 63) / 64> words_{};
+  std::uint32_t leaves_ = 0;
+  std::uint32_t used_ = 0;  ///< words
 };
+
+static_assert(std::is_trivially_copyable_v<Signs>);
 
 /// One step of an expression whose negations stand at the leaves only, in postfix order: a leaf's side
 /// or what a run of leaves has in common is pushed; kAnd and kOr take two off the stack.

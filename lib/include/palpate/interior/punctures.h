@@ -1,8 +1,9 @@
 #pragma once
 /// What punctures leave behind: the holes made, and the ports that must rest before they open by force
-/// again (DESIGN.md section 2, "State").
+/// again.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -18,12 +19,13 @@ struct Hole {
   double reopens_at = 0.0;    ///< [N] Port::reopens_at
 };
 
-/// A bounded memory: a value of fixed size, to be copied to rewind. When full, the oldest entry is
-/// forgotten. Real-time safe.
+/// A bounded memory: a value of fixed size, to be copied to rewind. The hole made after the last that there is room for
+/// takes the place of the oldest, whose wall closes. Of ports that rest beyond kMaxResting the one that began first is
+/// armed again at once. Real-time safe.
 class Punctures {
  public:
   static constexpr std::size_t kMaxHoles = 32;
-  static constexpr std::size_t kMaxResting = 8;
+  static constexpr std::size_t kMaxResting = 64;
 
   /// `port` was opened by force at `point` [m]: leaves a hole, if the port makes such and none of its
   /// holes is there, and begins its rest, if it has a re-arm distance.
@@ -31,6 +33,9 @@ class Punctures {
   /// The proxy is at `p` [m]: ends the rest of the ports that it is far enough from.
   void visit(const Vec3& p) noexcept;
   void clear() noexcept { *this = {}; }
+
+  /// Whether these can be punctures in a scene of so many ports.
+  [[nodiscard]] bool isOf(std::size_t ports) const noexcept;
 
   [[nodiscard]] std::span<const Hole> holes() const noexcept {
     return {holes_.data(), hole_count_};

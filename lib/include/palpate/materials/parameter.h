@@ -1,6 +1,5 @@
 #pragma once
-/// A material's parameter: one number, or one that differs from place to place (DESIGN.md section 2,
-/// "Content"; section 6, "Grids out").
+/// A material's parameter: one number, or one that differs from place to place.
 
 #include <memory>
 

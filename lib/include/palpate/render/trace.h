@@ -37,7 +37,7 @@ class Trace {
   std::uint64_t dropped_ = 0;
 };
 
-/// The CSV of DESIGN.md section 6: header
+/// As CSV, with the header
 /// t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_ns
 /// with shortest numbers that read back exactly (`nan`, `inf` for a broken sensor's position). A name
 /// with a comma, quote or line end is quoted as RFC 4180 says. Names come from the scene.

@@ -92,7 +92,7 @@ struct LayerDescription {
   std::string content = {};  ///< material name; empty: nothing is felt inside
   WallDescription wall = {};
   /// Layers with the same non-empty group come from one label image: where they meet, the one whose
-  /// field is smallest has the point (DESIGN.md section 2, "Regions"). Their fields may overlap; they should,
+  /// field is smallest has the point. Their fields may overlap; they should,
   /// a little, where edges meet, so that none of the image is left over between them.
   std::string label_group = {};
   /// Of the group's image, ascending. Two layers that have one in common do not limit each other: the later has

@@ -1,5 +1,5 @@
 #pragma once
-/// Scene files: YAML -> SceneDescription, strictly (DESIGN.md section 6). What reads other files (meshes,
+/// Scene files: YAML -> SceneDescription, strictly. What reads other files (meshes,
 /// grids, scans) is not known here; it comes through a SceneRegistry that the vdb module fills.
 
 #include <functional>

@@ -1,5 +1,5 @@
 #pragma once
-/// .vdb files in and out, with the metadata of DESIGN.md section 6.
+/// .vdb files in and out, with the metadata that vdb/README.md lists.
 
 #include <span>
 #include <string>

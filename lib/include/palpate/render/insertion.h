@@ -9,7 +9,7 @@
 #include "palpate/contact/cut.h"
 #include "palpate/contact/shaft_slip.h"
 #include "palpate/render/contents.h"
-#include "palpate/render/haptic_renderer.h"
+#include "palpate/render/tick.h"
 
 namespace palpate {
 
@@ -34,6 +34,8 @@ class Insertion {
   [[nodiscard]] Vec3 step(const Contents& contents, std::span<const Port> ports,
                           const Tick& tick) noexcept;
   void reset() noexcept { *this = {}; }
+  /// Whether this can be an insertion in a scene of so many regions.
+  [[nodiscard]] bool isOf(std::size_t regions) const noexcept;
 
  private:
   /// A tissue, or a gap between tissues, that the tip is in or went through.

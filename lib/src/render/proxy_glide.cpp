@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <cmath>
+
+#include "proxy_solver.h"
+
+// The usual ticks: the proxy flies with the hand, or glides on one smooth wall with nothing else near.
+
+namespace palpate {
+namespace {
+
+/// Counts leaves.
+struct Found {
+  LeafId last = 0;
+  int count = 0;
+  void operator()(LeafId leaf) noexcept {
+    last = leaf;
+    ++count;
+  }
+};
+
+/// Newton's step along the plane with `normal`, for a hand whose part along it is `pull` [m] away: solves
+/// (I - bend) s = pull there. False where the place that it leads to is no minimum by more than kFirm.
+bool newtonAlong(const Vec3& normal, const Vec3& pull, const Mat3& bend, Vec3& step) noexcept {
+  Vec3 t1(0.0);
+  Vec3 t2(0.0);
+  tangentsOf(normal, t1, t2);
+  const Vec3 b1 = bend * t1;
+  const double a = 1.0 - glm::dot(t1, b1);
+  const double b = -glm::dot(t2, b1);
+  const double c = 1.0 - glm::dot(t2, bend * t2);
+  const double det = a * c - b * b;
+  // Both eigenvalues lie above det / trace.
+  if (!(a + c > 0.0 && det > limits::kFirm * (a + c))) return false;
+  const double p1 = glm::dot(t1, pull);
+  const double p2 = glm::dot(t2, pull);
+  step = t1 * ((c * p1 - b * p2) / det) + t2 * ((a * p2 - b * p1) / det);
+  return true;
+}
+
+}  // namespace
+
+/// The shorter way to the place of rest that the general way finds, where it is sure: free, or on one smooth wall. False
+/// if it is not; the general way goes on from where the proxy is then.
+bool ProxySolver::goQuickly(const Vec3& hip, FrictionState& friction) noexcept {
+  if (walker_.isSealed()) return false;
+  const Vec3 x = walker_.position();
+  rest_ = restLength(x, hip - x);
+  Found found;
+  walker_.forWithin(rest_, found);
+  if (found.count == 0) {
+    friction.sticks = false;
+    return walker_.move(hip, false) == CellWalker::Stop::kArrived;
+  }
+  return found.count == 1 && glide(found.last, hip, friction);
+}
+
+/// Finds by Newton where the proxy rests on `id`, the only leaf near. False, and nothing is changed, if that is not sure.
+bool ProxySolver::glide(LeafId id, const Vec3& hip, FrictionState& friction) noexcept {
+  const Vec3 x = walker_.position();
+  const Leaf& leaf = walker_.leaf(id);
+  if (leaf.is_between) return false;
+  const Facet facet = walker_.facetAt(id);
+  if (!facet.isClosed() || facet.opens || facet.varies || facet.kind == Facet::Kind::kInternal) {
+    return false;
+  }
+  const double side = walker_.side(id);
+  const bool inside = side < 0.0;
+
+  Vec3 y = x;
+  FieldJet jet = walker_.jetHere(id);
+  NearWall wall = wallOf(id, leaf, {jet.value, jet.gradient, jet.in_band});
+  if (wall.gap(inside) < -wall.tolerance) return false;
+  double bend_size = 0.0;
+  for (int round = 0;; ++round) {
+    if (round == limits::kGlides || !(wall.slope > 0.0)) return false;
+    const double gap = wall.gap(inside);
+    const double left = gap - limits::kRest * wall.tolerance;
+    const bool is_on = std::fabs(left) <= (limits::kOnWall - limits::kRest) * wall.tolerance;
+    if (round == 0 && !is_on) return false;
+    wall.bend = jet.hessian * (1.0 / wall.slope);
+    bend_size = sizeOf(wall.bend);
+    if (bend_size * leaf.feature > limits::kFolds) return false;
+    const Vec3 wish = hip - y;
+    const Vec3 normal = side * wall.normal;
+    const double sink = is_on ? 0.0 : left;
+    const double along = glm::dot(normal, wish);
+    const double multiplier = -sink - along;
+    if (!(multiplier > rest_)) return false;
+    const Vec3 pull = wish - along * normal;
+    // The place is a minimum where the wall's curvature, times how far the hand is beyond it, stays below 1.
+    const bool is_rest = is_on && glm::dot(pull, pull) <= rest_ * rest_;
+    if (is_rest && multiplier * bend_size < 1.0 - limits::kFirm) break;
+    Vec3 step(0.0);
+    if (!newtonAlong(normal, pull, side * multiplier * wall.bend, step)) return false;
+    if (is_rest) break;
+
+    step -= sink * normal;
+    const Vec3 to = y + step;
+    const double length = glm::length(step);
+    const double way = y == x ? length : glm::length(to - x);
+    if (bend_size * way > limits::kTurnsMore) return false;
+    if (!leaf.is_flat && way > limits::kShareOfFeature * leaf.feature) return false;
+    jet = leaf.field->jet(to);
+    const NearWall there = wallOf(id, leaf, {jet.value, jet.gradient, jet.in_band});
+    // A wall that is not the one its curvature promises has a crease on the way.
+    const Vec3 turned = there.normal - wall.normal;
+    const double bent = bend_size * length;
+    const double explained = 2.0 * bent + limits::kFirmTurn;
+    const double off =
+        std::fabs(there.gap(inside) - (is_on ? gap : limits::kRest * wall.tolerance));
+    if (glm::dot(turned, turned) > explained * explained ||
+        off > bent * length + limits::kNoise * wall.tolerance) {
+      return false;
+    }
+    y = to;
+    wall = there;
+  }
+
+  // A hand between the surface and the proxy, which stands off it, does not press.
+  if (!(side * glm::dot(wall.normal, y - hip) - wall.gap(inside) > rest_)) return false;
+  const double static_ratio =
+      scene_.materials()[static_cast<std::size_t>(facet.material)].friction.static_ratio.at(y);
+  if (static_ratio > 0.0) return false;
+  if (y != x) {
+    const Vec3 before = hip - x;
+    const Vec3 after = hip - y;
+    if (glm::dot(after, after) > glm::dot(before, before)) return false;
+    const double way = glm::length(y - x);
+    const double turn = bend_size * way;
+    if (turn > limits::kTurnsMuch) {
+      const double dip = limits::kDipByBend * turn * way;
+      const double middle = side * leaf.field->value(0.5 * (x + y));
+      if (middle < -(dip + wall.tolerance) * wall.slope) return false;
+    }
+    if (!walker_.isAlone(id, way)) return false;
+    walker_.glideTo(y, id, jet);
+  }
+  friction.sticks = false;
+  friction.is_felt = false;
+  takeOnly(id, facet, wall, jet, hip - y);
+  return true;
+}
+
+/// The contact with one wall that holds the proxy at rest. How hard it is pressed is measured from its surface.
+void ProxySolver::takeOnly(LeafId id, const Facet& facet, const NearWall& wall, const FieldJet& jet,
+                           const Vec3& wish) noexcept {
+  const double side = walker_.side(id);
+  const double gap = wall.gap(side < 0.0);
+  const Vec3 normal = side * wall.normal;
+  const double along = glm::dot(normal, wish);
+  WallContact& out = contact_.wall[0];
+  out.leaf = id;
+  out.facet = facet;
+  out.held.field = walker_.leaf(id).field.get();
+  out.held.side = side;
+  out.held.jet = jet;
+  out.held.normal = normal;
+  out.held.multiplier = -gap - along;
+  contact_.count = 1;
+  contact_.lag = Vec3(0.0);
+  contact_.snug = -gap * normal;
+  contact_.left = wish - along * normal;
+}
+
+}  // namespace palpate
