@@ -9,13 +9,13 @@ namespace {
 
 constexpr int kMostLooks = 6;
 constexpr int kModelSteps = 8;
-constexpr int kCreeps = 4;
+constexpr int kCreeps = 2;
 // In voxels.
 constexpr double kLeash = 1.5;         ///< of one step
 constexpr double kFarthest = 2.5;      ///< from the start
 constexpr double kModelEnough = 3e-4;  ///< of a step that the next one would only square
 constexpr double kOnSurface = 1e-5;
-constexpr double kLeastGain = 1e-3;  ///< of a step along the surface
+constexpr double kLeastGain = 2e-3;  ///< of a step along the surface
 /// [voxels] A step s through a surface that bends by k a voxel leaves some k^2 s^3 / 6, if its bend changes over the same way
 /// as it turns; a surface that is flat where it is looked at is taken for one that bends by kLeastBend. That may be
 /// kMostLeft, and a tenth of what a cubic spline leaves of such a bend, 0.037 k^3.
