@@ -127,8 +127,9 @@ BakeOptions optionsOf(const Shape& shape, double voxel) {
 TEST_P(BakeImplicit, VoxelsHoldTrueDistances) {
   const Shape& shape = GetParam();
   const LevelSet grid = bake(*shape.field, optionsOf(shape, 1 * kMm));
-  // A tenth of what the cubic sampler leaves of a bend over 8 voxels, 0.037 / 8^3, and of the heart's, which bends within a voxel.
-  const double tolerance = (shape.name == "heart" ? 5e-3 : 1e-5) * kMm;
+  // A tenth of what the cubic sampler leaves of a bend over 8 voxels, 0.037 / 8^3. The heart bends within a voxel, where points
+  // creep: what a grid is stated to be off even where it is smooth.
+  const double tolerance = (shape.name == "heart" ? 2e-2 : 1e-5) * kMm;
   std::uint64_t compared = 0;
   std::uint64_t nearer = 0;
   double worst = 0.0;
@@ -307,8 +308,9 @@ TEST_P(BakeImplicit, TouchedEverywhereItGivesTheForceOfTheTrueSurface) {
     // Nothing of a heart 15 voxels wide is smooth over eight of them.
     EXPECT_GT(t.smooth, shape.name == "heart" && voxel > 1.5 * kMm ? -1 : 0);
     EXPECT_EQ(t.without_force, 0);
-    // The force is K times the way to the surface, and that is off by no more than the surface is.
-    EXPECT_LE(t.worst_force, kDefaultK * stated.off);
+    // The force is K times the way to the surface, and that is off by no more than the surface is; which was measured at one
+    // point a voxel, and can be some more between them.
+    EXPECT_LE(t.worst_force, 1.25 * kDefaultK * stated.off);
     // Where it is smooth over what the spline looks at, 0.02 voxel of the surface and 1 degree of 1 N are stated of any grid.
     EXPECT_LE(t.worst_smooth, kDefaultK * (smooth.off + 1 * kMm * smooth.turn));
   }
@@ -350,9 +352,9 @@ TEST_P(BakeImplicit, AStrokeAllOverItNeverLosesTheSurfaceNorThrowsTheHand) {
   }
   std::printf("%s at 2 mm: %d of %d ticks without force, up to %.2f N, by %.2f N in a tick\n",
               shape.name.c_str(), lost, kTicks, strongest, jump);
-  // A tip that is thinner than the depth and the voxels lets the hand through; nowhere else.
-  EXPECT_LE(lost, shape.name == "heart" ? kTicks / 100 : 0);
-  EXPECT_LE(strongest, 1.6 * kDefaultK * depth);
+  EXPECT_EQ(lost, 0);
+  // What is stated of a heart at 2 mm is 0.53 mm at its cusps; along a stroke it is far less.
+  EXPECT_LE(strongest, 1.2 * kDefaultK * depth);
 }
 
 TEST(BakeImplicitEdges, WhatIsCutFromAnImplicitFieldHasItsEdgesAndWalls) {
