@@ -299,7 +299,7 @@ const std::vector<CaseEntry>& contactCases() {
       {"cone-tip", "about the tip of a hollow cone of 18.4 degrees to each side",
        [] { return coneTip(std::atan2(1.0, 3.0)); }},
       {"cone-wide", "the same, of 60 degrees", [] { return coneTip(std::numbers::pi / 3.0); }},
-      {"csg-nested", "within ten solids joined and cut, four levels deep", nestedCsg},
+      {"csg-nested", "within eight solids joined and cut, four levels deep", nestedCsg},
       {"crease", "between two balls of 30 mm", crease},
       {"groove", "a groove of 10 degrees", groove},
       {"saddle", "the waist of two metaballs", saddle},
