@@ -11,6 +11,9 @@
 #             with --all, or if it is asked for
 #   fuzz      every reader under libFuzzer with clang, address and undefined behaviour (PALPATE_FUZZ_SECONDS each, default
 #             60); with --all, or if it is asked for
+#   mutants   would the tests see it? Small slips in a copy of the sources of lib and devices, 90 % of which some test
+#             must see in each module (PALPATE_MUTANTS_PER_MODULE, default 40; PALPATE_MUTANTS_SEED, default 1);
+#             with --all, or if it is asked for
 #   dev       as asan without the sanitizers, quick to build; not run unless it is asked for
 # Options:
 #   --quick         format, arrows and dev only
@@ -26,7 +29,7 @@ source tools/setup.sh
 
 lanes=()
 default_lanes=(format arrows release asan tsan tidy)
-all_lanes=("${default_lanes[@]}" damage fuzz dev)
+all_lanes=("${default_lanes[@]}" damage fuzz mutants dev)
 tidy_all=0 changed_since=
 usage() { printf 'error: %s; tools/test.sh --help lists the options\n' "$1" >&2; exit 2; }
 while [ $# -gt 0 ]; do
@@ -121,6 +124,13 @@ lane_fuzz() { # each reader goes on from the corpus that the last run left
     count_check $? || { all=1; tail -n 30 "$results/fuzz_$reader.txt"; }
   done
   return $all
+}
+
+lane_mutants() { # what survives is listed
+  python3 -B tests/mutants/mutants.py | tee "$results/mutants.txt"
+  local status=${PIPESTATUS[0]}
+  lane_note=$(tail -n 1 "$results/mutants.txt")
+  count_check "$status"
 }
 
 # The sources clang-tidy has to look at: all that changed, and for each header that changed one that includes it.

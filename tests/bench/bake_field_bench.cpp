@@ -1,9 +1,12 @@
-// An analytic ball, a CSG of fourteen parts and a heart into bands, beside OpenVDB's createLevelSetSphere;
+// An analytic ball, a CSG of fourteen parts and four implicit shapes into bands, beside OpenVDB's createLevelSetSphere;
 // and a band into bricks.
 
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
+#include <atomic>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "bench/bake_bench.h"
@@ -53,8 +56,69 @@ void bakeOf(benchmark::State& state, const FieldPtr& field) {
 
 void ball(benchmark::State& state) { bakeOf(state, sphere(kCenter, kRadius)); }
 void csg(benchmark::State& state) { bakeOf(state, fourteenParts()); }
-/// A value that is no distance: closest points are searched.
-void heartShape(benchmark::State& state) { bakeOf(state, heart(kCenter, 2.0 * kRadius)); }
+/// Counts how often a field is looked at; a batch counts once for each of its points.
+class Counted final : public Field {
+ public:
+  explicit Counted(FieldPtr field) : field_(std::move(field)) {}
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    ++looks_;
+    return field_->sample(p);
+  }
+  [[nodiscard]] double value(const Vec3& p) const noexcept override {
+    ++looks_;
+    return field_->value(p);
+  }
+  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
+    looks_ += PointBatch::kCount;
+    field_->values(points, out);
+  }
+  [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
+    ++looks_;
+    return field_->jet(p);
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return field_->bounds(); }
+  [[nodiscard]] Metric metric() const noexcept override { return field_->metric(); }
+  [[nodiscard]] double lipschitz() const noexcept override { return field_->lipschitz(); }
+  [[nodiscard]] Box3 lipschitzDomain() const noexcept override { return field_->lipschitzDomain(); }
+  [[nodiscard]] double featureSize() const noexcept override { return field_->featureSize(); }
+  [[nodiscard]] double looks() const noexcept { return static_cast<double>(looks_.load()); }
+
+ private:
+  FieldPtr field_;
+  mutable std::atomic<std::uint64_t> looks_ = 0;
+};
+
+/// Values that are no distances: closest points are searched. Also how often the field is looked at for each voxel.
+void bakeImplicit(benchmark::State& state, const FieldPtr& field,
+                  const std::optional<Box3>& box = {}) {
+  const bench::Threads threads(state.range(1));
+  BakeOptions options = optionsOf(state, kCubicHalfWidth);
+  options.box = box;
+  const LevelSet made = bench::timed(state, [&] { return bake(*field, options); });
+  bench::perVoxel(state, made.info().active_voxels);
+  const Counted counted(field);
+  const LevelSet again = bake(counted, options);
+  state.counters["looks_per_voxel"] =
+      counted.looks() / static_cast<double>(again.info().active_voxels);
+}
+
+void heartShape(benchmark::State& state) { bakeImplicit(state, heart(kCenter, 2.0 * kRadius)); }
+void metaballPair(benchmark::State& state) {
+  bakeImplicit(state, metaballs({{kCenter - Vec3(20e-3, 0.0, 0.0), 55e-3, 1.0},
+                                 {kCenter + Vec3(25e-3, 0.0, 0.0), 65e-3, 1.0}},
+                                FallOff::kWyvill, 0.4));
+}
+void gyroidBlock(benchmark::State& state) {
+  bakeImplicit(state, gyroid(kCenter, 0.8 * kRadius), Box3{Vec3(-kRadius), Vec3(kRadius)});
+}
+void quadricEgg(benchmark::State& state) {
+  QuadricCoefficients egg;
+  egg.xx = 1.0 / (kRadius * kRadius);
+  egg.yy = 1.0 / (0.7 * kRadius * 0.7 * kRadius);
+  egg.zz = 1.0 / (0.6 * kRadius * 0.6 * kRadius);
+  egg.constant = -1.0;
+  bakeImplicit(state, quadric(kCenter, egg));
+}
 
 void createLevelSetSphere(benchmark::State& state) {
   openvdb::initialize();
@@ -100,6 +164,9 @@ BENCHMARK(ball)->Name("ball/palpate")->Apply(sizes);
 BENCHMARK(createLevelSetSphere)->Name("ball/createLevelSetSphere")->Apply(sizes);
 BENCHMARK(csg)->Name("csg14/palpate")->Apply(sizes);
 BENCHMARK(heartShape)->Name("heart/palpate")->Apply(fewSizes);
+BENCHMARK(metaballPair)->Name("metaballs/palpate")->Apply(fewSizes);
+BENCHMARK(gyroidBlock)->Name("gyroid/palpate")->Apply(fewSizes);
+BENCHMARK(quadricEgg)->Name("quadric/palpate")->Apply(fewSizes);
 BENCHMARK(bricks)->Name("bricks/palpate")->Apply(fewSizes);
 
 }  // namespace

@@ -121,6 +121,20 @@ TEST(Accuracy, TheTorusHasTheErrorsAndOrdersOfItsSamplers) {
   EXPECT_EQ(rows, 3);
 }
 
+// Where ball and cylinder meet, curvature jumps: a strip of a stencil's width is off by the square of the voxel, and its normal by
+// the voxel. In the RMS over the surface that makes half an order more.
+TEST(Accuracy, TheSeamOfACapsuleShowsInItsOrders) {
+  const CommandResult result = runPalpate(
+      quick(scenePath("reference.yaml"), {"--field", "pill", "--ladder", "2,1,0.5", "--sampler",
+                                          "cubic", "--points", "6000", "--json"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json report = parseOnly(result);
+  const Json& pill = report["results"][0];
+  ASSERT_EQ(pill["orders"].size(), 1U);
+  EXPECT_NEAR(number(pill["orders"][0]["value"]), 2.5, 0.35);
+  EXPECT_NEAR(number(pill["orders"][0]["normal"]), 1.5, 0.35);
+}
+
 TEST(Accuracy, EdgesAreToldApart) {
   const CommandResult result = runPalpate(
       quick(scenePath("reference.yaml"), {"--field", "brick", "--voxel", "1", "--sampler", "cubic",

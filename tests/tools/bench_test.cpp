@@ -1,7 +1,9 @@
 // `palpate bench contact`: errors within bounds on scenes of known truth, and well-formed files. Times are
 // figures to print, never to assert.
 
+#include <iterator>
 #include <map>
+#include <sstream>
 
 #include "tools/helpers.h"
 
@@ -17,9 +19,31 @@ const Json& resultOf(const Json& report, const std::string& scene, const std::st
   return none;
 }
 
+/// Once along the path and no more, unless said otherwise.
+std::vector<std::string> quickBench(std::vector<std::string> more) {
+  std::vector<std::string> all = {"bench",   "contact", "--repeat", "1",
+                                  "--paced", "0",       "--cold",   "0"};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+/// The table's row of that scene, cut at spaces.
+std::vector<std::string> textRow(const std::string& text, const std::string& heading,
+                                 const std::string& scene, const std::string& renderer) {
+  bool is_here = false;
+  for (const std::string& line : linesOf(text)) {
+    std::istringstream in(line);
+    const std::vector<std::string> words{std::istream_iterator<std::string>(in), {}};
+    if (line.find(heading) != std::string::npos) is_here = true;
+    if (is_here && words.size() > 2 && words[0] == scene && words[1] == renderer) return words;
+  }
+  ADD_FAILURE() << "no row for " << scene << ", " << renderer << " under " << heading << " in\n"
+                << text;
+  return std::vector<std::string>(20);
+}
+
 TEST(Bench, NamesTheMachineAndJudgesTheSphere) {
-  const CommandResult result =
-      runPalpate({"bench", "contact", "--scene", "sphere", "--repeat", "1", "--json"});
+  const CommandResult result = runPalpate(quickBench({"--scene", "sphere", "--json"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json report = parseOnly(result);
   EXPECT_EQ(report["schema"], "palpate.bench/1");
@@ -51,11 +75,10 @@ TEST(Bench, NamesTheMachineAndJudgesTheSphere) {
 }
 
 TEST(Bench, EveryCheapSceneAgreesWithItsTruth) {
-  std::vector<std::string> arguments = {"bench",      "contact",    "--repeat", "1",
-                                        "--renderer", "constraint", "--json"};
+  std::vector<std::string> arguments = quickBench({"--renderer", "constraint", "--json"});
   const std::vector<std::string> scenes = {
-      "sphere-deep", "sphere-small", "sphere-hollow", "quadric",   "box-edge",
-      "box-room",    "crease",       "groove",        "container", "balls-1"};
+      "sphere-deep", "sphere-small", "sphere-hollow", "quadric", "box-edge",  "box-room",
+      "crease",      "groove",       "container",     "balls-1", "box-corner"};
   for (const std::string& scene : scenes) {
     arguments.emplace_back("--scene");
     arguments.push_back(scene);
@@ -72,10 +95,116 @@ TEST(Bench, EveryCheapSceneAgreesWithItsTruth) {
   }
 }
 
+TEST(Bench, CornersOfThreeCurvedWallsAreAsTheOracleHasThem) {
+  const Json report =
+      parseOnly(runPalpate(quickBench({"--renderer", "constraint", "--json", "--scene",
+                                       "three-balls", "--scene", "three-hollow"})));
+  for (const char* scene : {"three-balls", "three-hollow"}) {
+    const Json& row = resultOf(report, scene, "constraint");
+    // Every sixteenth tick is asked, and none of these has two answers.
+    EXPECT_NEAR(row["judged"].get<double>(), row["ticks"].get<double>() / 16.0, 1.0) << scene;
+    EXPECT_EQ(row["missed"], 0) << scene;
+    EXPECT_LE(row["force_error"]["max"].get<double>(), 1e-6) << scene;
+    EXPECT_EQ(row["unsettled"]["ticks"], 0) << scene;
+  }
+}
+
+TEST(Bench, EveryTickAboutATipIsJudged) {
+  const Json report = parseOnly(runPalpate(quickBench(
+      {"--renderer", "constraint", "--json", "--scene", "cone-tip", "--scene", "cone-wide"})));
+  for (const char* scene : {"cone-tip", "cone-wide"}) {
+    const Json& row = resultOf(report, scene, "constraint");
+    EXPECT_EQ(row["judged"], row["ticks"]) << scene;
+    EXPECT_EQ(row["missed"], 0) << scene;
+    // Wherever the proxy is, the hand does not outrun it: its force is what the formula has, but for what is
+    // still to slide.
+    EXPECT_LE(row["magnitude_error"]["max"].get<double>(), 0.01) << scene;
+  }
+}
+
+TEST(Bench, WhatIsNotJudgedMeasuredOrSaidIsADashAndNoNumber) {
+  const Json report =
+      parseOnly(runPalpate(quickBench({"--scene", "lump", "--scene", "groove", "--json"})));
+  const Json& lump = resultOf(report, "lump", "constraint");
+  for (const char* key : {"judged", "missed", "direction_error_degrees", "magnitude_error",
+                          "force_error", "paced_tick_ns", "cold_tick_ns"}) {
+    ASSERT_TRUE(lump.contains(key)) << key;
+    EXPECT_TRUE(lump[key].is_null()) << key << " is " << lump[key];
+  }
+  EXPECT_GT(lump["ticks"], 1000);
+  const Json& unsettled = lump["unsettled"];
+  EXPECT_TRUE(unsettled["ticks"].is_number_unsigned() && unsettled["longest_run"].is_number());
+  EXPECT_LE(unsettled["longest_run"], unsettled["ticks"]);
+  EXPECT_NEAR(unsettled["share"].get<double>() * lump["ticks"].get<double>(),
+              unsettled["ticks"].get<double>(), 1e-6);
+  // Of a scene without composite walls the paper's renderer has forces, and does not say whether it settled.
+  EXPECT_TRUE(resultOf(report, "groove", "paper")["unsettled"].is_null());
+
+  const TempFolder folder;
+  const CommandResult text = runPalpate(
+      quickBench({"--scene", "lump", "--scene", "groove", "--csv", "a.csv", "--svg", "a.svg"}),
+      folder.path());
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  // scene renderer judged dir max mag max missed step true turn true unsettled run
+  const auto errors = textRow(text.out, "judged", "lump", "constraint");
+  ASSERT_EQ(errors.size(), 14U);
+  for (const std::size_t i : {2, 3, 4, 5, 6, 7, 9, 11}) EXPECT_EQ(errors[i], "-") << i;
+  EXPECT_NE(errors[12], "-");
+  const auto paper = textRow(text.out, "judged", "groove", "paper");
+  ASSERT_EQ(paper.size(), 14U);
+  EXPECT_EQ(paper[12] + paper[13], "--");
+  EXPECT_NE(paper[2], "-");
+  // scene renderer ticks median p99 p99.9 max paced p99.9 cold p99.9
+  const auto times = textRow(text.out, "hot median", "lump", "constraint");
+  ASSERT_EQ(times.size(), 11U);
+  for (std::size_t i = 7; i < 11; ++i) EXPECT_EQ(times[i], "-") << i;
+
+  const auto lines = linesOf(textOf(folder.path() + "/a.csv"));
+  const auto heading = cellsOf(lines[0]);
+  std::vector<std::string> cells;
+  for (const std::string& line : lines) {
+    if (line.starts_with("lump,constraint,")) cells = cellsOf(line);
+  }
+  ASSERT_EQ(cells.size(), heading.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const bool is_open = heading[i].starts_with("judged") || heading[i].starts_with("missed") ||
+                         heading[i].starts_with("direction") ||
+                         heading[i].starts_with("magnitude") ||
+                         heading[i].starts_with("force_error") || heading[i].starts_with("true") ||
+                         heading[i].starts_with("paced") || heading[i].starts_with("cold");
+    EXPECT_EQ(cells[i].empty(), is_open) << heading[i] << " = " << cells[i];
+  }
+  // In the picture of error against time, what has no error has no mark.
+  const std::string svg = textOf(folder.path() + "/a.svg");
+  EXPECT_NE(svg.find(">2</text>"), std::string::npos);
+  EXPECT_EQ(svg.find(">2</text>"), svg.rfind(">2</text>"));  // in the key alone
+}
+
+TEST(Bench, TicksAtTheirPaceAndColdOnesStandBesideTheHot) {
+  const std::vector<std::string> arguments = {
+      "bench", "contact", "--scene", "groove", "--repeat",   "1",         "--paced",
+      "40",    "--cold",  "3",       "--json", "--renderer", "constraint"};
+  const CommandResult result = runPalpate(arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json report = parseOnly(result);
+  EXPECT_EQ(report["paced_ticks"], 40);
+  EXPECT_EQ(report["cold_ticks"], 3);
+  const Json& row = resultOf(report, "groove", "constraint");
+  // Ten stretches of four; and one for each third of the path.
+  EXPECT_GE(row["paced_tick_ns"]["ticks"], 40);
+  EXPECT_LE(row["paced_tick_ns"]["ticks"], 44);
+  EXPECT_GE(row["cold_tick_ns"]["ticks"], 3);
+  EXPECT_LE(row["cold_tick_ns"]["ticks"], 4);
+  for (const char* key : {"paced_tick_ns", "cold_tick_ns"}) {
+    EXPECT_GT(row[key]["median"].get<double>(), 0.0) << key;
+    EXPECT_LE(row[key]["median"], row[key]["p99.9"]) << key;
+  }
+}
+
 TEST(Bench, WritesATableAndAPlot) {
   const TempFolder folder;
-  const std::vector<std::string> arguments = {"bench", "contact", "--scene", "groove", "--repeat",
-                                              "1",     "--csv",   "a.csv",   "--svg",  "a.svg"};
+  const std::vector<std::string> arguments =
+      quickBench({"--scene", "groove", "--csv", "a.csv", "--svg", "a.svg"});
   const CommandResult result = runPalpate(arguments, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(filesIn(folder.path()), (std::vector<std::string>{"a.csv", "a.svg"}));
@@ -116,6 +245,8 @@ TEST(Bench, WrongUseExitsTwo) {
                                              {"bench", "speed"},
                                              {"bench", "contact", "--scene", "spheer"},
                                              {"bench", "contact", "--repeat", "0"},
+                                             {"bench", "contact", "--paced", "-1"},
+                                             {"bench", "contact", "--cold", "few"},
                                              {"bench", "contact", "--renderer", "papyrus"}}) {
     const CommandResult result = runPalpate(arguments);
     EXPECT_EQ(result.exit_code, 2) << result.err;

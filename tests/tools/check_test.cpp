@@ -224,6 +224,29 @@ TEST(Check, GridsOfOthers) {
   EXPECT_NEAR(grid["volume_m3"], volume, 0.01 * volume);
 }
 
+TEST(Check, WhatItRefusesIsNotTouchedAndWhatItTakesIs) {
+  const TempFolder folder;
+  const std::string command =
+      "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/vdb/vdb_interop.py' '" + folder.path() + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  (void)folder.file("path.csv", "t,x,y,z\n0,0.02,0,0\n0.001,0.0195,0,0\n");
+  for (const std::string name : {"ball", "half", "hollow", "in_voxels", "torn"}) {
+    (void)folder.file("scene.yaml",
+                      "palpate: 1\nlength: mm\nlayers:\n  - {name: solid, inside: {grid: "
+                      "{file: " +
+                          name + ".vdb}}}\n");
+    const Checked check = checked(folder, {name + ".vdb"});
+    const CommandResult touch =
+        runPalpate({"touch", "scene.yaml", "--path", "path.csv", "--json"}, folder.path());
+    EXPECT_EQ(check.exit_code == 0, touch.exit_code == 0) << name << "\n"
+                                                          << check.text << touch.out;
+    if (touch.exit_code == 0) continue;
+    EXPECT_EQ(touch.exit_code, 3) << name;
+    const Json grid = check.file["grids"][0];
+    EXPECT_EQ(parseOnly(touch)["error"]["code"], grid["uncertified"]["code"]) << name;
+  }
+}
+
 TEST(Check, WhatIsBakedHereIsAYes) {
   const TempFolder folder;
   (void)folder.file("c.yaml", kContainer);

@@ -73,6 +73,29 @@ TEST_F(Touch, TheTextSaysWhatTheJsonSays) {
   }
 }
 
+TEST_F(Touch, TicksThatDoNotComeToRestAreCountedUnlessTheRendererDoesNotSay) {
+  const std::vector<std::string> motion = {"--press", "0,0,-40", "--normal",
+                                           "0,0,-1",  "--depth", "2"};
+  std::vector<std::string> arguments = motion;
+  arguments.emplace_back("--json");
+  const Json json = parseOnly(touch(arguments));
+  // One wall that bends by 2 mm in 40 holds at once, in every tick.
+  EXPECT_EQ(json["unsettled_ticks"], 0);
+  EXPECT_EQ(json["unsettled_share"], 0.0);
+  EXPECT_EQ(json["longest_unsettled_ticks"], 0);
+  EXPECT_NE(touch(motion).out.find("Unsettled   0 ticks (0 %), at most 0 in a row"),
+            std::string::npos);
+
+  arguments.insert(arguments.end(), {"--renderer", "paper"});
+  const Json paper = parseOnly(touch(arguments));
+  for (const char* key : {"unsettled_ticks", "unsettled_share", "longest_unsettled_ticks"}) {
+    EXPECT_TRUE(paper.contains(key) && paper[key].is_null()) << key;
+  }
+  std::vector<std::string> paper_text = motion;
+  paper_text.insert(paper_text.end(), {"--renderer", "paper"});
+  EXPECT_EQ(touch(paper_text).out.find("Unsettled"), std::string::npos);
+}
+
 TEST_F(Touch, TheTraceHasItsHeaderAndOneRowATick) {
   const CommandResult result =
       touch({"--insert", "0,0,35", "0,0,-10", "--trace", "t.csv", "--json"});

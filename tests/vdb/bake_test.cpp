@@ -67,13 +67,8 @@ std::vector<BakeCase> cases() {
          return wedge->bounds().contains(p) ? own : std::max(own, wedge->bounds().distanceTo(p));
        }},
       {"implicit", implicitBall(8e-3), 0.4e-3,
-       [](const Vec3& p) {
-         const double r = glm::length(p);
-         // Out of the bounds values rise to the band's width, so that the band ends there.
-         const double out = glm::length(glm::max(glm::abs(p) - Vec3(8e-3), Vec3(0.0)));
-         const double band = BakeCase{}.half_width * 0.4e-3;
-         return std::max(r - 8e-3, out < band ? 2.0 * out - band : out);
-       }},
+       // True distances end the band by themselves; nothing is lifted out of the bounds.
+       [](const Vec3& p) { return glm::length(p) - 8e-3; }},
       {"cut_by_a_box", ball, 0.5e-3,
        [=](const Vec3& p) {
          const Box3 domain = corner.intersectedWith(ball->bounds());

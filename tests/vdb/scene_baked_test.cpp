@@ -12,6 +12,7 @@
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/hybrid.h"
 #include "palpate/vdb/io.h"
+#include "palpate/vdb/openvdb_access.h"
 #include "palpate/vdb/register.h"
 #include "support/temp_file.h"
 #include "vdb/shapes.h"
@@ -177,6 +178,46 @@ TEST_F(SceneBaked, GridsOfAFileTakeTheirPlaces) {
                  "no.vdb");
   expect_refused("  b: {baked: {field: block, file: g.vdb, name: foam/surface}}\n" + kBlock,
                  "bake.other_field", "bake again");
+}
+
+TEST_F(SceneBaked, WhatIsDamagedInAFileIsRebuiltAndToldOrRefused) {
+  const palpate::testing::TempFolder folder;
+  HybridOptions options;
+  options.bake = test::voxels(0.5 * kMm, kCubicHalfWidth);
+  options.bake.name = "b";
+  options.parts = Parts::kWhole;
+  const std::string ball = "  ball: {sphere: {center: [0, 0, 0], radius: 9}}\n";
+  const LevelSet whole = bakeHybrid(sphere(Vec3(0.0), 9 * kMm), options).parts[0].grid;
+  const auto made = [&](const LevelSet& grid) {
+    const std::vector<LevelSet> one{grid};
+    writeVdb(folder.path("g.vdb"), one, true);
+    const std::string body = "  b: {baked: {field: ball, file: g.vdb, name: b}}\n" + ball;
+    return readScene(folder.file("s.yaml", "palpate: 1\nlength: mm\nfields:\n" + body), registry_)
+        .fields[0]
+        .source->get();
+  };
+  (void)made(whole);
+  EXPECT_EQ(notes_, "");
+  const auto damaged = [&](const openvdb::Coord& at, const auto& change) {
+    const openvdb::FloatGrid::Ptr copy = whole.impl().grid->deepCopy();
+    auto accessor = copy->getAccessor();
+    change(accessor, at);
+    return makeLevelSet(copy, "mm", whole.info().metadata);
+  };
+  // Four voxels out it says 2.2.
+  (void)made(damaged(
+      {22, 0, 0}, [](auto& accessor, const openvdb::Coord& at) { accessor.setValueOn(at, 1.1F); }));
+  EXPECT_NE(notes_.find("rebuilt"), std::string::npos) << notes_;
+  EXPECT_NE(notes_.find("(11, 0, 0) mm"), std::string::npos) << notes_;
+  try {
+    (void)made(damaged({18, 0, 0}, [](auto& accessor, const openvdb::Coord& at) {
+      accessor.setValueOff(at, 3.0F);
+    }));
+    ADD_FAILURE() << "a torn grid is taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.problem().code, "vdb.torn") << error.what();
+    EXPECT_EQ(error.problem().line, 4) << error.what();
+  }
 }
 
 TEST_F(SceneBaked, FieldsInItCountAsNested) {

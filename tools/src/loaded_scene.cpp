@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "cache_folder.h"
 #include "json_parts.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/scan_surface.h"
@@ -25,6 +26,7 @@ LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_
     image.has_names = record.is_labels;
   };
   options.max_memory = max_memory;
+  options.cache_folder = cacheFolder();
   vdb::registerKinds(registry, options);
 
   // Pictures want the scans themselves, so the entries are noted down on their way through.

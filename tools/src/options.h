@@ -162,6 +162,8 @@ struct BenchOptions {
   std::vector<std::string> scenes;
   std::string renderer;  ///< empty: both
   int repeats = 10;
+  int paced = 2000;
+  int cold = 30;
   std::string csv;
   std::string svg;
 };

@@ -1,25 +1,16 @@
 #include "touch_summary.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "json_parts.h"
+#include "quantile.h"
 
 namespace palpate::tools {
-namespace {
 
-/// The smallest value that at least `share` of the sorted values do not exceed.
-double quantile(const std::vector<std::int64_t>& sorted, double share) {
-  if (sorted.empty()) return 0.0;
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
-  return static_cast<double>(sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1]);
-}
-
-}  // namespace
-
-TouchSummary summarize(std::span<const TraceRow> rows) {
+TouchSummary summarize(std::span<const TraceRow> rows, RendererKind kind) {
   TouchSummary summary;
+  if (kind == RendererKind::kConstraint) summary.unsettled.emplace();
   summary.ticks = rows.size();
   if (rows.empty()) return summary;
   summary.seconds = rows.back().t - rows.front().t;
@@ -53,6 +44,7 @@ TouchSummary summarize(std::span<const TraceRow> rows) {
       summary.peak_force_at = r.proxy;
     }
     if (r.contact) ++summary.contact_ticks;
+    if (summary.unsettled) summary.unsettled->add(r.settled);
     for (std::size_t i = 0; i < r.event_count; ++i) summary.ports.push_back({row.t, r.events[i]});
   }
   summary.met_something = summary.contact_ticks > 0 || !summary.ports.empty() ||
@@ -70,6 +62,9 @@ Json summaryJson(const TouchSummary& s, const Scene& scene) {
   json["ticks"] = s.ticks;
   json["seconds"] = s.seconds;
   json["contact_ticks"] = s.contact_ticks;
+  json["unsettled_ticks"] = s.unsettled ? Json(s.unsettled->count()) : Json();
+  json["unsettled_share"] = s.unsettled ? Json(s.unsettled->share()) : Json();
+  json["longest_unsettled_ticks"] = s.unsettled ? Json(s.unsettled->longest()) : Json();
   json["peak_force_N"] = s.peak_force;
   json["peak_force_at_m"] = vectorJson(s.peak_force_at);
   json["work_on_hand_J"] = s.work;
@@ -126,6 +121,11 @@ std::string summaryText(const TouchSummary& s, const Scene& scene) {
   }
   text += "\nTicks       " + formatCount(s.ticks) + " in " + formatNumber(s.seconds, 4) +
           " s of hand time, " + formatCount(s.contact_ticks) + " in contact\n";
+  if (s.unsettled) {
+    text += "Unsettled   " + formatCount(s.unsettled->count()) + " ticks (" +
+            formatNumber(100.0 * s.unsettled->share(), 3) + " %), at most " +
+            formatCount(s.unsettled->longest()) + " in a row\n";
+  }
   text += "A tick took " + formatNanoseconds(s.tick_median) + " (median), " +
           formatNanoseconds(s.tick_p99) + " (99 %), " + formatNanoseconds(s.tick_p999) +
           " (99.9 %), " + formatNanoseconds(s.tick_max) + " (longest)\n";

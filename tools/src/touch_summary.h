@@ -2,6 +2,7 @@
 /// What a trace amounts to: regions in order, ports passed, forces, and how long a tick took.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "palpate/render/trace.h"
 #include "report.h"
 #include "text.h"
+#include "unsettled.h"
 
 namespace palpate::tools {
 
@@ -32,6 +34,8 @@ struct TouchSummary {
   std::uint64_t ticks = 0;
   double seconds = 0.0;  ///< [s] of hand time
   std::uint64_t contact_ticks = 0;
+  /// Ticks that ended before the proxy was at rest; the paper's renderer does not say.
+  std::optional<UnsettledMeter> unsettled;
   bool met_something = false;  ///< a wall, a port, another region or a force
   double peak_force = 0.0;     ///< [N]
   Vec3 peak_force_at{0.0};     ///< [m] proxy
@@ -43,7 +47,7 @@ struct TouchSummary {
   double tick_median = 0.0, tick_p99 = 0.0, tick_p999 = 0.0, tick_max = 0.0;  ///< [ns]
 };
 
-[[nodiscard]] TouchSummary summarize(std::span<const TraceRow> rows);
+[[nodiscard]] TouchSummary summarize(std::span<const TraceRow> rows, RendererKind kind);
 
 [[nodiscard]] Json summaryJson(const TouchSummary& summary, const Scene& scene);
 [[nodiscard]] std::string summaryText(const TouchSummary& summary, const Scene& scene);

@@ -5,6 +5,7 @@
 #include "input_kind.h"
 #include "json_parts.h"
 #include "output_files.h"
+#include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_error.h"
 #include "palpate/vdb/io.h"
 #include "part_baking.h"
@@ -104,6 +105,18 @@ void tellError(const BakedGrid& baked, Json& json, Console& console) {
       "parts as they are");
 }
 
+/// What was made here goes into the file with what contact may rely on. A grid of a file that is put into another form, a band
+/// too narrow to be read as it is, and distances without a side are looked at when they are touched.
+vdb::LevelSet sure(const vdb::LevelSet& grid, const BakeOptions& options) {
+  const bool is_whole =
+      !vdb::isTooNarrow(grid.info()) && !grid.info().metadata.contains(vdb::kDistanceKey);
+  if (!is_whole || inputKind(options.input) == InputKind::kGrid) return grid;
+  vdb::CertifyOptions certify;
+  certify.is_foreign = false;
+  certify.path = options.output;
+  return vdb::certified(grid, certify).grid;
+}
+
 Json partJson(const std::string& layer, const vdb::HybridPart& part) {
   Json json = {{"layer", layer}, {"part", part.name}, {"reason", part.reason}};
   json["grid"] = part.grid ? Json(part.grid.info().name) : Json();
@@ -130,7 +143,7 @@ Report run(const BakeOptions& options, const GeneralOptions& general, Console& c
   std::vector<vdb::NamedMaterialGrid> materials;
   if (options.parts.empty()) {
     for (const BakedGrid& baked : bakeInput(options, console, &materials)) {
-      tellError(baked, list.add(baked.grid, baked.seconds), console);
+      tellError(baked, list.add(sure(baked.grid, options), baked.seconds), console);
     }
     for (const vdb::NamedMaterialGrid& material : materials) list.add(material);
   } else {

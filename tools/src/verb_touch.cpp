@@ -232,7 +232,8 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   devices::ServoReport servo_report;
   const Trace trace = follow(*renderer, std::move(path), servo, changes, servo_report);
   checkExit(servo_report.exit);
-  TouchSummary summary = summarize(trace.rows());
+  const RendererKind kind = settings.kind.value_or(scene->renderer());
+  TouchSummary summary = summarize(trace.rows(), kind);
   summary.source_work = renderer->sourceWork();
 
   if (!options.trace.empty()) files.write(options.trace, traceCsv(trace.rows(), *scene));
@@ -252,11 +253,10 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   checkStop();
   files.commit();
 
-  const bool paper = settings.kind.value_or(scene->renderer()) == RendererKind::kPaper;
   Report report;
   report.json = {{"schema", "palpate.touch/1"},
                  {"scene", options.scene},
-                 {"renderer", paper ? "paper" : "constraint"}};
+                 {"renderer", kind == RendererKind::kPaper ? "paper" : "constraint"}};
   report.json.update(summaryJson(summary, *scene));
   if (options.realtime) {
     report.json["realtime"] = {{"overruns", servo_report.overruns},

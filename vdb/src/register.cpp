@@ -10,8 +10,9 @@
 #include "named_progress.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/bake.h"
+#include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_image.h"
-#include "palpate/vdb/io.h"
+#include "palpate/vdb/grid_memory.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/polyhedron.h"
 #include "palpate/vdb/scan_surface.h"
@@ -57,11 +58,18 @@ std::string widenedNote(double half_width) {
   return text;
 }
 
+/// A grid that comes out of this module's own hands.
+CertifyOptions madeHere() {
+  CertifyOptions options;
+  options.is_foreign = false;
+  return options;
+}
+
 /// The field of a grid that is made when it is first asked for. What the maker finds wrong is told
 /// at `place` of the scene; `what` names the grid in progress and records.
 FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string summary,
                          SourcePlace place, Sampler sampler, GridMaker make, Measurer measure,
-                         MeshWays ways = {}) {
+                         MeshWays ways = {}, CertifyOptions origin = madeHere()) {
   auto measurer = [place, measure = std::move(measure)](const Progress& progress) {
     try {
       return measure(progress);
@@ -70,8 +78,8 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     }
   };
   auto maker = [common, what = std::move(what), summary, place = std::move(place), sampler,
-                make = std::move(make),
-                ways = std::move(ways)](const Box3& within, const Progress& progress) {
+                make = std::move(make), ways = std::move(ways),
+                origin = std::move(origin)](const Box3& within, const Progress& progress) {
     const Progress named = namedProgress(progress, what);
     if (ways.instead) {
       try {
@@ -89,10 +97,16 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
       if (made.metadata.contains("lost_parts")) {
         common->notes->add(what, {"not in the grid: " + made.metadata.at("lost_parts")});
       }
+      CertifyOptions certify = origin;
+      certify.sampler = sampler;
+      certify.cache_folder = common->options.cache_folder;
+      certify.max_memory = common->options.max_memory;
+      CertifiedGrid sure = certified(grid, certify, named);
+      grid = std::move(sure.grid);
       if (sampler == Sampler::kCubic && isTooNarrow(made)) {
-        grid = widened(grid, kCubicHalfWidth, named);
         common->notes->add(what, {widenedNote(made.half_width)});
       }
+      if (!sure.notes.empty()) common->notes->add(what, sure.notes);
     } catch (const Error& error) {
       throwAt(place, error);
     }
@@ -100,9 +114,10 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
     if (common->options.on_grid) {
       common->options.on_grid({what + ": " + summary, made, took.count()});
     }
-    if (!ways.finish) return gridField(grid, sampler, within);
+    const std::uint64_t limit = common->options.max_memory;
+    if (!ways.finish) return gridField(grid, sampler, within, limit);
     try {
-      return ways.finish(gridField(grid, sampler), grid);
+      return ways.finish(gridField(grid, sampler, Box3::everything(), limit), grid);
     } catch (const Error& error) {
       throwAt(place, error);
     }
@@ -246,16 +261,19 @@ FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
   }
   const auto unknown = grid_class.empty() ? UnknownClass::kRefuse : UnknownClass::kLevelSet;
   const Sampler sampler = readSampler(reader);
+  CertifyOptions foreign;
+  foreign.path = path;
   return lazyField(
       common, fileName(path), "grid " + fileName(path),
       reader.loader().document().place(reader.node().mark), sampler,
-      [path, name, unit, unknown](const Progress& progress) {
+      [path, name, unit, unknown, limit = common->options.max_memory](const Progress& progress) {
         report(progress, "read", 0.0);
-        return readVdb(path, name, unit, unknown);
+        return readVdb(path, name, unit, unknown, limit);
       },
-      [path, name, unit, unknown](const Progress&) {
-        return readVdb(path, name, unit, unknown).info().bounds;
-      });
+      [path, name, unit, unknown, limit = common->options.max_memory](const Progress&) {
+        return readVdb(path, name, unit, unknown, limit).info().bounds;
+      },
+      {}, foreign);
 }
 
 FieldSourcePtr maskField(const CommonPtr& common, MapReader& reader) {

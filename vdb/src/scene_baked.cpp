@@ -6,8 +6,9 @@
 
 #include "named_progress.h"
 #include "palpate/core/error.h"
+#include "palpate/vdb/certificate.h"
+#include "palpate/vdb/grid_memory.h"
 #include "palpate/vdb/hybrid.h"
-#include "palpate/vdb/io.h"
 #include "scene_grid.h"
 
 namespace palpate::vdb {
@@ -87,13 +88,24 @@ FieldPtr withSaved(const FieldPtr& field, const std::string& path, const HybridO
   for (const VdbGridSummary& summary : listVdb(path)) {
     const bool is_whole = summary.name == name;
     if (!is_whole && !summary.name.starts_with(name + "/")) continue;
-    grids[is_whole ? "" : summary.name.substr(name.size() + 1)] = readVdb(path, summary.name, "");
+    // The same as for a grid that a scene names: what is repaired is told.
+    CertifyOptions certify;
+    certify.sampler = asked.sampler;
+    certify.path = path;
+    certify.cache_folder = options.cache_folder;
+    certify.max_memory = options.max_memory;
+    CertifiedGrid sure = certified(
+        readVdb(path, summary.name, "", UnknownClass::kRefuse, options.max_memory), certify);
+    for (const std::string& note : sure.notes) {
+      if (options.on_note) options.on_note(what + ": " + note);
+    }
+    grids[is_whole ? "" : summary.name.substr(name.size() + 1)] = std::move(sure.grid);
   }
   if (grids.empty()) {
     throw inputError("bake.no_parts", "no grid in it is called " + name + " or " + name + "/PART",
                      "palpate info lists its grids", path);
   }
-  FieldPtr out = recombined(field, grids, asked.sampler, asked.within);
+  FieldPtr out = recombined(field, grids, asked.sampler, asked.within, options.max_memory);
   for (const auto& [part, grid] : grids) {
     if (!options.on_grid) break;
     options.on_grid({part.empty() ? what : what + ", part " + part, grid.info(), 0.0});

@@ -112,6 +112,31 @@ TEST(ClosedForms, Box) {
       0.06, 20);
 }
 
+TEST(ClosedForms, Cone) {
+  const Vec3 base(0.01, 0.0, -0.02);
+  const Vec3 axis = glm::normalize(Vec3(1.0, -2.0, 0.5));
+  for (const double degrees : {18.4, 45.0, 70.0}) {
+    const double height = kSize;
+    const double radius = height * std::tan(radians(degrees));
+    const double slant = std::hypot(radius, height);
+    const FieldPtr side = functionField(
+        [=](const Vec3& p) {
+          const double up = glm::dot(p - base, axis);
+          const double flat = glm::length(p - base - up * axis);
+          return (flat * height + (up - height) * radius) / slant;
+        },
+        kSize);
+    using Set = FeasibleSet;
+    tryOut(
+        Set::allOf({Set::inside(side), Set::inside(planeField(base, -axis, kSize))}),
+        [&](const Vec3& p) { return coneInside(p, base, axis, radius, height); }, 0.1, 50);
+    // Beyond the tip within the cone of its normals, it is the tip.
+    const Vec3 tip = base + height * axis;
+    EXPECT_NEAR(glm::length(coneInside(tip + 0.01 * axis, base, axis, radius, height)[0] - tip),
+                0.0, 1e-16);
+  }
+}
+
 TEST(ClosedForms, TwoBalls) {
   const Ball a{Vec3(-0.02, 0.0, 0.0), 0.04};
   const Ball b{Vec3(0.025, 0.01, -0.005), 0.03};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <numbers>
+#include <utility>
 
 #include "lib/render/drive.h"
 #include "support/random_hand.h"
@@ -96,10 +97,14 @@ TEST(ClosedLoops, OverRandomSolidsGiveNoEnergy) {
     for (int i = 0; i < 300; ++i) center = renderer->update({hand.next(center, tree)}).proxy;
     const Loop loop(random, center);
     ++loops;
-    const Lap coarse = lapOf(compiled, *start, loop, 2000);
-    const Lap fine = lapOf(compiled, *start, loop, 4000);
-    // The trapezoid's own error falls to a quarter with half the step.
-    const double given = (4.0 * fine.given - coarse.given) / 3.0;
+    Lap fine = lapOf(compiled, *start, loop, 2000);
+    double given = kInfinity;
+    // The trapezoid's own error falls to a quarter with half the step where the force is smooth; where it has kinks the step is
+    // halved further.
+    for (int steps = 4000; steps <= 16'000 && std::min(given, fine.given) > 1e-9; steps *= 2) {
+      const Lap coarse = std::exchange(fine, lapOf(compiled, *start, loop, steps));
+      given = (4.0 * fine.given - coarse.given) / 3.0;
+    }
     contacts += fine.contacts;
     if (std::min(given, fine.given) > 1e-9) {
       ++giving;
@@ -112,7 +117,7 @@ TEST(ClosedLoops, OverRandomSolidsGiveNoEnergy) {
   std::printf("%d loops, %ld ticks in contact: %d give energy, at most %.3g J;%s\n", loops,
               contacts, giving, most, list.c_str());
   EXPECT_EQ(giving, 0);
-  EXPECT_GT(contacts, 1000L * loops);
+  EXPECT_GT(contacts, 500L * loops);
 }
 
 }  // namespace

@@ -74,14 +74,16 @@ class CsgRun {
       : counts_(counts), contacts_(contacts), most_(most) {}
 
   void run(const RandomScene& scene) {
-    ++counts_.scenes;
-    ScenePtr compiled;
     try {
-      compiled = scene.compiled();
+      run(scene, scene.compiled());
     } catch (const Error& error) {
       ADD_FAILURE() << "scene " << scene.number << ": " << error.what() << "\n" << scene.yaml;
-      return;
     }
+  }
+
+  /// `compiled`: what became of `scene`, some of its fields in another form.
+  void run(const RandomScene& scene, const ScenePtr& compiled) {
+    ++counts_.scenes;
     const testing::RegionTree tree(*compiled, compiled->startRegion());
     const auto start = roomyPoint(tree, scene.number);
     if (!start) {

@@ -1,18 +1,14 @@
 #include "accuracy/query_time.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <vector>
 
 namespace palpate::tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-constexpr std::size_t kLine = 64;              ///< [bytes] of a cache
-constexpr std::size_t kLeastFlood = 24 << 20;  ///< [bytes]
 
 double nanoseconds(Clock::duration time) {
   return std::chrono::duration<double, std::nano>(time).count();
@@ -56,19 +52,7 @@ double runCold(const Field& field, const Vec3& p) {
   return nanoseconds(after - before);
 }
 
-std::size_t floodBytes() {
-  const long last_level = sysconf(_SC_LEVEL3_CACHE_SIZE);
-  const std::size_t twice = last_level > 0 ? 2 * static_cast<std::size_t>(last_level) : 0;
-  return std::max(kLeastFlood, twice);
-}
-
 }  // namespace
-
-CacheFlood::CacheFlood() : buffer_(floodBytes()) {}
-
-void CacheFlood::run() noexcept {
-  for (std::size_t i = 0; i < buffer_.size(); i += kLine) ++buffer_[i];
-}
 
 QueryTimes timeQueries(const Field& field, std::span<const Vec3> path,
                        std::span<const Vec3> scattered, int repeats, std::size_t cold_queries,

@@ -2,8 +2,8 @@
 /// How long a query for value and gradient takes.
 
 #include <span>
-#include <vector>
 
+#include "cache_flood.h"
 #include "palpate/fields/field.h"
 
 namespace palpate::tools {
@@ -12,17 +12,6 @@ struct QueryTimes {
   double independent = 0.0;  ///< [ns] one after another along a path
   double dependent = 0.0;    ///< [ns] each position waits for the last result, as in a servo loop
   double cold = 0.0;         ///< [ns] alone, after other data went through the caches; median
-};
-
-/// A buffer larger than the caches, to push everything else out of them.
-class CacheFlood {
- public:
-  CacheFlood();
-  void run() noexcept;
-  [[nodiscard]] std::size_t bytes() const noexcept { return buffer_.size(); }
-
- private:
-  std::vector<unsigned char> buffer_;
 };
 
 /// Along `path` [m], the shortest of `repeats` runs; cold at `cold_queries` places spread over

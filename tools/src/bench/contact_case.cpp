@@ -1,5 +1,6 @@
 #include "bench/contact_case.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "support/oracle/oracle.h"
@@ -19,6 +20,20 @@ ScenePtr solidScene(FieldPtr field, StartIn start) {
   scene.layers.push_back(std::move(layer));
   if (start == StartIn::kSolid) scene.start_region = "solid";
   return compile(scene);
+}
+
+ContactCase along(ScenePtr scene, const Vec3& start, const Curve& curve, double from, double to,
+                  double speed, Judge judge) {
+  PathMaker maker(start);
+  maker.go(curve(from), std::min(kApproachSpeed, speed));
+  ContactCase out;
+  out.first = maker.size();
+  maker.follow(curve, from, to, speed);
+  out.end = maker.size();
+  out.scene = std::move(scene);
+  out.path = maker.take();
+  out.judge = std::move(judge);
+  return out;
 }
 
 Judge judgeByFormula(std::function<testing::Minima(const Vec3& hip)> minima) {

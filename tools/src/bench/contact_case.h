@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/path.h"
 #include "palpate/core/progress.h"
 #include "palpate/render/haptic_renderer.h"
 #include "support/oracle/closed_forms.h"
@@ -14,7 +15,7 @@
 
 namespace palpate::tools {
 
-inline constexpr double kTickSeconds = 1e-3;      ///< [s] between two points of a path
+inline constexpr double kApproachSpeed = 0.05;  ///< [m/s] of the way to where it is judged, at most
 inline constexpr double kWallStiffness = 1000.0;  ///< [N/m] of every case's only wall
 
 /// Where the proxy should be at each tick [m]; not given where the tick is not judged.
@@ -49,10 +50,22 @@ struct CaseEntry {
 /// The lump of data/scenes/lump.yaml, stroked over through the closed skin at 0.2 m/s. Not judged.
 [[nodiscard]] ContactCase lumpUnderSkin();
 
+/// Corners, apexes and nested trees, felt from within: where several walls hold at once.
+[[nodiscard]] ContactCase boxCorner();
+/// Three balls at a point; `hollow`: all felt from within, else one from within and two from outside.
+[[nodiscard]] ContactCase threeBalls(bool hollow);
+/// [radians] between the axis of a hollow cone and its side; felt about its tip.
+[[nodiscard]] ContactCase coneTip(double half_angle);
+[[nodiscard]] ContactCase nestedCsg();
+
 enum class StartIn { kOutside, kSolid };
 
 /// A scene of one layer `solid` with a wall of kWallStiffness, without friction and damping.
 [[nodiscard]] ScenePtr solidScene(FieldPtr field, StartIn start = StartIn::kOutside);
+
+/// A path that comes in from `start`, follows the curve and stops; judged is what follows the curve.
+[[nodiscard]] ContactCase along(ScenePtr scene, const Vec3& start, const Curve& curve, double from,
+                                double to, double speed, Judge judge);
 
 /// Judged by formula: the minimum nearest to the true proxy of the tick before.
 [[nodiscard]] Judge judgeByFormula(std::function<testing::Minima(const Vec3& hip)> minima);

@@ -17,26 +17,10 @@ using testing::Held;
 using testing::Minima;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kApproach = 0.05;  // [m/s]
-constexpr double kStroke = 0.2;     // [m/s]
-constexpr double kDepth = 1e-3;     // [m]
+constexpr double kStroke = 0.2;  // [m/s]
+constexpr double kDepth = 1e-3;  // [m]
 const Vec3 kOrigin(0.0);
 const Vec3 kUp(0.0, 0.0, 1.0);
-
-/// A path that comes in from `start`, follows the curve and stops; judged is what follows the curve.
-ContactCase along(ScenePtr scene, const Vec3& start, const Curve& curve, double from, double to,
-                  double speed, Judge judge) {
-  PathMaker maker(start);
-  maker.go(curve(from), std::min(kApproach, speed));
-  ContactCase out;
-  out.first = maker.size();
-  maker.follow(curve, from, to, speed);
-  out.end = maker.size();
-  out.scene = std::move(scene);
-  out.path = maker.take();
-  out.judge = std::move(judge);
-  return out;
-}
 
 /// Ten rounds `depth` below (in a hollow: behind) the surface of a ball about the origin, the angle of
 /// the great circle growing by `speed` / distance from the center.
@@ -46,7 +30,7 @@ ContactCase ball(FieldPtr field, double radius, double depth, double speed, Held
   const double at = hollow ? radius + depth : radius - depth;
   const auto curve = [=](double s) { return at * windingDirection(s); };
   PathMaker maker(windingDirection(0.0) * (hollow ? 0.5 * radius : radius + 10.0 * kDepth));
-  maker.go(curve(0.0), std::min(kApproach, speed));
+  maker.go(curve(0.0), std::min(kApproachSpeed, speed));
   ContactCase out;
   out.first = maker.size();
   maker.play(curve, 0.0, rounds * kTurn, speed * kTickSeconds / at);
@@ -118,7 +102,7 @@ Judge boxJudge(Held held) {
 /// Along the top face and off over its edge, into the side face and up over the edge again.
 ContactCase boxEdge() {
   PathMaker maker(Vec3(0.0, 0.0, 0.012));
-  maker.go(Vec3(0.01, 0.0, 0.009), kApproach);
+  maker.go(Vec3(0.01, 0.0, 0.009), kApproachSpeed);
   ContactCase out;
   out.first = maker.size();
   for (int round = 0; round < 20; ++round) {
@@ -223,7 +207,7 @@ void addPortsElsewhere(SceneDescription& scene, std::size_t count) {
 ContactCase container(std::size_t ports) {
   const double radius = 0.04;
   PathMaker maker(Vec3(0.0, 0.0, 0.03));
-  maker.go(Vec3(0.0, 0.0, -0.005), kApproach);
+  maker.go(Vec3(0.0, 0.0, -0.005), kApproachSpeed);
   const auto round = [=](double rho) {
     return [=](double s) {
       const double z = -5e-3 + 0.012 * std::sin(0.31 * s);
@@ -307,6 +291,15 @@ const std::vector<CaseEntry>& contactCases() {
       {"torus", "40 and 10 mm, 1 mm deep, 0.2 m/s", ring},
       {"box-edge", "over an edge of a box, face to face", boxEdge},
       {"box-room", "within a box: faces, edges, corners", room},
+      {"box-corner", "about a corner of that box, from within", boxCorner},
+      {"three-balls", "where a ball of 20 mm, from within, and two of 15 and 12 mm meet",
+       [] { return threeBalls(false); }},
+      {"three-hollow", "where balls of 20, 15 and 12 mm meet, all from within",
+       [] { return threeBalls(true); }},
+      {"cone-tip", "about the tip of a hollow cone of 18.4 degrees to each side",
+       [] { return coneTip(std::atan2(1.0, 3.0)); }},
+      {"cone-wide", "the same, of 60 degrees", [] { return coneTip(std::numbers::pi / 3.0); }},
+      {"csg-nested", "within eight solids joined and cut, four levels deep", nestedCsg},
       {"crease", "between two balls of 30 mm", crease},
       {"groove", "a groove of 10 degrees", groove},
       {"saddle", "the waist of two metaballs", saddle},

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/contact_case.h"
-
 namespace palpate::tools {
 
 void PathMaker::go(const Vec3& target, double speed) {

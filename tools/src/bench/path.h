@@ -8,6 +8,8 @@
 
 namespace palpate::tools {
 
+inline constexpr double kTickSeconds = 1e-3;  ///< [s] between two points of a path
+
 /// A curve in space [m] by a parameter.
 using Curve = std::function<Vec3(double s)>;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace palpate::tools {
 
@@ -18,6 +19,10 @@ class SpreadMeter {
     squares_ += value * value;
     most_ = std::max(most_, std::fabs(value));
     count_ += 1.0;
+  }
+  /// Not given if nothing was added.
+  [[nodiscard]] std::optional<Spread> found() const noexcept {
+    return count_ > 0.0 ? std::optional<Spread>(spread()) : std::nullopt;
   }
   /// Zero if nothing was added.
   [[nodiscard]] Spread spread() const noexcept {

@@ -11,7 +11,7 @@ namespace palpate::tools {
 namespace {
 
 /// Where the mean of |gradient| is farther from 1, values are no distances in the grid's own unit: forces and
-/// contact would be off by as much.
+/// contact would be off by as much. As certified() has it.
 constexpr double kMostSlope = 0.25;
 
 struct GridVerdict {
@@ -23,7 +23,6 @@ struct GridVerdict {
 void findVoxels(const vdb::GridCheck& check, const LengthUnit& unit, GridVerdict& verdict) {
   const auto add = [&](const char* code, const vdb::VoxelDefect& defect, const std::string& what) {
     if (defect.voxels == 0) return;
-    verdict.is_yes = false;
     verdict.findings.push_back({code,
                                 countOf(defect.voxels, "voxel", "voxels") + " " + what +
                                     ", one at " + placeText(defect.place, unit),
@@ -39,11 +38,11 @@ void findVoxels(const vdb::GridCheck& check, const LengthUnit& unit, GridVerdict
 GridVerdict judge(const vdb::GridCheck& check, const LengthUnit& unit) {
   GridVerdict verdict;
   verdict.is_surface = check.has_distances || check.grid.grid_class == "level set";
-  verdict.is_yes = !check.refused;
+  // What a scene takes and what is a yes here are found out by the same function.
+  verdict.is_yes = !check.refused && !check.uncertified;
   if (!check.has_distances) return verdict;
   const vdb::GradientStatistics& g = check.gradient;
   if (g.voxels > 0 && !(std::abs(g.mean - 1.0) <= kMostSlope)) {
-    verdict.is_yes = false;
     verdict.findings.push_back(
         {"grid.gradient",
          "|gradient| is " + formatNumber(g.mean, 3) +
@@ -54,11 +53,34 @@ GridVerdict judge(const vdb::GridCheck& check, const LengthUnit& unit) {
          0});
   }
   if (check.grid.info.active_voxels > 0 && check.inside_voxels == 0) {
-    verdict.is_yes = false;
     verdict.findings.push_back({"grid.no_inside", "no voxel of the band is inside (negative)", 0});
   }
   findVoxels(check, unit, verdict);
   return verdict;
+}
+
+Json certificateJson(const vdb::BandCertificate& c) {
+  return {{"within_m", c.within},
+          {"lipschitz", c.lipschitz},
+          {"steepest", c.steepest},
+          {"slope", c.slope},
+          {"slope_place_m", vectorJson(c.slope_place)},
+          {"rough_share", c.rough},
+          {"off_m", c.off},
+          {"content", c.content}};
+}
+
+std::string certificateText(const vdb::BandCertificate& c, const LengthUnit& unit) {
+  std::string text = "    certified " + formatNumber(c.within / unit.metres, 3) + " " + unit.name +
+                     " to each side of the surface answer, no slope is above " +
+                     formatNumber(c.steepest, 3) + ", off by at most " +
+                     formatNumber(c.off / unit.metres, 2) + " " + unit.name + " where smooth\n";
+  if (c.rough > 0.0) {
+    text += "    " + formatNumber(100.0 * c.rough, 2) +
+            " % of the surface has edges, or bends within a voxel, one at " +
+            placeText(c.slope_place, unit) + "\n";
+  }
+  return text;
 }
 
 Json gridJson(const vdb::GridCheck& check, const GridVerdict& verdict) {
@@ -75,6 +97,9 @@ Json gridJson(const vdb::GridCheck& check, const GridVerdict& verdict) {
       {"active_voxels", info.active_voxels},
       {"refused", check.refused ? problemJson(*check.refused) : Json()},
       {"widened", !check.refused && vdb::isTooNarrow(info)},
+      {"uncertified", check.uncertified ? problemJson(*check.uncertified) : Json()},
+      {"certificate", check.certificate ? certificateJson(*check.certificate) : Json()},
+      {"repairs", check.repairs},
       {"findings", findingsJson(verdict.findings)}};
   if (!check.has_distances) return json;
   const vdb::GradientStatistics& g = check.gradient;
@@ -108,7 +133,12 @@ std::string gridText(const vdb::GridCheck& check, const GridVerdict& verdict,
   }
   text += findingsText(verdict.findings, "    ");
   if (check.refused) return text + "    no: " + problemText(*check.refused) + "\n";
-  if (!verdict.is_yes) return text + "    no: it is read, but cannot be touched as it is\n";
+  if (check.uncertified) {
+    return text + "    no: it is read, but cannot be touched as it is: " +
+           problemText(*check.uncertified) + "\n";
+  }
+  if (check.certificate) text += certificateText(*check.certificate, unit);
+  for (const std::string& repair : check.repairs) text += "    repaired  " + repair + "\n";
   return text + "    yes" +
          (vdb::isTooNarrow(info) ? ": cubic sampling widens its band to " +
                                        formatNumber(vdb::kCubicHalfWidth) + " voxels"

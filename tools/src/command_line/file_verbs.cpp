@@ -129,6 +129,12 @@ void defineBench(CLI::App& app, Invocation& invocation) {
       ->check(CLI::IsMember({"constraint", "paper"}));
   add(app, g, "--repeat", "N", o.repeats, "runs, of which the shortest time counts (default 10)")
       ->check(CLI::Range(1, 100000));
+  add(app, g, "--paced", "N", o.paced,
+      "ticks that are timed one a millisecond, the loop asleep in between (default 2000)")
+      ->check(CLI::Range(0, 1000000));
+  add(app, g, "--cold", "N", o.cold,
+      "ticks that are timed after other data went through the caches (default 30)")
+      ->check(CLI::Range(0, 1000000));
   g = "Output files";
   add(app, g, "--csv", "FILE.csv", o.csv, "the table, one row for each scene and renderer");
   add(app, g, "--svg", "FILE.svg", o.svg, "a plot of error against time");
@@ -247,15 +253,21 @@ Verb benchVerb() {
       "palpate bench contact [OPTIONS]",
       "Runs both renderers along the same paths on scenes of known truth and compares the forces "
       "with\n"
-      "closed forms, or with a slow oracle where there is none. `missed` counts ticks where one "
-      "has a\n"
-      "force and the other none; `step` and `turn` are the largest from tick to tick, with the "
-      "true ones\n"
-      "beside them. Scenes: sphere, sphere-baked, sphere-deep, sphere-small, sphere-hollow, "
-      "ellipsoid,\n"
-      "quadric, torus, box-edge, box-room, crease, groove, saddle, container, ports-10, "
-      "ports-100,\n"
-      "ports-1000, balls-1, balls-1000, balls-10000, five-layers and lump (not judged).",
+      "closed forms, or with a slow oracle where there is none: `judged` is the number of ticks "
+      "compared.\n"
+      "`missed` counts those where one has a force and the other none; `step` and `turn` are the "
+      "largest\n"
+      "from tick to tick, with the true ones beside them. `unsettled` is the share of ticks that "
+      "ended\n"
+      "before the proxy was at rest, and how many came in a row. A dash: not measured, not judged, "
+      "or not\n"
+      "said by this renderer. Scenes: sphere, sphere-baked, sphere-deep, sphere-small, "
+      "sphere-hollow,\n"
+      "ellipsoid, quadric, torus, box-edge, box-room, box-corner, three-balls, three-hollow, "
+      "cone-tip,\n"
+      "cone-wide, csg-nested, crease, groove, saddle, container, ports-10, ports-100, ports-1000, "
+      "balls-1,\n"
+      "balls-1000, balls-10000, five-layers and lump (not judged).",
       {},
       defineBench,
       [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact"); },

@@ -74,6 +74,26 @@ Minima boxMinima(const Vec3& p, const Vec3& lo, const Vec3& hi, Held held) {
   return faces;
 }
 
+Minima coneInside(const Vec3& p, const Vec3& base, const Vec3& axis, double radius, double height) {
+  const double up = glm::dot(p - base, axis);
+  const Vec3 across = (p - base) - up * axis;
+  const double flat = glm::length(across);
+  // In the half-plane through the axis: the base from (0, 0) to (radius, 0), the side from there to (0, height).
+  if (up >= 0.0 && flat * height + up * radius <= radius * height) return {p};
+  const double length = std::hypot(radius, height);
+  const double share =
+      std::clamp((up * height + (radius - flat) * radius) / (length * length), 0.0, 1.0);
+  const double on_side_flat = radius * (1.0 - share);
+  const double on_side_up = height * share;
+  const double on_base_flat = std::min(flat, radius);
+  const bool is_base =
+      std::hypot(flat - on_base_flat, up) < std::hypot(flat - on_side_flat, up - on_side_up);
+  const double at_flat = is_base ? on_base_flat : on_side_flat;
+  const double at_up = is_base ? 0.0 : on_side_up;
+  const Vec3 outward = flat > 0.0 ? across / flat : Vec3(0.0);
+  return {base + at_up * axis + at_flat * outward};
+}
+
 Minima twoBallUnionOutside(const Vec3& p, const Ball& a, const Ball& b) {
   if (!isInside(p, a) && !isInside(p, b)) return {p};
   Minima minima;

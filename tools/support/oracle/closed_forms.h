@@ -35,6 +35,10 @@ enum class Held { kOutside, kInside };  ///< where the proxy is held
 /// minimum; its edges and corners never are.
 [[nodiscard]] Minima boxMinima(const Vec3& p, const Vec3& lo, const Vec3& hi, Held held);
 
+/// Inside a cone with a flat base about `base`, tip at base + height * axis (unit). One minimum, it is convex.
+[[nodiscard]] Minima coneInside(const Vec3& p, const Vec3& base, const Vec3& axis, double radius,
+                                double height);
+
 struct Ball {
   Vec3 center;
   double radius;

@@ -31,12 +31,6 @@ double roundedUp(double value) {
   return std::ceil(value / unit) * unit;
 }
 
-std::uint64_t defaultMemory() {
-  const auto bytes =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  return static_cast<std::uint64_t>(0.8 * bytes);
-}
-
 bool hasNegativeVoxel(const openvdb::FloatGrid& grid) {
   for (auto value = grid.cbeginValueAll(); value; ++value) {
     if (*value < 0.0F) return true;
@@ -45,6 +39,13 @@ bool hasNegativeVoxel(const openvdb::FloatGrid& grid) {
 }
 
 }  // namespace
+
+std::uint64_t memoryLimit(std::uint64_t max_memory) {
+  if (max_memory > 0) return max_memory;
+  const auto bytes =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return static_cast<std::uint64_t>(0.8 * bytes);
+}
 
 std::string inMillimetres(double metres) { return number(metres * 1e3) + " mm"; }
 
@@ -81,7 +82,7 @@ BakePlan checkOptions(const BakeOptions& options) {
   plan.band = options.half_width * options.voxel_size;
   plan.metres_per_unit = *metres;
   plan.background = static_cast<float>(plan.band / *metres);
-  plan.max_memory = options.max_memory > 0 ? options.max_memory : defaultMemory();
+  plan.max_memory = memoryLimit(options.max_memory);
   return plan;
 }
 

@@ -48,6 +48,9 @@ struct BakePlan {
 /// the plan allows.
 void requireMemory(double area, double margin, const BakePlan& plan);
 
+/// [bytes] What 0 stands for in `max_memory`: 80 % of the machine's.
+[[nodiscard]] std::uint64_t memoryLimit(std::uint64_t max_memory);
+
 /// "0.25 mm"
 [[nodiscard]] std::string inMillimetres(double metres);
 

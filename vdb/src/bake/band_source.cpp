@@ -3,31 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/fields/foot_point.h"
-
 namespace palpate::vdb {
 
-namespace {
-
-/// How far it is to the surface at least, if the slope grows by no more than twice what it does here:
-/// where |S| = |grad S| t + |H| t^2.
-double leastDistance(const FieldJet& jet) noexcept {
-  double square = 0.0;
-  for (int column = 0; column < 3; ++column) {
-    square += glm::dot(jet.hessian[column], jet.hessian[column]);
-  }
-  const double slope = glm::length(jet.gradient);
-  const double bend = std::sqrt(square);
-  // The root, written so that it holds for no bend as well.
-  const double value = std::fabs(jet.value);
-  return 2.0 * value / (slope + std::sqrt(slope * slope + 4.0 * bend * value));
-}
-
-}  // namespace
-
 BandSource::BandSource(const Field& field, const Box3& domain, bool is_cut, double band)
-    : field_(field),
-      parts_(field),
+    : parts_(field),
       band_(band),
       domain_(domain),
       is_cut_(is_cut),
@@ -35,12 +14,12 @@ BandSource::BandSource(const Field& field, const Box3& domain, bool is_cut, doub
       exact_(field.metric() == Metric::kExact),
       lipschitz_(field.lipschitz()) {}
 
-// |S / |grad S|| is at least |S| / L.
+// The distance is at least |S| / L.
 Verdict BandSource::judge(const FieldPart& from, const Vec3& center, double radius,
                           bool only_in_band, FieldPart& to) const {
   // A billionth covers the rounding of positions and values.
   const double far = lipschitz_ * band_ * (1.0 + 1e-9);
-  // What is made a distance by its gradient is asked as a whole.
+  // Where the surface of an implicit field is, its gradient is asked as well, of the whole.
   double limit = kInfinity;
   if (only_in_band && !implicit_) limit = far;
   const ValueRange range = parts_.narrow(from, center, radius, limit, to);
@@ -60,52 +39,17 @@ Verdict BandSource::judge(const FieldPart& from, const Vec3& center, double radi
   return verdict;
 }
 
-std::uint64_t BandSource::values(const FieldPart& part, const PointBatch& points,
-                                 const Vec3& center, double radius,
-                                 ValueBatch& out) const noexcept {
-  std::uint64_t known = ~std::uint64_t{0};
+void BandSource::values(const FieldPart& part, const PointBatch& points, const Vec3& center,
+                        double radius, ValueBatch& out) const noexcept {
   parts_.values(part, points, out);
-  const bool has_wall = hasWallNear(center, radius);
-  if (!implicit_ && !has_wall) return known;
-  // So far off, the distance is beyond the band whatever the gradient is.
-  const Box3 domain = field_.lipschitzDomain();
-  const bool is_bounded =
-      domain.contains(center - Vec3(radius)) && domain.contains(center + Vec3(radius));
-  const double far = is_bounded ? 2.0 * band_ * lipschitz_ : kInfinity;
-  for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
-    const Vec3 p = points[n];
-    Value value{out[n], true};
-    if (implicit_)
-      value = std::fabs(out[n]) > far ? Value{out[n] / lipschitz_, true} : distanceAt(p);
-    if (has_wall) value = withWall(value, p);
-    out[n] = value.distance;
-    if (!value.known) known &= ~(std::uint64_t{1} << n);
-  }
-  return known;
+  if (!hasWallNear(center, radius)) return;
+  for (std::size_t n = 0; n < PointBatch::kCount; ++n) out[n] = withWall(out[n], points[n]);
 }
 
-BandSource::Value BandSource::distanceAt(const Vec3& p) const noexcept {
-  const FieldSample sample = field_.sample(p);
-  if (!sample.in_band) return {sample.value, false};
-  const double slope = glm::length(sample.gradient);
-  // Where the gradient vanishes the quotient says "far away", which is all the band needs.
-  const double near = sample.value == 0.0 ? 0.0 : sample.value / slope;
-  // Off by second order in the distance. The exact one is worth its time only in the band, for which a
-  // quotient twice as large leaves room; and less does where the slope does not grow.
-  if (std::abs(near) > 2.0 * band_) return {near, true};
-  if (std::abs(near) > band_ && leastDistance(field_.jet(p)) > 1.25 * band_) return {near, true};
-  const auto foot = footPoint(field_, p);
-  return {foot ? foot->distance : near, true};
-}
-
-BandSource::Value BandSource::withWall(Value value, const Vec3& p) const noexcept {
+double BandSource::withWall(double value, const Vec3& p) const noexcept {
   double wall = boxDistance(p);
   if (!is_cut_ && wall < band_) wall = 2.0 * wall - band_;
-  if (wall > value.distance && (is_cut_ || wall > 0.0)) {
-    // A known wall decides over a field that is inside, however deep; elsewhere it is a bound.
-    return {wall, value.known || (is_cut_ && value.distance < 0.0)};
-  }
-  return value;
+  return wall > value && (is_cut_ || wall > 0.0) ? wall : value;
 }
 
 /// Whether withWall() may say something in the ball that the field does not.

@@ -16,7 +16,9 @@
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/fields/transform.h"
+#include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_error.h"
+#include "palpate/vdb/grid_memory.h"
 
 namespace palpate::vdb {
 namespace {
@@ -102,12 +104,16 @@ class HybridBaker {
                          "the grid " + grid.info().name + " is of a part that the field lacks",
                          "it was made of another field: bake again");
       }
-      const LevelSet wide = options_.sampler == Sampler::kCubic && isTooNarrow(grid.info())
-                                ? widened(grid, kCubicHalfWidth, progress_)
-                                : grid;
-      part->made = gridField(wide, options_.sampler);
+      CertifyOptions certify;
+      certify.sampler = options_.sampler;
+      certify.max_memory = options_.bake.max_memory;
+      const LevelSet wide = certified(grid, certify, progress_).grid;
+      const std::uint64_t limit = options_.bake.max_memory;
+      part->made = gridField(wide, options_.sampler, Box3::everything(), limit);
       refuseOther(*part, wide);
-      if (part->within.isBounded()) part->made = gridField(wide, options_.sampler, part->within);
+      if (part->within.isBounded()) {
+        part->made = gridField(wide, options_.sampler, part->within, limit);
+      }
       made_.emplace(part->field.get(), part->made);
     }
     return rebuilt(root_);
@@ -117,9 +123,9 @@ class HybridBaker {
   Hybrid runWhole() {
     BakeOptions bake_options = options_.bake;
     if (options_.within.isBounded()) setBox(bake_options, options_.within, root_->bounds());
-    const LevelSet grid = bake(*root_, bake_options, progress_);
+    const LevelSet grid = sure(bake(*root_, bake_options, progress_));
     Hybrid out;
-    out.field = gridField(grid, options_.sampler, options_.within);
+    out.field = gridField(grid, options_.sampler, options_.within, options_.bake.max_memory);
     const GridError error =
         gridError(*root_, grid, *out.field, root_->bounds().intersectedWith(options_.within));
     HybridPart part;
@@ -250,6 +256,14 @@ class HybridBaker {
     return out.analytic_ns < kWorthIt * out.grid_ns;
   }
 
+  /// What contact relies on, made sure of.
+  [[nodiscard]] LevelSet sure(const LevelSet& grid) const {
+    CertifyOptions certify;
+    certify.sampler = options_.sampler;
+    certify.is_foreign = false;
+    return certified(grid, certify, progress_).grid;
+  }
+
   /// Of any grid with such voxels: a small ball's.
   double gridNanoseconds() {
     if (grid_ns_ == 0.0) {
@@ -274,14 +288,14 @@ class HybridBaker {
     setBox(bake_options, part.needed, part.field->bounds());
     LevelSet grid;
     try {
-      grid = bake(*part.field, bake_options, named(part));
+      grid = sure(bake(*part.field, bake_options, named(part)));
     } catch (const Error& error) {
       const std::string& code = error.problem().code;
-      if (code != "bake.too_thin" && code != "bake.empty") throw;
+      if (code != "bake.too_thin" && code != "bake.empty" && code != "vdb.uncertified") throw;
       out.reason = "stays analytic: " + error.problem().message;
       return;
     }
-    FieldPtr made = gridField(grid, options_.sampler, part.within);
+    FieldPtr made = gridField(grid, options_.sampler, part.within, options_.bake.max_memory);
     const GridError error =
         gridError(*part.field, grid, *made,
                   part.needed.grownBy(bake_options.voxel_size).intersectedWith(part.within));
@@ -366,11 +380,12 @@ Hybrid bakeHybrid(const FieldPtr& field, const HybridOptions& options, const Pro
 }
 
 FieldPtr recombined(const FieldPtr& field, const std::map<std::string, LevelSet>& grids,
-                    Sampler sampler, const Box3& within) {
+                    Sampler sampler, const Box3& within, std::uint64_t max_memory) {
   if (!field) throw inputError("bake.null_field", "there is no field to put grids into");
   HybridOptions options;
   options.sampler = sampler;
   options.within = within;
+  options.bake.max_memory = max_memory;
   const Progress silent;
   return HybridBaker(field, options, silent).runOn(grids);
 }

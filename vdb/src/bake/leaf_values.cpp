@@ -35,7 +35,7 @@ void LeafValues::fill(const openvdb::Coord& local, float value) noexcept {
 }
 
 void LeafValues::store(const openvdb::Coord& local, const ValueBatch& distances,
-                       std::uint64_t known, double units_per_metre, float background) noexcept {
+                       double units_per_metre, float background) noexcept {
   std::array<float, PointBatch::kCount> found, stored;
   for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
     found[n] = static_cast<float>(distances[n] * units_per_metre);
@@ -48,17 +48,12 @@ void LeafValues::store(const openvdb::Coord& local, const ValueBatch& distances,
     const float far = std::copysign(background, found[n]);
     stored[n] = std::fabs(found[n]) < background ? found[n] : far;
   }
-  const std::uint64_t near = bitsOf(is_near) & known;
+  const std::uint64_t near = bitsOf(is_near);
   const std::uint64_t inside = bitsOf(is_inside);
   is_broken = is_broken || bitsOf(is_number) != ~std::uint64_t{0};
   any_active = any_active || near != 0;
   any_inside = any_inside || inside != 0;
   any_outside = any_outside || inside != ~std::uint64_t{0};
-  if (known != ~std::uint64_t{0}) {
-    for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
-      if ((known >> n & 1U) == 0) stored[n] = std::copysign(background, found[n]);
-    }
-  }
   const unsigned first = BandLeaf::coordToOffset(local);
   const unsigned shift = first & 63U;
   for (std::size_t x = 0; x < 4; ++x) {

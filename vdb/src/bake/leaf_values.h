@@ -21,10 +21,10 @@ struct LeafValues {
   /// One value for a cube, out of the band. `local` is its first voxel in the leaf.
   void fill(const openvdb::Coord& local, float value) noexcept;
 
-  /// Distances [m], z fastest; where a bit of `known` is not set, only their sign counts. In the band are
-  /// those below `background` [units]; the others become that, with their sign.
-  void store(const openvdb::Coord& local, const ValueBatch& distances, std::uint64_t known,
-             double units_per_metre, float background) noexcept;
+  /// Distances [m], z fastest. In the band are those below `background` [units]; the others become that, with
+  /// their sign.
+  void store(const openvdb::Coord& local, const ValueBatch& distances, double units_per_metre,
+             float background) noexcept;
 
   [[nodiscard]] std::unique_ptr<BandLeaf> leafAt(const openvdb::Coord& origin,
                                                  float background) const;

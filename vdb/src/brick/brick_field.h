@@ -15,6 +15,9 @@ class BrickField final : public Field {
   explicit BrickField(const LevelSet& grid, Sampler sampler = Sampler::kCubic,
                       InstructionSet set = chosenInstructionSet(),
                       const Box3& within = Box3::everything());
+  /// @throws Error (kOperation) if the bricks would take more than `max_memory` [bytes]; 0: no limit.
+  BrickField(const LevelSet& grid, Sampler sampler, InstructionSet set, const Box3& within,
+             std::uint64_t max_memory);
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
     return sample_(view_, p);

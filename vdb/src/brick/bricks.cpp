@@ -8,15 +8,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <glm/common.hpp>
+#include <string>
 #include <utility>
 
 #include "brick/block_map.h"
 #include "brick/prefilter.h"
 #include "brick/slopes.h"
 #include "huge_vector.h"
+#include "palpate/core/error.h"
 #include "palpate/vdb/openvdb_access.h"
 
 namespace palpate::vdb {
@@ -107,7 +110,9 @@ void gather(const Accessor& accessor, const Coord& block, Neighborhood& to) {
 struct Part {
   Neighborhood neighborhood;
   double steepest_square = 0.0;
+  double last_square = 0.0;  ///< of the last brick made, by its coefficients
   CoordBBox negative;
+  BandBounds bounds;
 };
 
 void expandByNegative(const Brick& brick, const Coord& block, CoordBBox& negative) {
@@ -144,6 +149,78 @@ CoordBBox voxelsOf(const Box3& box, const LevelSet& grid) {
   return {at(box.lo, -1.0), at(box.hi, 1.0)};
 }
 
+/// Makes bricks, one after the other on each thread.
+class BrickMaker {
+ public:
+  BrickMaker(const LevelSet& grid, Sampler sampler)
+      : cubic_(sampler == Sampler::kCubic),
+        plateau_(plateauOf(grid.info(), sampler)),
+        units_per_voxel_(grid.info().voxel_size / grid.info().metres_per_unit),
+        tree_(grid.impl().grid->constTreePtr()) {
+    if (!tree_->hasActiveTiles()) return;
+    const openvdb::FloatTree::Ptr copy(new openvdb::FloatTree(*tree_));
+    copy->voxelizeActiveTiles();
+    tree_ = copy;
+  }
+
+  [[nodiscard]] const Tree& tree() const noexcept { return *tree_; }
+  [[nodiscard]] float plateau() const noexcept { return plateau_; }
+
+  /// Calls body(n, accessor, part) for each n below `count`, in parallel.
+  template <typename Body>
+  void forAll(std::size_t count, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), [&](const auto& range) {
+      Part& part = parts_.local();
+      const Accessor accessor(*tree_);
+      for (std::size_t n = range.begin(); n != range.end(); ++n) body(n, accessor, part);
+    });
+  }
+
+  void make(const Coord& block, const Accessor& accessor, Part& part, Brick& brick) const {
+    gather(accessor, block, part.neighborhood);
+    (cubic_ ? fillCubic : fillLinear)(part.neighborhood, plateau_, units_per_voxel_, brick);
+    part.last_square = steepestSquareIn(brick, cubic_);
+    double square = part.last_square;
+    // Cell by cell only what could be the steepest of all; what is left out could not, in whatever order bricks are made.
+    if (cubic_ && square > std::max(kNotSteep * kNotSteep, part.steepest_square)) {
+      const double slope = steepestInCells(brick);
+      square = std::min(square, slope * slope);
+    }
+    part.steepest_square = std::max(part.steepest_square, square);
+  }
+
+  /// Of all that was made. The slope of a distance is 1, though a grid whose surface is flat may measure less. The
+  /// margin is for what rounding does to the samples.
+  [[nodiscard]] double lipschitz() const {
+    double steepest_square = 0.0;
+    for (const Part& part : parts_) {
+      steepest_square = std::max(steepest_square, part.steepest_square);
+    }
+    return std::max(1.0, std::sqrt(steepest_square) * (1.0 + 1e-6));
+  }
+  [[nodiscard]] const tbb::enumerable_thread_specific<Part>& parts() const noexcept {
+    return parts_;
+  }
+  [[nodiscard]] bool cubic() const noexcept { return cubic_; }
+
+ private:
+  bool cubic_;
+  float plateau_;
+  double units_per_voxel_;
+  openvdb::FloatTree::ConstPtr tree_;
+  tbb::enumerable_thread_specific<Part> parts_;
+};
+
+void requireBrickMemory(double bytes, std::uint64_t max_memory, const std::string& name) {
+  if (max_memory == 0 || bytes <= static_cast<double>(max_memory)) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "needs %.3f GB for its bricks, %.3f GB are allowed",
+                bytes * 1e-9, static_cast<double>(max_memory) * 1e-9);
+  throw Error(ErrorKind::kOperation,
+              {"bricks.memory", "grid '" + name + "' " + text,
+               "use larger voxels, or sampler: accessor, which reads the grid itself"});
+}
+
 }  // namespace
 
 void Bricks::Release::operator()(std::byte* memory) const noexcept { std::free(memory); }
@@ -152,52 +229,32 @@ std::uint64_t Bricks::memory() const noexcept {
   return count_ * sizeof(Brick) + (blocks_.size() + coarse_.size()) * sizeof(std::uint32_t);
 }
 
-Bricks::Bricks(const LevelSet& grid, Sampler sampler, const Box3& within) {
+Bricks::Bricks(const LevelSet& grid, Sampler sampler, const Box3& within,
+               std::uint64_t max_memory) {
   const LevelSetInfo& info = grid.info();
-  const bool cubic = sampler == Sampler::kCubic;
-  const float plateau = plateauOf(info, sampler);
-  const double units_per_voxel = info.voxel_size / info.metres_per_unit;
-  openvdb::FloatTree::ConstPtr tree = grid.impl().grid->constTreePtr();
-  if (tree->hasActiveTiles()) {
-    const openvdb::FloatTree::Ptr copy(new openvdb::FloatTree(*tree));
-    copy->voxelizeActiveTiles();
-    tree = copy;
-  }
-
-  BlockMap map = mapBlocks(*tree);
+  BrickMaker maker(grid, sampler);
+  const Tree& tree = maker.tree();
+  BlockMap map = mapBlocks(tree);
   if (within.isBounded()) map = cutTo(voxelsOf(within, grid), map);
-  BlockTable table = makeTable(*tree, map);
   count_ = map.bricks.size();
+  requireBrickMemory(static_cast<double>(count_ * sizeof(Brick)), max_memory, info.name);
+  BlockTable table = makeTable(tree, map);
   // A cold look at a brick then costs no walk through page tables on top.
   bricks_.reset(static_cast<std::byte*>(allocateHuge(count_ * sizeof(Brick), alignof(Brick))));
-  tbb::enumerable_thread_specific<Part> parts;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count_), [&](const auto& range) {
-    Part& part = parts.local();
-    const Accessor accessor(*tree);
-    for (std::size_t n = range.begin(); n != range.end(); ++n) {
-      Brick& brick = *new (bricks_.get() + n * sizeof(Brick)) Brick;
-      gather(accessor, map.bricks[n], part.neighborhood);
-      (cubic ? fillCubic : fillLinear)(part.neighborhood, plateau, units_per_voxel, brick);
-      part.steepest_square = std::max(part.steepest_square, steepestSquareIn(brick, cubic));
-      expandByNegative(brick, map.bricks[n], part.negative);
-    }
+  maker.forAll(count_, [&](std::size_t n, const Accessor& accessor, Part& part) {
+    Brick& brick = *new (bricks_.get() + n * sizeof(Brick)) Brick;
+    maker.make(map.bricks[n], accessor, part, brick);
+    expandByNegative(brick, map.bricks[n], part.negative);
   });
-
-  double steepest_square = 0.0;
+  lipschitz_ = maker.lipschitz();
   CoordBBox negative = map.inside_tiles;
-  for (const Part& part : parts) {
-    steepest_square = std::max(steepest_square, part.steepest_square);
-    negative.expand(part.negative);
-  }
-  // The slope of a distance is 1, though a grid whose surface is flat may measure less. The margin is
-  // for what rounding does to the samples.
-  lipschitz_ = std::max(1.0, std::sqrt(steepest_square) * (1.0 + 1e-6));
+  for (const Part& part : maker.parts()) negative.expand(part.negative);
 
   const auto position = [&](const Coord& at) {
     return grid.impl().origin + info.voxel_size * Vec3(at.x(), at.y(), at.z());
   };
   // A cell is negative somewhere only if one of its voxels is.
-  const int reach = cubic ? 2 : 1;
+  const int reach = maker.cubic() ? 2 : 1;
   if (!negative.empty()) {
     bounds_ = {position(negative.min().offsetBy(-reach)), position(negative.max().offsetBy(reach))};
   }
@@ -215,7 +272,23 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler, const Box3& within) {
   view_.shift = -view_.origin * view_.per_voxel - 0.5;
   for (int axis = 0; axis < 3; ++axis)
     view_.size[axis] = 8 * static_cast<std::uint64_t>(size[axis]);
-  view_.plateau = plateau * info.metres_per_unit;
+  view_.plateau = maker.plateau() * info.metres_per_unit;
+}
+
+BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler) {
+  BrickMaker maker(grid, sampler);
+  const BlockMap map = mapBlocks(maker.tree());
+  maker.forAll(map.bricks.size(), [&](std::size_t n, const Accessor& accessor, Part& part) {
+    Brick brick;
+    maker.make(map.bricks[n], accessor, part, brick);
+    const Coord first = map.bricks[n] << 3;
+    part.bounds.add(brick, {first.x(), first.y(), first.z()}, maker.cubic(),
+                    std::sqrt(part.last_square));
+  });
+  BrickSurvey survey;
+  for (const Part& part : maker.parts()) survey.bounds.add(part.bounds);
+  survey.lipschitz = maker.lipschitz();
+  return survey;
 }
 
 }  // namespace palpate::vdb

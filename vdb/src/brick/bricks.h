@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "brick/band_bounds.h"
 #include "brick/brick_view.h"
 #include "palpate/vdb/level_set.h"
 
@@ -17,7 +18,9 @@ class Bricks {
   /// Copies `grid`, in parallel. `sampler` is kCubic or kTrilinear. The band is taken as it is: too
   /// narrow a one leaves no cell known.
   /// Right within the box `within` [m] only.
-  Bricks(const LevelSet& grid, Sampler sampler, const Box3& within = Box3::everything());
+  /// @throws Error (kOperation) if they would take more than `max_memory` [bytes]; 0: no limit.
+  Bricks(const LevelSet& grid, Sampler sampler, const Box3& within = Box3::everything(),
+         std::uint64_t max_memory = 0);
 
   [[nodiscard]] const BrickView& view() const noexcept { return view_; }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
@@ -40,5 +43,12 @@ class Bricks {
   double lipschitz_ = 1.0;
   Box3 bounds_;
 };
+
+/// What is true of the bricks of `grid` everywhere, found without keeping them.
+struct BrickSurvey {
+  BandBounds bounds;
+  double lipschitz = 1.0;  ///< as Bricks::lipschitz()
+};
+[[nodiscard]] BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler);
 
 }  // namespace palpate::vdb

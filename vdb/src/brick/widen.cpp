@@ -19,6 +19,7 @@
 #include <string>
 
 #include "brick/brick_field.h"
+#include "brick/voxel_feet.h"
 #include "palpate/vdb/openvdb_access.h"
 
 namespace palpate::vdb {
@@ -27,7 +28,6 @@ namespace {
 using openvdb::Coord;
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
-using Offsets = openvdb::Vec3STree;
 using Mask = openvdb::MaskTree;
 using Values = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
 using OffsetsOf = openvdb::tree::ValueAccessor<const Offsets, /*IsSafe=*/false>;
@@ -35,7 +35,6 @@ using Known = openvdb::tree::ValueAccessor<const Mask, /*IsSafe=*/false>;
 
 /// The spline at the surface depends on voxels up to 4.9 off; more are of no use to it.
 constexpr double kLeastWorkWidth = 5.5;
-constexpr double kFar = 1e6;  ///< no surface point is known
 constexpr int kRounds = 3;
 constexpr double kSamePlace = 0.75;  ///< [voxels] a correction by more leads to another place
 constexpr int kNewtonSteps = 12;
@@ -58,7 +57,7 @@ class Widening {
         offsets_(tree_, openvdb::Vec3f(0.0F), openvdb::TopologyCopy()) {}
 
   LevelSet run() {
-    findFeetOfOld();
+    findVoxelFeet(tree_, units_per_voxel_, offsets_);
     const int layers = static_cast<int>(std::ceil(work_width_ - source_.info().half_width)) + 3;
     for (int layer = 0; layer < layers; ++layer) {
       report(progress_, "widen the band", 0.3 * layer / layers);
@@ -90,36 +89,6 @@ class Widening {
     });
   }
 
-  [[nodiscard]] static openvdb::Vec3f toVdb(const Vec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-  }
-
-  /// The surface point of an old voxel: against the gradient, by its value. Voxels at the rim wait for
-  /// their neighbors: a one-sided gradient is off by a degree, and min picks the worst of such.
-  void findFeetOfOld() {
-    const double scale = 1.0 / units_per_voxel_;
-    forLeaves([&](const Leaf& leaf, Offsets::LeafNodeType& offsets) {
-      const Values values(tree_);
-      for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
-        const Coord at = voxel.getCoord();
-        Vec3 gradient(0.0);
-        bool inner = true;
-        for (int axis = 0; axis < 3; ++axis) {
-          Coord ahead = at, behind = at;
-          ++ahead[axis];
-          --behind[axis];
-          float after = 0.0F, before = 0.0F;
-          inner &= values.probeValue(ahead, after) && values.probeValue(behind, before);
-          gradient[axis] = static_cast<double>(after) - before;
-        }
-        const double length = glm::length(gradient);
-        const Vec3 foot =
-            inner && length > 0.0 ? -gradient * (*voxel * scale / length) : Vec3(kFar);
-        offsets.setValueOnly(voxel.pos(), toVdb(foot));
-      }
-    });
-  }
-
   /// The voxels whose surface point is known.
   [[nodiscard]] Mask knownVoxels() const {
     Mask known(tree_, false, true, openvdb::TopologyCopy());
@@ -127,7 +96,7 @@ class Widening {
     leaves.foreach ([&](Mask::LeafNodeType& leaf, std::size_t) {
       const Offsets::LeafNodeType* const offsets = offsets_.probeConstLeaf(leaf.origin());
       for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
-        if (offsets->getValue(voxel.pos()).x() >= kFar) leaf.setValueOff(voxel.pos());
+        if (offsets->getValue(voxel.pos()).x() >= kNoFoot) leaf.setValueOff(voxel.pos());
       }
     });
     return known;
@@ -150,7 +119,7 @@ class Widening {
         const double distance = glm::length(offset);
         offsets.setValueOnly(voxel.pos(), toVdb(offset));
         if (is_old.isValueOn(at)) {
-          grew.local() |= distance < kFar;
+          grew.local() |= distance < kNoFoot;
           continue;
         }
         leaf.setValueOnly(voxel.pos(), std::copysign(toUnits(distance), *voxel));
@@ -167,7 +136,7 @@ class Widening {
   /// From a voxel to the surface, as the neighbor tells whose surface point is the nearest: to its
   /// tangent plane there, straight. Taking the point itself would drag it along, layer after layer.
   static Vec3 firstGuess(const Known& is_known, const OffsetsOf& feet, const Coord& at) {
-    Vec3 nearest(kFar);
+    Vec3 nearest(kNoFoot);
     Vec3 normal(0.0);
     for (int n = 0; n < 27; ++n) {
       const Coord step(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "grid/grid_tally.h"
@@ -41,6 +42,21 @@ void look(const openvdb::FloatGrid& grid, double metres, GridCheck& check) {
     check.gradient.worst_place = place(tally.worst_at);
   }
   check.volume = volumeOf(grid, tally, metres);
+}
+
+/// The same as a scene does before the grid is touched.
+void certify(const LevelSet& grid, const std::string& path, const Progress& progress,
+             GridCheck& check) {
+  CertifyOptions options;
+  options.path = path;
+  try {
+    CertifiedGrid sure = certified(grid, options, progress);
+    check.certificate = std::move(sure.certificate);
+    check.repairs = std::move(sure.notes);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kInput) throw;
+    check.uncertified = error.problem();
+  }
 }
 
 bool mayHoldDistances(const openvdb::GridBase& grid) {
@@ -88,6 +104,7 @@ std::vector<GridCheck> checkVdb(const std::string& path, const std::string& name
     try {
       const LevelSet accepted = acceptLevelSet(grid, unit_if_missing, unknown_class, path);
       check.grid.info = accepted.info();
+      certify(accepted, path, progress, check);
     } catch (const Error& error) {
       check.refused = error.problem();
     }

@@ -6,10 +6,11 @@
 #include <limits>
 #include <utility>
 
+#include "bake/bake_plan.h"
 #include "brick/brick_field.h"
 #include "grid/survey.h"
 #include "palpate/fields/known_within.h"
-#include "palpate/vdb/level_set.h"
+#include "palpate/vdb/grid_memory.h"
 #include "palpate/vdb/openvdb_access.h"
 
 namespace palpate::vdb {
@@ -148,22 +149,33 @@ class AccessorField final : public Field {
 };
 
 /// Bricks of what lies in the box; all of them if nothing lies out of it.
-FieldPtr brickField(const LevelSet& grid, Sampler sampler, const Box3& within) {
+FieldPtr brickField(const LevelSet& grid, Sampler sampler, const Box3& within,
+                    std::uint64_t max_memory) {
   const Box3 bounds = grid.info().bounds;
   if (!within.isBounded() || (within.contains(bounds.lo) && within.contains(bounds.hi))) {
-    return std::make_shared<BrickField>(grid, sampler);
+    return std::make_shared<BrickField>(grid, sampler, chosenInstructionSet(), Box3::everything(),
+                                        max_memory);
   }
-  auto part = std::make_shared<BrickField>(grid, sampler, chosenInstructionSet(), within);
+  auto part =
+      std::make_shared<BrickField>(grid, sampler, chosenInstructionSet(), within, max_memory);
   return knownWithin(std::move(part), within);
 }
 
 }  // namespace
 
-FieldPtr gridField(const LevelSet& grid, Sampler sampler, const Box3& within) {
+FieldPtr gridField(const LevelSet& grid, Sampler sampler, const Box3& within,
+                   std::uint64_t max_memory) {
   if (sampler == Sampler::kAccessor) return std::make_shared<AccessorField>(grid);
   const bool is_narrow = sampler == Sampler::kCubic && isTooNarrow(grid.info());
   const LevelSet wide = is_narrow ? widened(grid, kCubicHalfWidth) : grid;
-  return brickField(wide, sampler, within);
+  // The grid stays while bricks are made of it.
+  const std::uint64_t limit = memoryLimit(max_memory);
+  const std::uint64_t taken = wide.info().memory;
+  return brickField(wide, sampler, within, limit > taken ? limit - taken : 1);
+}
+
+FieldPtr gridField(const LevelSet& grid, Sampler sampler, const Box3& within) {
+  return gridField(grid, sampler, within, 0);
 }
 
 std::uint64_t memoryOf(const Field& grid_field) noexcept {

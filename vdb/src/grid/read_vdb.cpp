@@ -2,12 +2,14 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
+#include "bake/bake_plan.h"
 #include "grid/vdb_file.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/bake.h"
-#include "palpate/vdb/io.h"
+#include "palpate/vdb/grid_memory.h"
 #include "palpate/vdb/openvdb_access.h"
 
 namespace palpate::vdb {
@@ -112,6 +114,20 @@ void endBandAtItsWidth(openvdb::FloatGrid& grid) {
   }
 }
 
+/// Leaves and nodes are known before the values of any are read.
+void requireMemory(VdbFile& file, const VdbArchive::Entry& entry, std::uint64_t limit,
+                   const std::string& path) {
+  const std::uint64_t bytes = file.memoryOf(entry);
+  if (bytes <= limit) return;
+  char text[120];
+  std::snprintf(text, sizeof text, "takes %.3f GB, %.3f GB are allowed",
+                static_cast<double>(bytes) * 1e-9, static_cast<double>(limit) * 1e-9);
+  throw Error(
+      ErrorKind::kOperation,
+      {"vdb.memory", "grid '" + entry.name() + "' " + text,
+       "allow more, or put its surface into larger voxels: palpate convert --voxel SIZE", path});
+}
+
 /// The same problem, with the file it is in.
 [[noreturn]] void rethrowWithFile(const Error& error, const std::string& path) {
   Problem problem = error.problem();
@@ -154,14 +170,21 @@ std::vector<VdbGridSummary> listVdb(const std::string& path) {
 }
 
 LevelSet readVdb(const std::string& path, const std::string& name,
-                 const std::string& unit_if_missing, UnknownClass unknown_class) {
+                 const std::string& unit_if_missing, UnknownClass unknown_class,
+                 std::uint64_t max_memory) {
   VdbFile file(path);
   const VdbArchive::Entry& entry = file.choose(name);
   // What the head of the grid tells is told before its voxels are read.
   requireLevelSet(*entry.grid, unknown_class, path);
   static_cast<void>(unitOf(*entry.grid, unit_if_missing, path));
+  requireMemory(file, entry, memoryLimit(max_memory), path);
   return readingFrom(
       path, [&] { return acceptLevelSet(file.read(entry), unit_if_missing, unknown_class, path); });
+}
+
+LevelSet readVdb(const std::string& path, const std::string& name,
+                 const std::string& unit_if_missing, UnknownClass unknown_class) {
+  return readVdb(path, name, unit_if_missing, unknown_class, 0);
 }
 
 }  // namespace palpate::vdb

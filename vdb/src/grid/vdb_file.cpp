@@ -144,6 +144,15 @@ openvdb::GridBase::Ptr VdbFile::read(const VdbArchive::Entry& entry) {
   return readingFrom(path_, [&] { return archive_.readGridOf(stream_, entry); });
 }
 
+std::uint64_t VdbFile::memoryOf(const VdbArchive::Entry& entry) {
+  return readingFrom(path_, [&] {
+    using Leaf = openvdb::FloatTree::LeafNodeType;
+    const openvdb::GridBase::Ptr grid = VdbArchive::readTopologyOf(stream_, entry);
+    const std::uint64_t voxels = grid->baseTree().leafCount() * Leaf::SIZE;
+    return grid->memUsage() + voxels * sizeof(float);
+  });
+}
+
 VdbGridSummary VdbFile::summaryOf(const VdbArchive::Entry& entry) {
   return readingFrom(path_, [&] {
     openvdb::GridBase::Ptr grid = entry.grid;

@@ -44,6 +44,8 @@ class VdbFile {
   [[nodiscard]] const VdbArchive::Entry& choose(const std::string& name) const;
   /// With all its voxels. @throws Error (kInput, vdb.unreadable).
   [[nodiscard]] openvdb::GridBase::Ptr read(const VdbArchive::Entry& entry);
+  /// [bytes] What the grid takes when it is read. Reads no voxels. @throws Error (kInput, vdb.unreadable).
+  [[nodiscard]] std::uint64_t memoryOf(const VdbArchive::Entry& entry);
   /// As listVdb() tells it; reads no voxels. @throws Error (kInput, vdb.unreadable).
   [[nodiscard]] VdbGridSummary summaryOf(const VdbArchive::Entry& entry);
 

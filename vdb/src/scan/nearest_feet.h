@@ -44,6 +44,10 @@ class NearestFeet {
   [[nodiscard]] float square(std::size_t place) const noexcept { return square_[place]; }
   /// The way to that point. Only where there is one.
   [[nodiscard]] Vec3 foot(std::size_t place) const noexcept;
+  /// Which of the voxels around, 9 dx + 3 dy + dz from -1 on, has it.
+  [[nodiscard]] int which(std::size_t place) const noexcept {
+    return static_cast<int>(which_[place]);
+  }
 
  private:
   static constexpr int kSide = 10;

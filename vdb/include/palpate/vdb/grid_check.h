@@ -8,6 +8,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/core/progress.h"
+#include "palpate/vdb/certificate.h"
 #include "palpate/vdb/io.h"
 
 namespace palpate::vdb {
@@ -43,6 +44,11 @@ struct GridCheck {
   /// Active voxels more than a voxel and a half within the band, with a neighbor that is not active.
   VoxelDefect band_holes;
   double volume = 0.0;  ///< [m^3] of what is negative, voxels on the surface by their share
+  /// As the cubic sampler reads it, if it is not refused: why contact would not take it,
+  std::optional<Problem> uncertified;
+  /// or what it relies on, and what is done to the grid first.
+  std::optional<BandCertificate> certificate;
+  std::vector<std::string> repairs;
 };
 
 /// [m^3] of what is negative, voxels on the surface by their share.

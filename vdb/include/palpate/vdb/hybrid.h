@@ -3,6 +3,7 @@
 /// is thin, or is cheap as it is stays analytic. No grid holds an edge (it is off by 11 to 14 degrees there,
 /// however small the voxels are); a minimum or maximum taken at the query does.
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -65,9 +66,11 @@ struct Hybrid {
 /// map names it by; all else stays analytic.
 /// @throws Error (kInput) if there is no such part, or a grid is off its part by more than smoothGridError()
 /// says and the tolerance it was made with: it was made of another field. A hundred blocks of it are looked at.
-/// `within` as in HybridOptions.
+/// kOperation if the bricks of a grid would take it beyond `max_memory` [bytes]; 0: 80 % of the machine's. `within` as in
+/// HybridOptions.
 [[nodiscard]] FieldPtr recombined(const FieldPtr& field,
                                   const std::map<std::string, LevelSet>& grids, Sampler sampler,
-                                  const Box3& within = Box3::everything());
+                                  const Box3& within = Box3::everything(),
+                                  std::uint64_t max_memory = 0);
 
 }  // namespace palpate::vdb

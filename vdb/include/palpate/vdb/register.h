@@ -32,8 +32,11 @@ struct RegisterOptions {
   /// Told of each layer of labels that has a colour in its table of names, as the scene is read.
   std::function<void(const std::string& layer, const LabelColor&)> on_color = {};
   std::function<void(const ImageRecord&)> on_image =
-      {};                        ///< told of each image as the scene is read
-  std::uint64_t max_memory = 0;  ///< [bytes] of each grid that is made, as BakeOptions has it
+      {};  ///< told of each image as the scene is read
+  /// [bytes] of each grid that is made or read, its bricks included; 0: 80 % of the machine's
+  std::uint64_t max_memory = 0;
+  /// Where grids of files are kept that took long to widen or rebuild (CertifyOptions); empty: nowhere.
+  std::string cache_folder = {};
 };
 
 /// Adds to a scene's vocabulary (paths are relative to the scene file, lengths in its unit):

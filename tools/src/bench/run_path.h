@@ -1,0 +1,30 @@
+#pragma once
+/// Runs a renderer along a case's path with a clock beside it: hot, at the pace of a device, and cold.
+
+#include <cstdint>
+#include <vector>
+
+#include "bench/contact_case.h"
+#include "cache_flood.h"
+
+namespace palpate::tools {
+
+/// The whole path, tick after tick without a wait.
+struct HotRun {
+  std::vector<TickResult> results;
+  std::vector<std::int64_t> shortest;  ///< [ns] by tick, of all repetitions
+};
+[[nodiscard]] HotRun runHot(const ContactCase& what, HapticRenderer& renderer, int repeats,
+                            const Progress& progress);
+
+/// [ns] of about `wanted` ticks that begin kTickSeconds after one another, as a servo loop's do, in stretches
+/// spread over the judged part of the path. The loop sleeps in between, so that caches hold what the machine left.
+[[nodiscard]] std::vector<std::int64_t> runPaced(const ContactCase& what, HapticRenderer& renderer,
+                                                 int wanted, const Progress& progress);
+
+/// [ns] of about `wanted` ticks spread over the judged part, each after `flood`.
+[[nodiscard]] std::vector<std::int64_t> runCold(const ContactCase& what, HapticRenderer& renderer,
+                                                int wanted, CacheFlood& flood,
+                                                const Progress& progress);
+
+}  // namespace palpate::tools

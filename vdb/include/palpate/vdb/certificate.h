@@ -1,0 +1,79 @@
+#pragma once
+/// What contact relies on in a grid, made sure of once and for every point between its voxels.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/core/error.h"
+#include "palpate/core/progress.h"
+#include "palpate/vdb/level_set.h"
+
+namespace palpate::vdb {
+
+/// Of a grid as one Sampler reads it (kAccessor: as kTrilinear). Bounds come from the spline's coefficients, not from samples.
+struct BandCertificate {
+  Sampler sampler = Sampler::kCubic;
+  double within =
+      0.0;  ///< [m] every point that near to the surface answers with value and gradient
+  double lipschitz =
+      1.0;  ///< [-] of what is sampled, everywhere; up to 4 where distances to all sides meet
+  double steepest = 1.0;  ///< [-] no slope is above where |value| is below 1.5 voxels
+  /// [-] In each cell that may hold the surface the value grows at least so fast along some direction. Not above 0: there is an
+  /// edge, a cusp or a part as thin as the cell.
+  double slope = 1.0;
+  Vec3 slope_place{0.0};  ///< [m] where that is
+  double rough = 0.0;     ///< [-] share of these cells in which it may be below 0.4
+  /// [m] How far the surface that is felt is off the one that was meant, where it is smooth over some four voxels: the
+  /// sampler's error, and what a voxel can be off without a contradiction to its neighbors, if others made the grid.
+  double off = 0.0;
+  std::string content;  ///< contentHash() of the grid that it is of
+};
+
+/// Least BandCertificate::within, in voxels. A hand at 1 m/s moves a millimetre in a tick, but the proxy is on the surface.
+inline constexpr double kLeastWithin = 0.5;
+/// Most of BandCertificate::steepest: distances never differ by more than the way, and the spline through them overshoots by the edges
+/// of a box to 1.8.
+inline constexpr double kMostSteep = 3.0;
+
+/// 16 hexadecimal digits of all that a sample can depend on: voxels, band, place and unit. Names and other metadata do not
+/// count. Not a signature: it tells damage, not forgery.
+[[nodiscard]] std::string contentHash(const LevelSet& grid);
+
+/// The certificate in the metadata (`palpate:certificate`), if it is of `sampler` and of this very content.
+[[nodiscard]] std::optional<BandCertificate> storedCertificate(const LevelSet& grid,
+                                                               Sampler sampler = Sampler::kCubic);
+
+/// The same grid, with the certificate in its metadata.
+[[nodiscard]] LevelSet withCertificate(const LevelSet& grid, const BandCertificate& certificate);
+
+struct CertifyOptions {
+  Sampler sampler = Sampler::kCubic;
+  /// The grid was made by others, or its file may have been damaged: its voxels are held against each other, too.
+  bool is_foreign = true;
+  std::string path = {};  ///< of the file, for errors
+  /// Where grids are kept that took long to widen or rebuild; empty: nowhere. See GridCache.
+  std::string cache_folder = {};
+  std::uint64_t max_memory = 0;  ///< [bytes] of the grid and what is made of it; 0: no limit
+};
+
+struct CertifiedGrid {
+  LevelSet
+      grid;  ///< wide enough for the sampler; distances rebuilt if those that it came with were wrong
+  BandCertificate certificate;
+  std::vector<std::string> notes;  ///< what was done to it; empty: nothing
+};
+
+/// Makes sure of a grid, or says why not. A certificate in its metadata is taken if it is of this content. Otherwise all its
+/// voxels and cells are looked at once. A band too narrow is widened. Distances that contradict each other, or are missing,
+/// away from the surface are rebuilt from the surface and told; beside the surface nothing tells where it is, and the
+/// grid is refused.
+/// @throws Error: kInput naming place and remedy (vdb.gradient: values are no distances in the grid's unit; vdb.no_inside;
+/// vdb.torn: the band has a hole or inside and outside meet; vdb.jump: voxels by the surface differ by more than their
+/// distance; vdb.uncertified: points near the surface would not answer, or samples by the surface are steeper than kMostSteep),
+/// kOperation for memory, kCancelled.
+[[nodiscard]] CertifiedGrid certified(const LevelSet& grid, const CertifyOptions& options = {},
+                                      const Progress& progress = {});
+
+}  // namespace palpate::vdb

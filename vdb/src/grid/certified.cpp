@@ -1,0 +1,250 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "brick/bricks.h"
+#include "grid/grid_cache.h"
+#include "grid/grid_tally.h"
+#include "grid/rebuilt.h"
+#include "grid/voxel_steps.h"
+#include "palpate/vdb/certificate.h"
+#include "palpate/vdb/grid_error.h"
+#include "palpate/vdb/openvdb_access.h"
+
+namespace palpate::vdb {
+namespace {
+
+using openvdb::Coord;
+
+/// Where the mean of |gradient| is farther from 1, values are no distances in the grid's own unit.
+constexpr double kMostSlope = 0.25;
+/// [voxels] Contradictions up to here are what float voxels and other people's tools leave.
+constexpr double kSmallStep = 0.05;
+/// [voxels] Beside the surface, more than that is damage.
+constexpr double kMostStep = 0.25;
+/// [voxels] Values can be off by less than that and contradict no neighbor by more than kSmallStep: one half of a grid against the
+/// other by the square root of 3 less that of 2, a single voxel by half of that.
+constexpr double kUnseen = 0.4;
+/// [voxels] What rounding leaves of a bound that was found in floats.
+constexpr double kRounding = 1e-4;
+
+std::string text(const char* format, double a) {
+  char out[160];
+  std::snprintf(out, sizeof out, format, a);
+  return out;
+}
+
+class Certifier {
+ public:
+  Certifier(const LevelSet& grid, const CertifyOptions& options, const Progress& progress)
+      : grid_(grid), options_(options), progress_(progress), cache_(options.cache_folder) {}
+
+  CertifiedGrid run() {
+    if (const auto stored = storedCertificate(grid_, sampler())) return {grid_, *stored, {}};
+    const std::string key = needsWork() ? contentHash(grid_) + "-6" : "";
+    if (!key.empty() && findKept(key)) return std::move(out_);
+    if (options_.is_foreign) lookAtVoxels();
+    if (sampler() == Sampler::kCubic && isTooNarrow(grid_.info())) widen();
+    BandCertificate certificate = survey();
+    if (!holds(certificate) && options_.is_foreign && !is_rebuilt_) {
+      rebuild("values near the band's rim do not fit together");
+      certificate = survey();
+    }
+    if (!holds(certificate)) refuse(certificate);
+    certificate.content = contentHash(grid_);
+    out_.grid = withCertificate(grid_, certificate);
+    out_.certificate = std::move(certificate);
+    if (!key.empty()) cache_.keep(key, noted(out_.grid));
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] Sampler sampler() const noexcept {
+    return options_.sampler == Sampler::kAccessor ? Sampler::kTrilinear : options_.sampler;
+  }
+  [[nodiscard]] bool needsWork() const {
+    return options_.is_foreign && sampler() == Sampler::kCubic && !options_.cache_folder.empty();
+  }
+
+  static constexpr const char* kNotes = "palpate:notes";
+
+  /// What was done to it goes along.
+  [[nodiscard]] LevelSet noted(const LevelSet& grid) const {
+    std::string all;
+    for (const std::string& note : out_.notes) all += note + "\n";
+    return grid.named(grid.info().name, {{kNotes, all}});
+  }
+
+  bool findKept(const std::string& key) {
+    const std::optional<LevelSet> kept = cache_.find(key);
+    if (!kept) return false;
+    const auto certificate = storedCertificate(*kept, sampler());
+    if (!certificate) return false;
+    const auto notes = kept->info().metadata.find(kNotes);
+    std::string all = notes == kept->info().metadata.end() ? "" : notes->second;
+    for (std::size_t end = all.find('\n'); end != std::string::npos; end = all.find('\n')) {
+      out_.notes.push_back(all.substr(0, end));
+      all.erase(0, end + 1);
+    }
+    out_.grid = kept->named(grid_.info().name, grid_.info().metadata);
+    out_.certificate = *certificate;
+    return true;
+  }
+
+  [[nodiscard]] Vec3 place(const Coord& at) const {
+    return grid_.impl().origin + grid_.info().voxel_size * Vec3(at.x(), at.y(), at.z());
+  }
+  [[nodiscard]] std::string placeText(const Vec3& p) const {
+    char out[96];
+    std::snprintf(out, sizeof out, "(%.6g, %.6g, %.6g) mm", p.x * 1e3, p.y * 1e3, p.z * 1e3);
+    return out;
+  }
+  [[nodiscard]] std::string placeText(const Coord& at) const { return placeText(place(at)); }
+  [[nodiscard]] std::string name() const { return "grid '" + grid_.info().name + "'"; }
+
+  [[noreturn]] void no(const char* code, const std::string& what, const char* hint) const {
+    throw inputError(code, name() + " " + what, hint, options_.path);
+  }
+
+  void lookAtVoxels() {
+    report(progress_, "look at the voxels", 0.0);
+    refuseBySigns(tallyOf(*grid_.impl().grid));
+    report(progress_, "look at the voxels", 0.5);
+    const VoxelSteps steps = stepsOf(grid_);
+    if (steps.near_holes.voxels > 0) {
+      no("vdb.torn",
+         "has a hole in its band by the surface: " + std::to_string(steps.near_holes.voxels) +
+             " voxels lack a neighbor, one at " + placeText(steps.near_holes.at),
+         "write it again with a whole band all around the surface");
+    }
+    if (steps.near.by > kMostStep) {
+      no("vdb.jump",
+         "has voxels by the surface that cannot both be distances, one at " +
+             placeText(steps.near.at) + text(": they differ by %.2g voxels more", steps.near.by) +
+             " than the way between them",
+         "the file may be damaged: write it again; or make distances of its values, with "
+         "OpenVDB's sdfToSdf or vdb_tool -normalize");
+    }
+    step_ = steps.near.by;
+    if (steps.far_holes.voxels > 0) {
+      rebuild("its band has holes, one at " + placeText(steps.far_holes.at));
+    } else if (std::max(steps.far.by, steps.near.by) > kSmallStep) {
+      const bool by_far = steps.far.by > steps.near.by;
+      rebuild("voxels differ by up to " +
+              text("%.2g voxels more than the way between them, one at ",
+                   by_far ? steps.far.by : steps.near.by) +
+              placeText(by_far ? steps.far.at : steps.near.at));
+    }
+  }
+
+  void refuseBySigns(const GridTally& tally) const {
+    if (tally.gradients > 0) {
+      const double mean = tally.sum / static_cast<double>(tally.gradients);
+      if (!(std::fabs(mean - 1.0) <= kMostSlope)) {
+        no("vdb.gradient",
+           text("has a |gradient| of %.3g on average, so that its values are not distances in its "
+                "own unit",
+                mean),
+           "the unit may be wrong, or the values are in voxels or densities: write it again with "
+           "distances");
+      }
+    }
+    if (tally.inside_voxels == 0) {
+      no("vdb.no_inside", "has no voxel of its band inside (negative)",
+         "nothing can be touched of it; distances without sign become a shell by offset");
+    }
+    if (tally.sign_breaks.voxels > 0) {
+      no("vdb.torn",
+         "has " + std::to_string(tally.sign_breaks.voxels) +
+             " voxels where inside and outside meet without a band in between, one at " +
+             placeText(tally.sign_breaks.first),
+         "palpate convert FILE.vdb -o OTHER.vdb marks the inside, if the band is whole");
+    }
+  }
+
+  void rebuild(const std::string& why) {
+    requireMemory();
+    grid_ = withDistancesRebuilt(grid_, progress_);
+    is_rebuilt_ = true;
+    out_.notes.push_back("distances of " + name() + " away from the surface were rebuilt: " + why);
+  }
+
+  void widen() {
+    requireMemory();
+    grid_ = widened(grid_, kCubicHalfWidth, progress_);
+  }
+
+  /// A copy with a wider band, and beside it the ways to the surface, some eight times the grid.
+  void requireMemory() const {
+    constexpr double kShare = 8.0;
+    const double bytes = kShare * static_cast<double>(grid_.info().memory);
+    const auto limit = static_cast<double>(options_.max_memory);
+    if (options_.max_memory == 0 || bytes <= limit) return;
+    throw Error(ErrorKind::kOperation,
+                {"vdb.memory",
+                 name() + text(" needs about %.3f GB", bytes * 1e-9) +
+                     text(" to widen its band; %.3f GB are allowed", limit * 1e-9),
+                 "allow more, or write it with a half width of 6 voxels", options_.path});
+  }
+
+  [[nodiscard]] BandCertificate survey() {
+    report(progress_, "bound the samples", 0.0);
+    const BrickSurvey found = surveyBricks(grid_, sampler());
+    const double voxel = grid_.info().voxel_size;
+    BandCertificate c;
+    c.sampler = sampler();
+    c.lipschitz = found.lipschitz;
+    c.steepest = found.bounds.steepest_near;
+    c.within = std::max(0.0, found.bounds.within() - kRounding) * voxel;
+    unknown_at_ = {found.bounds.unknown_at[0], found.bounds.unknown_at[1],
+                   found.bounds.unknown_at[2]};
+    if (found.bounds.surface_cells > 0) {
+      c.slope = found.bounds.least_slope - kRounding;
+      c.slope_place =
+          place({found.bounds.slope_at[0], found.bounds.slope_at[1], found.bounds.slope_at[2]});
+      c.rough = static_cast<double>(found.bounds.rough_cells) /
+                static_cast<double>(found.bounds.surface_cells);
+    }
+    c.off = smoothGridError(options_.sampler, voxel).off;
+    if (options_.is_foreign) c.off += (kUnseen + step_) * voxel;
+    return c;
+  }
+
+  [[nodiscard]] bool holds(const BandCertificate& c) const noexcept {
+    return c.within >= kLeastWithin * grid_.info().voxel_size && c.steepest <= kMostSteep;
+  }
+
+  [[noreturn]] void refuse(const BandCertificate& c) const {
+    if (c.steepest > kMostSteep) {
+      no("vdb.uncertified",
+         text("has samples by the surface that differ by up to %.2g times their distance",
+              c.steepest) +
+             text("; %.2g is the most that a surface can be touched with", kMostSteep),
+         "its values are not distances: write it again, or bake the shape that it is of");
+    }
+    no("vdb.uncertified",
+       text("does not answer at points %.2g voxels from its surface",
+            c.within / grid_.info().voxel_size) +
+           ", one near " + placeText(unknown_at_),
+       "its band is too narrow there, or has a hole: write it again with a half width of 6 voxels");
+  }
+
+  LevelSet grid_;
+  const CertifyOptions& options_;
+  const Progress& progress_;
+  GridCache cache_;
+  CertifiedGrid out_;
+  Coord unknown_at_;
+  double step_ = 0.0;  // [voxels] beside the surface
+  bool is_rebuilt_ = false;
+};
+
+}  // namespace
+
+CertifiedGrid certified(const LevelSet& grid, const CertifyOptions& options,
+                        const Progress& progress) {
+  return Certifier(grid, options, progress).run();
+}
+
+}  // namespace palpate::vdb
