@@ -11,7 +11,12 @@ constexpr int kMostSteps = 24;
 constexpr double kSettled = 1e-12;
 /// Of it: what is left where rounding of the walls' own points ends the steps.
 constexpr double kSettledAtLast = 1e-7;
-constexpr double kShorter[] = {1.0, 0.5, 0.25, 0.125, 0.03};
+/// Over the stop's stiffness: what is added to the derivative, one after the other, until a step leads on.
+constexpr double kAdded[] = {0.0, 1.0, 4.0, 16.0, 64.0, 256.0};
+/// Of the energy: what of it is rounding.
+constexpr double kEnergyRounding = 1e-13;
+/// The way from the proxy to the hand, over that to the first place: the stop is not much stiffer than the stiffest wall.
+constexpr double kFirst = 0.05;
 /// Of the coordinates: a shorter way to a wall has no direction.
 constexpr double kRounding = 1e-15;
 
@@ -78,7 +83,9 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
   std::array<Vec3, SoftKinds::kMost> from;
   from.fill(proxy);
   SeriesForce out;
-  out.place = hand;
+  // From beside the walls, where their bends count little: from the hand on the steps may lead anywhere.
+  out.place = glm::mix(proxy, hand, kFirst);
+  const double farthest = glm::length(hand - proxy);
   Look here = lookFrom(out.place, hand, stop, kinds, {from.data(), count});
   Mat3 rate = here.rate;
   for (int i = 0; i < kMostSteps; ++i) {
@@ -89,14 +96,18 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
       out.settled = true;
       break;
     }
-    Vec3 step = -(glm::inverse(rate) * here.sum);
-    // Where a wall bulges towards the point the plain derivative may lead uphill.
-    if (!(glm::dot(step, here.sum) < 0.0)) step = -here.sum / stop;
     bool is_better = false;
-    for (const double share : kShorter) {
-      const Vec3 next = out.place + share * step;
+    for (const double added : kAdded) {
+      const Vec3 step = -(glm::inverse(rate + Mat3(added * stop)) * here.sum);
+      // Where a wall bulges towards the point the plain derivative may lead uphill, or far away.
+      if (!(glm::dot(step, here.sum) < 0.0) || glm::length(step) > farthest) continue;
+      const Vec3 next = out.place + step;
       const Look there = lookFrom(next, hand, stop, kinds, {here.at.data(), count});
-      if (!(glm::length(there.sum) < left)) continue;
+      const double rounding = kEnergyRounding * here.energy;
+      const bool is_lower = there.energy < here.energy + 1e-4 * glm::dot(step, here.sum);
+      const bool is_flatter =
+          glm::length(there.sum) < left && there.energy <= here.energy + rounding;
+      if (!is_lower && !is_flatter) continue;
       is_better = true;
       const Vec3 moved = next - out.place;
       const double square = glm::dot(moved, moved);

@@ -18,6 +18,45 @@ constexpr double kStiffest = 1e3;
 constexpr double kHeldTexture = 0.5;
 constexpr double kHeldShading = 0.9;
 
+/// Of how deep the press is: walls that meet no nearer than this are felt one at a time.
+constexpr double kFarthestMeeting = 30.0;
+constexpr int kMeetingSteps = 12;
+/// Of the farthest: so near to both walls is where they meet. And the least square of the sine of their angle.
+constexpr double kMet = 1e-6;
+constexpr double kFlattest = 1e-3;
+
+bool holds(const ContactSet& contact, LeafId leaf) noexcept {
+  const auto walls = contact.walls();
+  return std::any_of(walls.begin(), walls.end(),
+                     [&](const WallContact& each) { return each.leaf == leaf; });
+}
+
+/// Whether two walls meet within `farthest` [m] of `x`: a wall that lies behind another one, as a bone does
+/// under skin, does not bound where the proxy may be. Newton's steps towards both.
+bool meet(const Vec3& x, const HeldWall& a, const HeldWall& b, double farthest) noexcept {
+  FieldSample at_a{a.jet.value, a.jet.gradient, a.jet.in_band};
+  FieldSample at_b{b.jet.value, b.jet.gradient, b.jet.in_band};
+  Vec3 p = x;
+  for (int i = 0; i < kMeetingSteps; ++i) {
+    const double slope_a = glm::length(at_a.gradient);
+    const double slope_b = glm::length(at_b.gradient);
+    if (!at_a.in_band || !at_b.in_band || !(slope_a > 0.0) || !(slope_b > 0.0)) return false;
+    const Vec3 m = at_a.gradient / slope_a;
+    const Vec3 n = at_b.gradient / slope_b;
+    const double off_a = at_a.value / slope_a;
+    const double off_b = at_b.value / slope_b;
+    if (std::fabs(off_a) + std::fabs(off_b) <= kMet * farthest) return true;
+    const double cosine = glm::dot(m, n);
+    const double square = 1.0 - cosine * cosine;
+    if (square < kFlattest) return false;
+    p -= ((off_a - cosine * off_b) * m + (off_b - cosine * off_a) * n) / square;
+    if (!(glm::length(p - x) <= farthest)) return false;
+    at_a = a.field->sample(p);
+    at_b = b.field->sample(p);
+  }
+  return false;
+}
+
 double tangentOf(const WallSpring& spring, double depth) noexcept {
   WallLaw law;
   law.spring = spring;
@@ -151,6 +190,13 @@ FeltWall FeltWalls::felt(LeafId leaf, const Facet& facet, const HeldWall& held, 
   return out;
 }
 
+/// Whether the proxy's region ends at this facet, as far as the scene knows.
+bool FeltWalls::isWall(const Facet& facet) const noexcept {
+  const RegionId here = walker_.region();
+  return facet.isClosed() && facet.material >= 0 &&
+         (facet.beyond == here || scene_.touches(here, facet.beyond));
+}
+
 /// Walls of one material differ by what lies behind them, or by the solid whose shape is smoothed.
 int FeltWalls::ownOf(const Near& wall) const noexcept {
   const Material& own = material(wall.facet);
@@ -182,9 +228,12 @@ bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
   count_ = 0;
   if (!may_differ_) return false;
   for (const WallContact& each : contact.walls()) add({each.leaf, each.facet, each.held});
-  std::size_t near_count = 0;
-  walker_.forWithin(reach, [&](LeafId) { ++near_count; });
-  if (near_count <= contact.count) return count_ > 1;
+  // Most often there is nothing but what holds the proxy, and what lies beneath that.
+  bool is_alone = true;
+  walker_.forWithin(reach, [&](LeafId id) {
+    if (is_alone && !holds(contact, id) && isWall(walker_.facetAt(id))) is_alone = false;
+  });
+  if (is_alone) return count_ > 1;
   if (!near_.look(reach, false)) return count_ > 1;
   const std::span<const NearWall> walls = near_.walls();
   // The cell that the walls which hold the proxy bound: what else bounds it is felt as well.
@@ -202,15 +251,19 @@ bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
       const bool inside = ((cell.inside >> i) & 1U) != 0;
       if (!inside && ((cell.outside >> i) & 1U) == 0) continue;
       const LeafId leaf = walls[i].leaf;
-      const bool is_held = std::any_of(held.begin(), held.end(),
-                                       [&](const WallContact& each) { return each.leaf == leaf; });
-      if (is_held || !(walls[i].slope > 0.0) || walls[i].gap(inside) > reach) continue;
+      if (holds(contact, leaf) || !(walls[i].slope > 0.0)) continue;
+      if (walls[i].gap(inside) > reach) continue;
       Near near{leaf, walker_.facetAt(leaf), {}};
-      if (!near.facet.isClosed() || near.facet.material < 0) continue;
+      if (!isWall(near.facet)) continue;
       near.held.field = walker_.leaf(leaf).field.get();
       near.held.side = inside ? -1.0 : 1.0;
       near.held.jet = walker_.jetHere(leaf);
       near.held.normal = inside ? -walls[i].normal : walls[i].normal;
+      if (std::none_of(held.begin(), held.end(), [&](const WallContact& each) {
+            return meet(walker_.position(), each.held, near.held, kFarthestMeeting * reach);
+          })) {
+        continue;
+      }
       add(near);
     }
     break;

@@ -58,6 +58,7 @@ class FeltWalls final : public SoftKinds {
   [[nodiscard]] const Material& material(const Facet& facet) const noexcept {
     return scene_.materials()[static_cast<std::size_t>(facet.material)];
   }
+  [[nodiscard]] bool isWall(const Facet& facet) const noexcept;
   [[nodiscard]] int ownOf(const Near& wall) const noexcept;
   void add(const Near& wall) noexcept;
   [[nodiscard]] LocalProjection ontoPlanes(const Group& group, const Vec3& place) const noexcept;

@@ -87,7 +87,7 @@ TEST(ContactPatch, IsAPointForALightPressAndAsWideAsADeepOneIsDeep) {
 TEST(Contrasts, NeverPushSidewaysAsHardAsTheWallPushesBack) {
   for (const double width : {0.5e-3, 1e-3, 2e-3}) {
     Drive hand(sceneWith(kFloor, step(width)));
-    for (const double depth : {0.2e-3, 1e-3, 5e-3, 10e-3}) {
+    for (const double depth : {0.2e-3, 1e-3, 3.5e-3, 7e-3, 14e-3}) {
       (void)hand.walk(Vec3(-0.02, 0.001, 0.001));
       (void)hand.walk(Vec3(-0.02, 0.001, -depth));
       double most = 0.0;
@@ -102,8 +102,10 @@ TEST(Contrasts, NeverPushSidewaysAsHardAsTheWallPushesBack) {
       std::printf(
           "  over %.2f mm, %4.1f mm deep: sideways over back %.3f, largest step in 1 um %.3g N\n",
           1e3 * width, 1e3 * depth, most, jump);
-      // Deeper than ten times what a contrast is wide, single places of the patch are felt; that is told (below).
-      if (depth <= 10.01 * width) EXPECT_LT(most, 1.0) << width << " " << depth;
+      // Deeper than fourteen times what a contrast is wide, single places of the patch are felt; that is told (below).
+      if (depth <= 14.01 * width) {
+        EXPECT_LT(most, 1.0) << width << " " << depth;
+      }
       // Beside it, each is what it is.
       EXPECT_NEAR(hand.last().force.z, 3000.0 * depth, 1e-9);
     }

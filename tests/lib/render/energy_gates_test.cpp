@@ -69,7 +69,7 @@ const Place kPlaces[] = {
     {"within a ball",
      "[{name: a, inside: {sphere: {center: [0, 0, 0], radius: 8}}, wall: m, content: c}]\nstart: "
      "{region: a}",
-     mm(0, 0, 0), mm(0, 0, 7.5)},
+     mm(0, 0, 0), mm(0, 0, 8.2)},
 };
 
 ScenePtr sceneOf(const Key& key, const Place& place) {

@@ -170,9 +170,10 @@ double largestTurn(double shading) {
 
 TEST(HardShading, FacetsFeelRound) {
   EXPECT_NEAR(largestTurn(0.0), 15.0, 0.1) << "without it every edge is felt";
-  // With it the force turns by d sin(15 degrees) / (2 r) of the edge when the proxy lets go of a face, and by the
-  // hand's own 0.11 degree a tick, and by the ramp between: no step can be told from the motion.
-  EXPECT_LE(largestTurn(5e-3), 1.0);
+  // With it what is left is how far the smoothed surface turns while the proxy goes over an edge, from 0.13 mm before
+  // it to 0.13 mm behind it: 0.4 degree of the 15 over 10 mm, up to twice that for how it bends, and half a degree
+  // because the bevel lies lower than the faces; and the hand's own 0.11 degree.
+  EXPECT_LE(largestTurn(5e-3), 2.0);
 }
 
 TEST(HardShading, LeavesSmoothWallsAlone) {

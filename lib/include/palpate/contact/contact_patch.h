@@ -21,8 +21,8 @@ struct PatchSample {
 [[nodiscard]] double patchRadius(double depth, double contrast) noexcept;
 
 /// The mean of `map` about `middle` [m], for a press that goes from the hand to the proxy by `press` [m], not zero. The
-/// places are those of a sphere, flattened across the press: along any line they are spread evenly. 24 samples where
-/// the radius is more than 0, else one. Real-time safe.
+/// places are those of a sphere, flattened across the press: along any line they are spread evenly. One sample where the
+/// radius is 0, else 24, and 96 where it is more than 16 times `contrast` (between, both, blended). Real-time safe.
 [[nodiscard]] PatchSample overPatch(const Parameter& map, const Vec3& middle, const Vec3& press,
                                     double contrast) noexcept;
 
