@@ -52,23 +52,28 @@ void Feel::relax(const ContactSet& c, const HipState& hip) noexcept {
 
 /// Walls of one kind: the whole way from the hand to the proxy stretches one spring, by whatever walls that is held.
 Feel::SpringForce Feel::evenForce(const ContactSet& c, const Vec3& apart) noexcept {
-  const FeltWall felt = walls_.felt(c.wall[0], walker_.position());
   SpringForce out;
-  const double length = glm::length(apart);
-  out.varies = !felt.isEven();
   Vec3 by_press(0.0);
-  if (out.varies) {
-    out.rise = felt.rise(length);
-    if (felt.stiffness_press != Vec3(0.0)) {
-      by_press = felt.law.energyPerStiffness(length) * felt.stiffness_press;
+  double secant = 0.0;
+  if (walls_.isPlain(c.wall[0].facet)) {
+    secant = wallMaterial(c.wall[0].facet).stiffness.at(walker_.position());
+  } else {
+    const FeltWall felt = walls_.felt(c.wall[0], walker_.position());
+    const double length = glm::length(apart);
+    out.varies = !felt.isEven();
+    if (out.varies) {
+      out.rise = felt.rise(length);
+      if (felt.stiffness_press != Vec3(0.0)) {
+        by_press = felt.law.energyPerStiffness(length) * felt.stiffness_press;
+      }
     }
+    if (felt.law.height != 0.0 || !felt.law.spring.isStraight()) {
+      out.stiffness = felt.law.force(length) / length;
+      out.force = out.stiffness * apart + by_press;
+      return out;
+    }
+    secant = felt.law.spring.stiffness;
   }
-  if (felt.law.height != 0.0 || !felt.law.spring.isStraight()) {
-    out.stiffness = felt.law.force(length) / length;
-    out.force = out.stiffness * apart + by_press;
-    return out;
-  }
-  const double secant = felt.law.spring.stiffness;
   double total = 0.0;
   for (const WallContact& each : c.walls()) {
     out.force += secant * each.held.multiplier * each.held.normal;

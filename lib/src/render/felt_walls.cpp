@@ -79,6 +79,27 @@ FeltWalls::FeltWalls(const Scene& scene, CellWalker& walker)
   sortKinds();
 }
 
+/// Whether the walls that the region touches may be of several kinds.
+bool FeltWalls::mayDiffer(RegionId region) const {
+  int first = -1;
+  bool out = false;
+  const auto add = [&](int material) {
+    if (material < 0) return;
+    const Material& own = scene_.materials()[static_cast<std::size_t>(material)];
+    const int kind = kind_[static_cast<std::size_t>(material)];
+    if (own.composite.radius > 0.0 || own.shading > 0.0) out = true;
+    if (first >= 0 && kind != first) out = true;
+    first = kind;
+  };
+  for (std::size_t i = 0; i < scene_.regions().size(); ++i) {
+    const auto other = static_cast<RegionId>(i);
+    const Wall& wall = scene_.passages().wall(region, other);
+    if (other != region && scene_.touches(region, other) && !wall.absent) add(wall.material);
+  }
+  for (const Sheet& sheet : scene_.passages().sheets()) add(sheet.material);
+  return out;
+}
+
 std::vector<bool> FeltWalls::usedByWalls() const {
   std::vector<bool> used(scene_.materials().size(), false);
   const auto use = [&](int material) {
@@ -118,8 +139,6 @@ void FeltWalls::sortKinds() {
       if (feelAlike(materials[other], own)) kind_[i] = kind_[other];
     }
 
-    if (!walls.empty() && kind_[i] != kind_[walls.front()]) may_differ_ = true;
-    if (own.composite.radius > 0.0 || own.shading > 0.0) may_differ_ = true;
     walls.push_back(i);
     reach_[i] = own.shading > 0.0 ? kInfinity : textureReach(own.texture);
     const WallSpring spring{own.stiffness.range().most, own.curve.stiffening.range().most,
@@ -129,11 +148,26 @@ void FeltWalls::sortKinds() {
     stiffest = std::max(stiffest, bumps * tangentOf(spring, deepest));
     straight = std::max(straight, spring.stiffness);
   }
+  is_sheet_.assign(scene_.partition().leaves().size(), false);
+  for (const Sheet& sheet : scene_.passages().sheets()) {
+    for (const LeafId leaf : sheet.leaves) is_sheet_[leaf] = true;
+  }
   contrast_.assign(materials.size(), kInfinity);
   for (const Contrast& each : contrastsOf(scene_)) {
     const auto i = static_cast<std::size_t>(each.material);
     // What lies beneath is looked at over a patch of its own.
     if (used[i] && !(materials[i].composite.radius > 0.0)) contrast_[i] = each.length;
+  }
+  is_plain_.assign(materials.size(), false);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& own = materials[i];
+    is_plain_[i] = own.stiffness.isConstant() && own.curve.exponent == 1.0 &&
+                   own.curve.stiffening == Parameter(0.0) && !(own.texture.wavelength > 0.0) &&
+                   !(own.shading > 0.0) && !(own.composite.radius > 0.0);
+  }
+  may_differ_.assign(scene_.regions().size(), false);
+  for (std::size_t i = 0; i < may_differ_.size(); ++i) {
+    may_differ_[i] = mayDiffer(static_cast<RegionId>(i));
   }
   stop_ = kStop * std::min(stiffest, kStiffest * straight);
 }
@@ -190,6 +224,15 @@ FeltWall FeltWalls::felt(LeafId leaf, const Facet& facet, const HeldWall& held, 
   return out;
 }
 
+/// Whether the proxy's region may end at this leaf: that of a layer which it touches, or of a sheet.
+bool FeltWalls::mayBound(LeafId leaf) const noexcept {
+  const RegionId here = walker_.region();
+  const auto regions = scene_.partition().regionsOf(leaf);
+  return is_sheet_[leaf] || std::any_of(regions.begin(), regions.end(), [&](RegionId each) {
+           return each == here || scene_.touches(here, each);
+         });
+}
+
 /// Whether the proxy's region ends at this facet, as far as the scene knows.
 bool FeltWalls::isWall(const Facet& facet) const noexcept {
   const RegionId here = walker_.region();
@@ -226,15 +269,16 @@ void FeltWalls::add(const Near& wall) noexcept {
 
 bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
   count_ = 0;
-  if (!may_differ_) return false;
+  if (!may_differ_[walker_.region()]) return false;
   for (const WallContact& each : contact.walls()) add({each.leaf, each.facet, each.held});
   // Most often there is nothing but what holds the proxy, and what lies beneath that.
   bool is_alone = true;
   walker_.forWithin(reach, [&](LeafId id) {
-    if (is_alone && !holds(contact, id) && isWall(walker_.facetAt(id))) is_alone = false;
+    if (!holds(contact, id) && mayBound(id)) is_alone = false;
   });
   if (is_alone) return count_ > 1;
-  if (!near_.look(reach, false)) return count_ > 1;
+  // By the sides that the walker knows: the proxy may be a little beyond what counts as on a wall.
+  if (!near_.look(reach, true)) return count_ > 1;
   const std::span<const NearWall> walls = near_.walls();
   // The cell that the walls which hold the proxy bound: what else bounds it is felt as well.
   for (const NearCell& cell : near_.cells()) {

@@ -27,6 +27,11 @@ class FeltWalls final : public SoftKinds {
     return felt(contact.leaf, contact.facet, contact.held, x, smoothed_[0]);
   }
 
+  /// True if a wall of this material is one straight spring, the same everywhere.
+  [[nodiscard]] bool isPlain(const Facet& facet) const noexcept {
+    return is_plain_[static_cast<std::size_t>(facet.material)];
+  }
+
   /// Finds the walls within `reach` [m] of the proxy, which `contact` holds; true if they are of several kinds. Then
   /// seriesForce() may be asked, until the walker moves.
   [[nodiscard]] bool differ(const ContactSet& contact, double reach) noexcept;
@@ -54,10 +59,12 @@ class FeltWalls final : public SoftKinds {
     std::size_t count = 0;
   };
   void sortKinds();
+  [[nodiscard]] bool mayDiffer(RegionId region) const;
   [[nodiscard]] std::vector<bool> usedByWalls() const;
   [[nodiscard]] const Material& material(const Facet& facet) const noexcept {
     return scene_.materials()[static_cast<std::size_t>(facet.material)];
   }
+  [[nodiscard]] bool mayBound(LeafId leaf) const noexcept;
   [[nodiscard]] bool isWall(const Facet& facet) const noexcept;
   [[nodiscard]] int ownOf(const Near& wall) const noexcept;
   void add(const Near& wall) noexcept;
@@ -71,7 +78,9 @@ class FeltWalls final : public SoftKinds {
   std::vector<double> reach_;  ///< [m] by material: of its texture
   std::vector<double>
       contrast_;  ///< [m] by material: infinite where its stiffness is felt at a point
-  bool may_differ_ = false;
+  std::vector<bool> is_plain_;    ///< by material
+  std::vector<bool> is_sheet_;    ///< by leaf
+  std::vector<bool> may_differ_;  ///< by region
   double stop_ = 0.0;
   Vec3 press_{0.0, 0.0, 0.0};
   std::array<Group, kMost> group_{};

@@ -68,27 +68,22 @@ TEST(MixedWalls, ACreaseOfCurvedSpringsGivesNoEnergy) {
 }
 
 std::string ballsText(const std::string& left, const std::string& right, bool hollow) {
-  const std::string shape = hollow ? "{intersection: [{sphere: {center: [-6, 0, 0], radius: 10}}, "
-                                     "{sphere: {center: [6, 0, 0], "
-                                     "radius: 10}}]}"
-                                   : "";
-  std::string text = R"(
+  const std::string text = R"(
 palpate: 1
 length: mm
+fields:
+  first: {sphere: {center: [-6, 0, 0], radius: 10}}
+  second: {sphere: {center: [6, 0, 0], radius: 10}}
 materials:
   left: {)" + left + R"(}
-  right: {)" + right +
-                     "}\nlayers:\n";
-  if (!hollow) {
-    return text + R"(  - {name: a, inside: {sphere: {center: [-6, 0, 0], radius: 10}}, wall: left}
-  - {name: b, inside: {sphere: {center: [6, 0, 0], radius: 10}}, wall: right}
+  right: {)" + right + R"(}
+layers:
+  - {name: a, inside: first, wall: left}
+  - {name: b, inside: second, wall: right}
 )";
-  }
+  if (!hollow) return text;
   // From within the part that two balls share: beyond each wall there is another layer.
-  return text + R"(  - {name: a, inside: {sphere: {center: [-6, 0, 0], radius: 10}}, wall: left}
-  - {name: b, inside: {sphere: {center: [6, 0, 0], radius: 10}}, wall: right}
-  - {name: lens, inside: )" +
-         shape + R"(, wall: left}
+  return text + R"(  - {name: lens, inside: {intersection: [first, second]}, wall: left}
 walls:
   - {between: [lens, a], wall: left}
   - {between: [lens, b], wall: right}
