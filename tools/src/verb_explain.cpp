@@ -10,6 +10,7 @@
 #include "text.h"
 #include "transition_graph.h"
 #include "verbs.h"
+#include "wall_notes.h"
 
 namespace palpate::tools {
 namespace {
@@ -334,6 +335,16 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
                                        {"away_m", gap.away},
                                        {"size_ratio", gap.size_ratio}});
   }
+
+  report.json["contrasts"] = Json::array();
+  report.json["shading_gaps"] = Json::array();
+  std::string notes;
+  for (WallNote& note : wallNotes(scene)) {
+    notes += "  " + note.text + "\n";
+    report.json[note.code == "scene.contrast" ? "contrasts" : "shading_gaps"].push_back(
+        std::move(note.json));
+  }
+  if (!notes.empty()) report.text += "\nOf the walls\n" + notes;
 
   report.json["sources"] = Json::array();
   Table source_table({"field or layer", "made from", "made"});

@@ -18,6 +18,7 @@
 #include "touch_plot.h"
 #include "touch_summary.h"
 #include "verbs.h"
+#include "wall_notes.h"
 
 namespace palpate::tools {
 namespace {
@@ -216,6 +217,11 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   limits.period = nominalPeriod(path, options.rate);
   for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
     console.warn(gapText(gap, scene->lengthUnit(), scene->metresPerUnit()));
+  }
+  if (!is_paper) {
+    for (const WallNote& note : wallNotes(*scene)) {
+      if (note.is_warning) console.warn(note.text);
+    }
   }
   settings.limits = limits;
   const auto renderer = makeRenderer(scene, settings);

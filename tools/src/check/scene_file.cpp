@@ -2,6 +2,7 @@
 #include "loaded_scene.h"
 #include "map_coverage.h"
 #include "palpate/vdb/scan_surface.h"
+#include "wall_notes.h"
 
 namespace palpate::tools {
 namespace {
@@ -29,6 +30,9 @@ FileCheck checkSceneFile(const std::string& file, Console& console) {
   for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
     findings.push_back({gap.misses() ? "scene.map_misses" : "scene.map_partial",
                         gapText(gap, scene->lengthUnit(), scene->metresPerUnit())});
+  }
+  for (const WallNote& note : wallNotes(*scene)) {
+    if (note.is_warning) findings.push_back({note.code, note.text, 1, note.place});
   }
   const std::size_t layers = scene->regions().size() - 1;
   FileCheck out;

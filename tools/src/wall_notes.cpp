@@ -1,0 +1,63 @@
+#include "wall_notes.h"
+
+#include "json_parts.h"
+#include "palpate/render/contrast.h"
+#include "palpate/render/shading_gap.h"
+#include "text.h"
+
+namespace palpate::tools {
+namespace {
+
+/// Over what the wall pushes back with: a hand feels more than that as a pull to the side.
+constexpr double kMuchSideways = 0.5;
+
+}  // namespace
+
+std::vector<WallNote> wallNotes(const Scene& scene) {
+  std::vector<WallNote> notes;
+  const double unit = scene.metresPerUnit();
+  const auto lengthText = [&](double meters) {
+    return formatNumber(meters / unit, 3) + " " + scene.lengthUnit();
+  };
+  const auto placeText = [&](const Vec3& place) {
+    return formatVector(place / unit, 3) + " " + scene.lengthUnit();
+  };
+  for (const Contrast& each : contrastsOf(scene)) {
+    const std::string& name = scene.materials()[static_cast<std::size_t>(each.material)].name;
+    WallNote note;
+    note.code = "scene.contrast";
+    note.place = each.at;
+    note.is_warning = each.sideways > kMuchSideways;
+    note.text = "the stiffness of " + name + " changes by as much as it is within " +
+                lengthText(each.length) + ", about " + placeText(each.at) +
+                ": there it pushes sideways up to " + formatNumber(each.sideways, 2) +
+                " times as hard as the wall pushes back";
+    note.json = {{"material", name},
+                 {"at_m", vectorJson(each.at)},
+                 {"length_m", each.length},
+                 {"sideways", each.sideways}};
+    notes.push_back(std::move(note));
+  }
+  for (const ShadingGap& each : shadingGaps(scene)) {
+    const std::string& name = scene.materials()[static_cast<std::size_t>(each.material)].name;
+    const std::string& layer = scene.regions()[each.region].name;
+    WallNote note;
+    note.code = "scene.shading_band";
+    note.place = each.at;
+    note.is_warning = true;
+    note.text = "the shading of " + name + " looks " + lengthText(each.needed) + " far, but of " +
+                layer + " no more than " + lengthText(each.known) +
+                " beside its surface is known (about " + placeText(each.at) +
+                "): it is felt less round than it was asked for. A wider band (half_width) or a "
+                "shorter shading helps";
+    note.json = {{"material", name},
+                 {"layer", layer},
+                 {"at_m", vectorJson(each.at)},
+                 {"needed_m", each.needed},
+                 {"known_m", each.known}};
+    notes.push_back(std::move(note));
+  }
+  return notes;
+}
+
+}  // namespace palpate::tools
