@@ -45,6 +45,10 @@ class FeltWalls final : public SoftKinds {
             SoftWalls& out) noexcept override;
 
  private:
+  /// Share of the depth to which a height may bring a wall down, or up.
+  static constexpr double kHeldTexture = 0.5;
+  static constexpr double kHeldShading = 0.9;
+
   struct Near {
     LeafId leaf = 0;
     Facet facet;

@@ -194,7 +194,7 @@ TEST(MixedWalls, ATickDependsOnTheStateAlone) {
   for (int i = 0; i < 400; ++i) {
     const Vec3 p = random.in({mm(-2, -2, -3), mm(2, 2, 1)});
     (void)other->update({random.in({mm(-2, -2, -3), mm(2, 2, 1)}), Vec3(0.0)});
-    other->setState(one->state());
+    ASSERT_TRUE(other->setState(one->state()));
     const TickResult a = one->update({p, Vec3(0.0)});
     const TickResult b = other->update({p, Vec3(0.0)});
     // Within what a renderer that goes on may differ by from one that was set: rounding of where the proxy rests.

@@ -1,0 +1,131 @@
+#include <algorithm>
+
+#include "felt_walls.h"
+#include "palpate/render/contrast.h"
+
+// Which walls of a scene feel the same, found when a renderer is made.
+
+namespace palpate {
+namespace {
+
+/// The stop, over the stiffest law of all: near enough that walls of about one stiffness feel like one, ...
+constexpr double kStop = 1.05;
+/// ... of all that are no stiffer than this many times the stiffest straight spring.
+constexpr double kStiffest = 1e3;
+
+double tangentOf(const WallSpring& spring, double depth) noexcept {
+  WallLaw law;
+  law.spring = spring;
+  return law.tangent(depth);
+}
+
+bool feelAlike(const Material& a, const Material& b) noexcept {
+  return a.stiffness == b.stiffness && a.curve.stiffening == b.curve.stiffening &&
+         a.curve.exponent == b.curve.exponent &&
+         (a.curve.exponent == 1.0 || a.curve.reference == b.curve.reference) &&
+         a.texture.amplitude == b.texture.amplitude &&
+         a.texture.wavelength == b.texture.wavelength && a.shading == b.shading &&
+         a.composite.radius == b.composite.radius && a.composite.depth == b.composite.depth;
+}
+
+}  // namespace
+
+FeltWalls::FeltWalls(const Scene& scene, CellWalker& walker)
+    : scene_(scene), walker_(walker), near_(scene, walker), beneath_(scene) {
+  sortKinds();
+}
+
+/// Whether the walls that the region touches may be of several kinds.
+bool FeltWalls::mayDiffer(RegionId region) const {
+  int first = -1;
+  bool out = false;
+  const auto add = [&](int material) {
+    if (material < 0) return;
+    const Material& own = scene_.materials()[static_cast<std::size_t>(material)];
+    const int kind = kind_[static_cast<std::size_t>(material)];
+    if (own.composite.radius > 0.0 || own.shading > 0.0) out = true;
+    if (first >= 0 && kind != first) out = true;
+    first = kind;
+  };
+  for (std::size_t i = 0; i < scene_.regions().size(); ++i) {
+    const auto other = static_cast<RegionId>(i);
+    const Wall& wall = scene_.passages().wall(region, other);
+    if (other != region && scene_.touches(region, other) && !wall.absent) add(wall.material);
+  }
+  for (const Sheet& sheet : scene_.passages().sheets()) add(sheet.material);
+  return out;
+}
+
+std::vector<bool> FeltWalls::usedByWalls() const {
+  std::vector<bool> used(scene_.materials().size(), false);
+  const auto use = [&](int material) {
+    if (material >= 0) used[static_cast<std::size_t>(material)] = true;
+  };
+  const std::size_t regions = scene_.regions().size();
+  for (std::size_t a = 0; a < regions; ++a) {
+    use(scene_.regions()[a].wall);
+    for (std::size_t b = 0; b < regions; ++b) {
+      const Wall& wall = scene_.passages().wall(static_cast<RegionId>(a), static_cast<RegionId>(b));
+      if (!wall.absent) use(wall.material);
+    }
+  }
+  for (const Sheet& sheet : scene_.passages().sheets()) use(sheet.material);
+  return used;
+}
+
+void FeltWalls::sortKinds() {
+  const std::span<const Material> materials = scene_.materials();
+  kind_.assign(materials.size(), 0);
+  reach_.assign(materials.size(), kInfinity);
+  double deepest = 0.0;
+  double flat = 0.0;
+  for (const Leaf& leaf : scene_.partition().leaves()) {
+    (leaf.is_flat ? flat : deepest) = std::max(leaf.is_flat ? flat : deepest, leaf.feature);
+  }
+  if (deepest == 0.0) deepest = flat;
+  const std::vector<bool> used = usedByWalls();
+  std::vector<std::size_t> walls;
+  double stiffest = 0.0;
+  double straight = 0.0;
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    if (!used[i]) continue;
+    const Material& own = materials[i];
+    kind_[i] = static_cast<int>(i);
+    for (const std::size_t other : walls) {
+      if (feelAlike(materials[other], own)) kind_[i] = kind_[other];
+    }
+
+    walls.push_back(i);
+    reach_[i] = own.shading > 0.0 ? kInfinity : textureReach(own.texture);
+    const WallSpring spring{own.stiffness.range().most, own.curve.stiffening.range().most,
+                            own.curve.exponent, own.curve.reference};
+    double bumps = own.texture.amplitude.range().most > 0.0 ? 1.0 + kHeldTexture : 1.0;
+    if (own.shading > 0.0) bumps = 1.0 + kHeldShading;
+    stiffest = std::max(stiffest, bumps * tangentOf(spring, deepest));
+    straight = std::max(straight, spring.stiffness);
+  }
+  is_sheet_.assign(scene_.partition().leaves().size(), false);
+  for (const Sheet& sheet : scene_.passages().sheets()) {
+    for (const LeafId leaf : sheet.leaves) is_sheet_[leaf] = true;
+  }
+  contrast_.assign(materials.size(), kInfinity);
+  for (const Contrast& each : contrastsOf(scene_)) {
+    const auto i = static_cast<std::size_t>(each.material);
+    // What lies beneath is looked at over a patch of its own.
+    if (used[i] && !(materials[i].composite.radius > 0.0)) contrast_[i] = each.length;
+  }
+  is_plain_.assign(materials.size(), false);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& own = materials[i];
+    is_plain_[i] = own.stiffness.isConstant() && own.curve.exponent == 1.0 &&
+                   own.curve.stiffening == Parameter(0.0) && !(own.texture.wavelength > 0.0) &&
+                   !(own.shading > 0.0) && !(own.composite.radius > 0.0);
+  }
+  may_differ_.assign(scene_.regions().size(), false);
+  for (std::size_t i = 0; i < may_differ_.size(); ++i) {
+    may_differ_[i] = mayDiffer(static_cast<RegionId>(i));
+  }
+  stop_ = kStop * std::min(stiffest, kStiffest * straight);
+}
+
+}  // namespace palpate
