@@ -12,6 +12,7 @@ constexpr int kLines = 48;
 constexpr int kSteps = 128;  // of a line
 constexpr int kHalvings = 40;
 constexpr int kShares = 16;  // of what is needed
+constexpr int kShareHalvings = 8;
 
 /// The widest shading of the walls on either side of the layer's surface; -1: there is none.
 int shadedMaterial(const Scene& scene, RegionId region) {
@@ -36,11 +37,18 @@ int shadedMaterial(const Scene& scene, RegionId region) {
 /// [m] How far from the surface at `p` the field answers, on the side where that is less; at most `needed`.
 double knownAt(const Field& field, const Vec3& p, double needed) {
   const Vec3 n = unitOr(field.sample(p).gradient, Vec3(0.0));
+  const auto answers = [&](double away) {
+    return field.sample(p + away * n).in_band && field.sample(p - away * n).in_band;
+  };
   for (int i = 1; i <= kShares; ++i) {
-    const double away = needed * i / kShares;
-    if (!field.sample(p + away * n).in_band || !field.sample(p - away * n).in_band) {
-      return needed * (i - 1) / kShares;
+    double above = needed * i / kShares;
+    if (answers(above)) continue;
+    double known = needed * (i - 1) / kShares;
+    for (int k = 0; k < kShareHalvings; ++k) {
+      const double middle = 0.5 * (known + above);
+      (answers(middle) ? known : above) = middle;
     }
+    return known;
   }
   return needed;
 }

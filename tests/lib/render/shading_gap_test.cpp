@@ -59,7 +59,7 @@ TEST(ShadingGaps, AreToldWhereTheBandIsTooNarrow) {
   EXPECT_EQ(gaps[0].region, 1);
   EXPECT_EQ(gaps[0].material, 0);
   EXPECT_NEAR(gaps[0].needed, 4.5e-3, 1e-12);
-  EXPECT_NEAR(gaps[0].known, 2e-3, 4.5e-3 / 16);
+  EXPECT_NEAR(gaps[0].known, 2e-3, 4.5e-3 / 16 / 256);
   EXPECT_NEAR(glm::length(gaps[0].at), 0.02, 1e-9);
 }
 
