@@ -23,7 +23,6 @@ constexpr std::size_t kVoxels = DistanceLeaf::kVoxels;
 constexpr double kBeyond = 1.0;
 /// [voxels] A neighbor's point that is nearer by less is the same one.
 constexpr double kNearer = 1e-3;
-constexpr int kLooks = 2;
 /// [lattice diagonals] By how much a closest point may be further off than where its search began, a
 /// crossing by linear interpolation; more is another place's.
 constexpr double kSamePlace = 0.3;
@@ -61,10 +60,11 @@ class Redistance {
       report(progress_, "distances", 0.1 + 0.7 * round / rounds);
       if (!spread()) break;
     }
+    // What is found late, a speck between lattice points, spreads through the band as well: half of it would contradict the rest.
     std::vector<std::uint8_t> changed(leaves_.all().size(), 1);
-    for (int look = 0; look < kLooks; ++look) {
-      report(progress_, "distances", 0.8 + 0.1 * look);
-      lookAround(changed);
+    for (int look = 0; look < rounds; ++look) {
+      report(progress_, "distances", 0.8 + 0.2 * look / rounds);
+      if (!lookAround(changed)) break;
     }
     return leaves_;
   }
@@ -142,7 +142,7 @@ class Redistance {
       result.distance = std::abs(found->distance) / plan_.voxel;
     }
     const bool by_side = holds && result.distance * plan_.voxel < kClear * diagonal_;
-    result.inside = by_side ? found->distance < 0.0 : latticeInside(p);
+    result.inside = by_side ? found->distance < 0.0 : isInside(p);
     return result;
   }
 
@@ -163,8 +163,15 @@ class Redistance {
     }
   }
 
-  [[nodiscard]] bool latticeInside(const Vec3& p) const noexcept {
-    const Vec3 index = glm::round(to_index_ * (p - image_.origin));
+  /// By the spline; where the band ends, by the nearest lattice point, which is on p's side there. By the surface it need not be:
+  /// smoothing rounds corners off.
+  [[nodiscard]] bool isInside(const Vec3& p) const noexcept {
+    const Vec3 exact = to_index_ * (p - image_.origin);
+    if (const auto value =
+            spline_.valueAt(exact - Vec3(mask_.first[0], mask_.first[1], mask_.first[2]))) {
+      return *value < 0.0;
+    }
+    const Vec3 index = glm::round(exact);
     std::array<int, 3> at{};
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
@@ -207,8 +214,8 @@ class Redistance {
                        [](const auto& found) { return !found.empty(); });
   }
 
-  /// Takes what a neighbor knows better. `changed`: leaves that have since all looked last.
-  void lookAround(std::vector<std::uint8_t>& changed) {
+  /// Takes what a neighbor knows better; false if none does. `changed`: leaves that have since all looked last.
+  bool lookAround(std::vector<std::uint8_t>& changed) {
     std::vector<std::vector<Found>> better(leaves_.all().size());
     forLeaves([&](std::size_t b, const DistanceLeaf& leaf) {
       if (std::none_of(leaf.near.begin(), leaf.near.end(), [&](std::int32_t n) {
@@ -222,7 +229,8 @@ class Redistance {
         if (leaf.distance[place] == DistanceLeaf::kNowhere) continue;
         const float enough = leaf.distance[place] - static_cast<float>(kNearer);
         if (enough > 0.0F && nearest.square(place) < enough * enough) {
-          better[b].push_back(search(leaf, place, nearest.foot(place)));
+          const Found found = search(leaf, place, nearest.foot(place));
+          if (found.distance < static_cast<double>(enough)) better[b].push_back(found);
         }
       }
     });
@@ -230,6 +238,7 @@ class Redistance {
       for (const Found& found : better[b]) take(leaf, found);
       changed[b] = better[b].empty() ? 0 : 1;
     });
+    return std::find(changed.begin(), changed.end(), 1) != changed.end();
   }
 
   const LatticeSpline& spline_;
