@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -141,8 +142,15 @@ class Redistance {
       result.foot = (found->point - p) / plan_.voxel;
       result.distance = std::abs(found->distance) / plan_.voxel;
     }
-    const bool by_side = holds && result.distance * plan_.voxel < kClear * diagonal_;
-    result.inside = by_side ? found->distance < 0.0 : isInside(p);
+    const bool by_foot = holds && found->distance < 0.0;
+    if (holds && result.distance * plan_.voxel < kClear * diagonal_) {
+      result.inside = by_foot;
+    } else {
+      // Smoothing rounds corners off that the mask has, and a spline has specks between lattice points: two of three are right.
+      const bool by_mask = latticeInside(p);
+      const bool by_spline = splineInside(p).value_or(by_mask);
+      result.inside = by_mask == by_spline || !holds ? by_mask : by_foot;
+    }
     return result;
   }
 
@@ -163,15 +171,16 @@ class Redistance {
     }
   }
 
-  /// By the spline; where the band ends, by the nearest lattice point, which is on p's side there. By the surface it need not be:
-  /// smoothing rounds corners off.
-  [[nodiscard]] bool isInside(const Vec3& p) const noexcept {
-    const Vec3 exact = to_index_ * (p - image_.origin);
-    if (const auto value =
-            spline_.valueAt(exact - Vec3(mask_.first[0], mask_.first[1], mask_.first[2]))) {
-      return *value < 0.0;
-    }
-    const Vec3 index = glm::round(exact);
+  [[nodiscard]] std::optional<bool> splineInside(const Vec3& p) const noexcept {
+    const Vec3 index = to_index_ * (p - image_.origin);
+    const Vec3 first(mask_.first[0], mask_.first[1], mask_.first[2]);
+    const std::optional<double> value = spline_.valueAt(index - first);
+    if (!value) return {};
+    return *value < 0.0;
+  }
+
+  [[nodiscard]] bool latticeInside(const Vec3& p) const noexcept {
+    const Vec3 index = glm::round(to_index_ * (p - image_.origin));
     std::array<int, 3> at{};
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
