@@ -73,9 +73,9 @@ class Runner(unittest.TestCase):
         self.assertFalse(listed & {mutants.key_of(m) for m in second.seen})
 
     def test_tests_run_from_the_quick_to_the_slow_within_the_budget(self):
-        times = {"Planes.Slow": 30.0, "PullBack.A": 0.5, "PullBack.B": 0.1, "Cut.C": 4.0, "Elsewhere.D": 0.1}
+        times = {"Planes.Slow": 30.0, "Sweep.A": 0.5, "Sweep.B": 0.1, "Cut.C": 4.0, "Elsewhere.D": 0.1}
         stages = mutants.stages_of("contact", times, 20.0)
-        self.assertEqual([name for names, _ in stages for name in names], ["PullBack.B", "PullBack.A", "Cut.C"])
+        self.assertEqual([name for names, _ in stages for name in names], ["Sweep.B", "Sweep.A", "Cut.C"])
 
     def test_suites_are_known_whatever_their_parameters(self):
         self.assertEqual([mutants.suite_of(t) for t in ["A.b", "Part/A.b/3", "A/0.b"]], ["A", "A", "A"])

@@ -124,9 +124,9 @@ TEST(Accuracy, TheTorusHasTheErrorsAndOrdersOfItsSamplers) {
 // Where ball and cylinder meet, curvature jumps: a strip of a stencil's width is off by the square of the voxel, and its normal by
 // the voxel. In the RMS over the surface that makes half an order more.
 TEST(Accuracy, TheSeamOfACapsuleShowsInItsOrders) {
-  const CommandResult result = runPalpate(
-      quick(scenePath("reference.yaml"), {"--field", "pill", "--ladder", "2,1,0.5", "--sampler",
-                                          "cubic", "--points", "6000", "--json"}));
+  const CommandResult result = runPalpate({"accuracy", scenePath("reference.yaml"), "--repeat", "1",
+                                           "--quiet", "--field", "pill", "--ladder", "2,1,0.5",
+                                           "--sampler", "cubic", "--points", "6000", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json report = parseOnly(result);
   const Json& pill = report["results"][0];

@@ -22,6 +22,7 @@
 #include "palpate/vdb/register.h"
 #include "support/error_of.h"
 #include "support/temp_file.h"
+#include "vdb/certificate_judge.h"
 #include "vdb/foreign_grids.h"
 #include "vdb/shapes.h"
 
@@ -59,35 +60,7 @@ TEST(Certificate, BoundsHoldWhereverTheGridIsSampled) {
       SCOPED_TRACE(name);
       const double voxel = 1 * kMm;
       const LevelSet grid = bake(*field, voxels(voxel, kCubicHalfWidth));
-      const BandCertificate sure = certified(grid, own(sampler)).certificate;
-      std::printf("%s, %s: answers within %.2f voxels, slopes %.2f to %.3f, %.1f %% rough\n",
-                  name.c_str(), sampler == Sampler::kCubic ? "cubic" : "trilinear",
-                  sure.within / voxel, sure.slope, sure.lipschitz, 100.0 * sure.rough);
-      EXPECT_GE(sure.within, kLeastWithin * voxel);
-      EXPECT_LE(sure.steepest, kMostSteep);
-      const FieldPtr made = gridField(grid, sampler);
-      palpate::test::Random random(7);
-      int near = 0;
-      for (int i = 0; i < 200000; ++i) {
-        const Vec3 p = random.in(field->bounds().grownBy(4 * voxel));
-        const FieldSample s = made->sample(p);
-        // A step along the gradient leads to the surface, where that is near; from there on points within w answer.
-        if (s.in_band && std::fabs(s.value) < 0.3 * voxel) {
-          const Vec3 on = p - s.value / glm::dot(s.gradient, s.gradient) * s.gradient;
-          if (std::fabs(made->sample(on).value) > 1e-3 * voxel) continue;
-          ++near;
-          ASSERT_TRUE(made->sample(on + 0.99 * sure.within * random.direction()).in_band);
-        }
-        if (!s.in_band) continue;
-        ASSERT_LE(glm::length(s.gradient), sure.lipschitz);
-        if (std::fabs(s.value) < 1.5 * voxel) {
-          ASSERT_LE(glm::length(s.gradient), sure.steepest + 1e-3);
-        }
-        if (std::fabs(s.value) < 0.01 * voxel) {
-          ASSERT_GE(glm::length(s.gradient), sure.slope - 1e-3);
-        }
-      }
-      EXPECT_GT(near, 500);
+      test::expectBoundsHold(name, grid, sampler, field->bounds().grownBy(4 * voxel));
     }
   }
 }
@@ -313,7 +286,8 @@ TEST(Certificate, WrongValuesAwayFromTheSurfaceAreRebuiltAndTold) {
     if (!s.in_band) continue;
     EXPECT_NEAR(s.value, (-1.0 + 0.05 * i) * kMm, 0.02 * kMm);
   }
-  EXPECT_LE(field.lipschitz(), 1.2);
+  // Of the spline's coefficients at the band's rim, sharpened ones beside plain ones; one coefficient too many is three times as steep.
+  EXPECT_LE(field.lipschitz(), 1.75);
 }
 
 TEST(Certificate, OutOfTheBandInContactTheForceHoldsOrFalls) {

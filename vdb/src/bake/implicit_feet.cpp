@@ -22,7 +22,7 @@ constexpr double kSided = 1.75;
 constexpr double kSeeded = 1.2;
 /// In a leaf no slope is taken for steeper than that many times the steepest between points two voxels apart there: a
 /// bound for all of space is many times what a quadratic form, say, has near its surface.
-constexpr double kSteeper = 2.0;
+constexpr double kSteeper = 1.7;
 
 constexpr std::size_t kVoxels = DistanceLeaf::kVoxels;
 constexpr std::size_t kBatch = PointBatch::kCount;
@@ -32,15 +32,19 @@ Coord offsetOf(std::size_t place) noexcept {
   return {n >> 6, n >> 3 & 7, n & 7};
 }
 
-/// The largest difference between neighbors of 4^3 values.
+/// The largest slope [value per step] among 4^3 values, by differences to the neighbors along the axes.
 double steepestOf(const ValueBatch& values) noexcept {
   double most = 0.0;
   for (std::size_t n = 0; n < kBatch; ++n) {
-    if ((n & 3U) < 3) most = std::max(most, std::fabs(values[n + 1] - values[n]));
-    if ((n >> 2 & 3U) < 3) most = std::max(most, std::fabs(values[n + 4] - values[n]));
-    if (n >> 4 < 3) most = std::max(most, std::fabs(values[n + 16] - values[n]));
+    double square = 0.0;
+    for (const std::size_t step : {std::size_t{1}, std::size_t{4}, std::size_t{16}}) {
+      const bool is_last = (n / step & 3U) == 3;
+      const double by = is_last ? values[n] - values[n - step] : values[n + step] - values[n];
+      square += by * by;
+    }
+    most = std::max(most, square);
   }
-  return most;
+  return std::sqrt(most);
 }
 
 /// [m] How far it is to the surface at least, if the field bends by no more than twice what it does here:

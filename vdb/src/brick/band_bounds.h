@@ -22,14 +22,15 @@ struct BandBounds {
   /// an edge, a cusp, or a thin part.
   double least_slope = std::numeric_limits<double>::infinity();
   Voxel slope_at{};
-  /// [-] No slope is steeper in cells with a value nearer to 0 than kNear.
+  /// [-] No slope is steeper in cells that answer and have a value nearer to 0 than kNear.
   double steepest_near = 1.0;
   std::uint64_t surface_cells = 0;  ///< that may hold the surface
   std::uint64_t rough_cells = 0;    ///< of these, the ones whose slope may be below kSmoothSlope
+  double least_way = 0.0;           ///< [voxels] by LeastWay, if it was asked for
 
   void add(const BandBounds& other) noexcept;
   /// [voxels] How far it is at least from the surface to a point that does not answer: on the way there |value| rises
-  /// to least_unknown or kNear, and until then no slope is above steepest_near.
+  /// to least_unknown or kNear, and until then no slope is above steepest_near. Or least_way, if that is more.
   [[nodiscard]] double within() const noexcept;
 
   /// All cells of the brick; `first` is its first voxel, and no slope in it is above `steepest`.

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "brick/block_map.h"
+#include "brick/least_way.h"
 #include "brick/prefilter.h"
 #include "brick/slopes.h"
 #include "huge_vector.h"
@@ -275,7 +276,7 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler, const Box3& within,
   view_.plateau = maker.plateau() * info.metres_per_unit;
 }
 
-BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler) {
+BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler, double least_within) {
   BrickMaker maker(grid, sampler);
   const BlockMap map = mapBlocks(maker.tree());
   maker.forAll(map.bricks.size(), [&](std::size_t n, const Accessor& accessor, Part& part) {
@@ -288,6 +289,25 @@ BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler) {
   BrickSurvey survey;
   for (const Part& part : maker.parts()) survey.bounds.add(part.bounds);
   survey.lipschitz = maker.lipschitz();
+  if (survey.bounds.within() >= least_within) return survey;
+  // Holes and plates as thin as a voxel are steep, and weaken that bound everywhere: look where it matters.
+  std::vector<CellBounds> bounds(map.bricks.size());
+  maker.forAll(map.bricks.size(), [&](std::size_t n, const Accessor& accessor, Part& part) {
+    Brick brick;
+    maker.make(map.bricks[n], accessor, part, brick);
+    boundCells(brick, maker.cubic(), bounds[n]);
+  });
+  const LeastWay way(map.bricks, bounds);
+  tbb::enumerable_thread_specific<double> least(1.0);
+  maker.forAll(map.bricks.size(), [&](std::size_t n, const Accessor& accessor, Part& part) {
+    if (!way.matters(n)) return;
+    Brick brick;
+    maker.make(map.bricks[n], accessor, part, brick);
+    double& own = least.local();
+    own = std::min(own, way.in(n, brick, maker.cubic()));
+  });
+  survey.bounds.least_way = 1.0;
+  for (const double each : least) survey.bounds.least_way = std::min(survey.bounds.least_way, each);
   return survey;
 }
 

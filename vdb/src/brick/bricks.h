@@ -49,6 +49,8 @@ struct BrickSurvey {
   BandBounds bounds;
   double lipschitz = 1.0;  ///< as Bricks::lipschitz()
 };
-[[nodiscard]] BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler);
+/// Looks a second time, longer, if BandBounds::within() is below `least_within` [voxels] by slopes alone.
+[[nodiscard]] BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler,
+                                       double least_within = 0.0);
 
 }  // namespace palpate::vdb

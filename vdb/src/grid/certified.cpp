@@ -19,8 +19,6 @@ using openvdb::Coord;
 
 /// Where the mean of |gradient| is farther from 1, values are no distances in the grid's own unit.
 constexpr double kMostSlope = 0.25;
-/// [voxels] Contradictions up to here are what float voxels and other people's tools leave.
-constexpr double kSmallStep = 0.05;
 /// [voxels] Beside the surface, more than that is damage.
 constexpr double kMostStep = 0.25;
 /// [voxels] Values can be off by less than that and contradict no neighbor by more than kSmallStep: one half of a grid against the
@@ -190,7 +188,7 @@ class Certifier {
 
   [[nodiscard]] BandCertificate survey() {
     report(progress_, "bound the samples", 0.0);
-    const BrickSurvey found = surveyBricks(grid_, sampler());
+    const BrickSurvey found = surveyBricks(grid_, sampler(), kLeastWithin + kRounding);
     const double voxel = grid_.info().voxel_size;
     BandCertificate c;
     c.sampler = sampler();

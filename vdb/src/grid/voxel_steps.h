@@ -28,6 +28,9 @@ struct VoxelSteps {
 /// can be rebuilt.
 inline constexpr double kBesideSurface = 2.0;
 
+/// [voxels] Contradictions up to here are what float voxels and other people's tools leave.
+inline constexpr double kSmallStep = 0.05;
+
 /// Looks at each pair of the 26 neighbors, in parallel; places are the first along the axes.
 [[nodiscard]] VoxelSteps stepsOf(const LevelSet& grid);
 

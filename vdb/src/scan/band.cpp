@@ -129,7 +129,7 @@ class Finder {
     band_.bounds.resize(band_.blocks.size());
   }
 
-  void fill(BandBlock& block, BandBounds& bounds) const noexcept {
+  void fill(BandBlock& block, BlockBounds& bounds) const noexcept {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     block.value.fill(kNone);
     bounds.lower.fill(kNone);
@@ -179,7 +179,7 @@ class Finder {
     return by;
   }
 
-  bool fillVoxel(BandBlock& block, BandBounds& bounds, const std::array<int, 3>& at,
+  bool fillVoxel(BandBlock& block, BlockBounds& bounds, const std::array<int, 3>& at,
                  const Other& other) const noexcept {
     const std::ptrdiff_t n = mask_.at(at[0], at[1], at[2]);
     const bool is_inside = inside(n);

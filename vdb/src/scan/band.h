@@ -24,7 +24,7 @@ struct BandBlock {
 };
 
 /// What the values of a block may be.
-struct BandBounds {
+struct BlockBounds {
   alignas(32) BandBlock::Values lower;
   alignas(32) BandBlock::Values upper;
 };
@@ -39,10 +39,10 @@ struct Band {
   std::array<int, 3> table_size{};  ///< blocks along each axis
   std::vector<std::int32_t> table;  ///< place of each block in `blocks`, or -1; first axis fastest
   HugeVector<BandBlock> blocks;
-  HugeVector<BandBounds> bounds;  ///< one for each block
+  HugeVector<BlockBounds> bounds;  ///< one for each block
 
   /// Gives their memory back: `bounds = {}` would keep it.
-  void dropBounds() noexcept { bounds = HugeVector<BandBounds>(); }
+  void dropBounds() noexcept { bounds = HugeVector<BlockBounds>(); }
   /// The block of voxel (i, j, k), or -1.
   [[nodiscard]] std::int32_t blockAt(int i, int j, int k) const noexcept {
     const int place = (i >> 3) + table_size[0] * ((j >> 3) + table_size[1] * (k >> 3));

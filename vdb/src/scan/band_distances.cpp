@@ -101,7 +101,7 @@ class Distances {
         kSamePlace * std::max(1.0, 0.5 * distance)) {
       return;
     }
-    const BandBounds& bounds = band_.bounds[b];
+    const BlockBounds& bounds = band_.bounds[b];
     taken_[b].push_back({place, foot->point - p,
                          std::clamp(std::copysign(static_cast<float>(distance), value),
                                     bounds.lower[place], bounds.upper[place])});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,6 @@ constexpr std::size_t kVoxels = DistanceLeaf::kVoxels;
 constexpr double kBeyond = 1.0;
 /// [voxels] A neighbor's point that is nearer by less is the same one.
 constexpr double kNearer = 1e-3;
-constexpr int kLooks = 2;
 /// [lattice diagonals] By how much a closest point may be further off than where its search began, a
 /// crossing by linear interpolation; more is another place's.
 constexpr double kSamePlace = 0.3;
@@ -61,10 +61,11 @@ class Redistance {
       report(progress_, "distances", 0.1 + 0.7 * round / rounds);
       if (!spread()) break;
     }
+    // What is found late, a speck between lattice points, spreads through the band as well: half of it would contradict the rest.
     std::vector<std::uint8_t> changed(leaves_.all().size(), 1);
-    for (int look = 0; look < kLooks; ++look) {
-      report(progress_, "distances", 0.8 + 0.1 * look);
-      lookAround(changed);
+    for (int look = 0; look < rounds; ++look) {
+      report(progress_, "distances", 0.8 + 0.2 * look / rounds);
+      if (!lookAround(changed)) break;
     }
     return leaves_;
   }
@@ -141,8 +142,15 @@ class Redistance {
       result.foot = (found->point - p) / plan_.voxel;
       result.distance = std::abs(found->distance) / plan_.voxel;
     }
-    const bool by_side = holds && result.distance * plan_.voxel < kClear * diagonal_;
-    result.inside = by_side ? found->distance < 0.0 : latticeInside(p);
+    const bool by_foot = holds && found->distance < 0.0;
+    if (holds && result.distance * plan_.voxel < kClear * diagonal_) {
+      result.inside = by_foot;
+    } else {
+      // Smoothing rounds corners off that the mask has, and a spline has specks between lattice points: two of three are right.
+      const bool by_mask = latticeInside(p);
+      const bool by_spline = splineInside(p).value_or(by_mask);
+      result.inside = by_mask == by_spline || !holds ? by_mask : by_foot;
+    }
     return result;
   }
 
@@ -161,6 +169,14 @@ class Redistance {
       leaf.feet.set(found.place, Vec3(static_cast<double>(Feet::kNone)));
       clearBit(leaf.known, found.place);
     }
+  }
+
+  [[nodiscard]] std::optional<bool> splineInside(const Vec3& p) const noexcept {
+    const Vec3 index = to_index_ * (p - image_.origin);
+    const Vec3 first(mask_.first[0], mask_.first[1], mask_.first[2]);
+    const std::optional<double> value = spline_.valueAt(index - first);
+    if (!value) return {};
+    return *value < 0.0;
   }
 
   [[nodiscard]] bool latticeInside(const Vec3& p) const noexcept {
@@ -207,8 +223,8 @@ class Redistance {
                        [](const auto& found) { return !found.empty(); });
   }
 
-  /// Takes what a neighbor knows better. `changed`: leaves that have since all looked last.
-  void lookAround(std::vector<std::uint8_t>& changed) {
+  /// Takes what a neighbor knows better; false if none does. `changed`: leaves that have since all looked last.
+  bool lookAround(std::vector<std::uint8_t>& changed) {
     std::vector<std::vector<Found>> better(leaves_.all().size());
     forLeaves([&](std::size_t b, const DistanceLeaf& leaf) {
       if (std::none_of(leaf.near.begin(), leaf.near.end(), [&](std::int32_t n) {
@@ -222,7 +238,8 @@ class Redistance {
         if (leaf.distance[place] == DistanceLeaf::kNowhere) continue;
         const float enough = leaf.distance[place] - static_cast<float>(kNearer);
         if (enough > 0.0F && nearest.square(place) < enough * enough) {
-          better[b].push_back(search(leaf, place, nearest.foot(place)));
+          const Found found = search(leaf, place, nearest.foot(place));
+          if (found.distance < static_cast<double>(enough)) better[b].push_back(found);
         }
       }
     });
@@ -230,6 +247,7 @@ class Redistance {
       for (const Found& found : better[b]) take(leaf, found);
       changed[b] = better[b].empty() ? 0 : 1;
     });
+    return std::find(changed.begin(), changed.end(), 1) != changed.end();
   }
 
   const LatticeSpline& spline_;

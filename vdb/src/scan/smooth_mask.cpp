@@ -152,7 +152,7 @@ class Smoothing {
         Patch patch;
         gather(
             block, [&](std::size_t n) -> const Values& { return work_[n].*from_here; }, patch);
-        const BandBounds& bounds = band_.bounds[b];
+        const BlockBounds& bounds = band_.bounds[b];
         Work& work = work_[b];
         kernels_.relax(patch, block.rows, weights_,
                        {with_force ? work.force.data() : kNoForce.data(), work.step.data(),

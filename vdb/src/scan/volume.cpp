@@ -48,7 +48,7 @@ class Volume {
                          kMostShift);
       forBlocks(band_.blocks.size(), [&](std::size_t b) {
         BandBlock& block = band_.blocks[b];
-        const BandBounds& bounds = band_.bounds[b];
+        const BlockBounds& bounds = band_.bounds[b];
         for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
           if (std::isnan(block.value[n])) continue;
           block.value[n] = std::clamp(first[b][n] - shift, bounds.lower[n], bounds.upper[n]);

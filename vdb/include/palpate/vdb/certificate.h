@@ -18,7 +18,7 @@ struct BandCertificate {
   double within =
       0.0;  ///< [m] every point that near to the surface answers with value and gradient
   double lipschitz =
-      1.0;  ///< [-] of what is sampled, everywhere; up to 4 where distances to all sides meet
+      1.0;  ///< [-] of what is sampled, everywhere; some 4 where distances to all sides meet
   double steepest = 1.0;  ///< [-] no slope is above where |value| is below 1.5 voxels
   /// [-] In each cell that may hold the surface the value grows at least so fast along some direction. Not above 0: there is an
   /// edge, a cusp or a part as thin as the cell.
@@ -31,11 +31,15 @@ struct BandCertificate {
   std::string content;  ///< contentHash() of the grid that it is of
 };
 
-/// Least BandCertificate::within, in voxels. A hand at 1 m/s moves a millimetre in a tick, but the proxy is on the surface.
-inline constexpr double kLeastWithin = 0.5;
-/// Most of BandCertificate::steepest: distances never differ by more than the way, and the spline through them overshoots by the edges
-/// of a box to 1.8.
-inline constexpr double kMostSteep = 3.0;
+/// Least BandCertificate::within, in voxels. The proxy is on the surface to far less than that, and a search that comes from farther
+/// off goes on by the bound on the distance that points out of the band have. A band of 6 voxels whose surface is smooth has
+/// 0.8 where it is oblique to all axes, and less by as much as slopes are steeper.
+inline constexpr double kLeastWithin = 0.1;
+/// Most of BandCertificate::steepest. Voxels that differ by no more than the way between them give a cubic spline whose bound along
+/// one axis is at most 9 (3 for the differences of its coefficients, times the square root of 3 for each of the two other
+/// axes), and less than 16 along any direction. What is steeper is not made of distances. Edges of a box come to 1.8, holes of a
+/// voxel in a scan to 4.
+inline constexpr double kMostSteep = 16.0;
 
 /// 16 hexadecimal digits of all that a sample can depend on: voxels, band, place and unit. Names and other metadata do not
 /// count. Not a signature: it tells damage, not forgery.
