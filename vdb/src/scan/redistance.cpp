@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,6 +29,9 @@ constexpr double kSamePlace = 0.3;
 /// [lattice diagonals] From there on the nearest lattice point is on a voxel's own side.
 constexpr double kClear = 0.5;
 
+/// Of a distance: what the spline has to be at least, to be of the same surface.
+constexpr double kAlike = 0.5;
+
 /// What is known of a voxel [voxels].
 struct Found {
   std::size_t place = 0;
@@ -50,6 +52,8 @@ class Redistance {
         to_index_(glm::inverse(image.axes)),
         diagonal_(glm::length(glm::abs(image.axes[0]) + glm::abs(image.axes[1]) +
                               glm::abs(image.axes[2]))),
+        step_(std::min(
+            {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])})),
         crossings_(crossingsOf(band, options)),
         // A crossing's part of the surface reaches up to a lattice step from it.
         leaves_(crossings_, plan_.half_width + kBeyond + diagonal_ / plan_.voxel) {}
@@ -146,10 +150,12 @@ class Redistance {
     if (holds && result.distance * plan_.voxel < kClear * diagonal_) {
       result.inside = by_foot;
     } else {
-      // Smoothing rounds corners off that the mask has, and a spline has specks between lattice points: two of three are right.
+      // Smoothing rounds corners off that the mask has: there the spline tells, if it and the point agree on how far it is.
       const bool by_mask = latticeInside(p);
-      const bool by_spline = splineInside(p).value_or(by_mask);
-      result.inside = by_mask == by_spline || !holds ? by_mask : by_foot;
+      const double value = spline_.valueAt(indexOf(p)).value_or(0.0) * step_;
+      const bool agrees = holds && (value < 0.0) == by_foot &&
+                          std::abs(value) > kAlike * result.distance * plan_.voxel;
+      result.inside = agrees ? by_foot : by_mask;
     }
     return result;
   }
@@ -171,20 +177,17 @@ class Redistance {
     }
   }
 
-  [[nodiscard]] std::optional<bool> splineInside(const Vec3& p) const noexcept {
-    const Vec3 index = to_index_ * (p - image_.origin);
-    const Vec3 first(mask_.first[0], mask_.first[1], mask_.first[2]);
-    const std::optional<double> value = spline_.valueAt(index - first);
-    if (!value) return {};
-    return *value < 0.0;
+  /// In the band's box.
+  [[nodiscard]] Vec3 indexOf(const Vec3& p) const noexcept {
+    return to_index_ * (p - image_.origin) - Vec3(mask_.first[0], mask_.first[1], mask_.first[2]);
   }
 
   [[nodiscard]] bool latticeInside(const Vec3& p) const noexcept {
-    const Vec3 index = glm::round(to_index_ * (p - image_.origin));
+    const Vec3 index = glm::round(indexOf(p));
     std::array<int, 3> at{};
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
-      const double place = index[axis] - mask_.first[a];
+      const double place = index[axis];
       if (!(place >= 0.0 && place < mask_.box[a])) return false;
       at[a] = static_cast<int>(place);
     }
@@ -257,6 +260,7 @@ class Redistance {
   BakePlan plan_;
   Mat3 to_index_;
   double diagonal_;              ///< [m] of a lattice cell
+  double step_;                  ///< [m] the spline's unit
   std::vector<Vec3> crossings_;  ///< [voxels]
   DistanceLeaves leaves_;
 };
