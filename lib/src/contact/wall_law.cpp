@@ -111,7 +111,7 @@ SoftWall softWall(const WallLaw& law, double stop, double give) noexcept {
   if (!(give > 0.0)) return out;
   const double most = kFollowed * stop;
   // The law is as stiff as the stop allows from `bend` on; it grows stiffer with the depth only.
-  const auto giveAt = [&](double depth) { return depth - law.force(depth) / stop; };
+  const auto give_at = [&](double depth) { return depth - law.force(depth) / stop; };
   double low = give;
   double high = give;
   double tangent = law.tangent(give);
@@ -131,7 +131,7 @@ SoftWall softWall(const WallLaw& law, double stop, double give) noexcept {
       const double middle = 0.5 * (below + above);
       (law.tangent(middle) > most ? above : below) = middle;
     }
-    const double bent = giveAt(below);
+    const double bent = give_at(below);
     if (give >= bent) {
       const double further = (give - bent) * stop / (stop - most);
       out.depth = below + further;
@@ -143,7 +143,7 @@ SoftWall softWall(const WallLaw& law, double stop, double give) noexcept {
   }
   double depth = std::clamp(give * stop / std::max(stop - tangent, stop - most), low, high);
   for (int i = 0; i < kMostSteps; ++i) {
-    const double off = giveAt(depth) - give;
+    const double off = give_at(depth) - give;
     (off > 0.0 ? high : low) = depth;
     tangent = law.tangent(depth);
     double next = depth - off / std::max(1.0 - tangent / stop, 1e-3);

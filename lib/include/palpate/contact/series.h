@@ -34,15 +34,13 @@ struct SoftWalls {
 class SoftKinds {
  public:
   static constexpr std::size_t kMost = 8;
+  virtual ~SoftKinds() = default;
 
   [[nodiscard]] virtual std::size_t count() const noexcept = 0;
   /// Kind `index` (below count()) for something at `place` [m]: the walls' nearest point to it, looked for from
   /// `from` [m], and what they are like there. Real-time safe.
   virtual void look(std::size_t index, const Vec3& from, const Vec3& place,
                     SoftWalls& out) noexcept = 0;
-
- protected:
-  ~SoftKinds() = default;
 };
 
 struct SeriesForce {

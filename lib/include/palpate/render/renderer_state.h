@@ -2,6 +2,7 @@
 /// RendererState: all that one tick of a renderer leaves for the next. Whoever has this value and the scene has the
 /// renderer: copied it is a snapshot, given back it rewinds.
 
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -85,6 +86,6 @@ struct RendererState {
 };
 
 static_assert(std::is_trivially_copyable_v<RendererState>);
-static_assert(sizeof(RendererState) <= 32 * 1024);
+static_assert(sizeof(RendererState) <= std::size_t{32} * 1024);
 
 }  // namespace palpate
