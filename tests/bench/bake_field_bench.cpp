@@ -4,7 +4,6 @@
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
-#include <atomic>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
+#include "vdb/counted_field.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {
@@ -56,39 +56,8 @@ void bakeOf(benchmark::State& state, const FieldPtr& field) {
 
 void ball(benchmark::State& state) { bakeOf(state, sphere(kCenter, kRadius)); }
 void csg(benchmark::State& state) { bakeOf(state, fourteenParts()); }
-/// Counts how often a field is looked at; a batch counts once for each of its points.
-class Counted final : public Field {
- public:
-  explicit Counted(FieldPtr field) : field_(std::move(field)) {}
-  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
-    ++looks_;
-    return field_->sample(p);
-  }
-  [[nodiscard]] double value(const Vec3& p) const noexcept override {
-    ++looks_;
-    return field_->value(p);
-  }
-  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    looks_ += PointBatch::kCount;
-    field_->values(points, out);
-  }
-  [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
-    ++looks_;
-    return field_->jet(p);
-  }
-  [[nodiscard]] Box3 bounds() const noexcept override { return field_->bounds(); }
-  [[nodiscard]] Metric metric() const noexcept override { return field_->metric(); }
-  [[nodiscard]] double lipschitz() const noexcept override { return field_->lipschitz(); }
-  [[nodiscard]] Box3 lipschitzDomain() const noexcept override { return field_->lipschitzDomain(); }
-  [[nodiscard]] double featureSize() const noexcept override { return field_->featureSize(); }
-  [[nodiscard]] double looks() const noexcept { return static_cast<double>(looks_.load()); }
 
- private:
-  FieldPtr field_;
-  mutable std::atomic<std::uint64_t> looks_ = 0;
-};
-
-/// Values that are no distances: closest points are searched. Also how often the field is looked at for each voxel.
+/// Fields whose values are not distances, so that the bake searches closest points. Also counts looks at the field for each voxel.
 void bakeImplicit(benchmark::State& state, const FieldPtr& field,
                   const std::optional<Box3>& box = {}) {
   const bench::Threads threads(state.range(1));
@@ -96,7 +65,7 @@ void bakeImplicit(benchmark::State& state, const FieldPtr& field,
   options.box = box;
   const LevelSet made = bench::timed(state, [&] { return bake(*field, options); });
   bench::perVoxel(state, made.info().active_voxels);
-  const Counted counted(field);
+  const test::Counted counted(field);
   const LevelSet again = bake(counted, options);
   state.counters["looks_per_voxel"] =
       counted.looks() / static_cast<double>(again.info().active_voxels);

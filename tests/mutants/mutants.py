@@ -172,7 +172,7 @@ def read_equivalents(path):
         elif re.fullmatch(r"[\w/.]+\.cpp", line):
             file, before, after = line, None, None
         else:
-            sys.exit(f"error: {path}:{number}: '{line}' is no file, '- line', '+ line' or '= reason' in this order")
+            sys.exit(f"error: {path}:{number}: '{line}' is not a file, '- line', '+ line' or '= reason' in this order")
     return out
 
 

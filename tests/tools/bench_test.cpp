@@ -57,7 +57,7 @@ TEST(Bench, NamesTheMachineAndJudgesTheSphere) {
   EXPECT_EQ(good["ticks"], 15394);
   EXPECT_EQ(good["judged"], 15394);
   EXPECT_EQ(good["missed"], 0);
-  // DESIGN section 7 and the issue: 1e-6 degree, 1e-6 of the magnitude, exact turn 0.244 degree.
+  // Analytic contact is asked to be exact to 1e-6 degree and 1e-6 of the magnitude; the true turn is 0.244 degree.
   EXPECT_LE(good["direction_error_degrees"]["max"].get<double>(), 1e-6);
   EXPECT_LE(good["magnitude_error"]["max"].get<double>(), 1e-6);
   EXPECT_LE(good["largest_turn_degrees"].get<double>(), 0.245);

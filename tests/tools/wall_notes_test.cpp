@@ -1,4 +1,4 @@
-// What is told of a scene's walls before they are felt.
+// Notes on a scene's walls, before anybody feels them.
 
 #include "tools/helpers.h"
 #include "vdb/nifti_writer.h"

@@ -1,10 +1,9 @@
-// Fields whose value is no distance, baked: every voxel has the distance to the surface, at few looks at the field, and what a hand
+// Fields whose value is not a distance, baked: every voxel has the distance to the surface, at few looks at the field, and what a hand
 // feels of the grid is what it feels of the surface.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -20,6 +19,7 @@
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/grid_error.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "vdb/counted_field.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {
@@ -28,41 +28,10 @@ namespace {
 using palpate::test::Drive;
 using palpate::test::kDefaultK;
 using palpate::test::sceneOfSolid;
+using test::Counted;
 using test::voxels;
 
 constexpr double kMm = 1e-3;
-
-/// Counts how often a field is looked at; a batch counts once for each of its points.
-class Counted final : public Field {
- public:
-  explicit Counted(FieldPtr field) : field_(std::move(field)) {}
-  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
-    ++looks_;
-    return field_->sample(p);
-  }
-  [[nodiscard]] double value(const Vec3& p) const noexcept override {
-    ++looks_;
-    return field_->value(p);
-  }
-  void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    looks_ += PointBatch::kCount;
-    field_->values(points, out);
-  }
-  [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
-    ++looks_;
-    return field_->jet(p);
-  }
-  [[nodiscard]] Box3 bounds() const noexcept override { return field_->bounds(); }
-  [[nodiscard]] Metric metric() const noexcept override { return field_->metric(); }
-  [[nodiscard]] double lipschitz() const noexcept override { return field_->lipschitz(); }
-  [[nodiscard]] Box3 lipschitzDomain() const noexcept override { return field_->lipschitzDomain(); }
-  [[nodiscard]] double featureSize() const noexcept override { return field_->featureSize(); }
-  [[nodiscard]] double looks() const noexcept { return static_cast<double>(looks_.load()); }
-
- private:
-  FieldPtr field_;
-  mutable std::atomic<std::uint64_t> looks_ = 0;
-};
 
 struct Shape {
   std::string name;
@@ -366,7 +335,7 @@ TEST_P(BakeImplicit, AStrokeAllOverItNeverLosesTheSurfaceNorThrowsTheHand) {
 }
 
 TEST(BakeImplicitEdges, WhatIsCutFromAnImplicitFieldHasItsEdgesAndWalls) {
-  // A ball out of half a maze: every voxel's value is no more than the distance to either surface allows.
+  // A ball out of half a maze: every voxel's value is at most what the distance to either surface allows.
   const FieldPtr maze = gyroid(Vec3(0.1 * kMm), 40 * kMm);
   const FieldPtr ball = sphere(Vec3(0.0), 30 * kMm);
   const FieldPtr both = intersect({maze, ball});

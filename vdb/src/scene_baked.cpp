@@ -88,7 +88,7 @@ FieldPtr withSaved(const FieldPtr& field, const std::string& path, const HybridO
   for (const VdbGridSummary& summary : listVdb(path)) {
     const bool is_whole = summary.name == name;
     if (!is_whole && !summary.name.starts_with(name + "/")) continue;
-    // The same as for a grid that a scene names: what is repaired is told.
+    // As for a grid that a scene names: repairs are reported.
     CertifyOptions certify;
     certify.sampler = asked.sampler;
     certify.path = path;

@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-/// Of the stop's stiffness: a law that is no stiffer is followed as it is.
+/// As a share of the stop's stiffness: a law of at most that stiffness is followed unchanged.
 constexpr double kFollowed = 1.0 / 1.02;
 constexpr int kMostSteps = 60;
 

@@ -11,7 +11,7 @@ namespace {
 /// in a bowl of 40 mm that is cut at 15 mm, whose largest ball has 55 mm.
 constexpr double kShare = 1.0 / 220.0;
 constexpr int kMostMoves = 300;
-/// Of a climb's first step: a step is no shorter.
+/// A climb ends where its steps get shorter than this share of the first one.
 constexpr double kShortest = 1e-6;
 /// Over where a climb began: what is deeper has no end.
 constexpr double kEndless = 1e6;

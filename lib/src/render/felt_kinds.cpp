@@ -8,9 +8,9 @@
 namespace palpate {
 namespace {
 
-/// The stop, over the stiffest law of all: near enough that walls of about one stiffness feel like one, ...
+/// The stop over the stiffest law: so near that walls of about one stiffness feel like one.
 constexpr double kStop = 1.05;
-/// ... of all that are no stiffer than this many times the stiffest straight spring.
+/// A law counts only up to this many times the stiffest straight spring.
 constexpr double kStiffest = 1e3;
 
 double tangentOf(const WallSpring& spring, double depth) noexcept {
@@ -94,7 +94,6 @@ void FeltWalls::sortKinds() {
     for (const std::size_t other : walls) {
       if (feelAlike(materials[other], own)) kind_[i] = kind_[other];
     }
-
     walls.push_back(i);
     reach_[i] = own.shading > 0.0 ? kInfinity : textureReach(own.texture);
     const WallSpring spring{own.stiffness.range().most, own.curve.stiffening.range().most,

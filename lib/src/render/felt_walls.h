@@ -35,7 +35,7 @@ class FeltWalls final : public SoftKinds {
   /// Finds the walls within `reach` [m] of the proxy, which `contact` holds; true if they are of several kinds. Then
   /// seriesForce() may be asked, until the walker moves.
   [[nodiscard]] bool differ(const ContactSet& contact, double reach) noexcept;
-  /// The way from the hand to the proxy [m]: how wide a patch is pressed. To be told before all that is felt.
+  /// The way from the hand to the proxy [m]: how wide a patch is pressed. Call it first in each tick.
   void press(const Vec3& way) noexcept { press_ = way; }
   /// [N/m] Stiffer than any wall of the scene, at any depth that its shapes have room for.
   [[nodiscard]] double stop() const noexcept { return stop_; }

@@ -9,16 +9,9 @@ namespace {
 
 /// [-] Share of the drag that is felt, moving along, `depth` units below the brim of a bowl of 40 units.
 double shareInABowl(const std::string& unit, double meters, double depth) {
-  Drive hand(sceneOf("palpate: 1\nlength: " + unit + R"(
-fields:
-  bowl: {sphere: {center: [0, 0, 0], radius: 40}}
-  brim: {half_space: {point: [0, 0, 15], normal: [0, 0, 1]}}
-materials: {glass: {stiffness: 1500 N/m}, syrup: {viscosity: 4 N.s/m}}
-layers:
-  - {name: liquid, inside: {intersection: [bowl, brim]}, content: syrup, wall: glass}
-ports:
-  - {name: mouth, between: [outside, liquid], on: brim}
-)"));
+  std::string text = containerText();
+  text.replace(text.find("mm"), 2, unit);
+  Drive hand(sceneOf(text));
   (void)hand.walk(meters * Vec3(0, 0, 30), 0.5 * meters);
   (void)hand.walk(meters * Vec3(0, 0, 15 - depth), 0.5 * meters);
   const double by = 0.001 * meters;

@@ -102,7 +102,7 @@ TEST(Contrasts, NeverPushSidewaysAsHardAsTheWallPushesBack) {
       std::printf(
           "  over %.2f mm, %4.1f mm deep: sideways over back %.3f, largest step in 1 um %.3g N\n",
           1e3 * width, 1e3 * depth, most, jump);
-      // Deeper than fourteen times what a contrast is wide, single places of the patch are felt; that is told (below).
+      // Deeper than fourteen times what a contrast is wide, the hand feels single places of the patch; the set-up reports that (below).
       if (depth <= 14.01 * width) {
         EXPECT_LT(most, 1.0) << width << " " << depth;
       }

@@ -7,18 +7,18 @@
 namespace palpate::test {
 namespace {
 
+/// Two layers of the shapes `a` and `b`, with the materials of their walls.
+std::string twoLayers(const std::string& a, const std::string& left, const std::string& b,
+                      const std::string& right) {
+  return "palpate: 1\nlength: mm\nmaterials:\n  left: {" + left + "}\n  right: {" + right +
+         "}\nlayers:\n  - {name: a, inside: {" + a + "}, wall: left}\n  - {name: b, inside: {" + b +
+         "}, wall: right}\n";
+}
+
 /// A right angle that opens upwards.
 std::string groove(const std::string& left, const std::string& right) {
-  return R"(
-palpate: 1
-length: mm
-materials:
-  left: {)" +
-         left + "}\n  right: {" + right + R"(}
-layers:
-  - {name: a, inside: {half_space: {point: [0, 0, 0], normal: [1, 0, 1]}}, wall: left}
-  - {name: b, inside: {half_space: {point: [0, 0, 0], normal: [-1, 0, 1]}}, wall: right}
-)";
+  return twoLayers("half_space: {point: [0, 0, 0], normal: [1, 0, 1]}", left,
+                   "half_space: {point: [0, 0, 0], normal: [-1, 0, 1]}", right);
 }
 
 TEST(SeveralWalls, TheRoughestHoldsForTheLoadOfAll) {
@@ -53,16 +53,8 @@ TEST(SeveralWalls, DampingIsTheMeanByHowHardEachIsPressed) {
 }
 
 std::string blocks(const std::string& left, const std::string& right) {
-  return R"(
-palpate: 1
-length: mm
-materials:
-  left: {)" +
-         left + "}\n  right: {" + right + R"(}
-layers:
-  - {name: a, inside: {box: {center: [-10, 0, -5], size: [20, 20, 10]}}, wall: left}
-  - {name: b, inside: {box: {center: [10, 0, -5], size: [20, 20, 10]}}, wall: right}
-)";
+  return twoLayers("box: {center: [-10, 0, -5], size: [20, 20, 10]}", left,
+                   "box: {center: [10, 0, -5], size: [20, 20, 10]}", right);
 }
 
 TEST(SeveralWalls, WhatRelaxesAlikeIsHandedOn) {

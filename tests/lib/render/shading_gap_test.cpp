@@ -1,4 +1,4 @@
-// Shading that looks further than its surface is known is told when a scene is set up, and felt all the same.
+// The set-up of a scene reports shading that looks further than its surface is known; the hand feels it all the same.
 
 #include "palpate/render/shading_gap.h"
 

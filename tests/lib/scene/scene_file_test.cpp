@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-// The first example of DESIGN.md section 6.
+// A container as the documents show it first: a ball cut by a plane, open at the brim.
 constexpr std::string_view kContainer =
     R"(palpate: 1                       # container with liquid, the paper's Table I
 length: mm

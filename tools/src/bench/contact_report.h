@@ -17,13 +17,13 @@ struct BenchRow {
   int number = 0;  ///< of the case, from 1
   RendererKind renderer = RendererKind::kConstraint;
   std::optional<Measurement> figures = {};
-  std::string why = {};  ///< there are no figures
+  std::string why = {};  ///< the reason why figures are missing
 };
 
 [[nodiscard]] Json rowJson(const BenchRow& row);
-/// Two tables, times and errors. What was not measured or is not judged is a dash.
+/// Two tables, times and errors. A dash stands for what was not measured or judged.
 [[nodiscard]] std::string tablesText(const std::vector<BenchRow>& rows);
-/// What was not measured or is not judged is an empty cell.
+/// An empty cell stands for what was not measured or judged.
 [[nodiscard]] std::string csvText(const std::vector<BenchRow>& rows);
 /// Error against time, of the rows that are judged.
 [[nodiscard]] std::string svgText(const std::vector<BenchRow>& rows, const Machine& machine);

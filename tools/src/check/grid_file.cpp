@@ -10,7 +10,7 @@
 namespace palpate::tools {
 namespace {
 
-/// Where the mean of |gradient| is farther from 1, values are no distances in the grid's own unit: forces and
+/// Where the mean of |gradient| is farther from 1, values are not distances in the grid's own unit: forces and
 /// contact would be off by as much. As certified() has it.
 constexpr double kMostSlope = 0.25;
 
@@ -38,7 +38,7 @@ void findVoxels(const vdb::GridCheck& check, const LengthUnit& unit, GridVerdict
 GridVerdict judge(const vdb::GridCheck& check, const LengthUnit& unit) {
   GridVerdict verdict;
   verdict.is_surface = check.has_distances || check.grid.grid_class == "level set";
-  // What a scene takes and what is a yes here are found out by the same function.
+  // The same function decides here and for grids that a scene names.
   verdict.is_yes = !check.refused && !check.uncertified;
   if (!check.has_distances) return verdict;
   const vdb::GradientStatistics& g = check.gradient;

@@ -25,7 +25,7 @@ struct OracleResult {
   std::size_t steps = 0;
   std::vector<std::size_t> active = {};  ///< sides of the set it rests on; empty where it is free
 
-  /// |x - proxy| / |proxy - hip|, the measure of DESIGN's figures; with a depth below `least_depth`
+  /// |x - proxy| / |proxy - hip|, which does not depend on the scale; with a depth below `least_depth`
   /// [m], in shares of that.
   [[nodiscard]] double errorOf(const Vec3& x, const Vec3& hip, double least_depth = 1e-9) const;
 };

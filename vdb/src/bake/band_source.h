@@ -12,7 +12,7 @@ enum class Verdict : std::uint8_t { kOutside, kInside, kKeep };
 /// A field that is not exact can fall short of the distance to its own bounds, and would have a band without end
 /// there: so that it ends, values rise with twice that distance to the band's width. Near the surface the
 /// field stays as smooth as it is, also where its bounds touch it. And a box may cut it off. judge() also serves fields
-/// whose value is no distance (implicit_distances.h). Any number of threads may ask.
+/// whose value is not a distance (implicit_distances.h). Any number of threads may ask.
 class BandSource {
  public:
   /// `domain` holds the surface, `band` is the half width; both in [m].

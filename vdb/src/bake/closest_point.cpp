@@ -45,7 +45,7 @@ std::optional<Vec3> onModel(const FieldJet& jet, const Vec3& apart, double voxel
     const double s = jet.value + glm::dot(jet.gradient, e) + 0.5 * glm::dot(e, bent);
     const Vec3 rest = apart - e;
     const double lambda = glm::dot(rest, g) / square;
-    // Down to the surface, and along its tangents: how the field bends across it is of no account.
+    // Down to the surface, and along its tangents: how the field bends across it does not matter.
     const Vec3 down = (-s / square) * g;
     const auto [u, v] = across(g);
     const Mat3 hessian = jet.hessian * lambda;

@@ -1,5 +1,5 @@
 #pragma once
-/// The distance to the surface of a field whose value is no distance.
+/// The distance to the surface of a field whose value is not a distance.
 
 #include "bake/bake_plan.h"
 

@@ -15,7 +15,7 @@ namespace palpate::vdb {
 struct BandBounds {
   using Voxel = std::array<int, 3>;
 
-  /// [voxels] |value| in the cells that do not answer is no less than that; infinite if all do.
+  /// [voxels] |value| is at least that in the cells that do not answer; infinite if all do.
   double least_unknown = std::numeric_limits<double>::infinity();
   Voxel unknown_at{};  ///< first voxel of that cell
   /// [-] The slope along one direction, in the cell where its bound is least among those that may hold the surface. Not above 0:

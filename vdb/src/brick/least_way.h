@@ -21,8 +21,8 @@ struct CellBounds {
 };
 void boundCells(const Brick& brick, bool cubic, CellBounds& to) noexcept;
 
-/// A way shorter than a voxel that ends in a cell begins in it or in one of the 26 around. If none of them may hold the surface there
-/// is no such way from the surface. Otherwise it comes from cells that answer, on which |value| rises by no more than
+/// A way shorter than a voxel that ends in a cell begins in it or in one of the 26 around. If none of them may hold the surface, no
+/// such way comes from the surface. Otherwise it comes from cells that answer, on which |value| rises by no more than
 /// their slopes let it, to what |value| is at least where it leaves them.
 class LeastWay {
  public:

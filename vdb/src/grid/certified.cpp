@@ -17,7 +17,7 @@ namespace {
 
 using openvdb::Coord;
 
-/// Where the mean of |gradient| is farther from 1, values are no distances in the grid's own unit.
+/// Where the mean of |gradient| is farther from 1, values are not distances in the grid's own unit.
 constexpr double kMostSlope = 0.25;
 /// [voxels] Beside the surface, more than that is damage.
 constexpr double kMostStep = 0.25;

@@ -65,7 +65,7 @@ std::uint64_t hashOfTile(const openvdb::Coord& origin, openvdb::Index size, floa
 
 }  // namespace
 
-// Sums of leaves and tiles, so that their order does not count. Outside tiles are no more than space.
+// Sums of leaves and tiles, so that their order does not count. Outside tiles count as empty space.
 std::string contentHash(const LevelSet& grid) {
   const openvdb::FloatGrid& floats = *grid.impl().grid;
   const Tree& tree = floats.tree();

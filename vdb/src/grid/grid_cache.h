@@ -11,7 +11,7 @@ namespace palpate::vdb {
 
 /// Files in a folder of the user's own, each named after the content of the grid that it was made from. A file is written beside its
 /// place and renamed, and taken only if its certificate is of its content; one that is damaged is made again. When all
-/// together are larger than kMostBytes, those that were used the longest time ago go. What cannot be kept is no error.
+/// together are larger than kMostBytes, those that were used the longest time ago go. Failing to keep a grid is not an error.
 class GridCache {
  public:
   static constexpr std::uint64_t kMostBytes = 4'000'000'000;

@@ -1,7 +1,6 @@
 #include "scan/redistance.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "scan/distance_grid.h"
 #include "scan/distance_leaves.h"
 #include "scan/for_blocks.h"
+#include "scan/spread_feet.h"
 
 namespace palpate::vdb {
 namespace {
@@ -28,17 +28,8 @@ constexpr double kNearer = 1e-3;
 constexpr double kSamePlace = 0.3;
 /// [lattice diagonals] From there on the nearest lattice point is on a voxel's own side.
 constexpr double kClear = 0.5;
-
 /// Of a distance: what the spline has to be at least, to be of the same surface.
 constexpr double kAlike = 0.5;
-
-/// What is known of a voxel [voxels].
-struct Found {
-  std::size_t place = 0;
-  Vec3 foot{0.0, 0.0, 0.0};
-  double distance = 0.0;
-  bool inside = false;
-};
 
 class Redistance {
  public:
@@ -56,20 +47,23 @@ class Redistance {
             {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])})),
         crossings_(crossingsOf(band, options)),
         // A crossing's part of the surface reaches up to a lattice step from it.
-        leaves_(crossings_, plan_.half_width + kBeyond + diagonal_ / plan_.voxel) {}
+        leaves_(crossings_, plan_.half_width + kBeyond + diagonal_ / plan_.voxel),
+        feet_(leaves_, plan_.half_width + kBeyond) {}
 
   const DistanceLeaves& run() {
     seed();
+    const auto search = [this](std::size_t b, std::size_t place, const Vec3& start, const Coord&) {
+      return found(leaves_.all()[b], place, start);
+    };
     const int rounds = static_cast<int>(std::ceil(plan_.half_width + kBeyond)) + 2;
     for (int round = 0; round < rounds; ++round) {
       report(progress_, "distances", 0.1 + 0.7 * round / rounds);
-      if (!spread()) break;
+      if (!feet_.spread(search)) break;
     }
     // What is found late, a speck between lattice points, spreads through the band as well: half of it would contradict the rest.
-    std::vector<std::uint8_t> changed(leaves_.all().size(), 1);
     for (int look = 0; look < rounds; ++look) {
       report(progress_, "distances", 0.8 + 0.2 * look / rounds);
-      if (!lookAround(changed)) break;
+      if (!feet_.lookAround(search, kNearer)) break;
     }
     return leaves_;
   }
@@ -104,11 +98,6 @@ class Redistance {
     return crossings;
   }
 
-  template <typename Body>
-  void forLeaves(const Body& body) {
-    forBlocks(leaves_.all().size(), [&](std::size_t n) { body(n, leaves_.all()[n]); });
-  }
-
   /// Each voxel around a crossing starts from the nearest one.
   void seed() {
     for (const Vec3& p : crossings_) {
@@ -127,26 +116,27 @@ class Redistance {
         leaf.feet.set(static_cast<std::size_t>(place), foot);
       }
     }
-    forLeaves([&](std::size_t, DistanceLeaf& leaf) {
+    forBlocks(leaves_.all().size(), [&](std::size_t b) {
+      DistanceLeaf& leaf = leaves_.all()[b];
       for (std::size_t n = 0; n < kVoxels; ++n) {
-        if (leaf.feet.has(n)) take(leaf, search(leaf, n, leaf.feet.at(n)));
+        if (leaf.feet.has(n)) feet_.take(leaf, found(leaf, n, leaf.feet.at(n)));
       }
     });
   }
 
   /// For the closest point of a voxel, from `start` [voxels from it] on.
-  [[nodiscard]] Found search(const DistanceLeaf& leaf, std::size_t place,
-                             const Vec3& start) const noexcept {
+  [[nodiscard]] FoundFoot found(const DistanceLeaf& leaf, std::size_t place,
+                                const Vec3& start) const noexcept {
     const Vec3 p = leaf.positionOf(place) * plan_.voxel;
-    Found result{place, start, glm::length(start), false};
-    const auto found = spline_.foot(p, p + start * plan_.voxel);
+    FoundFoot result{place, start, glm::length(start), false};
+    const auto foot = spline_.foot(p, p + start * plan_.voxel);
     const bool holds =
-        found && std::abs(found->distance) < result.distance * plan_.voxel + kSamePlace * diagonal_;
+        foot && std::abs(foot->distance) < result.distance * plan_.voxel + kSamePlace * diagonal_;
     if (holds) {
-      result.foot = (found->point - p) / plan_.voxel;
-      result.distance = std::abs(found->distance) / plan_.voxel;
+      result.foot = (foot->point - p) / plan_.voxel;
+      result.distance = std::abs(foot->distance) / plan_.voxel;
     }
-    const bool by_foot = holds && found->distance < 0.0;
+    const bool by_foot = holds && foot->distance < 0.0;
     if (holds && result.distance * plan_.voxel < kClear * diagonal_) {
       result.inside = by_foot;
     } else {
@@ -158,23 +148,6 @@ class Redistance {
       result.inside = agrees ? by_foot : by_mask;
     }
     return result;
-  }
-
-  /// Neighbors may go on from points within the band, and a little beyond.
-  void take(DistanceLeaf& leaf, const Found& found) const noexcept {
-    leaf.distance[found.place] = static_cast<float>(found.distance);
-    if (found.inside) {
-      setBit(leaf.inside, found.place);
-    } else {
-      clearBit(leaf.inside, found.place);
-    }
-    if (found.distance < plan_.half_width + kBeyond) {
-      leaf.feet.set(found.place, found.foot);
-      setBit(leaf.known, found.place);
-    } else {
-      leaf.feet.set(found.place, Vec3(static_cast<double>(Feet::kNone)));
-      clearBit(leaf.known, found.place);
-    }
   }
 
   /// In the band's box.
@@ -194,65 +167,6 @@ class Redistance {
     return mask_.inside[static_cast<std::size_t>(mask_.at(at[0], at[1], at[2]))] != 0;
   }
 
-  /// One layer of voxels more. False: there is none.
-  bool spread() {
-    std::vector<std::vector<Found>> fresh(leaves_.all().size());
-    forLeaves([&](std::size_t b, const DistanceLeaf& leaf) {
-      VoxelBits next = leaves_.besideKnown(leaf);
-      std::uint64_t rows = 0;
-      for (std::size_t x = 0; x < 8; ++x) {
-        next[x] &= ~leaf.known[x];
-        for (std::uint64_t rest = next[x]; rest != 0; rest &= rest - 1) {
-          const auto n = static_cast<std::size_t>(std::countr_zero(rest));
-          if (leaf.distance[64 * x + n] != DistanceLeaf::kNowhere) {
-            next[x] &= ~(std::uint64_t{1} << n);  // found, and beyond the band
-          } else {
-            rows |= std::uint64_t{1} << (8 * x + (n >> 3));
-          }
-        }
-      }
-      if (rows == 0) return;
-      NearestFeet nearest(Mat3(1.0));
-      nearest.find(leaves_.feetAround(leaf), rows);
-      for (std::size_t place = 0; place < kVoxels; ++place) {
-        if (testBit(next, place)) fresh[b].push_back(search(leaf, place, nearest.foot(place)));
-      }
-    });
-    // When all have searched, so that none sees what others found in the same round.
-    forLeaves([&](std::size_t b, DistanceLeaf& leaf) {
-      for (const Found& found : fresh[b]) take(leaf, found);
-    });
-    return std::any_of(fresh.begin(), fresh.end(),
-                       [](const auto& found) { return !found.empty(); });
-  }
-
-  /// Takes what a neighbor knows better; false if none does. `changed`: leaves that have since all looked last.
-  bool lookAround(std::vector<std::uint8_t>& changed) {
-    std::vector<std::vector<Found>> better(leaves_.all().size());
-    forLeaves([&](std::size_t b, const DistanceLeaf& leaf) {
-      if (std::none_of(leaf.near.begin(), leaf.near.end(), [&](std::int32_t n) {
-            return n >= 0 && changed[static_cast<std::size_t>(n)] != 0;
-          })) {
-        return;
-      }
-      NearestFeet nearest(Mat3(1.0));
-      nearest.find(leaves_.feetAround(leaf), ~std::uint64_t{0});
-      for (std::size_t place = 0; place < kVoxels; ++place) {
-        if (leaf.distance[place] == DistanceLeaf::kNowhere) continue;
-        const float enough = leaf.distance[place] - static_cast<float>(kNearer);
-        if (enough > 0.0F && nearest.square(place) < enough * enough) {
-          const Found found = search(leaf, place, nearest.foot(place));
-          if (found.distance < static_cast<double>(enough)) better[b].push_back(found);
-        }
-      }
-    });
-    forLeaves([&](std::size_t b, DistanceLeaf& leaf) {
-      for (const Found& found : better[b]) take(leaf, found);
-      changed[b] = better[b].empty() ? 0 : 1;
-    });
-    return std::find(changed.begin(), changed.end(), 1) != changed.end();
-  }
-
   const LatticeSpline& spline_;
   const Mask& mask_;
   const Image& image_;
@@ -263,6 +177,7 @@ class Redistance {
   double step_;                  ///< [m] the spline's unit
   std::vector<Vec3> crossings_;  ///< [voxels]
   DistanceLeaves leaves_;
+  FootSpread feet_;
 };
 
 }  // namespace

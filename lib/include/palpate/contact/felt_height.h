@@ -23,7 +23,7 @@ struct FeltHeight {
 
 /// A field smoothed over a radius: the quadratic B-spline of its distances at the nodes of a lattice that is fixed
 /// in space, two thirds of the radius wide. So value and gradient are continuous wherever the field has edges, and are
-/// each other's. What the nodes around the last place were is kept. Real-time safe.
+/// each other's. Keeps the nodes around the last place. Real-time safe.
 class SmoothedField {
  public:
   /// At `p` [m] within reach of the surface; `radius` [m] more than 0.

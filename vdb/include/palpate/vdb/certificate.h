@@ -73,7 +73,7 @@ struct CertifiedGrid {
 /// voxels and cells are looked at once. A band too narrow is widened. Distances that contradict each other, or are missing,
 /// away from the surface are rebuilt from the surface and told; beside the surface nothing tells where it is, and the
 /// grid is refused.
-/// @throws Error: kInput naming place and remedy (vdb.gradient: values are no distances in the grid's unit; vdb.no_inside;
+/// @throws Error: kInput naming place and remedy (vdb.gradient: values are not distances in the grid's unit; vdb.no_inside;
 /// vdb.torn: the band has a hole or inside and outside meet; vdb.jump: voxels by the surface differ by more than their
 /// distance; vdb.uncertified: points near the surface would not answer, or samples by the surface are steeper than kMostSteep),
 /// kOperation for memory, kCancelled.
