@@ -148,7 +148,7 @@ TEST(Bench, WhatIsNotJudgedMeasuredOrSaidIsADashAndNoNumber) {
   // scene renderer judged dir max mag max missed step true turn true unsettled run
   const auto errors = textRow(text.out, "judged", "lump", "constraint");
   ASSERT_EQ(errors.size(), 14U);
-  for (const std::size_t i : {2, 3, 4, 5, 6, 7, 9, 11}) EXPECT_EQ(errors[i], "-") << i;
+  for (const std::size_t i : {2U, 3U, 4U, 5U, 6U, 7U, 9U, 11U}) EXPECT_EQ(errors[i], "-") << i;
   EXPECT_NE(errors[12], "-");
   const auto paper = textRow(text.out, "judged", "groove", "paper");
   ASSERT_EQ(paper.size(), 14U);

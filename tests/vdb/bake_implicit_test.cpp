@@ -211,21 +211,21 @@ struct Touched {
 
 /// Whether the true surface bends over no less than `least_radius` anywhere within `reach` of the point.
 bool isSmooth(const Field& field, const Vec3& on, double reach, double least_radius) {
-  const auto bendsEnough = [&](const Vec3& p) {
+  const auto bends_enough = [&](const Vec3& p) {
     const auto foot = footPoint(field, p);
     if (!foot) return false;
     const double sum = std::fabs(foot->curvature_sum);
     const double spread = std::sqrt(std::max(0.0, sum * sum - 4.0 * foot->curvature_product));
     return 0.5 * (sum + spread) * least_radius < 1.0;
   };
-  if (!bendsEnough(on)) return false;
+  if (!bends_enough(on)) return false;
   const Vec3 normal = glm::normalize(field.sample(on).gradient);
   palpate::test::Random random(1);
   for (int i = 0; i < 60; ++i) {
     const Vec3 direction = random.direction();
     const Vec3 along = direction - glm::dot(direction, normal) * normal;
     const auto there = onSurface(field, on + reach * along);
-    if (!there || !bendsEnough(*there)) return false;
+    if (!there || !bends_enough(*there)) return false;
     // A cusp is too small to be met itself, but turns the normal by more than such a bend on the way past it.
     const double turn =
         std::acos(std::min(1.0, glm::dot(normal, glm::normalize(field.sample(*there).gradient))));

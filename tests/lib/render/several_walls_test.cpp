@@ -41,15 +41,15 @@ TEST(SeveralWalls, DampingIsTheMeanByHowHardEachIsPressed) {
       groove("stiffness: 1000 N/m, damping: 3 N.s/m", "stiffness: 1000 N/m, damping: 9 N.s/m")));
   (void)hand.to(mm(0, 0, 5));
   (void)hand.walk(mm(0, 0, -2));
-  const auto dampingAt = [&](const Vec3& p) {
+  const auto damping_at = [&](const Vec3& p) {
     (void)hand.walk(p);
     return -hand.renderer().update({p, Vec3(0, 0.1, 0)}).force.y / 0.1;
   };
-  EXPECT_NEAR(dampingAt(mm(0, 0, -2)), 6.0, 1e-6);
+  EXPECT_NEAR(damping_at(mm(0, 0, -2)), 6.0, 1e-6);
   // The left wall is pressed three times as hard as the right one: 1.5 and 0.5 over sqrt 2 deep.
-  EXPECT_NEAR(dampingAt(mm(-0.5, 0, -1)), (3.0 * 0.75 + 9.0 * 0.25), 1e-6);
+  EXPECT_NEAR(damping_at(mm(-0.5, 0, -1)), (3.0 * 0.75 + 9.0 * 0.25), 1e-6);
   // Never the sum.
-  EXPECT_LE(dampingAt(mm(0.3, 0, -1)), 9.0);
+  EXPECT_LE(damping_at(mm(0.3, 0, -1)), 9.0);
 }
 
 std::string blocks(const std::string& left, const std::string& right) {

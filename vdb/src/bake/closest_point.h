@@ -19,9 +19,9 @@ class ClosestPoint {
   /// field, or where its gradient vanishes. [m]
   [[nodiscard]] std::optional<Vec3> of(const Vec3& p, const Vec3& start) const noexcept;
 
-  /// The same, with the field's jet at `start`.
+  /// The same, with the field's jet `at_start`.
   [[nodiscard]] std::optional<Vec3> from(const Vec3& p, const Vec3& start,
-                                         const FieldJet& jet) const noexcept;
+                                         const FieldJet& at_start) const noexcept;
 
   /// The same, by small steps along the surface that only ever come nearer; from a point on it, also over a kink of the field.
   /// What it finds at an edge is off along it by some hundredths of a voxel. [m]

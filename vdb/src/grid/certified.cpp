@@ -35,8 +35,8 @@ std::string text(const char* format, double a) {
 
 class Certifier {
  public:
-  Certifier(const LevelSet& grid, const CertifyOptions& options, const Progress& progress)
-      : grid_(grid), options_(options), progress_(progress), cache_(options.cache_folder) {}
+  Certifier(LevelSet grid, const CertifyOptions& options, const Progress& progress)
+      : grid_(std::move(grid)), options_(options), progress_(progress), cache_(options.cache_folder) {}
 
   CertifiedGrid run() {
     if (const auto stored = storedCertificate(grid_, sampler())) return {grid_, *stored, {}};
