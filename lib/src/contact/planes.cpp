@@ -194,9 +194,10 @@ PlaneSolution closestStepBy(const Vec3& wish, const Plane& plane) noexcept {
   return {wish + push * plane.normal, 1, {0}, {push}};
 }
 
+/// x * u + y * v >= at. Made often, and by the dozen: not zero at first.
 struct Line2 {
-  double x = 0.0, y = 0.0;  ///< x * u + y * v >= at
-  double at = 0.0;
+  double x, y;
+  double at;
 };
 
 /// The nearest (u, v) to the given one that respects the lines; as it is where none does.
@@ -236,12 +237,16 @@ struct Eigen2 {
 Eigen2 eigen(double a, double b, double c, const Vec3& t1, const Vec3& t2) noexcept {
   const double mean = 0.5 * (a + c);
   const double half = 0.5 * (a - c);
-  const double radius = std::hypot(half, b);
+  const double radius = std::sqrt(half * half + b * b);
   Eigen2 out{mean - radius, mean + radius, t2, t1};
   if (radius > 1e-15 * (std::fabs(mean) + radius)) {
-    const double angle = 0.5 * std::atan2(b, half);
-    out.e_high = std::cos(angle) * t1 + std::sin(angle) * t2;
-    out.e_low = -std::sin(angle) * t1 + std::cos(angle) * t2;
+    // The frame turns by half the angle of (half, b).
+    const double large = std::sqrt(0.5 * (1.0 + std::fabs(half) / radius));
+    const double small = 0.5 * std::fabs(b) / (radius * large);
+    const double cosine = half >= 0.0 ? large : small;
+    const double sine = std::copysign(half >= 0.0 ? small : large, b);
+    out.e_high = cosine * t1 + sine * t2;
+    out.e_low = cosine * t2 - sine * t1;
   }
   return out;
 }
@@ -317,7 +322,7 @@ CurvedStep curvedStep(const Vec3& wish, std::span<const Plane> planes, const Pla
   // In coordinates stretched by the roots of the eigenvalues the aim is a plain distance again.
   const double root_low = std::sqrt(clamped(e.low));
   const double root_high = std::sqrt(clamped(e.high));
-  std::array<Line2, kMaxPlanes> lines{};
+  std::array<Line2, kMaxPlanes> lines;
   std::size_t count = 0;
   for (std::size_t j = 0; j < std::min(planes.size(), kMaxPlanes); ++j) {
     if (holds(j)) continue;

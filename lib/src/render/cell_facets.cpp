@@ -17,8 +17,7 @@ void CellWalker::gather(LeafId leaf) noexcept {
   for (std::size_t k = 0; k < hot_count_ && crossing_count_ < crossing_.size(); ++k) {
     const LeafId other = hot_[k];
     if (other == leaf || isIdle(other)) continue;
-    const double near = limits::kTouch * (tolerance_[other] / leaves_[other].lipschitz +
-                                          tolerance_[leaf] / leaves_[leaf].lipschitz);
+    const double near = touch(other) + touch(leaf);
     if (due_[other] - travel_ > near) continue;
     if (std::fabs(measure(other)) > near * leaves_[other].lipschitz) continue;
     if (!measured) {
@@ -67,6 +66,20 @@ Facet CellWalker::facetAt(LeafId leaf) noexcept {
   }
   if (crossing_count_ == 1 && !in_hole) known = {facet, state_, stay_};
   return facet;
+}
+
+bool CellWalker::isSameAcross(LeafId a, LeafId b) noexcept {
+  KnownPair& known = known_pair_;
+  if (known.state != state_ || known.a != a || known.b != b) {
+    crossing_[0] = a;
+    crossing_[1] = b;
+    crossing_count_ = 2;
+    beyond_.assign(here_.sides);
+    flip(a, beyond_);
+    flip(b, beyond_);
+    known = {a, b, state_, regionBeyond() == here_.region};
+  }
+  return known.is_same;
 }
 
 RegionId CellWalker::regionBeyond() const noexcept {

@@ -97,24 +97,17 @@ void CellWalker::refresh(double length) noexcept {
   cold_due_ = travel_ + horizon;
 }
 
-bool CellWalker::isAlone(LeafId leaf, double radius) noexcept {
+bool CellWalker::isAlone(std::span<const LeafId> leaves, double radius) noexcept {
   refresh(radius);
   for (std::size_t k = 0; k < hot_count_; ++k) {
     const LeafId other = hot_[k];
-    if (other == leaf) continue;
-    const double reach =
-        travel_ + radius + limits::kTouch * tolerance_[other] / leaves_[other].lipschitz;
+    if (std::find(leaves.begin(), leaves.end(), other) != leaves.end()) continue;
+    const double reach = travel_ + radius + touch(other);
     if (due_[other] > reach) continue;
     (void)measure(other);
     if (due_[other] <= reach) return false;
   }
   return true;
-}
-
-void CellWalker::jump(const Vec3& x) noexcept {
-  travel_ += glm::length(x - here_.point);
-  here_.point = x;
-  ++stay_;
 }
 
 CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noexcept {
@@ -159,10 +152,10 @@ CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noe
       is_second = true;
     }
     if (!hit && !unsure) {
-      jump(target);
+      jump(target, length);
       return Stop::kArrived;
     }
-    jump(here_.point + nearest * (target - here_.point));
+    jump(here_.point + nearest * (target - here_.point), nearest * length);
     if (unsure) return Stop::kSpent;
     const Facet facet = facetAt(hit_leaf);
     if (facet.isClosed()) {

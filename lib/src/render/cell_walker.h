@@ -71,13 +71,16 @@ class CellWalker {
   };
   [[nodiscard]] Slid slideTo(const Vec3& target, const NearCell& cell, std::span<const LeafId> near,
                              std::span<const LeafId> held) noexcept;
-  /// To `x` [m], which slideTo() or a solver's way back onto the walls found.
-  void jump(const Vec3& x) noexcept;
-  /// To `x` [m] on the surface of `leaf`, whose jet there is `jet`; no other leaf comes within the way there.
-  void glideTo(const Vec3& x, LeafId leaf, const FieldJet& jet) noexcept {
-    jump(x);
-    jets_[leaf] = {jet, stay_};
+  /// To `x` [m], which slideTo() or a solver's way found.
+  void jump(const Vec3& x) noexcept { jump(x, glm::length(x - here_.point)); }
+  /// The same, `length` [m] off.
+  void jump(const Vec3& x, double length) noexcept {
+    travel_ += length;
+    here_.point = x;
+    ++stay_;
   }
+  /// The jet of `leaf` at the point is `jet`: it need not be asked for again.
+  void know(LeafId leaf, const FieldJet& jet) noexcept { jets_[leaf] = {jet, stay_}; }
   [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }
 
   /// Calls f(leaf) for each leaf whose surface may come within `radius` [m] of the point, a few of its
@@ -87,19 +90,20 @@ class CellWalker {
     refresh(radius);
     for (std::size_t k = 0; k < hot_count_; ++k) {
       const LeafId leaf = hot_[k];
-      const double reach =
-          travel_ + radius + limits::kTouch * tolerance_[leaf] / leaves_[leaf].lipschitz;
+      const double reach = travel_ + radius + touch(leaf);
       if (due_[leaf] > reach) continue;
       (void)measure(leaf);
       if (due_[leaf] <= reach) f(leaf);
     }
   }
-  /// True if no surface but that of `leaf` can come within `radius` [m] of the point.
-  [[nodiscard]] bool isAlone(LeafId leaf, double radius) noexcept;
+  /// True if no surfaces but those of `leaves` can come within `radius` [m] of the point.
+  [[nodiscard]] bool isAlone(std::span<const LeafId> leaves, double radius) noexcept;
   [[nodiscard]] const Signs& signs() const noexcept { return here_.sides; }
 
   /// What the facet of `leaf` at the point is, seen from here.
   [[nodiscard]] Facet facetAt(LeafId leaf) noexcept;
+  /// True if across both `a` and `b` at once, two leaves that meet at the point, is the point's own region again.
+  [[nodiscard]] bool isSameAcross(LeafId a, LeafId b) noexcept;
   /// Goes through the facet of `leaf` where the point stands, whatever it is; a port is recorded, and the
   /// hole if the facet gave way to a `force` [N].
   void cross(LeafId leaf, const Facet& facet, double force = 0.0) noexcept;
@@ -120,6 +124,10 @@ class CellWalker {
   [[nodiscard]] int mouth() const noexcept { return here_.mouth; }
 
  private:
+  /// [m] So near to a leaf the point counts as touching it.
+  [[nodiscard]] double touch(LeafId leaf) const noexcept {
+    return limits::kTouch * limits::kOnSurface * leaves_[leaf].feature;
+  }
   /// True if the leaf means nothing here (Leaf::is_between).
   [[nodiscard]] bool isIdle(LeafId leaf) const noexcept {
     const Leaf& own = leaves_[leaf];
@@ -206,6 +214,14 @@ class CellWalker {
   };
   std::vector<Known> known_;  ///< by leaf, where no other leaf coincides
   std::uint32_t state_ = 1;   ///< counts crossings and placements
+  /// The last answer of isSameAcross(), valid while nothing was crossed.
+  struct KnownPair {
+    LeafId a = 0;
+    LeafId b = 0;
+    std::uint32_t state = 0;
+    bool is_same = false;
+  };
+  KnownPair known_pair_;
 
   std::array<LeafId, 8> crossing_{};  ///< scratch of gather()
   std::size_t crossing_count_ = 0;

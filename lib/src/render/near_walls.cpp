@@ -22,17 +22,21 @@ void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal
 bool NearWalls::isSliver(const NearCell& cell) const noexcept {
   const std::uint32_t both = cell.inside | cell.outside;
   if ((both & (both - 1)) == 0) return false;
-  std::array<Plane, kMax> planes{};
+  std::array<Vec3, kMax> normals;
   std::size_t count = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     if (((both >> i) & 1U) == 0) continue;
     const bool inside = ((cell.inside >> i) & 1U) != 0;
     const NearWall& wall = wall_[i];
     if (wall.slope > 0.0 && wall.gap(inside) <= limits::kRoom * wall.tolerance) {
-      planes[count++] = {inside ? -wall.normal : wall.normal, -1.0};
+      normals[count++] = inside ? -wall.normal : wall.normal;
     }
   }
   if (count < 2) return false;
+  // Two walls leave room unless they face each other.
+  if (count == 2 && glm::dot(normals[0], normals[1]) > -0.9) return false;
+  std::array<Plane, kMax> planes{};
+  for (std::size_t i = 0; i < count; ++i) planes[i] = {normals[i], -1.0};
   // A way that leads away from all of these walls at once; there is none where they leave no room.
   const Vec3 away = closestStep(Vec3(0.0), {planes.data(), count}).step;
   return std::any_of(planes.begin(), planes.begin() + static_cast<std::ptrdiff_t>(count),
@@ -50,7 +54,7 @@ bool NearWalls::look(double radius, bool trust_sides) noexcept {
       return;
     }
     const FieldJet& jet = walker_.jetHere(id);
-    NearWall wall = wallOf(id, walker_.leaf(id), {jet.value, jet.gradient, jet.in_band});
+    NearWall wall{wallOf(id, walker_.leaf(id), {jet.value, jet.gradient, jet.in_band})};
     if (wall.slope > 0.0) {
       wall.bend = jet.hessian / wall.slope;
       unfoldBend(walker_.leaf(id), walker_.side(id), walker_.position(), wall.normal, wall.bend);

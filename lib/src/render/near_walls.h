@@ -14,17 +14,21 @@
 namespace palpate {
 
 /// A leaf at one place, as a distance: S over the length of its gradient.
-struct NearWall {
+struct WallThere {
   LeafId leaf = 0;
   double distance = 0.0;       ///< [m] S / |grad S|, negative inside
   double tolerance = 0.0;      ///< [m] how near is on the surface
   double slope = 0.0;          ///< [-] |grad S|; 0: the leaf has no normal here
   Vec3 normal{0.0, 0.0, 0.0};  ///< [-] outward
-  Mat3 bend{0.0};              ///< [1/m] Hessian of S over the slope
-  double bend_size = 0.0;      ///< [1/m] its norm
 
   /// [m] what is left on the side that is asked for
   [[nodiscard]] double gap(bool inside) const noexcept { return inside ? -distance : distance; }
+};
+
+/// The same, and how the leaf bends there.
+struct NearWall : WallThere {
+  Mat3 bend{0.0};          ///< [1/m] Hessian of S over the slope
+  double bend_size = 0.0;  ///< [1/m] its norm
 };
 
 class NearWalls {
@@ -63,14 +67,17 @@ class NearWalls {
 void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal,
                 Mat3& bend) noexcept;
 
-/// [1/m] The norm of a bend.
-[[nodiscard]] inline double sizeOf(const Mat3& m) noexcept {
-  return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+/// [1/m^2] The square of the norm of a bend.
+[[nodiscard]] inline double squareOf(const Mat3& m) noexcept {
+  return glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]);
 }
 
-/// The leaf `id` at a place where its field has the sample `s`; without its bend.
-[[nodiscard]] inline NearWall wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept {
-  NearWall out;
+/// [1/m] The norm of a bend.
+[[nodiscard]] inline double sizeOf(const Mat3& m) noexcept { return std::sqrt(squareOf(m)); }
+
+/// The leaf `id` at a place where its field has the sample `s`.
+[[nodiscard]] inline WallThere wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept {
+  WallThere out;
   out.leaf = id;
   out.slope = s.in_band ? glm::length(s.gradient) : 0.0;
   // A slope beyond the bound, which is false then, would make the tolerance longer than it is meant.

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "glide_checks.h"
 #include "proxy_solver.h"
 
-// The usual ticks: the proxy flies with the hand, or glides on one smooth wall with nothing else near.
+// The usual ticks: the proxy flies with the hand, or glides on one smooth wall with nothing else near. Between two:
+// proxy_crease.cpp.
 
 namespace palpate {
 namespace {
@@ -11,12 +13,37 @@ namespace {
 /// Counts leaves.
 struct Found {
   LeafId last = 0;
+  LeafId before = 0;
   int count = 0;
   void operator()(LeafId leaf) noexcept {
+    before = last;
     last = leaf;
     ++count;
   }
 };
+
+/// A wall that bends alike in all directions along it is a ball's, or a plane: the step to its point closest to a hand
+/// that is `pull` [m] away along it and `beyond` [m] behind it. `normal` is the wall's on the hand's free side, `side` times
+/// that outward. False where the wall bends otherwise, or where that point is no minimum by more than kFirm.
+bool ballStep(const Vec3& normal, double side, const Vec3& pull, double beyond, const Mat3& bend,
+              double bend_square, Vec3& step) noexcept {
+  const Vec3 by_normal = bend * normal;
+  const double across = glm::dot(by_normal, normal);
+  const double trace = bend[0][0] + bend[1][1] + bend[2][2] - across;
+  // For principal curvatures a and b: a^2 + b^2 and, were they equal, (a + b)^2 / 2.
+  const double square = bend_square - 2.0 * glm::dot(by_normal, by_normal) + across * across;
+  const double even = 0.5 * trace * trace;
+  if (std::fabs(square - even) > limits::kEven * even) return false;
+  const double curvature = 0.5 * side * trace;
+  const double left = 1.0 - curvature * beyond;
+  if (!(left > limits::kFirm)) return false;
+  const double pulled = glm::dot(pull, pull);
+  // The hand's distance from the center, over the radius.
+  const double far = std::sqrt(left * left + curvature * curvature * pulled);
+  const double share = 1.0 / (far * (left + far));
+  step = ((left + far) * share) * pull - (curvature * pulled * share) * normal;
+  return true;
+}
 
 /// Newton's step along the plane with `normal`, for a hand whose part along it is `pull` [m] away: solves
 /// (I - bend) s = pull there. False where the place that it leads to is no minimum by more than kFirm.
@@ -33,14 +60,15 @@ bool newtonAlong(const Vec3& normal, const Vec3& pull, const Mat3& bend, Vec3& s
   if (!(a + c > 0.0 && det > limits::kFirm * (a + c))) return false;
   const double p1 = glm::dot(t1, pull);
   const double p2 = glm::dot(t2, pull);
-  step = t1 * ((c * p1 - b * p2) / det) + t2 * ((a * p2 - b * p1) / det);
+  const double share = 1.0 / det;
+  step = t1 * ((c * p1 - b * p2) * share) + t2 * ((a * p2 - b * p1) * share);
   return true;
 }
 
 }  // namespace
 
-/// The shorter way to the place of rest that the general way finds, where it is sure: free, or on one smooth wall. False
-/// if it is not; the general way goes on from where the proxy is then.
+/// The shorter way to the place of rest that the general way finds, where it is sure: free, on one smooth wall, or between
+/// two. False if it is not; the general way goes on from where the proxy is then.
 bool ProxySolver::goQuickly(const Vec3& hip, FrictionState& friction) noexcept {
   if (walker_.isSealed()) return false;
   const Vec3 x = walker_.position();
@@ -51,6 +79,7 @@ bool ProxySolver::goQuickly(const Vec3& hip, FrictionState& friction) noexcept {
     friction.sticks = false;
     return walker_.move(hip, false) == CellWalker::Stop::kArrived;
   }
+  if (found.count == 2) return glideBetween(found.before, found.last, hip, friction);
   return found.count == 1 && glide(found.last, hip, friction);
 }
 
@@ -58,17 +87,17 @@ bool ProxySolver::goQuickly(const Vec3& hip, FrictionState& friction) noexcept {
 bool ProxySolver::glide(LeafId id, const Vec3& hip, FrictionState& friction) noexcept {
   const Vec3 x = walker_.position();
   const Leaf& leaf = walker_.leaf(id);
-  if (leaf.is_between) return false;
   const Facet facet = walker_.facetAt(id);
-  if (!facet.isClosed() || facet.opens || facet.varies || facet.kind == Facet::Kind::kInternal) {
-    return false;
-  }
+  if (!isPlainWall(leaf, facet)) return false;
+  const Parameter& static_ratio =
+      scene_.materials()[static_cast<std::size_t>(facet.material)].friction.static_ratio;
+  if (static_ratio.isConstant() && static_ratio.at(x) > 0.0) return false;
   const double side = walker_.side(id);
   const bool inside = side < 0.0;
 
   Vec3 y = x;
   FieldJet jet = walker_.jetHere(id);
-  NearWall wall = wallOf(id, leaf, {jet.value, jet.gradient, jet.in_band});
+  WallThere wall = wallOf(id, leaf, {jet.value, jet.gradient, jet.in_band});
   if (wall.gap(inside) < -wall.tolerance) return false;
   double bend_size = 0.0;
   for (int round = 0;; ++round) {
@@ -77,8 +106,9 @@ bool ProxySolver::glide(LeafId id, const Vec3& hip, FrictionState& friction) noe
     const double left = gap - limits::kRest * wall.tolerance;
     const bool is_on = std::fabs(left) <= (limits::kOnWall - limits::kRest) * wall.tolerance;
     if (round == 0 && !is_on) return false;
-    wall.bend = jet.hessian * (1.0 / wall.slope);
-    bend_size = sizeOf(wall.bend);
+    const Mat3 bend = jet.hessian * (1.0 / wall.slope);
+    const double bend_square = squareOf(bend);
+    bend_size = std::sqrt(bend_square);
     if (bend_size * leaf.feature > limits::kFolds) return false;
     const Vec3 wish = hip - y;
     const Vec3 normal = side * wall.normal;
@@ -91,49 +121,38 @@ bool ProxySolver::glide(LeafId id, const Vec3& hip, FrictionState& friction) noe
     const bool is_rest = is_on && glm::dot(pull, pull) <= rest_ * rest_;
     if (is_rest && multiplier * bend_size < 1.0 - limits::kFirm) break;
     Vec3 step(0.0);
-    if (!newtonAlong(normal, pull, side * multiplier * wall.bend, step)) return false;
+    if (!ballStep(normal, side, pull, multiplier, bend, bend_square, step) &&
+        !newtonAlong(normal, pull, side * multiplier * bend, step)) {
+      return false;
+    }
     if (is_rest) break;
 
     step -= sink * normal;
     const Vec3 to = y + step;
     const double length = glm::length(step);
     const double way = y == x ? length : glm::length(to - x);
-    if (bend_size * way > limits::kTurnsMore) return false;
-    if (!leaf.is_flat && way > limits::kShareOfFeature * leaf.feature) return false;
+    if (!isShortFor(leaf, bend_size, way)) return false;
     jet = leaf.field->jet(to);
-    const NearWall there = wallOf(id, leaf, {jet.value, jet.gradient, jet.in_band});
-    // A wall that is not the one its curvature promises has a crease on the way.
-    const Vec3 turned = there.normal - wall.normal;
-    const double bent = bend_size * length;
-    const double explained = 2.0 * bent + limits::kFirmTurn;
-    const double off =
-        std::fabs(there.gap(inside) - (is_on ? gap : limits::kRest * wall.tolerance));
-    if (glm::dot(turned, turned) > explained * explained ||
-        off > bent * length + limits::kNoise * wall.tolerance) {
-      return false;
-    }
+    const WallThere there = wallOf(id, leaf, {jet.value, jet.gradient, jet.in_band});
+    const double meant = is_on ? gap : limits::kRest * wall.tolerance;
+    if (!landedAsPromised(wall, there, bend_size, length, there.gap(inside) - meant)) return false;
     y = to;
     wall = there;
   }
 
   // A hand between the surface and the proxy, which stands off it, does not press.
   if (!(side * glm::dot(wall.normal, y - hip) - wall.gap(inside) > rest_)) return false;
-  const double static_ratio =
-      scene_.materials()[static_cast<std::size_t>(facet.material)].friction.static_ratio.at(y);
-  if (static_ratio > 0.0) return false;
+  if (static_ratio.at(y) > 0.0) return false;
   if (y != x) {
     const Vec3 before = hip - x;
     const Vec3 after = hip - y;
     if (glm::dot(after, after) > glm::dot(before, before)) return false;
     const double way = glm::length(y - x);
-    const double turn = bend_size * way;
-    if (turn > limits::kTurnsMuch) {
-      const double dip = limits::kDipByBend * turn * way;
-      const double middle = side * leaf.field->value(0.5 * (x + y));
-      if (middle < -(dip + wall.tolerance) * wall.slope) return false;
-    }
-    if (!walker_.isAlone(id, way)) return false;
-    walker_.glideTo(y, id, jet);
+    if (!keepsOnChord(*leaf.field, x, y, side / wall.slope, bend_size, wall.tolerance))
+      return false;
+    if (!walker_.isAlone({&id, 1}, way)) return false;
+    walker_.jump(y, way);
+    walker_.know(id, jet);
   }
   friction.sticks = false;
   friction.is_felt = false;
@@ -142,8 +161,8 @@ bool ProxySolver::glide(LeafId id, const Vec3& hip, FrictionState& friction) noe
 }
 
 /// The contact with one wall that holds the proxy at rest. How hard it is pressed is measured from its surface.
-void ProxySolver::takeOnly(LeafId id, const Facet& facet, const NearWall& wall, const FieldJet& jet,
-                           const Vec3& wish) noexcept {
+void ProxySolver::takeOnly(LeafId id, const Facet& facet, const WallThere& wall,
+                           const FieldJet& jet, const Vec3& wish) noexcept {
   const double side = walker_.side(id);
   const double gap = wall.gap(side < 0.0);
   const Vec3 normal = side * wall.normal;

@@ -114,7 +114,9 @@ class ProxySolver {
   [[nodiscard]] static double restLength(const Vec3& x, const Vec3& wish) noexcept;
   [[nodiscard]] bool goQuickly(const Vec3& hip, FrictionState& friction) noexcept;
   [[nodiscard]] bool glide(LeafId id, const Vec3& hip, FrictionState& friction) noexcept;
-  void takeOnly(LeafId id, const Facet& facet, const NearWall& wall, const FieldJet& jet,
+  [[nodiscard]] bool glideBetween(LeafId a, LeafId b, const Vec3& hip,
+                                  FrictionState& friction) noexcept;
+  void takeOnly(LeafId id, const Facet& facet, const WallThere& wall, const FieldJet& jet,
                 const Vec3& wish) noexcept;
   [[nodiscard]] Look lookAround(FrictionState& friction, bool is_first) noexcept;
   [[nodiscard]] Try moveOn() noexcept;
@@ -144,7 +146,7 @@ class ProxySolver {
   [[nodiscard]] bool isReached(std::size_t plane) const noexcept {
     return ((reached_ >> plane) & 1U) != 0;
   }
-  [[nodiscard]] NearWall wallAt(std::size_t near, const Vec3& p) const noexcept;
+  [[nodiscard]] WallThere wallAt(std::size_t near, const Vec3& p) const noexcept;
 
   const Scene& scene_;
   CellWalker& walker_;
@@ -160,8 +162,8 @@ class ProxySolver {
   std::size_t problems_ = 0;
   std::array<Cut, limits::kMaxCuts> cut_{};
   std::size_t cuts_ = 0;
-  std::array<NearWall, kMaxPlanes> landed_{};  ///< by plane: its wall where the last step landed
-  Vec3 landed_at_{0.0, 0.0, 0.0};              ///< [m]
+  std::array<WallThere, kMaxPlanes> landed_{};  ///< by plane: its wall where the last step landed
+  Vec3 landed_at_{0.0, 0.0, 0.0};               ///< [m]
   bool has_landed_ = false;
   std::uint64_t reached_ = 0;  ///< by plane, a bit: the step at hand ends on it
   int rim_ = -1;  ///< leaf that a way back onto the walls has to end on as well; -1: none

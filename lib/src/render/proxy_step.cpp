@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-NearWall ProxySolver::wallAt(std::size_t near, const Vec3& p) const noexcept {
+WallThere ProxySolver::wallAt(std::size_t near, const Vec3& p) const noexcept {
   const LeafId id = near_.walls()[near].leaf;
   return wallOf(id, walker_.leaf(id), walker_.leaf(id).field->sample(p));
 }
@@ -230,7 +230,7 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
     for (std::size_t i = 0; i < problem.planes && count + 3 < kMaxPlanes; ++i) {
       const Source& from = problem.source[i];
       if (from.isCut()) continue;
-      const NearWall wall = wallAt(from.near, y);
+      const WallThere wall = wallAt(from.near, y);
       const double gap = wall.gap(from.inside);
       if (round == 0) landed_[i] = wall;
       if (!(wall.slope > 0.0)) {
@@ -259,7 +259,7 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
     }
     if (rim_ >= 0) {
       const auto id = static_cast<LeafId>(rim_);
-      const NearWall wall = wallOf(id, walker_.leaf(id), walker_.leaf(id).field->sample(y));
+      const WallThere wall = wallOf(id, walker_.leaf(id), walker_.leaf(id).field->sample(y));
       if (!(wall.slope > 0.0)) return false;
       const double side = walker_.side(id);
       const double left = side * wall.distance - limits::kRest * wall.tolerance;
@@ -359,7 +359,7 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
 /// beyond it, its plane is not the one here, and carried back it does not cut off the proxy.
 bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Cut& out) const noexcept {
   const Source& from = problem.source[i];
-  const NearWall& wall = landed_[i];
+  const WallThere& wall = landed_[i];
   if (from.isCut() || !(wall.slope > 0.0) || wall.gap(from.inside) >= 0.0) return false;
   const NearWall& here = near_.walls()[from.near];
   if (glm::length(wall.normal - here.normal) < limits::kCutTurn) return false;

@@ -104,12 +104,19 @@ inline constexpr double kNearer = 10.0;
 inline constexpr double kCarries = 0.3;
 /// ... if the proxy is then not further beyond it than this share of what the curvature moved it by.
 inline constexpr double kCarriedShare = 0.1;
-/// The quick way on one smooth wall is left to the general one after so many steps, ...
+/// The quick way on one smooth wall, or between two, is left to the general one after so many steps, ...
 inline constexpr int kGlides = 4;
+/// ... for ways over which its normal turns by more than this [rad], ...
+inline constexpr double kGlidesFar = 0.2;
 /// ... where the place of rest is a minimum by less than this (an eigenvalue: 0 at the wall's center of curvature), ...
 inline constexpr double kFirm = 0.02;
 /// ... and where the normal turns by more than this [rad] over twice what the wall's curvature explains.
 inline constexpr double kFirmTurn = 1e-6;
+/// Two walls between which the proxy glides meet at an angle whose sine has at least this square (6 degrees).
+inline constexpr double kSharp = 0.01;
+/// A wall is a ball's where the sum of the squares of its curvatures differs by less than this share from that of two
+/// equal ones: they differ by 3e-5 then.
+inline constexpr double kEven = 1e-9;
 /// What a refused step is shortened to, in turn; then the ball shrinks by kShrink, kShrinks times.
 inline constexpr double kShorter[] = {0.5, 0.125, 0.02};
 inline constexpr double kShrink = 0.2;

@@ -1,0 +1,50 @@
+#pragma once
+/// What the quick ways along walls (proxy_glide.cpp, proxy_crease.cpp) ask of a wall before they trust a step on it.
+
+#include <algorithm>
+#include <cmath>
+
+#include "near_walls.h"
+#include "solver_limits.h"
+
+namespace palpate {
+
+/// Whether a wall whose facet this is stays as it is while the proxy glides on it: nothing opens, nothing sticks.
+[[nodiscard]] inline bool isPlainWall(const Leaf& leaf, const Facet& facet) noexcept {
+  return !leaf.is_between && facet.isClosed() && !facet.opens && !facet.varies &&
+         facet.kind != Facet::Kind::kInternal;
+}
+
+/// Whether the step to `there` landed on the wall that `here` and its bend of norm `bend` [1/m] promise, `off` [m] beside
+/// where it was to land. A wall that is another one has a crease on the way.
+[[nodiscard]] inline bool landedAsPromised(const WallThere& here, const WallThere& there,
+                                           double bend, double length, double off) noexcept {
+  const Vec3 turned = there.normal - here.normal;
+  const double bent = bend * length;
+  const double explained = 2.0 * bent + limits::kFirmTurn;
+  return glm::dot(turned, turned) <= explained * explained &&
+         std::fabs(off) <= bent * length + limits::kNoise * here.tolerance;
+}
+
+/// Whether a way of `length` [m] is short enough for a wall that bends by `bend` [1/m].
+[[nodiscard]] inline bool isShortFor(const Leaf& leaf, double bend, double length) noexcept {
+  return bend * length <= limits::kGlidesFar &&
+         (leaf.is_flat || length <= limits::kShareOfFeature * leaf.feature);
+}
+
+/// Whether the chord from `x` to `y` [m] keeps to the free side of `field`, but for what a wall bent by `bend` [1/m] makes
+/// it dip. A distance towards that side is S times `scale`.
+[[nodiscard]] inline bool keepsOnChord(const Field& field, const Vec3& x, const Vec3& y,
+                                       double scale, double bend, double tolerance) noexcept {
+  const double length = glm::length(y - x);
+  const double turn = bend * length;
+  if (turn <= limits::kTurnsMuch) return true;
+  const double dip = std::min(limits::kDipByBend * turn, limits::kDipByLength) * length;
+  for (const double share : {0.5, 0.25, 0.75}) {
+    if (share != 0.5 && turn <= limits::kTurnsMore) break;
+    if (scale * field.value(x + share * (y - x)) < -(dip + tolerance)) return false;
+  }
+  return true;
+}
+
+}  // namespace palpate
