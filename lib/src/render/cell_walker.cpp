@@ -97,17 +97,26 @@ void CellWalker::refresh(double length) noexcept {
   cold_due_ = travel_ + horizon;
 }
 
-bool CellWalker::isAlone(std::span<const LeafId> leaves, double radius) noexcept {
-  refresh(radius);
+int CellWalker::metOnWay(std::span<const LeafId> leaves, const Vec3& target, double length,
+                         double rest) noexcept {
+  refresh(length);
   for (std::size_t k = 0; k < hot_count_; ++k) {
     const LeafId other = hot_[k];
     if (std::find(leaves.begin(), leaves.end(), other) != leaves.end()) continue;
-    const double reach = travel_ + radius + touch(other);
+    const double reach = travel_ + length + touch(other);
     if (due_[other] > reach) continue;
-    (void)measure(other);
-    if (due_[other] <= reach) return false;
+    const double here = side(other) * measure(other);
+    if (due_[other] > reach) continue;
+    if (!domain_[other].is_everywhere) return other;
+    // It is missed if it is so far from both ends that no point between them can be on it.
+    const double there = side(other) * leaves_[other].field->value(target);
+    const double bound = leaves_[other].lipschitz;
+    if (!(there > bound * (touch(other) + rest) &&
+          here + there > bound * (length + touch(other)))) {
+      return other;
+    }
   }
-  return true;
+  return -1;
 }
 
 CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noexcept {

@@ -96,8 +96,10 @@ class CellWalker {
       if (due_[leaf] <= reach) f(leaf);
     }
   }
-  /// True if no surfaces but those of `leaves` can come within `radius` [m] of the point.
-  [[nodiscard]] bool isAlone(std::span<const LeafId> leaves, double radius) noexcept;
+  /// A leaf that a way of `length` [m] to `target` may meet, or end less than `rest` [m] away from; -1 if there is none but
+  /// those of `leaves`.
+  [[nodiscard]] int metOnWay(std::span<const LeafId> leaves, const Vec3& target, double length,
+                             double rest) noexcept;
   [[nodiscard]] const Signs& signs() const noexcept { return here_.sides; }
 
   /// What the facet of `leaf` at the point is, seen from here.

@@ -54,10 +54,12 @@ struct Corner {
 
 }  // namespace
 
-/// Finds by Newton where the proxy rests in the crease of the leaves `a` and `b`, the only ones near. False, and nothing
-/// is changed, if that is not sure.
+/// Finds by Newton where the proxy rests in the crease of the leaves `a` and `b`, the only ones near; it is on one of them
+/// at least. False, and nothing is changed, if that is not sure; other_ is the one of the two that does not hold it, if
+/// that is so from the start.
 bool ProxySolver::glideBetween(LeafId a, LeafId b, const Vec3& hip,
                                FrictionState& friction) noexcept {
+  other_ = -1;
   const Vec3 x = walker_.position();
   std::array<CreaseWall, 2> wall;
   wall[0].id = a;
@@ -66,10 +68,10 @@ bool ProxySolver::glideBetween(LeafId a, LeafId b, const Vec3& hip,
     each.leaf = &walker_.leaf(each.id);
     each.side = walker_.side(each.id);
     each.jet = walker_.jetHere(each.id);
-    if (!each.take() || !each.isOn() || each.gap < -each.there.tolerance) {
-      return false;
-    }
+    if (!each.take() || each.gap < -each.there.tolerance) return false;
   }
+  if (!wall[0].isOn() && !wall[1].isOn()) return false;
+  if (!(Corner(wall[0].normal, wall[1].normal).square > limits::kSharp)) return false;
   // The proxy's region there is the one cell between the two walls.
   for (CreaseWall& each : wall) {
     each.facet = walker_.facetAt(each.id);
@@ -91,7 +93,10 @@ bool ProxySolver::glideBetween(LeafId a, LeafId b, const Vec3& hip,
                             wall[1].isOn() ? 0.0 : wall[1].left};
     corner.solve(-sink[0] - glm::dot(wall[0].normal, wish),
                  -sink[1] - glm::dot(wall[1].normal, wish), press[0], press[1]);
-    if (!(press[0] > rest_ && press[1] > rest_)) return false;
+    if (!(press[0] > rest_ && press[1] > rest_)) {
+      if (round == 0) other_ = press[0] > press[1] ? b : a;
+      return false;
+    }
     const Vec3 along =
         glm::cross(wall[0].normal, wall[1].normal) * (1.0 / std::sqrt(corner.square));
     const double bend[2] = {glm::dot(along, wall[0].bend * along),
@@ -136,7 +141,7 @@ bool ProxySolver::glideBetween(LeafId a, LeafId b, const Vec3& hip,
     }
     const std::array<LeafId, 2> both = {a, b};
     const double way = glm::length(y - x);
-    if (!walker_.isAlone(both, way)) return false;
+    if (walker_.metOnWay(both, y, way, rest_) >= 0) return false;
     walker_.jump(y, way);
     for (const CreaseWall& each : wall) walker_.know(each.id, each.jet);
   }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "glide_checks.h"
@@ -79,12 +80,20 @@ bool ProxySolver::goQuickly(const Vec3& hip, FrictionState& friction) noexcept {
     friction.sticks = false;
     return walker_.move(hip, false) == CellWalker::Stop::kArrived;
   }
-  if (found.count == 2) return glideBetween(found.before, found.last, hip, friction);
-  return found.count == 1 && glide(found.last, hip, friction);
+  if (found.count == 1) {
+    if (glide(found.last, -1, hip, friction)) return true;
+    return other_ >= 0 && glideBetween(found.last, static_cast<LeafId>(other_), hip, friction);
+  }
+  if (found.count != 2) return false;
+  if (glideBetween(found.before, found.last, hip, friction)) return true;
+  return other_ >= 0 &&
+         glide(other_ == found.last ? found.before : found.last, other_, hip, friction);
 }
 
-/// Finds by Newton where the proxy rests on `id`, the only leaf near. False, and nothing is changed, if that is not sure.
-bool ProxySolver::glide(LeafId id, const Vec3& hip, FrictionState& friction) noexcept {
+/// Finds by Newton where the proxy rests on `id`, the only leaf near but for `free`, one that does not hold it (-1: none).
+/// False, and nothing is changed, if that is not sure; other_ is the leaf that it meets on the way, if there is one.
+bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& friction) noexcept {
+  other_ = -1;
   const Vec3 x = walker_.position();
   const Leaf& leaf = walker_.leaf(id);
   const Facet facet = walker_.facetAt(id);
@@ -150,7 +159,14 @@ bool ProxySolver::glide(LeafId id, const Vec3& hip, FrictionState& friction) noe
     const double way = glm::length(y - x);
     if (!keepsOnChord(*leaf.field, x, y, side / wall.slope, bend_size, wall.tolerance))
       return false;
-    if (!walker_.isAlone({&id, 1}, way)) return false;
+    if (free >= 0 && !isPassed(static_cast<LeafId>(free), y, way)) return false;
+    std::array<LeafId, 2> known = {id, static_cast<LeafId>(free)};
+    other_ = walker_.metOnWay({known.data(), free < 0 ? 1U : 2U}, y, way, rest_);
+    if (other_ >= 0) {
+      known[1] = static_cast<LeafId>(other_);
+      if (free >= 0 || !isPassed(known[1], y, way)) return false;
+      if (walker_.metOnWay(known, y, way, rest_) >= 0) return false;
+    }
     walker_.jump(y, way);
     walker_.know(id, jet);
   }
@@ -158,6 +174,21 @@ bool ProxySolver::glide(LeafId id, const Vec3& hip, FrictionState& friction) noe
   friction.is_felt = false;
   takeOnly(id, facet, wall, jet, hip - y);
   return true;
+}
+
+/// Whether the way of `length` [m] to `y` keeps to the free side of `id`, near which it is, and ends off it.
+bool ProxySolver::isPassed(LeafId id, const Vec3& y, double length) noexcept {
+  const Leaf& leaf = walker_.leaf(id);
+  const double side = walker_.side(id);
+  const FieldJet& jet = walker_.jetHere(id);
+  const WallThere here = wallOf(id, leaf, {jet.value, jet.gradient, jet.in_band});
+  if (leaf.is_between || !(here.slope > 0.0) || here.gap(side < 0.0) < -here.tolerance)
+    return false;
+  const double bend = sizeOf(jet.hessian) / here.slope;
+  const double scale = side / here.slope;
+  return bend * leaf.feature <= limits::kFolds && isShortFor(leaf, bend, length) &&
+         scale * leaf.field->value(y) > limits::kTouch * here.tolerance + rest_ &&
+         keepsOnChord(*leaf.field, walker_.position(), y, scale, bend, here.tolerance);
 }
 
 /// The contact with one wall that holds the proxy at rest. How hard it is pressed is measured from its surface.

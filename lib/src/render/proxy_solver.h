@@ -113,7 +113,8 @@ class ProxySolver {
   /// [m] A step from `x` as short as this is none for a hand that is `wish` away.
   [[nodiscard]] static double restLength(const Vec3& x, const Vec3& wish) noexcept;
   [[nodiscard]] bool goQuickly(const Vec3& hip, FrictionState& friction) noexcept;
-  [[nodiscard]] bool glide(LeafId id, const Vec3& hip, FrictionState& friction) noexcept;
+  [[nodiscard]] bool glide(LeafId id, int free, const Vec3& hip, FrictionState& friction) noexcept;
+  [[nodiscard]] bool isPassed(LeafId id, const Vec3& y, double length) noexcept;
   [[nodiscard]] bool glideBetween(LeafId a, LeafId b, const Vec3& hip,
                                   FrictionState& friction) noexcept;
   void takeOnly(LeafId id, const Facet& facet, const WallThere& wall, const FieldJet& jet,
@@ -166,7 +167,8 @@ class ProxySolver {
   Vec3 landed_at_{0.0, 0.0, 0.0};               ///< [m]
   bool has_landed_ = false;
   std::uint64_t reached_ = 0;  ///< by plane, a bit: the step at hand ends on it
-  int rim_ = -1;  ///< leaf that a way back onto the walls has to end on as well; -1: none
+  int rim_ = -1;    ///< leaf that a way back onto the walls has to end on as well; -1: none
+  int other_ = -1;  ///< leaf that a quick way meets, or that no longer holds it; -1: none
   bool trusts_sides_ = false;
   int batches_left_ = 0;
 };
