@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/eigen2.h"
 #include "palpate/contact/planes.h"
 
 namespace palpate {
@@ -39,15 +40,9 @@ Vec3 onSurface(const Vec3& pull, const Vec3& normal, const Mat3& bend) noexcept 
     const double p2 = glm::dot(t2, pull);
     return t1 * ((c * p1 - b * p2) / det) + t2 * ((a * p2 - b * p1) / det);
   }
-  // Eigenvalues and vectors of [[a, b], [b, c]].
-  const double mean = 0.5 * (a + c);
-  const double half = 0.5 * (a - c);
-  const double radius = std::hypot(half, b);
-  const double angle = 0.5 * std::atan2(b, half);
-  const Vec3 e_high = std::cos(angle) * t1 + std::sin(angle) * t2;
-  const Vec3 e_low = -std::sin(angle) * t1 + std::cos(angle) * t2;
-  return e_high * (glm::dot(e_high, pull) / bounded(mean + radius)) +
-         e_low * (glm::dot(e_low, pull) / bounded(mean - radius));
+  const Eigen2 e = eigen(a, b, c, t1, t2);
+  return e.e_high * (glm::dot(e.e_high, pull) / bounded(e.high)) +
+         e.e_low * (glm::dot(e.e_low, pull) / bounded(e.low));
 }
 
 }  // namespace

@@ -103,6 +103,41 @@ TEST(GradientByHand, IsNoneInACornerAndHeldNearAFocalPoint) {
   EXPECT_NEAR(glm::length(gradientByHand(Vec3(0, 1, 0), {&focal, 1})), 1000.0, 1e-6);
 }
 
+TEST(GradientByHand, BeyondAFocalPointEigenvaluesCountByTheirMagnitude) {
+  // |M| = sqrt(M M), and the root of a matrix of two rows in closed form: no eigenvector is looked for.
+  Random random(12);
+  const FieldPtr any = sphere(Vec3(0.0), kR);
+  for (int i = 0; i < 400; ++i) {
+    HeldWall wall = heldAt(any, i % 2 == 0 ? 1.0 : -1.0, kR * random.direction(), 1.0);
+    const Vec3 n = wall.normal;
+    const Vec3 d = glm::normalize(glm::cross(n, random.direction()));
+    const Vec3 e = glm::cross(n, d);
+    // M = 1 - multiplier * side * Hessian / slope, in the frame (d, e), with eigenvalues of both signs.
+    const double m11 = random.uniform(-2.0, 2.0);
+    const double m12 = random.uniform(-2.0, 2.0);
+    const double m22 = random.uniform(-2.0, 2.0);
+    const double det = m11 * m22 - m12 * m12;
+    if (std::fabs(det) < 0.05) continue;
+    const Mat3 m = m11 * glm::outerProduct(d, d) + m22 * glm::outerProduct(e, e) +
+                   m12 * (glm::outerProduct(d, e) + glm::outerProduct(e, d));
+    wall.jet.hessian = (Mat3(1.0) - m) * (glm::length(wall.jet.gradient) / wall.side);
+    const double s11 = m11 * m11 + m12 * m12;
+    const double s12 = m12 * (m11 + m22);
+    const double s22 = m12 * m12 + m22 * m22;
+    const double root = std::fabs(det);
+    const double scale = std::sqrt(s11 + s22 + 2.0 * root);
+    const double a11 = (s11 + root) / scale;
+    const double a12 = s12 / scale;
+    const double a22 = (s22 + root) / scale;
+    const Vec3 g = random.direction();
+    const double p = glm::dot(g, d);
+    const double q = glm::dot(g, e);
+    const Vec3 expected = ((a22 * p - a12 * q) / root) * d + ((a11 * q - a12 * p) / root) * e;
+    // The least eigenvalue is 0.05 / 3 or so: rounding of 1e-16 counts a hundredfold, squared.
+    EXPECT_LT(glm::length(gradientByHand(g, {&wall, 1}) - expected), 1e-11) << i;
+  }
+}
+
 TEST(TangentialPart, IsWhatAllWallsLeave) {
   Random random(3);
   for (int trial = 0; trial < 100; ++trial) {
