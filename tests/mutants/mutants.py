@@ -248,7 +248,7 @@ def main():
     number = int(os.environ.get("PALPATE_MUTANTS_PER_MODULE", "40"))
     parser.add_argument("--seed", default=os.environ.get("PALPATE_MUTANTS_SEED", "1"))
     parser.add_argument("--number", type=int, default=number, help="mutants of each module that compile")
-    parser.add_argument("--seconds", type=float, default=20.0, help="of tests of each folder for one mutant, at most")
+    parser.add_argument("--seconds", type=float, default=60.0, help="of tests of each folder for one mutant, at most")
     parser.add_argument("--module", action="append", choices=MODULES, help="only this one; may be given several times")
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "mutants")
     options = parser.parse_args()

@@ -210,6 +210,13 @@ TEST(Partition, WideTreesAreNoProblemAndDeepOnesAreRefusedOrRight) {
   EXPECT_EQ(regionAt(Partition(nested(62)), Vec3(1.0, 0, 0)), 1);
   EXPECT_EQ(regionAt(Partition(nested(62)), Vec3(0.5, 0, 0)), 0);
   EXPECT_THROW(Partition{nested(63)}, Error);
+
+  // In the first operand it does not grow, however deep.
+  FieldPtr first = ball(1.0, 0.01);
+  for (int i = 0; i < 200; ++i) first = unite({first, ball(0.0, 0.01)});
+  const Partition left_deep{std::vector<FieldPtr>{first}};
+  EXPECT_EQ(regionAt(left_deep, Vec3(1.0, 0, 0)), 1);
+  EXPECT_EQ(regionAt(left_deep, Vec3(0.5, 0, 0)), 0);
 }
 
 }  // namespace

@@ -80,5 +80,17 @@ TEST(Punctures, ARestBeginsAnewAndTheOldestEndsWhenFull) {
   EXPECT_EQ(punctures.restOf(4), 0.0);
 }
 
+TEST(Punctures, OfPortsThatASceneHasNotAreTold) {
+  Punctures holes;
+  holes.puncture(3, portWith(1e-3, 0.5, 0.0), Vec3(0.0));
+  EXPECT_TRUE(holes.isOf(4));
+  EXPECT_FALSE(holes.isOf(3));
+  Punctures rests;
+  rests.puncture(2, portWith(0.0, 0.0, 0.5e-3), Vec3(0.0));
+  rests.puncture(5, portWith(0.0, 0.0, 0.5e-3), Vec3(0.0));
+  EXPECT_TRUE(rests.isOf(6));
+  EXPECT_FALSE(rests.isOf(5));
+}
+
 }  // namespace
 }  // namespace palpate::test
