@@ -1,7 +1,8 @@
-// palpate_damage_sweep [MUTANTS] [SEED]: damages files of every format in every way, MUTANTS times
-// each, and gives each to the command with 4 GB of address space and 20 s. Told are signals, hangs,
+// palpate_damage_sweep [MUTANTS] [SEED] [COMMAND]: damages files of every format in every way, MUTANTS
+// times each, and gives each to the command with 4 GB of address space and 20 s more than the sound file
+// takes (a scene may be one of a whole head). Told are signals, hangs,
 // exit codes that are not documented, and runs that took more than 1 GB for an input of less than
-// 10 MB; such inputs are kept beside. Exit 1 if there are any.
+// 10 MB; such inputs are kept beside. Exit 1 if there are any. COMMAND: another build of palpate.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -29,17 +30,18 @@ using palpate::fuzz::Reader;
 namespace fs = std::filesystem;
 
 constexpr rlim_t kMemory = rlim_t{4} << 30U;
-constexpr int kSeconds = 20;
+constexpr double kSeconds = 20.0;
+constexpr double kMostSound = 300.0;       ///< [s] of a sound file
 constexpr long kMostResident = 1L << 20U;  // [kB]
 
 struct Run {
   int status = 0;
   bool timed_out = false;
-  long resident = 0;  ///< [kB]
+  long resident = 0;     ///< [kB]
+  double seconds = 0.0;  ///< by the clock
 };
 
-Run run(const std::vector<std::string>& arguments) {
-  const std::string program = PALPATE_BINARY_DIR "/bin/palpate";
+Run run(const std::string& program, const std::vector<std::string>& arguments, double seconds) {
   std::vector<char*> argv = {const_cast<char*>(program.c_str())};
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
@@ -56,15 +58,19 @@ Run run(const std::vector<std::string>& arguments) {
   }
   Run result;
   rusage usage{};
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(kSeconds);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto took = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
   while (wait4(process, &result.status, WNOHANG, &usage) == 0) {
-    if (!result.timed_out && std::chrono::steady_clock::now() > end) {
+    if (!result.timed_out && took() > seconds) {
       result.timed_out = true;
       kill(process, SIGKILL);
     }
     poll(nullptr, 0, 2);
   }
   result.resident = usage.ru_maxrss;
+  result.seconds = took();
   return result;
 }
 
@@ -100,6 +106,7 @@ std::string faultOf(const Run& run, std::size_t input) {
 int main(int argc, char** argv) {
   const int mutants = argc > 1 ? std::atoi(argv[1]) : 20;
   const auto seed = static_cast<std::uint64_t>(argc > 2 ? std::atoll(argv[2]) : 1);
+  const std::string program = argc > 3 ? argv[3] : PALPATE_BINARY_DIR "/bin/palpate";
   const fs::path folder = fs::current_path() / "damage_sweep";
   fs::create_directories(folder);
   const std::string image = folder / "image.nii";
@@ -123,13 +130,20 @@ int main(int argc, char** argv) {
       std::ofstream(own / "second.dcm", std::ios::binary) << second;
     }
     const std::string file = own / (std::string("mutant") + reader.extension);
+    std::vector<double>
+        sound;  // [s] twice what each seed takes, as the machine may be busier next time
+    for (const std::string& seed : seeds) {
+      std::ofstream(file, std::ios::binary) << seed;
+      sound.push_back(2.0 * run(program, commandFor(reader, file, image), kMostSound).seconds);
+    }
     for (const Damage& damage : palpate::fuzz::damages()) {
       palpate::fuzz::Random random(seed);
       for (int i = 0; i < mutants; ++i) {
-        std::string bytes = seeds[static_cast<std::size_t>(i) % seeds.size()];
+        const std::size_t from = static_cast<std::size_t>(i) % seeds.size();
+        std::string bytes = seeds[from];
         damage.apply(bytes, random);
         std::ofstream(file, std::ios::binary) << bytes;
-        const Run result = run(commandFor(reader, file, image));
+        const Run result = run(program, commandFor(reader, file, image), sound[from] + kSeconds);
         ++own_runs;
         most = std::max(most, result.resident);
         if (WIFEXITED(result.status)) ++codes[WEXITSTATUS(result.status)];

@@ -158,6 +158,28 @@ TEST(Bake, AMeshNeedsItsUnit) {
   EXPECT_LT(grid["bounds_m"]["hi"][0], 0.0126);
 }
 
+TEST(Bake, AShapeSmallerThanAVoxelIsRefusedAndOneOfAVoxelIsTold) {
+  const TempFolder folder;
+  (void)folder.file(
+      "ball.yaml",
+      "palpate: 1\nlength: mm\nlayers:\n  - {name: ball, inside: {sphere: {center: [0, "
+      "0, 0], radius: 30}}}\n");
+  const auto bake = [&](const std::string& voxel) {
+    return runPalpate({"bake", "ball.yaml", "-o", "ball.vdb", "--voxel", voxel, "--force"},
+                      folder.path());
+  };
+  const CommandResult none = bake("500 mm");
+  EXPECT_EQ(none.exit_code, 3) << none.out;
+  EXPECT_NE(none.err.find("smaller than a voxel of 500 mm"), std::string::npos) << none.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path("ball.vdb")));
+  const CommandResult told = bake("50 mm");
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_NE(told.err.find("bends within a voxel of 50 mm"), std::string::npos) << told.err;
+  const CommandResult fine = bake("2 mm");
+  EXPECT_EQ(fine.exit_code, 0) << fine.err;
+  EXPECT_EQ(fine.err.find("bends within"), std::string::npos) << fine.err;
+}
+
 TEST(Bake, WhatVoxelsCannotHoldIsTold) {
   const TempFolder folder;
   (void)folder.file("crumb.yaml", R"(palpate: 1

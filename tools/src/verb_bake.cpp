@@ -1,5 +1,6 @@
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
 #include "baking.h"
 #include "input_kind.h"
@@ -107,14 +108,17 @@ void tellError(const BakedGrid& baked, Json& json, Console& console) {
 
 /// What was made here goes into the file with what contact may rely on. A grid of a file that is put into another form, a band
 /// too narrow to be read as it is, and distances without a side are looked at when they are touched.
-vdb::LevelSet sure(const vdb::LevelSet& grid, const BakeOptions& options) {
+vdb::LevelSet sure(const vdb::LevelSet& grid, const BakeOptions& options, Console& console) {
   const bool is_whole =
       !vdb::isTooNarrow(grid.info()) && !grid.info().metadata.contains(vdb::kDistanceKey);
   if (!is_whole || inputKind(options.input) == InputKind::kGrid) return grid;
   vdb::CertifyOptions certify;
   certify.is_foreign = false;
   certify.path = options.output;
-  return vdb::certified(grid, certify).grid;
+  vdb::CertifiedGrid made = vdb::certified(grid, certify);
+  const std::string rough = vdb::roughNote(made.grid, made.certificate);
+  if (!rough.empty()) console.note(grid.info().name + ": " + rough);
+  return std::move(made.grid);
 }
 
 Json partJson(const std::string& layer, const vdb::HybridPart& part) {
@@ -143,7 +147,7 @@ Report run(const BakeOptions& options, const GeneralOptions& general, Console& c
   std::vector<vdb::NamedMaterialGrid> materials;
   if (options.parts.empty()) {
     for (const BakedGrid& baked : bakeInput(options, console, &materials)) {
-      tellError(baked, list.add(sure(baked.grid, options), baked.seconds), console);
+      tellError(baked, list.add(sure(baked.grid, options, console), baked.seconds), console);
     }
     for (const vdb::NamedMaterialGrid& material : materials) list.add(material);
   } else {

@@ -107,6 +107,8 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
         common->notes->add(what, {widenedNote(made.half_width)});
       }
       if (!sure.notes.empty()) common->notes->add(what, sure.notes);
+      const std::string rough = roughNote(grid, sure.certificate);
+      if (!rough.empty()) common->notes->add(what, {rough});
     } catch (const Error& error) {
       throwAt(place, error);
     }
@@ -374,10 +376,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
                                                  LabelEdge::kLapped);
               },
               [image = from.image, values](const Progress&) {
-                return boxWhere(image->file->image(), [&](float value) {
-                  return std::any_of(values.begin(), values.end(),
-                                     [&](int label) { return value == static_cast<float>(label); });
-                });
+                return image->file->boxOfLabels(values);
               }),
           from.name, values};
 }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "voxel_box.h"
+
 namespace palpate::vdb {
 
 void Notes::add(const std::string& path, const std::vector<std::string>& notes) {
@@ -18,6 +20,18 @@ const Image& ImageFile::image() {
     notes_->add(path_, image_->notes);
   }
   return *image_;
+}
+
+Box3 ImageFile::boxOfLabels(const std::vector<int>& labels) {
+  if (!boxes_) boxes_ = boxesOfValues(image());
+  Box3 all;
+  for (const int label : labels) {
+    const auto box = boxes_->find(static_cast<float>(label));
+    if (box == boxes_->end()) continue;
+    all.include(box->second.lo);
+    all.include(box->second.hi);
+  }
+  return all.grownBy(1.5 * longestStep(image()));
 }
 
 LabelSurfaces& SceneImage::surfaces() {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/image.h"
@@ -34,12 +35,15 @@ class ImageFile {
       : path_(std::move(path)), options_(std::move(options)), notes_(std::move(notes)) {}
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] const Image& image();
+  /// [m] The box around the voxels of these labels, as boxWhere() has it. The image is walked once for all calls.
+  [[nodiscard]] Box3 boxOfLabels(const std::vector<int>& labels);
 
  private:
   std::string path_;
   ImageOptions options_;
   std::shared_ptr<Notes> notes_;
   std::optional<Image> image_;
+  std::optional<std::map<float, Box3>> boxes_;
 };
 
 /// One entry of `images:`.

@@ -19,7 +19,7 @@ const char* nameOf(Sampler sampler) {
 LevelSet withCertificate(const LevelSet& grid, const BandCertificate& c) {
   std::array<char, 320> text{};
   std::snprintf(text.data(), text.size(),
-                "1 %s %s within_m %.9g lipschitz %.9g steepest %.9g slope %.9g at_m %.9g %.9g %.9g "
+                "2 %s %s within_m %.9g lipschitz %.9g steepest %.9g slope %.9g at_m %.9g %.9g %.9g "
                 "rough %.9g "
                 "off_m %.9g",
                 c.content.c_str(), nameOf(c.sampler), c.within, c.lipschitz, c.steepest, c.slope,
@@ -36,7 +36,7 @@ std::optional<BandCertificate> storedCertificate(const LevelSet& grid, Sampler s
   std::array<char, 16> name{};
   const int read =
       std::sscanf(entry->second.c_str(),
-                  "1 %16[0-9a-f] %15[a-z] within_m %lf lipschitz %lf steepest %lf slope %lf at_m "
+                  "2 %16[0-9a-f] %15[a-z] within_m %lf lipschitz %lf steepest %lf slope %lf at_m "
                   "%lf %lf %lf rough %lf "
                   "off_m %lf",
                   content.data(), name.data(), &c.within, &c.lipschitz, &c.steepest, &c.slope,

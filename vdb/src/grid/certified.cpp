@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -36,7 +37,10 @@ std::string text(const char* format, double a) {
 class Certifier {
  public:
   Certifier(LevelSet grid, const CertifyOptions& options, const Progress& progress)
-      : grid_(std::move(grid)), options_(options), progress_(progress), cache_(options.cache_folder) {}
+      : grid_(std::move(grid)),
+        options_(options),
+        progress_(progress),
+        cache_(options.cache_folder) {}
 
   CertifiedGrid run() {
     if (const auto stored = storedCertificate(grid_, sampler())) return {grid_, *stored, {}};
@@ -197,7 +201,8 @@ class Certifier {
     c.within = std::max(0.0, found.bounds.within() - kRounding) * voxel;
     unknown_at_ = {found.bounds.unknown_at[0], found.bounds.unknown_at[1],
                    found.bounds.unknown_at[2]};
-    if (found.bounds.surface_cells > 0) {
+    has_surface_ = found.bounds.surface_cells > 0;
+    if (has_surface_) {
       c.slope = found.bounds.least_slope - kRounding;
       c.slope_place =
           place({found.bounds.slope_at[0], found.bounds.slope_at[1], found.bounds.slope_at[2]});
@@ -210,10 +215,18 @@ class Certifier {
   }
 
   [[nodiscard]] bool holds(const BandCertificate& c) const noexcept {
-    return c.within >= kLeastWithin * grid_.info().voxel_size && c.steepest <= kMostSteep;
+    return has_surface_ && c.within >= kLeastWithin * grid_.info().voxel_size &&
+           c.steepest <= kMostSteep;
   }
 
   [[noreturn]] void refuse(const BandCertificate& c) const {
+    if (!has_surface_) {
+      no("vdb.no_surface",
+         text("has voxels inside, but samples of it are outside everywhere: the whole shape is "
+              "smaller than a voxel of %.3g mm",
+              grid_.info().voxel_size * 1e3),
+         "use smaller voxels; also check the length unit");
+    }
     if (c.steepest > kMostSteep) {
       no("vdb.uncertified",
          text("has samples by the surface that differ by up to %.2g times their distance",
@@ -236,6 +249,7 @@ class Certifier {
   Coord unknown_at_;
   double step_ = 0.0;  // [voxels] beside the surface
   bool is_rebuilt_ = false;
+  bool has_surface_ = false;
 };
 
 }  // namespace
@@ -243,6 +257,19 @@ class Certifier {
 CertifiedGrid certified(const LevelSet& grid, const CertifyOptions& options,
                         const Progress& progress) {
   return Certifier(grid, options, progress).run();
+}
+
+std::string roughNote(const LevelSet& grid, const BandCertificate& c) {
+  if (!(c.rough > kMostRough)) return {};
+  std::array<char, 224> out{};
+  std::snprintf(
+      out.data(), out.size(),
+      "%.3g %% of its surface has edges, or bends within a voxel of %.3g mm, one place at "
+      "(%.6g, %.6g, %.6g) mm; what is felt there is off by a large share of a voxel; "
+      "smaller voxels hold it",
+      100.0 * c.rough, grid.info().voxel_size * 1e3, c.slope_place.x * 1e3, c.slope_place.y * 1e3,
+      c.slope_place.z * 1e3);
+  return out.data();
 }
 
 }  // namespace palpate::vdb

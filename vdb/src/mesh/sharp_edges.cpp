@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "bake/edges.h"
@@ -19,6 +20,8 @@ constexpr double kExact = 4.0;
 constexpr double kReach = 5.0;
 /// [voxels] The grid rounds an edge off by less: what is farther from its surface is none of it.
 constexpr double kMostRounding = 2.0;
+/// [voxels] The same farther than kMostRounding from every sharp edge, where the grid is far more exact than that.
+constexpr double kMostOff = 0.5;
 
 /// [voxels] Nearer to an edge or corner than that nothing is said to bend.
 constexpr double kCreep = 0.1;
@@ -66,6 +69,28 @@ class SharpEdges final : public Field {
     return smooth;
   }
 
+  /// [m] A place of a triangle, where triangles answer, that is no surface of the solid: a wall within it.
+  [[nodiscard]] std::optional<Vec3> innerWall() const {
+    for (const MeshTriangle& t : surface_.triangles) {
+      const Vec3& a = surface_.vertices[t[0]];
+      const Vec3 u = surface_.vertices[t[1]] - a;
+      const Vec3 v = surface_.vertices[t[2]] - a;
+      const double longest = std::max({glm::length(u), glm::length(v), glm::length(u - v)});
+      const double steps = std::max(1.0, std::ceil(longest / voxel_));
+      for (double i = 0.0; i <= steps; i += 1.0) {
+        for (double j = 0.0; i + j <= steps; j += 1.0) {
+          const Vec3 p = a + (i / steps) * u + (j / steps) * v;
+          const double to_edge = edgeNear(p).distance;
+          if (to_edge >= kReach * voxel_) continue;
+          const double most = to_edge < kMostRounding * voxel_ ? kMostRounding : kMostOff;
+          const FieldSample here = baked_->sample(p);
+          if (!here.in_band || std::abs(here.value) > most * voxel_) return p;
+        }
+      }
+    }
+    return {};
+  }
+
   [[nodiscard]] Box3 bounds() const noexcept override { return baked_->bounds(); }
   [[nodiscard]] Metric metric() const noexcept override { return baked_->metric(); }
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
@@ -84,8 +109,12 @@ class SharpEdges final : public Field {
     Mat3 hessian{0.0};
   };
 
-  [[nodiscard]] Share shareAt(const Vec3& p, bool in_band) const noexcept {
-    if (!in_band) return {};
+  struct EdgeNear {
+    Vec3 place{0.0};        ///< of a sharp edge, nearest
+    double distance = 0.0;  ///< [m] kReach if none is nearer
+    std::span<const std::uint32_t> triangles;
+  };
+  [[nodiscard]] EdgeNear edgeNear(const Vec3& p) const noexcept {
     const EdgeCells::Lists lists = cells_.at(p);
     double least = kReach * voxel_ * kReach * voxel_;
     Vec3 nearest(0.0);
@@ -97,14 +126,19 @@ class SharpEdges final : public Field {
       least = square;
       nearest = at;
     }
-    const double distance = std::sqrt(least);
-    const double t = (kReach * voxel_ - distance) / ((kReach - kExact) * voxel_);
-    if (t >= 1.0) return {1.0, Vec3(0.0), lists.triangles};
+    return {nearest, std::sqrt(least), lists.triangles};
+  }
+
+  [[nodiscard]] Share shareAt(const Vec3& p, bool in_band) const noexcept {
+    if (!in_band) return {};
+    const EdgeNear edge = edgeNear(p);
+    const double t = (kReach * voxel_ - edge.distance) / ((kReach - kExact) * voxel_);
+    if (t >= 1.0) return {1.0, Vec3(0.0), edge.triangles};
     if (!(t > 0.0)) return {};
     // 3 t^2 - 2 t^3, and its slope down along the way from the edge.
     return {t * t * (3.0 - 2.0 * t),
-            -6.0 * t * (1.0 - t) / ((kReach - kExact) * voxel_) * (p - nearest) / distance,
-            lists.triangles};
+            -6.0 * t * (1.0 - t) / ((kReach - kExact) * voxel_) * (p - edge.place) / edge.distance,
+            edge.triangles};
   }
 
   [[nodiscard]] Exact exactAt(const Vec3& p,
@@ -162,15 +196,45 @@ double angleAt(const Vec3& corner, const Vec3& b, const Vec3& c) {
   return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
 }
 
+/// Turns each part as the solid has it that was baked (one that is inside out is solid all the same, one that is turned within
+/// another is a cavity), and drops those that are walls within the solid. Vertices are in metres.
+void keepSurface(Solid& solid, const Field& baked, double voxel) {
+  std::vector<double> outward(solid.parts.size(), 0.0);
+  std::vector<bool> is_surface(solid.parts.size(), false);
+  const auto isOnSurface = [&](const Vec3& p) {
+    const FieldSample here = baked.sample(p);
+    return here.in_band && std::abs(here.value) <= kMostRounding * voxel;
+  };
+  const auto middleOf = [&](const MeshTriangle& t) {
+    return (solid.vertices[t[0]] + solid.vertices[t[1]] + solid.vertices[t[2]]) / 3.0;
+  };
+  for (std::size_t n = 0; n < solid.triangles.size(); ++n) {
+    const MeshTriangle& t = solid.triangles[n];
+    const Vec3& a = solid.vertices[t[0]];
+    const Vec3 twice_area = glm::cross(solid.vertices[t[1]] - a, solid.vertices[t[2]] - a);
+    const Vec3 step = voxel * unitOr(twice_area, Vec3(0.0));
+    const Vec3 middle = middleOf(t);
+    const std::uint32_t part = solid.part_of[n];
+    if (isOnSurface(middle) || isOnSurface(a)) {
+      is_surface[part] = true;
+      outward[part] +=
+          glm::length(twice_area) * (baked.value(middle + step) - baked.value(middle - step));
+    }
+  }
+  std::vector<MeshTriangle> kept;
+  for (std::size_t n = 0; n < solid.triangles.size(); ++n) {
+    if (!is_surface[solid.part_of[n]]) continue;
+    MeshTriangle t = solid.triangles[n];
+    if (outward[solid.part_of[n]] < 0.0) std::swap(t[1], t[2]);
+    kept.push_back(t);
+  }
+  solid.triangles = std::move(kept);
+}
+
 Surface surfaceOf(Solid&& solid, double angle) {
   Surface surface;
   surface.vertices = std::move(solid.vertices);
   surface.triangles = std::move(solid.triangles);
-  double volume = 0.0;
-  for (const SolidPart& part : solid.parts) volume += part.volume;
-  if (volume < 0.0) {
-    for (auto& t : surface.triangles) std::swap(t[1], t[2]);
-  }
   surface.corner_normals.assign(surface.vertices.size(), Vec3(0.0));
   for (const auto& t : surface.triangles) {
     const Vec3& a = surface.vertices[t[0]];
@@ -204,21 +268,6 @@ Surface surfaceOf(Solid&& solid, double angle) {
   return surface;
 }
 
-/// Of triangles that have a corner on a sharp edge, corners and middles must lie on the grid's surface.
-void requireSurface(const Field& baked, const Surface& surface, const Mesh& mesh, double voxel) {
-  for (const auto& [a, b] : surface.sharp) {
-    const Vec3 middle = 0.5 * (surface.vertices[a] + surface.vertices[b]);
-    const FieldSample here = baked.sample(middle);
-    if (here.in_band && std::abs(here.value) <= kMostRounding * voxel) continue;
-    throw inputError("mesh.sharp_inner",
-                     "an edge at " + placeText(middle, 1.0) +
-                         " is not on the surface of the solid: parts overlap there, or the grid "
-                         "has lost it",
-                     "make the mesh one solid in a mesh editor; or leave sharp edges to the grid",
-                     mesh.source);
-  }
-}
-
 }  // namespace
 
 FieldPtr withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double voxel) {
@@ -236,10 +285,19 @@ FieldPtr withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double v
                      "mend it in a mesh editor; or leave sharp edges to the grid", mesh.source);
   }
   for (Vec3& v : solid.vertices) v *= voxel;
+  keepSurface(solid, *baked, voxel);
   Surface surface = surfaceOf(std::move(solid), angle);
   if (surface.sharp.empty()) return baked;
-  requireSurface(*baked, surface, mesh, voxel);
-  return std::make_shared<SharpEdges>(std::move(baked), std::move(surface), voxel);
+  auto made = std::make_shared<SharpEdges>(std::move(baked), std::move(surface), voxel);
+  if (const std::optional<Vec3> inner = made->innerWall()) {
+    throw inputError(
+        "mesh.sharp_inner",
+        "by a sharp edge, at " + placeText(*inner, 1.0) +
+            ", is a wall that is not on the surface of the solid: parts overlap there, "
+            "or the grid has lost it",
+        "make the mesh one solid in a mesh editor; or leave sharp edges to the grid", mesh.source);
+  }
+  return made;
 }
 
 }  // namespace palpate::vdb

@@ -40,6 +40,9 @@ inline constexpr double kLeastWithin = 0.1;
 /// axes), and less than 16 along any direction. What is steeper is not made of distances. Edges of a box come to 1.8, holes of a
 /// voxel in a scan to 4.
 inline constexpr double kMostSteep = 16.0;
+/// Most of BandCertificate::rough without a roughNote(). Of a ball as small as a voxel all cells are rough, of one twice as large none;
+/// edges take 3 % of a cube 40 voxels wide, thin bones at 128 voxels along a foot a third.
+inline constexpr double kMostRough = 0.5;
 
 /// 16 hexadecimal digits of all that a sample can depend on: voxels, band, place and unit. Names and other metadata do not
 /// count. Not a signature: it tells damage, not forgery.
@@ -74,10 +77,14 @@ struct CertifiedGrid {
 /// away from the surface are rebuilt from the surface and told; beside the surface nothing tells where it is, and the
 /// grid is refused.
 /// @throws Error: kInput naming place and remedy (vdb.gradient: values are not distances in the grid's unit; vdb.no_inside;
-/// vdb.torn: the band has a hole or inside and outside meet; vdb.jump: voxels by the surface differ by more than their
+/// vdb.no_surface: samples are outside everywhere; vdb.torn: the band has a hole or inside and outside meet; vdb.jump: voxels by the surface differ by more than their
 /// distance; vdb.uncertified: points near the surface would not answer, or samples by the surface are steeper than kMostSteep),
 /// kOperation for memory, kCancelled.
 [[nodiscard]] CertifiedGrid certified(const LevelSet& grid, const CertifyOptions& options = {},
                                       const Progress& progress = {});
+
+/// What users should know of a surface more of which than kMostRough is rough: BandCertificate::off does not hold
+/// there. Empty: nothing.
+[[nodiscard]] std::string roughNote(const LevelSet& grid, const BandCertificate& certificate);
 
 }  // namespace palpate::vdb

@@ -13,8 +13,11 @@ namespace palpate::vdb {
 ///
 /// Immutable, and its functions are real-time safe as all fields' are. Costs some 100 bytes for each triangle near a sharp edge
 /// and cell of two voxels there.
-/// @throws Error (kInput): a mesh that is not closed as it comes (mesh.sharp_open), or whose triangles by such edges are
-/// not the grid's surface (mesh.sharp_inner: walls within the solid, where parts overlap); what bakeMesh() refuses of a mesh.
+/// Parts (what hangs together by vertices) that lie within the solid are left out, and parts that are inside out turned, as the
+/// grid has them.
+/// @throws Error (kInput): a mesh that is not closed as it comes (mesh.sharp_open), or whose triangles within five voxels of
+/// such edges are not the grid's surface (mesh.sharp_inner, with a place: parts pass through each other there); what
+/// bakeMesh() refuses of a mesh.
 [[nodiscard]] FieldPtr withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double voxel);
 
 }  // namespace palpate::vdb
