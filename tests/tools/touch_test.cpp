@@ -308,7 +308,7 @@ TEST(TouchScenes, TheShippedScenesRun) {
        {"outside", "water"}},
       {"slab.yaml",
        {"--insert", "0,0,5", "0,0,-45", "--back"},
-       {"outside", "fat", "muscle", "outside", "muscle", "fat", "skin", "outside"}},
+       {"outside", "skin", "fat", "muscle", "outside", "muscle", "fat", "skin", "outside"}},
       {"lattice.yaml",
        {"--insert", "3,-7,30", "-11,13,-15", "--back"},
        {"outside", "grid", "outside"}},

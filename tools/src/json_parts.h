@@ -1,6 +1,8 @@
 #pragma once
 /// Pieces of JSON that several verbs print.
 
+#include <cmath>
+
 #include "palpate/core/math.h"
 #include "palpate/materials/material.h"
 #include "palpate/vdb/material_grid.h"
@@ -71,7 +73,10 @@ namespace palpate::tools {
        {{"stiffness_N_per_m2", m.shaft.stiffness},
         {"stick_speed_m_per_s", m.shaft.stick_speed},
         {"in", shaftJson(m.shaft.in, at)},
-        {"out", shaftJson(m.shaft.out, at)}}}};
+        {"out", shaftJson(m.shaft.out, at)},
+        {"lateral_stiffness_N_per_m2", m.shaft.lateral.stiffness},
+        {"lateral_strength_N_per_m",
+         std::isfinite(m.shaft.lateral.strength) ? Json(m.shaft.lateral.strength) : Json()}}}};
 }
 
 }  // namespace palpate::tools

@@ -15,6 +15,13 @@ namespace {
 constexpr double kWidth = 1200.0;
 constexpr double kHeight = 800.0;
 constexpr Frame kFrame{90.0, 1160.0, 110.0, 730.0};
+/// Below the first, where the hand leaves the straight way in.
+constexpr Frame kWayFrame{90.0, 1160.0, 860.0, 1240.0};
+constexpr double kWayHeight = 1310.0;
+/// A hand that strays this far off the straight way in, as a share of its length, has left it.
+constexpr double kOffWay = 0.02;
+constexpr const char* kAlong = "#333333";
+constexpr const char* kAcross = "#2a8a4a";
 constexpr const char* kIn = "#1f5fa8";
 constexpr const char* kOut = "#c4571b";
 
@@ -52,24 +59,25 @@ struct Sample {
   double force = 0.0;  ///< [N]
 };
 
-std::string axes(const Scale& x, const Scale& y, const std::string& unit) {
+std::string axes(const Frame& frame, const Scale& x, const Scale& y, const std::string& x_label,
+                 const std::string& y_label) {
   std::string out;
   for (int i = 0; i <= x.count(); ++i) {
     const double at = x.at(x.number(i));
-    out += svgLine(at, kFrame.top, at, kFrame.bottom, "#ddd");
-    out += svgText(at, kFrame.bottom + 22.0, "text-anchor='middle'", formatNumber(x.number(i), 4));
+    out += svgLine(at, frame.top, at, frame.bottom, "#ddd");
+    out += svgText(at, frame.bottom + 22.0, "text-anchor='middle'", formatNumber(x.number(i), 4));
   }
   for (int i = 0; i <= y.count(); ++i) {
     const double at = y.at(y.number(i));
-    out += svgLine(kFrame.left, at, kFrame.right, at, y.number(i) == 0.0 ? "#888" : "#ddd");
-    out += svgText(kFrame.left - 8.0, at + 5.0, "text-anchor='end'", formatNumber(y.number(i), 4));
+    out += svgLine(frame.left, at, frame.right, at, y.number(i) == 0.0 ? "#888" : "#ddd");
+    out += svgText(frame.left - 8.0, at + 5.0, "text-anchor='end'", formatNumber(y.number(i), 4));
   }
-  out += svgText(0.5 * (kFrame.left + kFrame.right), kFrame.bottom + 52.0, "text-anchor='middle'",
-                 "depth of the hand, " + unit);
-  const double middle = 0.5 * (kFrame.top + kFrame.bottom);
+  out += svgText(0.5 * (frame.left + frame.right), frame.bottom + 52.0, "text-anchor='middle'",
+                 x_label);
+  const double middle = 0.5 * (frame.top + frame.bottom);
   return out + svgText(28.0, middle,
                        "text-anchor='middle' transform='rotate(-90 28 " + svgNumber(middle) + ")'",
-                       "force against the way in, N");
+                       y_label);
 }
 
 std::string curve(const std::vector<Sample>& samples, std::size_t first, std::size_t last,
@@ -82,14 +90,60 @@ std::string curve(const std::vector<Sample>& samples, std::size_t first, std::si
          points + "'/>\n";
 }
 
+/// The same forces along the hand's own way and square to it, over the length of that way: what a hand that turns off
+/// the straight way in meets.
+std::string wayPanel(const Trace& trace, const Scene& scene) {
+  const std::span<const TraceRow> rows = trace.rows();
+  const double unit = scene.metresPerUnit();
+  std::vector<Sample> along;
+  std::vector<Sample> across;
+  std::vector<double> port_at;
+  Sample lowest{0.0, 0.0};
+  Sample highest{0.0, 0.0};
+  double way = 0.0;
+  Vec3 direction(0.0);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i > 0) {
+      const Vec3 step = rows[i].hip - rows[i - 1].hip;
+      way += glm::length(step) / unit;
+      direction = unitOr(step, direction);
+    }
+    const Vec3& force = rows[i].result.force;
+    const double forward = glm::dot(force, direction);
+    along.push_back({way, forward});
+    across.push_back({way, glm::length(force - forward * direction)});
+    lowest.force = std::min(lowest.force, forward);
+    highest.force = std::max({highest.force, forward, across.back().force});
+    if (rows[i].result.event_count > 0) port_at.push_back(way);
+  }
+  const Scale x(0.0, way, kWayFrame.left, kWayFrame.right);
+  const Scale y(lowest.force, highest.force, kWayFrame.bottom, kWayFrame.top);
+  std::string out = axes(kWayFrame, x, y, "way of the hand, " + scene.lengthUnit(), "force, N");
+  const double label = kWayFrame.top - 12.0;
+  out += svgText(kWayFrame.left, label, "fill='" + std::string(kAlong) + "'",
+                 "along its way (less than 0: held back)");
+  out += svgText(kWayFrame.left + 290.0, label, "fill='" + std::string(kAcross) + "'",
+                 "square to its way");
+  for (const double at : port_at) {
+    out += svgLine(x.at(at), kWayFrame.top, x.at(at), kWayFrame.bottom, kIn);
+  }
+  if (along.empty()) return out;
+  out += curve(across, 0, across.size() - 1, x, y, kAcross);
+  return out + curve(along, 0, along.size() - 1, x, y, kAlong);
+}
+
 }  // namespace
 
-std::string forcePlot(std::span<const TraceRow> rows, const Scene& scene,
-                      const std::string& title) {
+std::string forcePlot(const Trace& trace, const Scene& scene, const std::string& title) {
+  const std::span<const TraceRow> rows = trace.rows();
   std::optional<Vec3> surface;
   for (std::size_t i = 0; i < rows.size() && !surface; ++i) {
     const TickResult& r = rows[i].result;
-    if (r.contact || r.event_count > 0) surface = r.contact ? r.proxy : rows[i].hip;
+    if (rows[i].entry_count > 0) {
+      surface = trace.entriesOf(rows[i]).front().point;
+    } else if (r.contact || r.event_count > 0) {
+      surface = r.proxy;
+    }
   }
   const Vec3 origin = surface.value_or(rows.empty() ? Vec3(0.0) : rows.front().hip);
   Vec3 furthest(0.0);
@@ -117,13 +171,20 @@ std::string forcePlot(std::span<const TraceRow> rows, const Scene& scene,
   const Scale x(lowest.depth, highest.depth, kFrame.left, kFrame.right);
   const Scale y(lowest.force, highest.force, kFrame.bottom, kFrame.top);
 
-  std::string out = svgPage(kWidth, kHeight);
+  double off = 0.0;
+  for (const TraceRow& row : rows) {
+    const Vec3 from = row.hip - origin;
+    off = std::max(off, glm::length(from - glm::dot(from, axis) * axis));
+  }
+  const bool is_straight = !(off > kOffWay * (highest.depth - lowest.depth) * unit);
+  std::string out = svgPage(kWidth, is_straight ? kHeight : kWayHeight);
   out += svgText(kFrame.left, 34.0, "font-size='20'", title);
   out += svgText(kFrame.left, 58.0, "fill='" + std::string(kIn) + "'", "going in");
   if (turn + 1 < rows.size()) {
     out += svgText(kFrame.left + 90.0, 58.0, "fill='" + std::string(kOut) + "'", "coming back");
   }
-  out += axes(x, y, scene.lengthUnit());
+  out +=
+      axes(kFrame, x, y, "depth of the hand, " + scene.lengthUnit(), "force against the way in, N");
   // Ports passed on the way in hang from the top, those on the way back stand on the bottom; names that would
   // run into each other stand one above the other.
   constexpr double kNameWidth = 130.0;
@@ -149,6 +210,7 @@ std::string forcePlot(std::span<const TraceRow> rows, const Scene& scene,
     out += curve(samples, turn, samples.size() - 1, x, y, kOut);
     out += curve(samples, 0, turn, x, y, kIn);
   }
+  if (!is_straight) out += wayPanel(trace, scene);
   return out + "</svg>\n";
 }
 

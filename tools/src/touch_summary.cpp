@@ -8,15 +8,65 @@
 
 namespace palpate::tools {
 
-TouchSummary summarize(std::span<const TraceRow> rows, RendererKind kind) {
+namespace {
+
+/// Follows the proxy from region to region.
+class Visits {
+ public:
+  void add(const TraceRow& row, std::span<const RegionEntry> entries) {
+    const TickResult& r = row.result;
+    if (visits_.empty()) begin(row.t, entries.empty() ? r.region : entries.front().from);
+    for (const RegionEntry& entry : entries) pass(row.t, entry);
+    // Depths count from where the probe first met a wall: pressed one, or passed a port.
+    if (!first_wall_ && (r.contact || r.event_count > 0)) first_wall_ = r.proxy;
+    // Entries that a full trace dropped.
+    if (visits_.back().region != r.region) begin(row.t, r.region, depthOf(r.proxy));
+    Visit& now = visits_.back();
+    now.seconds = row.t - now.t;
+    now.depth = std::max(now.depth, depthOf(r.proxy));
+    now.peak_force = std::max(now.ticks == 0 ? 0.0 : now.peak_force, glm::length(r.force));
+    ++now.ticks;
+  }
+  [[nodiscard]] std::vector<Visit> take() { return std::move(visits_); }
+
+ private:
+  void begin(double t, RegionId region, double depth = 0.0) {
+    Visit visit;
+    visit.region = region;
+    visit.t = t;
+    visit.entry_depth = visit.depth = depth;
+    visits_.push_back(visit);
+  }
+  void pass(double t, const RegionEntry& entry) {
+    if (!first_wall_) first_wall_ = entry.point;
+    const double depth = depthOf(entry.point);
+    Visit& left = visits_.back();
+    left.depth = std::max(left.depth, depth);
+    left.seconds = t - left.t;
+    if (left.ticks == 0) left.peak_force = entry.force + entry.cut;
+    begin(t, entry.to, depth);
+    visits_.back().port = entry.port;
+    visits_.back().rupture = entry.force;
+  }
+  [[nodiscard]] double depthOf(const Vec3& p) const {
+    return first_wall_ ? glm::distance(*first_wall_, p) : 0.0;
+  }
+
+  std::vector<Visit> visits_;
+  std::optional<Vec3> first_wall_;
+};
+
+}  // namespace
+
+TouchSummary summarize(const Trace& trace, RendererKind kind) {
   TouchSummary summary;
+  const std::span<const TraceRow> rows = trace.rows();
   if (kind == RendererKind::kConstraint) summary.unsettled.emplace();
   summary.ticks = rows.size();
   if (rows.empty()) return summary;
   summary.seconds = rows.back().t - rows.front().t;
 
-  // Depths count from where the probe first met a surface: pressed a wall or passed a port.
-  std::optional<Vec3> first_surface;
+  Visits visits;
   std::vector<std::int64_t> times;
   times.reserve(rows.size());
   const TraceRow* before = nullptr;
@@ -27,18 +77,8 @@ TouchSummary summarize(std::span<const TraceRow> rows, RendererKind kind) {
     }
     before = &row;
     times.push_back(row.tick_ns);
-    const bool new_region = summary.visits.empty() || summary.visits.back().region != r.region;
-    if (!first_surface &&
-        (r.contact || r.event_count > 0 || (new_region && !summary.visits.empty()))) {
-      first_surface = r.proxy;
-    }
-    const double depth = first_surface ? glm::distance(*first_surface, r.proxy) : 0.0;
-    if (new_region) summary.visits.push_back({r.region, row.t, 0.0, depth, depth, 0.0});
-    Visit& visit = summary.visits.back();
+    visits.add(row, trace.entriesOf(row));
     const double force = glm::length(r.force);
-    visit.seconds = row.t - visit.t;
-    visit.depth = std::max(visit.depth, depth);
-    visit.peak_force = std::max(visit.peak_force, force);
     if (force > summary.peak_force) {
       summary.peak_force = force;
       summary.peak_force_at = r.proxy;
@@ -47,6 +87,7 @@ TouchSummary summarize(std::span<const TraceRow> rows, RendererKind kind) {
     if (summary.unsettled) summary.unsettled->add(r.settled);
     for (std::size_t i = 0; i < r.event_count; ++i) summary.ports.push_back({row.t, r.events[i]});
   }
+  summary.visits = visits.take();
   summary.met_something = summary.contact_ticks > 0 || !summary.ports.empty() ||
                           summary.visits.size() > 1 || summary.peak_force > 0.0;
   std::sort(times.begin(), times.end());
@@ -71,12 +112,15 @@ Json summaryJson(const TouchSummary& s, const Scene& scene) {
   json["source_work_J"] = s.source_work;
   json["regions"] = Json::array();
   for (const Visit& v : s.visits) {
-    json["regions"].push_back({{"region", scene.regions()[v.region].name},
-                               {"t", v.t},
-                               {"seconds", v.seconds},
-                               {"entry_depth_m", v.entry_depth},
-                               {"depth_m", v.depth},
-                               {"peak_force_N", v.peak_force}});
+    json["regions"].push_back(
+        {{"region", scene.regions()[v.region].name},
+         {"t", v.t},
+         {"seconds", v.seconds},
+         {"port", v.port < 0 ? Json() : Json(scene.ports()[static_cast<std::size_t>(v.port)].name)},
+         {"rupture_N", v.rupture > 0.0 ? Json(v.rupture) : Json()},
+         {"entry_depth_m", v.entry_depth},
+         {"depth_m", v.depth},
+         {"peak_force_N", v.peak_force}});
   }
   json["events"] = Json::array();
   for (const PassedPort& p : s.ports) {
@@ -90,14 +134,21 @@ Json summaryJson(const TouchSummary& s, const Scene& scene) {
 std::string summaryText(const TouchSummary& s, const Scene& scene) {
   const double unit = scene.metresPerUnit();
   const std::string& name = scene.lengthUnit();
-  const auto length = [&](double metres) { return formatNumber(metres / unit, 4) + " " + name; };
+  // A proxy stands off its wall by a rounding error, which is no depth.
+  constexpr double kNoDepth = 1e-9;  // [m]
+  const auto length = [&](double metres) {
+    return formatNumber(metres < kNoDepth ? 0.0 : metres / unit, 4) + " " + name;
+  };
 
-  std::string text = "Regions in order (depth below the first surface met)\n";
-  Table table({"#", "region", "entered at", "depth at entry", "deepest", "peak force"});
+  std::string text = "Regions in order (depth of walls and tip from the first wall met)\n";
+  Table table(
+      {"#", "region", "entered at", "depth at entry", "wall gave way at", "deepest", "peak force"});
   for (std::size_t i = 0; i < s.visits.size(); ++i) {
     const Visit& v = s.visits[i];
     table.add({std::to_string(i + 1), scene.regions()[v.region].name, formatNumber(v.t, 4) + " s",
-               length(v.entry_depth), length(v.depth), formatNumber(v.peak_force, 3) + " N"});
+               length(v.entry_depth),
+               v.rupture > 0.0 ? formatNumber(v.rupture, 3) + " N" : std::string("-"),
+               length(v.depth), formatNumber(v.peak_force, 3) + " N"});
   }
   text += table.text("  ");
 
@@ -117,7 +168,8 @@ std::string summaryText(const TouchSummary& s, const Scene& scene) {
   if (s.peak_force > 0.0) text += " at " + formatVector(s.peak_force_at / unit) + " " + name;
   text += "\nWork        " + formatNumber(s.work, 4) + " J on the hand";
   if (s.source_work != 0.0) {
-    text += ", where flows and lattices gave " + formatNumber(s.source_work, 4) + " J";
+    text += ", where flows, lattices and walls met behind others gave " +
+            formatNumber(s.source_work, 4) + " J";
   }
   text += "\nTicks       " + formatCount(s.ticks) + " in " + formatNumber(s.seconds, 4) +
           " s of hand time, " + formatCount(s.contact_ticks) + " in contact\n";

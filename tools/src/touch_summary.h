@@ -14,14 +14,21 @@
 
 namespace palpate::tools {
 
-/// A stay of the proxy in one region.
+/// A stay of the proxy in one region. Depths are of walls and of the proxy, never of the hand.
 struct Visit {
   RegionId region = kOutside;
-  double t = 0.0;            ///< [s] of entering
-  double seconds = 0.0;      ///< [s] to the end of the stay
-  double entry_depth = 0.0;  ///< [m] from where the first surface was met, straight, when it began
-  double depth = 0.0;        ///< [m] the same, at most during the stay
-  double peak_force = 0.0;   ///< [N]
+  double t = 0.0;        ///< [s] of entering
+  double seconds = 0.0;  ///< [s] to the end of the stay
+  int port = -1;         ///< PortId that it was entered by; -1: by none
+  double rupture =
+      0.0;  ///< [N] elastic normal force that the wall into it gave way to; 0: it stood open
+  double entry_depth =
+      0.0;  ///< [m] of the wall it was entered by, straight from where the first wall was met
+  double depth = 0.0;  ///< [m] the same of the proxy, and of the wall it was left by, at most
+  /// [N] on the hand. Where the tip went all through it within one tick: what its far wall gave way to, plus what its
+  /// content took to be cut.
+  double peak_force = 0.0;
+  std::uint64_t ticks = 0;  ///< that ended in it
 };
 
 /// One passage through a port.
@@ -47,7 +54,7 @@ struct TouchSummary {
   double tick_median = 0.0, tick_p99 = 0.0, tick_p999 = 0.0, tick_max = 0.0;  ///< [ns]
 };
 
-[[nodiscard]] TouchSummary summarize(std::span<const TraceRow> rows, RendererKind kind);
+[[nodiscard]] TouchSummary summarize(const Trace& trace, RendererKind kind);
 
 [[nodiscard]] Json summaryJson(const TouchSummary& summary, const Scene& scene);
 [[nodiscard]] std::string summaryText(const TouchSummary& summary, const Scene& scene);

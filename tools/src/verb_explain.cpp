@@ -59,6 +59,9 @@ std::vector<std::string> conditions(const Transition& t, const Scene& scene,
     if (port.hole_radius > 0.0 && port.reopens_at < t.force.range().most) {
       all.back() += " (in a hole: " + formatNumber(port.reopens_at) + " N)";
     }
+    if (port.rate.ratio != 1.0) {
+      all.back() += " (by a fast hand: " + formatNumber(port.rate.ratio) + " times as much)";
+    }
   }
   return all;
 }
@@ -125,6 +128,7 @@ std::string contentText(const Material& content) {
   add(content.lattice.force, ", lattice ", " N");
   add(content.cutting, ", cut by ", " N");
   add(content.shaft.in.kinetic_force, ", holds a shaft by ", " N/m");
+  add(content.shaft.lateral.stiffness, ", sideways by ", " N/m^2");
   return text + ")";
 }
 
@@ -285,6 +289,9 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
     json["back_N"] = parameterJson(port.back);
     json["hole"] = port.hole_radius > 0.0
                        ? Json{{"radius_m", port.hole_radius}, {"reopens_at_N", port.reopens_at}}
+                       : Json();
+    json["rate"] = port.rate.ratio != 1.0
+                       ? Json{{"ratio", port.rate.ratio}, {"speed_m_per_s", port.rate.speed}}
                        : Json();
     json["rearm_m"] = port.rearm;
     report.json["ports"].push_back(std::move(json));

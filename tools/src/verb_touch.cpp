@@ -108,7 +108,7 @@ Trace follow(HapticRenderer& renderer, devices::Path path, const devices::ServoS
     row.result = renderer.update({state.position, state.velocity, dt});
     const auto after = std::chrono::steady_clock::now();
     row.tick_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count();
-    trace.add(row);
+    trace.add(row, renderer.entries());
     return row.result.force;
   };
   report = devices::runServo(device, tick, settings, stopRequested());
@@ -239,7 +239,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   const Trace trace = follow(*renderer, std::move(path), servo, changes, servo_report);
   checkExit(servo_report.exit);
   const RendererKind kind = settings.kind.value_or(scene->renderer());
-  TouchSummary summary = summarize(trace.rows(), kind);
+  TouchSummary summary = summarize(trace, kind);
   summary.source_work = renderer->sourceWork();
 
   if (!options.trace.empty()) files.write(options.trace, traceCsv(trace.rows(), *scene));
@@ -254,7 +254,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   }
   if (!options.plot.empty()) {
     const std::string title = std::filesystem::path(options.scene).filename().string();
-    files.write(options.plot, forcePlot(trace.rows(), *scene, title));
+    files.write(options.plot, forcePlot(trace, *scene, title));
   }
   checkStop();
   files.commit();

@@ -128,6 +128,8 @@ void CellWalker::cross(LeafId leaf, const Facet& facet, double force) noexcept {
   ++state_;
   const bool by_port = facet.kind == Facet::Kind::kOpen || facet.opens;
   if (facet.beyond == here_.region && !by_port) return;
+  const Vec3 normal =
+      unitOr(came_from * leaves_[leaf].field->sample(here_.point).gradient, Vec3(0.0));
   const bool keep = scene_.keepsMemory();
   const Passages& passages = scene_.passages();
   if (by_port) {
@@ -136,17 +138,25 @@ void CellWalker::cross(LeafId leaf, const Facet& facet, double force) noexcept {
     if (event_count_ < events_.size()) {
       using How = PortCrossing::How;
       const How forced = facet.opens ? How::kPuncture : How::kOpen;
-      const Vec3 gradient = leaves_[leaf].field->sample(here_.point).gradient;
-      crossings_[event_count_] = {facet.port,   here_.region,
-                                  facet.beyond, facet.in_hole ? How::kHole : forced,
-                                  here_.point,  unitOr(came_from * gradient, Vec3(0.0)),
-                                  force};
+      crossings_[event_count_] = {
+          facet.port,  here_.region, facet.beyond, facet.in_hole ? How::kHole : forced,
+          here_.point, normal,       force};
       events_[event_count_++] = facet.port;
     }
   } else {
     passages.arrive(here_.passed, here_.region, facet.beyond, keep);
   }
   if (facet.beyond == here_.region) return;  // a port of a sheet
+  if (entry_count_ < entries_.size()) {
+    entries_[entry_count_++] = {
+        .from = here_.region,
+        .to = facet.beyond,
+        .port = by_port ? static_cast<int>(facet.port) : -1,
+        .point = here_.point,
+        .normal = normal,
+        .force = force,
+        .hole_radius = by_port ? scene_.ports()[facet.port].hole_radius : 0.0};
+  }
   here_.region = facet.beyond;
   here_.mouth = leaf;
 }

@@ -62,6 +62,7 @@ void CellWalker::resume() noexcept {
 
 void CellWalker::beginTick() noexcept {
   event_count_ = 0;
+  entry_count_ = 0;
   here_.punctures.visit(here_.point);
   crossings_left_ = limits::kCrossings;
   evaluations_left_ = limits::kEvaluationsPerTick;

@@ -122,6 +122,13 @@ class CellWalker {
   [[nodiscard]] std::span<const PortCrossing> crossings() const noexcept {
     return {crossings_.data(), event_count_};
   }
+  /// The regions come into in this tick, in path order.
+  [[nodiscard]] std::span<RegionEntry> entries() noexcept {
+    return {entries_.data(), entry_count_};
+  }
+  [[nodiscard]] std::span<const RegionEntry> entries() const noexcept {
+    return {entries_.data(), entry_count_};
+  }
   /// The leaf whose facet the region was last entered through; -1 if it was not entered.
   [[nodiscard]] int mouth() const noexcept { return here_.mouth; }
 
@@ -182,6 +189,8 @@ class CellWalker {
   std::uint8_t event_count_ = 0;
   std::array<PortId, TickResult::kMaxEvents> events_{};
   std::array<PortCrossing, TickResult::kMaxEvents> crossings_{};
+  std::array<RegionEntry, limits::kCrossings> entries_{};
+  std::size_t entry_count_ = 0;
   int crossings_left_ = 0;
   int evaluations_left_ = 0;
 

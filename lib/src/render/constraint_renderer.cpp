@@ -1,5 +1,7 @@
 #include "constraint_renderer.h"
 
+#include <algorithm>
+
 #include "start_point.h"
 
 namespace palpate {
@@ -18,7 +20,12 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   TickResult out;
   if (!state_.has_begun) start(hip.position);
   walker_.beginTick();
+  velocity_ = hip.velocity;
+  has_given_way_ = false;
   out.settled = solver_.track(hip.position, state_.friction, *this);
+  if (has_given_way_) {
+    state_.source.work += std::max(0.0, storedBehind(solver_.contact()) - released_);
+  }
   feel_.fadeContent(hip.position);
 
   out.proxy = walker_.position() + solver_.contact().snug;
@@ -46,13 +53,38 @@ bool ConstraintRenderer::open(const ContactSet& contact) noexcept {
   for (const WallContact& each : contact.walls()) {
     if (!each.facet.opens) continue;
     const double elastic = feel_.springOf(each).force(each.held.multiplier);
-    if (elastic >= each.facet.opens_at &&
+    // In a hole nothing is torn.
+    const double share =
+        each.facet.in_hole
+            ? 1.0
+            : scene_->ports()[each.facet.port].rate.share(-glm::dot(velocity_, each.held.normal));
+    if (elastic >= share * each.facet.opens_at &&
         each.held.multiplier >= walker_.punctures().restOf(each.facet.port)) {
+      if (!has_given_way_) released_ = storedBehind(contact);
+      has_given_way_ = true;
       walker_.cross(each.leaf, each.facet, elastic);
       return true;
     }
   }
   return false;
+}
+
+/// [J] by the wall that counts most, where walls of several kinds hold the proxy.
+double ConstraintRenderer::storedBehind(const ContactSet& contact) noexcept {
+  return contact.count > 0 ? feel_.springOf(contact.wall[0]).energy(contact.load()) : 0.0;
+}
+
+Vec3 ConstraintRenderer::needleForce(const HipState& hip) noexcept {
+  const HeldWalls held = solver_.contact().held();
+  HeldWalls hard;
+  for (const WallContact& each : solver_.contact().walls()) {
+    if (!each.facet.opens) hard.wall[hard.count++] = each.held;
+  }
+  const Insertion::Force force =
+      state_.needle.step(contents_, {walker_.position(), hip.position, hip.velocity,
+                                     walker_.region(), walker_.entries(), hard.walls()});
+  // What is stored sideways is by the place of the tip, which on a wall goes along with the hand beside it only.
+  return force.tip + (held.count > 0 ? gradientByHand(force.lateral, held.walls()) : force.lateral);
 }
 
 Vec3 ConstraintRenderer::contentForce(const HipState& hip) noexcept {
@@ -65,10 +97,7 @@ Vec3 ConstraintRenderer::contentForce(const HipState& hip) noexcept {
     force +=
         solver_.contact().count > 0 ? gradientByHand(push, solver_.contact().held().walls()) : push;
   }
-  if (contents_.holdNeedles()) {
-    force += state_.needle.step(contents_, scene_->ports(),
-                                {x, hip.velocity, region, walker_.crossings()});
-  }
+  if (contents_.holdNeedles()) force += needleForce(hip);
   return force;
 }
 

@@ -24,6 +24,7 @@ TickResult HapticRenderer::update(const HipState& hip) noexcept {
     source.flow_push = Vec3(0.0);
     state_.last.event_count = 0;
     crossing_count_ = 0;
+    entry_count_ = 0;
     TickResult held = state_.last;
     held.force = state_.guard.apply(Vec3(0.0), hip.dt);
     return held;
@@ -41,6 +42,7 @@ TickResult HapticRenderer::update(const HipState& hip) noexcept {
   state_.hip = hip.position;
   state_.last = out;
   crossing_count_ = out.event_count;
+  entry_count_ = entered().size();
   return out;
 }
 
@@ -51,6 +53,7 @@ void HapticRenderer::reset() noexcept {
   state_.guard = guard;
   state_.last.region = scene_->startRegion();
   crossing_count_ = 0;
+  entry_count_ = 0;
   resume();
 }
 
@@ -73,6 +76,7 @@ bool HapticRenderer::setState(const RendererState& state) noexcept {
   if (!fits) return false;
   state_ = state;
   crossing_count_ = 0;
+  entry_count_ = 0;
   resume();
   return true;
 }

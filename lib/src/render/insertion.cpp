@@ -1,6 +1,7 @@
 #include "palpate/render/insertion.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -20,6 +21,13 @@ ShaftLaw shaftLaw(const Material& material, const Vec3& p) noexcept {
   return {way(shaft.in), way(shaft.out), shaft.stiffness, shaft.stick_speed};
 }
 
+/// What the content of `region` takes to be cut, [N] on a tip at `tip` [m].
+Vec3 cutForce(const Contents& contents, RegionId region, Cut& cut, const Vec3& tip) noexcept {
+  const Material* tissue = contents.material(region);
+  if (tissue == nullptr || !contents.holdsNeedle(region)) return Vec3(0.0);
+  return cut.step(tip, tissue->stiffness.at(cut.end()), contents.cutting(region, tip));
+}
+
 }  // namespace
 
 bool Insertion::isOf(std::size_t regions) const noexcept {
@@ -30,27 +38,23 @@ bool Insertion::isOf(std::size_t regions) const noexcept {
              [&](const Layer& layer) { return layer.from < regions && layer.region < regions; });
 }
 
-Vec3 Insertion::step(const Contents& contents, std::span<const Port> ports,
-                     const Tick& tick) noexcept {
+Insertion::Force Insertion::step(const Contents& contents, const Tick& tick) noexcept {
   if (!started_) {
     started_ = true;
     tip_ = tick.tip;
-    region_ = tick.crossings.empty() ? tick.region : tick.crossings.front().from;
+    region_ = tick.entries.empty() ? tick.region : tick.entries.front().from;
   }
   velocity_ = tick.velocity;
-  for (const PortCrossing& crossing : tick.crossings) {
-    // What was crossed in between without a port was crossed there or before.
-    if (crossing.from != region_) {
-      cross(contents, {region_, crossing.from, crossing.point, Vec3(0.0), 0.0});
-    }
-    cross(contents, {crossing.from, crossing.to, crossing.point, crossing.normal,
-                     ports[crossing.port].hole_radius});
+  for (RegionEntry& entry : tick.entries) cross(contents, entry);
+  if (tick.region != region_) {
+    // More entries than a tick tells of.
+    RegionEntry rest{.from = region_, .to = tick.region, .point = tip_};
+    cross(contents, rest);
   }
-  if (tick.region != region_) cross(contents, {region_, tick.region, tip_, Vec3(0.0), 0.0});
 
   if (count_ == 0 && !is_lost_ && contents.holdsNeedle(region_)) {
     // It began in there, or the content holds needles since it was changed: as if it had just come in.
-    push({region_, region_, tick.tip, Vec3(0.0), 0.0});
+    push({.from = region_, .to = region_, .point = tick.tip});
   }
 
   if (count_ > 1) {
@@ -59,42 +63,66 @@ Vec3 Insertion::step(const Contents& contents, std::span<const Port> ports,
     const Vec3 along = unitOr(entry - layers_[0].cut.entry(), Vec3(0.0));
     if (!contents.holdsNeedle(last.region) && glm::dot(tick.tip - entry, along) < -kAround) letGo();
   }
-  Vec3 force(0.0);
-  if (count_ > 0) {
-    const Vec3 way = tick.tip - layers_[0].cut.entry();
-    const double reach = glm::length(way);
-    const Vec3 axis = unitOr(way, Vec3(0.0));
-    force = -shaftForce(contents, tick, axis, reach - reach_) * axis;
-    reach_ = reach;
-    Layer& layer = layers_[count_ - 1];
-    const Material* tissue = contents.material(layer.region);
-    if (tissue != nullptr && contents.holdsNeedle(layer.region)) {
-      force += layer.cut.step(tick.tip, tissue->stiffness.at(layer.cut.end()),
-                              contents.cutting(layer.region, tick.tip));
-    }
-  }
   tip_ = tick.tip;
-  return force;
+  if (count_ == 0) {
+    felt_ = Vec3(0.0);
+    beyond_ = tick.hand - tick.tip;
+    return {};
+  }
+  const ShaftForce shaft = shaftForce(contents, tick);
+  Layer& layer = layers_[count_ - 1];
+  layer.cut.restOn(tick.tip, tick.rests_on);
+  const Vec3 cut = cutForce(contents, layer.region, layer.cut, tick.tip);
+  felt_ = feltBeyond(cut - shaft.against * shaft.axis, tick);
+  return {felt_ - shaft.damping * shaft.axis, shaft.lateral};
 }
 
-/// [N] of all tissues together, against going in.
-double Insertion::shaftForce(const Contents& contents, const Tick& tick, const Vec3& axis,
-                             double advance) noexcept {
-  double sum = 0.0;
+/// What the hand feels of a `force` [N] on the tip. While the tip stays behind, by `beyond`, a change of the force by df
+/// gives the hand -beyond df over the way back.
+Vec3 Insertion::feltBeyond(const Vec3& force, const Tick& tick) noexcept {
+  const Vec3 beyond = tick.hand - tick.tip;
+  const Vec3 before = std::exchange(beyond_, beyond);
+  // What changed while the tip went along with the hand, from wall to wall or through them, was felt as it did.
+  if (glm::dot(before, beyond) <= 0.0 || !tick.entries.empty()) return force;
+  const double taken = glm::dot(beyond, force - felt_);
+  if (taken >= 0.0) return force;
+  return force - taken / glm::dot(beyond, beyond) * beyond;
+}
+
+/// Of all tissues together.
+Insertion::ShaftForce Insertion::shaftForce(const Contents& contents, const Tick& tick) noexcept {
+  const Vec3& fulcrum = layers_[0].cut.entry();
+  const double reach = glm::distance(fulcrum, tick.tip);
+  const Vec3 axis = unitOr(tick.tip - fulcrum, Vec3(0.0));
+  const double advance = reach - reach_;
   const double speed = glm::dot(tick.velocity, axis);
+  ShaftForce out;
+  out.axis = axis;
+  Vec3 turning(0.0);  // [N m] about the fulcrum
   for (std::size_t i = 0; i < count_; ++i) {
-    const Material* tissue = contents.material(layers_[i].region);
+    Layer& layer = layers_[i];
+    const Material* tissue = contents.material(layer.region);
     if (tissue == nullptr || !(tissue->shaft.stiffness > 0.0)) continue;
-    const Vec3& begin = layers_[i].cut.entry();
+    const Vec3& begin = layer.cut.entry();
     const Vec3& end = i + 1 < count_ ? layers_[i + 1].cut.entry() : tick.tip;
     // The mean of what varies evenly is what it is in the middle.
     const ShaftLaw law = shaftLaw(*tissue, 0.5 * (begin + end));
-    sum += layers_[i].slip.step(law, glm::distance(begin, end), advance, speed);
+    const double length = glm::distance(begin, end);
+    const double all = layer.slip.step(law, length, advance, speed);
+    const double sticking = law.stiffness * layer.slip.stretch() * length;
+    out.against += sticking;
+    out.damping += all - sticking;
+    const ShaftFriction::Lateral& lateral = tissue->shaft.lateral;
+    if (!(lateral.stiffness > 0.0)) continue;
+    turning += layer.channel.step({lateral.stiffness, lateral.strength},
+                                  glm::distance(fulcrum, begin), glm::distance(fulcrum, end), axis);
   }
-  return sum;
+  reach_ = reach;
+  if (reach > 0.0) out.lateral = turning / reach;
+  return out;
 }
 
-void Insertion::cross(const Contents& contents, const Step& step) noexcept {
+void Insertion::cross(const Contents& contents, RegionEntry& step) noexcept {
   region_ = step.to;
   // Begun inside, it is not known where the shaft came in: out of there it is free.
   if (count_ == 1 && layers_[0].from == layers_[0].region) letGo();
@@ -115,13 +143,15 @@ void Insertion::cross(const Contents& contents, const Step& step) noexcept {
     return;
   }
   if (count_ > 0 && contents.holdsNeedle(layers_[count_ - 1].region)) {
-    layers_[count_ - 1].cut.passTo(step.point);
+    Layer& last = layers_[count_ - 1];
+    step.cut = glm::length(cutForce(contents, last.region, last.cut, step.point));
+    last.cut.passTo(step.point);
   }
   push(step);
 }
 
 /// Whether going on like this leaves `layer` by the side that it was entered through.
-bool Insertion::isBackThrough(const Layer& layer, const Step& step) const noexcept {
+bool Insertion::isBackThrough(const Layer& layer, const RegionEntry& step) const noexcept {
   const double turn = glm::dot(layer.normal, step.normal);
   if (turn != 0.0) return turn < 0.0;
   const Vec3& entry = layer.cut.entry();
@@ -131,10 +161,10 @@ bool Insertion::isBackThrough(const Layer& layer, const Step& step) const noexce
          glm::dot(velocity_, step.point - layers_[0].cut.entry()) < 0.0;
 }
 
-void Insertion::push(const Step& step) noexcept {
+void Insertion::push(const RegionEntry& step) noexcept {
   if (count_ == 0) reach_ = 0.0;
   Layer& layer = layers_[count_++];
-  layer = {step.from, step.to, step.normal, Cut(step.point), {}};
+  layer = {step.from, step.to, step.normal, Cut(step.point), {}, {}};
   const Remembered* before = cutNear(step.to, step.point, std::max(step.hole_radius, kSameWay));
   if (before != nullptr) layer.cut = before->cut.enteredAt(step.point);
 }

@@ -17,6 +17,7 @@ void PaperRenderer::advance(const Vec3& hip, TickResult& out) noexcept {
   const Partition& partition = scene_->partition();
   partition.signsAt(hip, now_);
   cell_.assign(state_.place.sides);
+  entry_count_ = 0;
   bool goes_on = now_ != state_.place.sides;
   for (std::size_t tries = 0; goes_on && tries < TickResult::kMaxEvents; ++tries) {
     goes_on = partition.regionOf(cell_) == state_.place.region;
@@ -24,7 +25,7 @@ void PaperRenderer::advance(const Vec3& hip, TickResult& out) noexcept {
     const auto ports = scene_->passages().portsOf(state_.place.region);
     goes_on =
         std::any_of(ports.begin(), ports.end(), [&](PortId id) { return tryPort(id, hip, out); }) ||
-        tryAbsentWalls();
+        tryAbsentWalls(hip);
   }
   state_.place.sides.assign(now_);
 }
@@ -69,26 +70,27 @@ bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcep
       }
       scene_->passages().pass(state_.place.passed, id, state_.place.region, to,
                               scene_->keepsMemory());
-      crossings_[out.event_count] = {.port = id,
-                                     .from = state_.place.region,
-                                     .to = to,
-                                     .point = point,
-                                     .normal = unitOr(state_.hip - hip, Vec3(0.0))};
+      const Vec3 back = unitOr(state_.hip - hip, Vec3(0.0));
+      crossings_[out.event_count] = {
+          .port = id, .from = state_.place.region, .to = to, .point = point, .normal = back};
       out.events[out.event_count++] = id;
-      enter(to);
+      enter({.from = state_.place.region, .to = to, .port = id, .point = point, .normal = back});
       return true;
     }
   }
   return false;
 }
 
-bool PaperRenderer::tryAbsentWalls() noexcept {
+bool PaperRenderer::tryAbsentWalls(const Vec3& hip) noexcept {
   const Partition& partition = scene_->partition();
   for (const RegionId to : free_ways_of_[state_.place.region]) {
     const RegionId inner = std::max(state_.place.region, to);
     if (!turn(partition.leavesOfRegion(inner)) || partition.regionOf(turned_) != to) continue;
     scene_->passages().arrive(state_.place.passed, state_.place.region, to, scene_->keepsMemory());
-    enter(to);
+    enter({.from = state_.place.region,
+           .to = to,
+           .point = crossingPoint(hip),
+           .normal = unitOr(state_.hip - hip, Vec3(0.0))});
     return true;
   }
   return false;
@@ -107,9 +109,10 @@ Vec3 PaperRenderer::crossingPoint(const Vec3& hip) const noexcept {
   return behind;
 }
 
-void PaperRenderer::enter(RegionId region) noexcept {
+void PaperRenderer::enter(const RegionEntry& entry) noexcept {
   cell_.assign(turned_);
-  state_.place.region = region;
+  state_.place.region = entry.to;
+  if (entry_count_ < entries_.size()) entries_[entry_count_++] = entry;
   openFaces();
 }
 

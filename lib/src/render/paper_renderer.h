@@ -34,6 +34,9 @@ class PaperRenderer final : public HapticRenderer {
   [[nodiscard]] std::span<const PortCrossing> details() const noexcept override {
     return crossings_;
   }
+  [[nodiscard]] std::span<const RegionEntry> entered() const noexcept override {
+    return {entries_.data(), entry_count_};
+  }
 
   struct Layer {
     PaperWall wall;
@@ -46,11 +49,11 @@ class PaperRenderer final : public HapticRenderer {
   // Ports: paper_ports.cpp
   void advance(const Vec3& hip, TickResult& out) noexcept;
   [[nodiscard]] bool tryPort(PortId id, const Vec3& hip, TickResult& out) noexcept;
-  [[nodiscard]] bool tryAbsentWalls() noexcept;
+  [[nodiscard]] bool tryAbsentWalls(const Vec3& hip) noexcept;
   /// Gives the leaves that changed since cell_ their present signs there, into turned_. False if none did.
   [[nodiscard]] bool turn(std::span<const LeafId> leaves) noexcept;
   [[nodiscard]] Vec3 crossingPoint(const Vec3& hip) const noexcept;
-  void enter(RegionId region) noexcept;
+  void enter(const RegionEntry& entry) noexcept;
   void openFaces() noexcept;
 
   // Forces: paper_renderer.cpp
@@ -65,6 +68,8 @@ class PaperRenderer final : public HapticRenderer {
 
   // Of this tick.
   std::array<PortCrossing, TickResult::kMaxEvents> crossings_{};
+  std::array<RegionEntry, TickResult::kMaxEvents> entries_{};
+  std::size_t entry_count_ = 0;
   Signs now_;     ///< the cell of the HIP
   Signs cell_;    ///< the cell before it, and behind the ports passed since
   Signs turned_;  ///< the same behind a port that is looked at

@@ -82,6 +82,14 @@ std::vector<Port> SceneCompiler::makePorts() {
           "port " + quoted(given.name) + " opens at a force that is not 0 N or more everywhere",
           "all values of opens_at and back must be finite numbers from 0 on");
     }
+    if (!(given.rate.ratio > 0.0 && std::isfinite(given.rate.ratio)) ||
+        !(given.rate.speed >= 0.0 && std::isfinite(given.rate.speed)) ||
+        (given.rate.ratio != 1.0 && given.rate.speed == 0.0)) {
+      throw errorAt(given.place, "scene.range",
+                    "the rate of port " + quoted(given.name) + " is out of range",
+                    "its ratio and its speed must be finite and more than 0");
+    }
+    port.rate = given.rate;
     port.hole_radius = given.hole_radius;
     port.reopens_at = given.reopens_at;
     port.rearm = given.rearm;

@@ -61,6 +61,12 @@ void checkTissue(const Material& material, const std::string& of) {
   const ShaftFriction& shaft = material.shaft;
   refuse(!(shaft.stiffness >= 0.0 && std::isfinite(shaft.stiffness) && shaft.stick_speed >= 0.0),
          "its shaft friction is out of range", "stiffness and stick speed must be 0 or more");
+  refuse(!(shaft.lateral.stiffness >= 0.0 && std::isfinite(shaft.lateral.stiffness) &&
+           shaft.lateral.strength > 0.0),
+         "its shaft is held sideways by what is out of range",
+         "the lateral stiffness must be 0 or more, the strength more than 0");
+  refuse(shaft.lateral.stiffness > 0.0 && !(shaft.stiffness > 0.0),
+         "its shaft is held sideways only", "give the shaft's friction a stiffness too");
   for (const ShaftFriction::Way* way : {&shaft.in, &shaft.out}) {
     checkParameter(way->static_force, "static shaft friction", of);
     checkParameter(way->kinetic_force, "kinetic shaft friction", of);

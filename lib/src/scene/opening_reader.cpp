@@ -80,7 +80,7 @@ void RegionReader::requireOpeningForce(const MapReader& reader, std::string_view
       "give it the force: opens_at: 2 N");
 }
 
-/// What opening it by force leaves behind.
+/// How it opens by force, and what that leaves behind.
 void RegionReader::readPuncture(MapReader& reader, PortDescription& port) const {
   if (const Node* hole = reader.optional("hole")) {
     requireOpeningForce(reader, "hole", port);
@@ -94,6 +94,21 @@ void RegionReader::readPuncture(MapReader& reader, PortDescription& port) const 
       throw inner.errorAt("reopens_at", "scene.range",
                           "'reopens_at' is more than what opens the port where it has no hole",
                           "make it less than opens_at and back");
+    }
+    inner.finish();
+  }
+  if (const Node* rate = reader.optional("rate")) {
+    requireOpeningForce(reader, "rate", port);
+    MapReader inner(loader_, *rate, "'rate'");
+    port.rate.ratio = inner.requireNumber("ratio");
+    if (!(port.rate.ratio > 0.0)) {
+      throw inner.errorAt("ratio", "scene.range", "'ratio' must be more than 0",
+                          "less than 1: a fast hand needs less force; more than 1: it needs more");
+    }
+    (void)inner.require("speed");
+    port.rate.speed = inner.quantityOr("speed", Dimension::kVelocity, 0.0);
+    if (!(port.rate.speed > 0.0)) {
+      throw inner.errorAt("speed", "scene.range", "'speed' must be more than 0");
     }
     inner.finish();
   }

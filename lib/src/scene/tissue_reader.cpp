@@ -110,6 +110,17 @@ ShaftFriction::Way readWay(const SceneLoader& loader, const Node& node, const st
   return {held, slides, damping};
 }
 
+ShaftFriction::Lateral readLateral(const SceneLoader& loader, const Node& node) {
+  MapReader reader(loader, node, "'lateral'");
+  ShaftFriction::Lateral lateral;
+  lateral.stiffness = positive(reader, "stiffness", Dimension::kStiffness2);
+  if (reader.optional("strength") != nullptr) {
+    lateral.strength = positive(reader, "strength", Dimension::kStiffness);
+  }
+  reader.finish();
+  return lateral;
+}
+
 ShaftFriction readShaft(const SceneLoader& loader, const Node& node) {
   MapReader reader(loader, node, "'shaft'");
   ShaftFriction shaft;
@@ -121,6 +132,9 @@ ShaftFriction readShaft(const SceneLoader& loader, const Node& node) {
   shaft.in = readWay(loader, reader.require("in"), "'in' of 'shaft'");
   const Node* out = reader.optional("out");
   shaft.out = out != nullptr ? readWay(loader, *out, "'out' of 'shaft'") : shaft.in;
+  if (const Node* lateral = reader.optional("lateral")) {
+    shaft.lateral = readLateral(loader, *lateral);
+  }
   reader.finish();
   return shaft;
 }

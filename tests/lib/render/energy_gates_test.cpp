@@ -39,6 +39,12 @@ const Key kKeys[] = {
      "stiffness: 500 N/m, cutting: 0.2 N, shaft: {stiffness: 1e5 N/m^2, in: {static: 18 N/m, "
      "kinetic: 10 "
      "N/m}}"},
+    {"shaft held sideways", "stiffness: 1000 N/m",
+     "stiffness: 500 N/m, shaft: {stiffness: 1e5 N/m^2, in: {static: 0 N/m}, lateral: {stiffness: "
+     "3.6e4 N/m^2}}"},
+    {"needle", "stiffness: 1000 N/m",
+     "stiffness: 500 N/m, cutting: 0.2 N, shaft: {stiffness: 1e5 N/m^2, in: {static: 18 N/m, "
+     "kinetic: 10 N/m, damping: 50 N.s/m^2}, lateral: {stiffness: 3.6e4 N/m^2, strength: 60 N/m}}"},
 };
 
 struct Place {
@@ -70,6 +76,12 @@ const Place kPlaces[] = {
      "[{name: a, inside: {sphere: {center: [0, 0, 0], radius: 8}}, wall: m, content: c}]\nstart: "
      "{region: a}",
      mm(0, 0, 0), mm(0, 0, 8.2)},
+    {"below an open floor, over another wall",
+     "[{name: a, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: m, content: "
+     "c}, "
+     "{name: b, inside: {half_space: {point: [0, 0, -12], normal: [0.3, 0, 1]}}, wall: other}]\n"
+     "ports: [{name: p, between: [outside, a]}]",
+     mm(0, 0, 10), mm(0, 0, -12.2)},
 };
 
 ScenePtr sceneOf(const Key& key, const Place& place) {

@@ -346,6 +346,24 @@ INSTANTIATE_TEST_SUITE_P(
         marked("HoleInAnOpenPort",
                port("  - {name: p, between: [outside, skin], hole: @{radius: 1}}\n"),
                "scene.no_opening_force", "always open", "opens_at"),
+        marked("RateOfAnOpenPort",
+               port("  - {name: p, between: [outside, skin], rate: @{ratio: 1, speed: 1 mm/s}}\n"),
+               "scene.no_opening_force", "'rate'", "opens_at"),
+        marked(
+            "RateRatio",
+            port(
+                "  - {name: p, between: [outside, skin], opens_at: 1 N, rate: {ratio: @0, speed: 1 "
+                "mm/s}}\n"),
+            "scene.range", "'ratio'", "fast hand"),
+        marked(
+            "RateSpeed",
+            port(
+                "  - {name: p, between: [outside, skin], opens_at: 1 N, rate: {ratio: 2, speed: @0 "
+                "mm/s}}\n"),
+            "scene.range", "'speed'", ""),
+        marked("RateWithoutSpeed",
+               port("  - {name: p, between: [outside, skin], opens_at: 1 N, rate: @{ratio: 2}}\n"),
+               "scene.missing_key", "'speed'", ""),
         marked("RearmOfAnOpenPort", port("  - {name: p, between: [outside, skin], rearm: @0.5}\n"),
                "scene.no_opening_force", "'rearm'", "opens_at"),
         marked("HoleWithoutRadius",

@@ -61,6 +61,18 @@ INSTANTIATE_TEST_SUITE_P(
                "scene.unknown_key", "'dampin'", "'damping'"),
         marked("ShaftStiffness", material("shaft: {stiffness: @0 N/m^2, in: {static: 5 N/m}}"),
                "scene.range", "more than 0", ""),
+        marked("Lateral",
+               material("shaft: {stiffness: 1 N/m^2, in: {static: 5 N/m}, lateral: {stiffness: @0 "
+                        "N/m^2}}"),
+               "scene.range", "more than 0", ""),
+        marked("LateralUnit",
+               material("shaft: {stiffness: 1 N/m^2, in: {static: 5 N/m}, lateral: {stiffness: @1 "
+                        "N/m}}"),
+               "scene.unit", "stiffness per length", "N/m^2"),
+        marked("LateralStrength",
+               material("shaft: {stiffness: 1 N/m^2, in: {static: 5 N/m}, lateral: {stiffness: 1 "
+                        "N/m^2, strength: @0 N/m}}"),
+               "scene.range", "more than 0", ""),
         marked("StickSpeed",
                material("shaft: {stiffness: 1 N/m^2, stick_speed: @-1 mm/s, in: {static: 5 N/m}}"),
                "scene.range", "0 or more", "")),
@@ -73,7 +85,7 @@ TEST(TissueMaterials, AreReadAsWritten) {
           "maxwell: {stiffness: 200 N/m, time: 50 ms}, "
           "lattice: {force: 100 mN, wavelength: [4, 0, 8], origin: [1, 2, 3]}, cutting: 0.6 N, "
           "shaft: {stiffness: 1e5 N/m^2, in: {static: 18 N/m, kinetic: 10 N/m, damping: 290 "
-          "N.s/m^2}}"),
+          "N.s/m^2}, lateral: {stiffness: 0.04 N/mm^2, strength: 0.2 N/mm}}"),
       "test.yaml");
   const Material& m = scene.materials.at(0);
   const Vec3 o(0.0);
@@ -88,6 +100,8 @@ TEST(TissueMaterials, AreReadAsWritten) {
   EXPECT_EQ(m.cutting.at(o), 0.6);
   EXPECT_EQ(m.shaft.stiffness, 1e5);
   EXPECT_EQ(m.shaft.stick_speed, 1e-3);
+  EXPECT_EQ(m.shaft.lateral.stiffness, 4e4);
+  EXPECT_EQ(m.shaft.lateral.strength, 200.0);
   for (const ShaftFriction::Way* way : {&m.shaft.in, &m.shaft.out}) {
     EXPECT_EQ(way->static_force.at(o), 18.0);
     EXPECT_EQ(way->kinetic_force.at(o), 10.0);

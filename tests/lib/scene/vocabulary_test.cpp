@@ -71,6 +71,9 @@ const std::vector<Probe>& probes() {
       {"lattice",
        "materials: {m: {stiffness: 1 N/m, lattice: {force: 1 mN, wavelength: [9, 9, 9], @}}}\n"},
       {"shaft", "materials: {m: {shaft: {stiffness: 1 N/m^2, in: {static: 1 N/m}, @}}}\n"},
+      {"lateral",
+       "materials: {m: {shaft: {stiffness: 1 N/m^2, in: {static: 1 N/m}, lateral: {stiffness: 1 "
+       "N/m^2, @}}}}\n"},
       {"shaft_way", "materials: {m: {shaft: {stiffness: 1 N/m^2, in: {static: 1 N/m, @}}}}\n"},
       {"composite", "materials: {m: {composite: {radius: 1, depth: 9, @}}}\n"},
       {"map_of_grid", "materials: {m: {stiffness: {grid: {file: a.vdb}, @}}}\n"},
@@ -92,6 +95,8 @@ const std::vector<Probe>& probes() {
                             "ports:\n  - {name: q, between: [a, outside]}\n  - {name: p, between: "
                             "[a, outside], after: [{port: q, @}]}\n"},
       {"grids", layers + "grids: {tolerance: 1, @}\n"},
+      {"rate", layers + "ports:\n  - {name: p, between: [a, outside], opens_at: 1 N, rate: {ratio: "
+                        "2, speed: 1 mm/s, @}}\n"},
       {"hole", layers +
                    "ports:\n  - {name: p, between: [a, outside], opens_at: 1 N, hole: {radius: "
                    "1, @}}\n"},

@@ -1,6 +1,9 @@
 #pragma once
 /// The way that a tip cuts through a tissue, and the force that it takes.
 
+#include <span>
+
+#include "palpate/contact/slide.h"
 #include "palpate/core/math.h"
 
 namespace palpate {
@@ -19,6 +22,9 @@ class Cut {
   /// The tip is at `tip` [m]; the tissue is as stiff as `stiffness` [N/m] and gives way at
   /// `cutting_force` [N]. Returns the force [N] on the tip.
   [[nodiscard]] Vec3 step(const Vec3& tip, double stiffness, double cutting_force) noexcept;
+  /// The tip is at `tip` [m], on the walls `rests_on` (at most 3), which cannot be cut: the tissue before them is cut
+  /// through, and presses no more against them. Comes before step().
+  void restOn(const Vec3& tip, std::span<const HeldWall> rests_on) noexcept;
 
   [[nodiscard]] const Vec3& entry() const noexcept { return entry_; }  ///< [m]
   [[nodiscard]] const Vec3& end() const noexcept { return end_; }      ///< [m]
@@ -32,6 +38,16 @@ class Cut {
   }
 
  private:
+  /// Where a tip at `tip` [m] is free to be, nearest to it.
+  struct Near {
+    Vec3 point{0.0, 0.0, 0.0};  ///< [m]
+    Vec3 way{0.0, 0.0, 0.0};    ///< [m] of the cut
+    double length = 0.0;        ///< [m] of it
+    double share = 1.0;         ///< [-] of it that lies before the tip: 1 at its end or beyond
+  };
+  [[nodiscard]] Near nearest(const Vec3& tip) const noexcept;
+  void moveTo(const Near& near, const Vec3& torn) noexcept;
+
   Vec3 entry_{0.0, 0.0, 0.0};
   Vec3 end_{0.0, 0.0, 0.0};
 };

@@ -23,6 +23,10 @@ struct WallSpring {
   [[nodiscard]] static double energyPerStiffening(double depth) noexcept {
     return depth > 0.0 ? depth * depth * depth / 3.0 : 0.0;
   }
+  /// [J] stored, `depth` [m] deep.
+  [[nodiscard]] double energy(double depth) const noexcept {
+    return stiffness * energyPerStiffness(depth) + stiffening * energyPerStiffening(depth);
+  }
 
  private:
   /// (depth / reference)^(exponent - 1)

@@ -23,6 +23,22 @@ struct PassedBefore {
   PassedBefore(PortId before = 0, int at_least = 1) : port(before), times(at_least) {}
 };
 
+/// How the force that a wall gives way to depends on the speed v >= 0 [m/s] of the hand into it: that at rest times
+///   1 + (ratio - 1) v / (v + speed).
+/// So it goes from the force at rest to `ratio` times as much, which a fast hand comes near to, and is half way there at
+/// `speed`. That faster insertion makes the force and the deformation at rupture approach a limit, at a speed that is as
+/// the inverse of the tissue's relaxation time, is of Mahvash and Dupont 2010 (10.1109/TBME.2009.2036856); the curve
+/// between both ends is the simplest one that does so.
+struct RuptureRate {
+  double ratio = 1.0;  ///< [-] more than 0; 1: the speed does not matter
+  double speed = 0.0;  ///< [m/s] 0 or more, more than 0 unless `ratio` is 1
+
+  /// [-] of the force at rest
+  [[nodiscard]] double share(double v) const noexcept {
+    return v > 0.0 && ratio != 1.0 ? 1.0 + (ratio - 1.0) * v / (v + speed) : 1.0;
+  }
+};
+
 /// One opening. Regions may be several on each side (globs). Immutable after set-up.
 struct Port {
   std::string name;
@@ -39,6 +55,7 @@ struct Port {
       opens_at;  ///< [N] elastic normal force at which it opens; 0: always open. A map holds at the
                  ///< point touched; where it is 0, the lightest touch opens
   Parameter back;            ///< [N] the same for coming back
+  RuptureRate rate;          ///< how both depend on the speed that the wall is pressed at
   double hole_radius = 0.0;  ///< [m] of the hole that opening it by force leaves; 0: none is left
   double reopens_at =
       0.0;  ///< [N] in such a hole instead of opens_at and back, where these are more

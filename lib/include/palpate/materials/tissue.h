@@ -59,6 +59,14 @@ struct ShaftFriction {
   Way out;                 ///< while it is drawn out
   double stiffness = 0.0;  ///< [N/m^2] of the tissue that sticks to it, per length; 0: no friction
   double stick_speed = 0.0;  ///< [m/s] what slides slower sticks again, as what turns around does
+
+  /// Against sideways motion of that part: a Winkler foundation, as for beams in an elastic medium (Vesic 1961).
+  struct Lateral {
+    double stiffness = 0.0;  ///< [N/m^2] load per length over displacement; 0: none
+    double strength =
+        kInfinity;  ///< [N/m] mean load per length at which the tissue tears; more than 0
+  };
+  Lateral lateral;
 };
 
 }  // namespace palpate

@@ -43,6 +43,12 @@ class HapticRenderer {
     return details().first(crossing_count_);
   }
 
+  /// The regions that the proxy came into in the last update(), in path order: each layer that it went through, however
+  /// many there were. The last one is TickResult::region, if there is any. Valid until the next update().
+  [[nodiscard]] std::span<const RegionEntry> entries() const noexcept {
+    return entered().first(entry_count_);
+  }
+
   /// From the next tick on, the content of `region` feels as `change` says; what is felt may jump. False, and
   /// nothing is changed, for an unknown region or a value out of its range. Real-time safe, on the thread
   /// that update() is called on. It stays so after reset(); an empty change takes it back.
@@ -51,7 +57,8 @@ class HapticRenderer {
   }
 
   /// [J] Work on the hand since the first tick, up to the last, of what is a source of energy by its nature: flows,
-  /// and lattices whose potential differs where a region is entered and left. A hand that got no more than
+  /// lattices whose potential differs where a region is entered and left, and walls that give way while the hand is so
+  /// far ahead that the next one it comes to press holds more than they did. A hand that got no more than
   /// this from the renderer met a passive world. Counted before the limits of the force.
   [[nodiscard]] double sourceWork() const noexcept { return state_.source.work; }
 
@@ -62,7 +69,7 @@ class HapticRenderer {
   [[nodiscard]] const RendererState& state() const noexcept { return state_; }
   /// Goes on from `state` as the renderer that it was taken from would, but for rounding: what a renderer knows of the
   /// leaves around it, which is not part of the state, decides which of them it looks at once more. False, and nothing is changed, if it cannot be a state of this scene. What setContent() changed is
-  /// not part of it. Until the next tick crossings() is empty.
+  /// not part of it. Until the next tick crossings() and entries() are empty.
   [[nodiscard]] bool setState(const RendererState& state) noexcept;
 
  protected:
@@ -90,8 +97,11 @@ class HapticRenderer {
   virtual void resume() noexcept = 0;
   /// At least as many crossings as the last step() reported events.
   [[nodiscard]] virtual std::span<const PortCrossing> details() const noexcept = 0;
+  /// The entries of the last step().
+  [[nodiscard]] virtual std::span<const RegionEntry> entered() const noexcept = 0;
 
   std::size_t crossing_count_ = 0;  ///< of the last tick
+  std::size_t entry_count_ = 0;     ///< of the last tick
 };
 
 /// @throws Error (kInput) if the scene is null or asks the paper's renderer for what it cannot do.

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "palpate/contact/cut.h"
+#include "palpate/contact/shaft_channel.h"
 #include "palpate/contact/shaft_slip.h"
 #include "palpate/render/contents.h"
 #include "palpate/render/tick.h"
@@ -14,8 +15,19 @@
 namespace palpate {
 
 /// The needle is straight and rigid, and its tip is the proxy: its shaft lies along the line from where it
-/// first went in to the tip. Tissues pierced one after another each hold the part of the shaft that is in
-/// them; only the one that the tip is in is cut. A value of fixed size; real-time safe.
+/// first went in, which is its fulcrum, to the tip. Tissues pierced one after another each hold the part of the shaft
+/// that is in them, along it and sideways; only the one that the tip is in is cut.
+///
+/// A tick takes the tip through the walls one after the other, however far ahead the hand is: each wall is met with the
+/// tip at it, is pressed by as much as the hand is beyond it, and gives way to its own force or stops the tip. Each
+/// tissue gone through is cut all the way from where it was entered to where it was left, and holds that much of the
+/// shaft from then on. A tip on a wall that no force opens cuts nothing of what is before it.
+///
+/// Where a wall holds the tip, the hand goes on without it, and what friction and cutting push with is felt all that
+/// way. It must not change out there to what gives the hand more on its way back than it took on its way in: the part
+/// of it towards the wall then stays what it was, until the tip is at the hand again or goes through.
+///
+/// A value of fixed size; real-time safe.
 class Insertion {
  public:
   /// Tissues that the shaft is in at the same time. Pierced beyond that, all let go until the tip is out.
@@ -24,15 +36,20 @@ class Insertion {
   static constexpr std::size_t kMaxCuts = 32;
 
   struct Tick {
-    Vec3 tip{0.0, 0.0, 0.0};       ///< [m] the proxy
-    Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s] of the hand
-    RegionId region = kOutside;    ///< of the proxy
-    std::span<const PortCrossing> crossings;
+    Vec3 tip{0.0, 0.0, 0.0};               ///< [m] the proxy
+    Vec3 hand{0.0, 0.0, 0.0};              ///< [m]
+    Vec3 velocity{0.0, 0.0, 0.0};          ///< [m/s] of the hand
+    RegionId region = kOutside;            ///< of the proxy
+    std::span<RegionEntry> entries;        ///< of this tick; their `cut` is filled in
+    std::span<const HeldWall> rests_on{};  ///< walls that hold the proxy and open to no force
+  };
+  struct Force {
+    Vec3 tip{0.0, 0.0, 0.0};  ///< [N] on the hand, of cutting and of friction along the shaft
+    Vec3 lateral{0.0, 0.0,
+                 0.0};  ///< [N] on the proxy, square to the shaft: the slope of what is stored
   };
 
-  /// The force [N] on the hand.
-  [[nodiscard]] Vec3 step(const Contents& contents, std::span<const Port> ports,
-                          const Tick& tick) noexcept;
+  [[nodiscard]] Force step(const Contents& contents, const Tick& tick) noexcept;
   void reset() noexcept { *this = {}; }
   /// Whether this can be an insertion in a scene of so many regions.
   [[nodiscard]] bool isOf(std::size_t regions) const noexcept;
@@ -45,27 +62,27 @@ class Insertion {
     Vec3 normal{0.0, 0.0, 0.0};  ///< [-] where it was entered, back to `from`; zero if not known
     Cut cut;                     ///< begins where it was entered
     ShaftSlip slip;
+    ShaftChannel channel;
   };
   struct Remembered {
     RegionId region = kOutside;
     Cut cut;
   };
-  struct Step {
-    RegionId from = kOutside;
-    RegionId to = kOutside;
-    Vec3 point{0.0, 0.0, 0.0};
-    Vec3 normal{0.0, 0.0, 0.0};
-    double hole_radius = 0.0;  ///< [m]
-  };
 
-  void cross(const Contents& contents, const Step& step) noexcept;
-  void push(const Step& step) noexcept;
+  void cross(const Contents& contents, RegionEntry& step) noexcept;
+  void push(const RegionEntry& step) noexcept;
   void pop() noexcept;
   void letGo() noexcept;
-  [[nodiscard]] bool isBackThrough(const Layer& layer, const Step& step) const noexcept;
+  [[nodiscard]] bool isBackThrough(const Layer& layer, const RegionEntry& step) const noexcept;
   [[nodiscard]] Remembered* cutNear(RegionId region, const Vec3& p, double radius) noexcept;
-  [[nodiscard]] double shaftForce(const Contents& contents, const Tick& tick, const Vec3& axis,
-                                  double advance) noexcept;
+  struct ShaftForce {
+    double against = 0.0;         ///< [N] going in, of what sticks to the shaft
+    double damping = 0.0;         ///< [N] going in, by the speed
+    Vec3 axis{0.0, 0.0, 0.0};     ///< [-] the way in
+    Vec3 lateral{0.0, 0.0, 0.0};  ///< [N]
+  };
+  [[nodiscard]] ShaftForce shaftForce(const Contents& contents, const Tick& tick) noexcept;
+  [[nodiscard]] Vec3 feltBeyond(const Vec3& force, const Tick& tick) noexcept;
 
   std::array<Layer, kMaxLayers> layers_{};
   std::size_t count_ = 0;
@@ -77,6 +94,8 @@ class Insertion {
   RegionId region_ = kOutside;    ///< at the last step
   Vec3 tip_{0.0, 0.0, 0.0};       ///< [m] at the last step
   Vec3 velocity_{0.0, 0.0, 0.0};  ///< [m/s] at this step
+  Vec3 felt_{0.0, 0.0, 0.0};      ///< [N] of cutting and what sticks, at the last step
+  Vec3 beyond_{0.0, 0.0, 0.0};    ///< [m] from the tip to the hand, at the last step
   double reach_ = 0.0;  ///< [m] from where the shaft first went in to the tip, at the last step
 };
 

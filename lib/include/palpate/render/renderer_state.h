@@ -67,7 +67,7 @@ struct SourceState {
   double work = 0.0;  ///< [J] done on the hand since the first tick
 };
 
-/// A value of fixed size, about 22 kB: copied in about a microsecond. Each part says what happens when it is full. A scene
+/// A value of fixed size, about 24 kB: copied in about a microsecond. Each part says what happens when it is full. A scene
 /// that needs more leaves (Signs::kMaxLeaves) or counted ports (PassedPorts::kCapacity) than there is room for
 /// is refused when it is compiled.
 struct RendererState {

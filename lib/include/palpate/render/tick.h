@@ -34,10 +34,26 @@ struct PortCrossing {
   double force = 0.0;  ///< [N] elastic normal force that it gave way to; 0 where it stood open
 };
 
+/// How the proxy got from one region into the next: through a port, or across a wall that is absent.
+struct RegionEntry {
+  RegionId from = kOutside;
+  RegionId to = kOutside;
+  int port = -1;              ///< PortId; -1: an absent wall
+  Vec3 point{0.0, 0.0, 0.0};  ///< [m, world] of the wall, where it was crossed
+  Vec3 normal{0.0, 0.0,
+              0.0};  ///< [-, world] of the wall there, back to `from`; zero where it has none
+  double force =
+      0.0;  ///< [N] elastic normal force that the wall gave way to; 0 where none was needed
+  double cut =
+      0.0;  ///< [N] what the content of `from` took to be cut through to there; 0 without a needle
+  double hole_radius = 0.0;  ///< [m] Port::hole_radius
+};
+
 /// What one tick came to.
 struct TickResult {
   /// Crossings that one tick can make: what would cross more often goes on in the next tick.
   static constexpr std::size_t kMaxEvents = 32;
+  static_assert(kMaxEvents <= 255, "event_count counts them");
 
   Vec3 force{0.0, 0.0, 0.0};  ///< [N, world] on the hand; always finite
   Vec3 proxy{0.0, 0.0, 0.0};  ///< [m, world] the tip held in its region

@@ -1,6 +1,7 @@
 #pragma once
 /// Traces: one row a tick, kept in memory reserved beforehand, written as CSV afterwards.
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -14,27 +15,50 @@ struct TraceRow {
   double t = 0.0;           ///< [s]
   Vec3 hip{0.0, 0.0, 0.0};  ///< [m]
   TickResult result = {};
-  std::int64_t tick_ns = 0;  ///< [ns] of the renderer's update alone
+  std::int64_t tick_ns = 0;     ///< [ns] of the renderer's update alone
+  std::size_t first_entry = 0;  ///< of this tick among Trace::entries()
+  std::size_t entry_count = 0;
 };
 
 /// Fixed capacity, so that adding a row never allocates.
 class Trace {
  public:
-  explicit Trace(std::size_t capacity) { rows_.reserve(capacity); }
-  /// Adds a row; beyond the capacity rows are counted as dropped, never silently.
-  void add(const TraceRow& row) noexcept {
-    if (rows_.size() < rows_.capacity()) {
-      rows_.push_back(row);
-    } else {
+  /// Of regions entered there is room for one a row, and for kMoreEntries more.
+  static constexpr std::size_t kMoreEntries = 1024;
+
+  explicit Trace(std::size_t capacity) {
+    rows_.reserve(capacity);
+    entries_.reserve(capacity + kMoreEntries);
+  }
+  /// Adds a row and the regions entered in its tick; rows beyond the capacity, and entries that there is no room for,
+  /// are counted as dropped, never silently.
+  void add(TraceRow row, std::span<const RegionEntry> entries = {}) noexcept {
+    if (rows_.size() == rows_.capacity()) {
       ++dropped_;
+      return;
     }
+    row.first_entry = entries_.size();
+    row.entry_count = std::min(entries.size(), entries_.capacity() - entries_.size());
+    dropped_entries_ += entries.size() - row.entry_count;
+    const std::span<const RegionEntry> kept = entries.first(row.entry_count);
+    entries_.insert(entries_.end(), kept.begin(), kept.end());
+    rows_.push_back(row);
   }
   [[nodiscard]] std::span<const TraceRow> rows() const noexcept { return rows_; }
+  /// HapticRenderer::entries() of all rows, in order.
+  [[nodiscard]] std::span<const RegionEntry> entries() const noexcept { return entries_; }
+  /// Those of one of rows().
+  [[nodiscard]] std::span<const RegionEntry> entriesOf(const TraceRow& row) const noexcept {
+    return std::span<const RegionEntry>(entries_).subspan(row.first_entry, row.entry_count);
+  }
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
+  [[nodiscard]] std::uint64_t droppedEntries() const noexcept { return dropped_entries_; }
 
  private:
   std::vector<TraceRow> rows_;
+  std::vector<RegionEntry> entries_;
   std::uint64_t dropped_ = 0;
+  std::uint64_t dropped_entries_ = 0;
 };
 
 /// As CSV, with the header
