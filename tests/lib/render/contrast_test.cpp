@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "lib/render/energy_loop.h"
-#include "palpate/contact/contact_patch.h"
 #include "palpate/fields/primitives.h"
 #include "support/test_maps.h"
 
@@ -44,43 +43,6 @@ ScenePtr sceneWith(const FieldPtr& field, const Parameter& stiffness) {
 }
 
 const FieldPtr kFloor = halfSpace(Vec3(0.0), Vec3(0, 0, 1));
-
-TEST(ContactPatch, ItsSlopesAreThoseOfTheMean) {
-  const MaterialMapPtr map = std::make_shared<FunctionMap>(
-      [](const Vec3& p) {
-        const Vec3 k(900.0, 700.0, -400.0);
-        const double phase = glm::dot(k, p) + 0.4;
-        return MaterialMap::Sample{600.0 + 200.0 * std::sin(phase), 200.0 * std::cos(phase) * k};
-      },
-      MaterialMap::Range{400.0, 800.0});
-  const Parameter parameter(map);
-  Random random(2);
-  for (int i = 0; i < 100; ++i) {
-    const Vec3 middle = random.in({mm(-3, -3, -3), mm(3, 3, 3)});
-    const Vec3 press = random.uniform(0.2e-3, 4e-3) * random.direction();
-    const double contrast = 0.5e-3;
-    const PatchSample here = overPatch(parameter, middle, press, contrast);
-    const double by = 1e-8;
-    for (int axis = 0; axis < 3; ++axis) {
-      Vec3 off(0.0);
-      off[axis] = by;
-      const double place = (overPatch(parameter, middle + off, press, contrast).value -
-                            overPatch(parameter, middle - off, press, contrast).value) /
-                           (2.0 * by);
-      EXPECT_NEAR(here.by_place[axis], place, 0.05) << i;
-      const double pressed = (overPatch(parameter, middle, press + off, contrast).value -
-                              overPatch(parameter, middle, press - off, contrast).value) /
-                             (2.0 * by);
-      EXPECT_NEAR(here.by_press[axis], pressed, 0.05) << i;
-    }
-  }
-}
-
-TEST(ContactPatch, IsAPointForALightPressAndAsWideAsADeepOneIsDeep) {
-  EXPECT_EQ(patchRadius(0.5e-3, 1e-3), 0.0);
-  EXPECT_EQ(patchRadius(5.0, kInfinity), 0.0);
-  EXPECT_NEAR(patchRadius(0.1, 1e-3), 0.099, 1e-5);
-}
 
 // Ten times as stiff from one voxel to the next: the term for the slope alone pushed sideways with 60 N where the wall
 // pushed back with 15 N.
