@@ -1,6 +1,7 @@
 // The scanned head of data/scenes, region by region along the needle's path.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -21,7 +22,14 @@ TEST(HeadScene, ANeedlePassesSkinBrainAndThalamusInThatOrder) {
   registerKinds(registry, {[&](const GridRecord& record) { grids.push_back(record); },
                            [&](const std::string& note) { notes.push_back(note); }});
   const ScenePtr scene = compile(readScene(PALPATE_SOURCE_DIR "/data/scenes/head.yaml", registry));
-  EXPECT_EQ(notes.size(), 3U);  // one for each file: unit code 0
+  const auto naming = [&](const char* text) {
+    return std::count_if(notes.begin(), notes.end(), [&](const std::string& note) {
+      return note.find(text) != std::string::npos;
+    });
+  };
+  EXPECT_EQ(naming("unit code 0"), 3) << "one for each file";
+  EXPECT_EQ(naming("brain: "), 1) << "folds that bend within a voxel";
+  EXPECT_EQ(notes.size(), 4U);
   EXPECT_GE(grids.size(), 3U);
   for (const GridRecord& grid : grids) {
     std::printf("  %-40s %9llu voxels, %6.1f MB, %.2f s\n", grid.what.c_str(),

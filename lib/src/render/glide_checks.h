@@ -26,9 +26,11 @@ namespace palpate {
          std::fabs(off) <= bent * length + limits::kNoise * here.tolerance;
 }
 
-/// Whether a way of `length` [m] is short enough for a wall that bends by `bend` [1/m].
-[[nodiscard]] inline bool isShortFor(const Leaf& leaf, double bend, double length) noexcept {
-  return bend * length <= limits::kGlidesFar &&
+/// Whether a way of `length` [m] over which the normal turns by no more than `turn` [rad] is short enough for a wall
+/// that bends by `bend` [1/m].
+[[nodiscard]] inline bool isShortFor(const Leaf& leaf, double bend, double length,
+                                     double turn = limits::kTurnsMore) noexcept {
+  return bend * length <= turn &&
          (leaf.is_flat || length <= limits::kShareOfFeature * leaf.feature);
 }
 

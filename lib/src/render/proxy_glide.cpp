@@ -130,17 +130,16 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
     const bool is_rest = is_on && glm::dot(pull, pull) <= rest_ * rest_;
     if (is_rest && multiplier * bend_size < 1.0 - limits::kFirm) break;
     Vec3 step(0.0);
-    if (!ballStep(normal, side, pull, multiplier, bend, bend_square, step) &&
-        !newtonAlong(normal, pull, side * multiplier * bend, step)) {
-      return false;
-    }
+    const bool is_ball = ballStep(normal, side, pull, multiplier, bend, bend_square, step);
+    if (!is_ball && !newtonAlong(normal, pull, side * multiplier * bend, step)) return false;
     if (is_rest) break;
 
     step -= sink * normal;
     const Vec3 to = y + step;
     const double length = glm::length(step);
     const double way = y == x ? length : glm::length(to - x);
-    if (!isShortFor(leaf, bend_size, way)) return false;
+    const double turn = is_ball ? limits::kGlidesFar : limits::kTurnsMore;
+    if (!isShortFor(leaf, bend_size, way, turn)) return false;
     jet = leaf.field->jet(to);
     const WallThere there = wallOf(id, leaf, {jet.value, jet.gradient, jet.in_band});
     const double meant = is_on ? gap : limits::kRest * wall.tolerance;
