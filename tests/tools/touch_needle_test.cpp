@@ -9,8 +9,8 @@ namespace {
 
 class TouchNeedle : public ::testing::Test {
  protected:
-  Json touch(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"touch", scenePath("slab.yaml"), "--json"});
+  Json touch(std::vector<std::string> arguments, const char* scene = "slab.yaml") {
+    arguments.insert(arguments.begin(), {"touch", scenePath(scene), "--json"});
     const CommandResult result = runPalpate(arguments, folder_.path());
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return parseOnly(result);
@@ -88,18 +88,17 @@ TEST_F(TouchNeedle, TheTableHasTheLayersAndTheirRuptures) {
   }
 }
 
-// 25 mm deep and 3 mm sideways: by the closed form 1.17 N of skin, fat and muscle, and what the tip cuts.
-TEST_F(TouchNeedle, TheSlabHoldsTheShaftSideways) {
-  (void)folder_.file("t.csv", "");
-  Json json = touch({"--insert", "0,0,5", "0,0,-25", "3,0,-25", "--trace", "t.csv", "--force"});
+// 25 mm deep and 3 mm sideways: by the closed form of skin, fat and muscle, and what the tip cuts.
+TEST_F(TouchNeedle, TheFlankHoldsTheShaftSideways) {
+  (void)touch({"--insert", "0,0,5", "0,0,-25", "3,0,-25", "--trace", "t.csv"}, "flank.yaml");
   const auto cells = cellsOf(linesOf(textOf(folder_.path("t.csv"))).back());
   const auto cubes = [](double a, double b) { return (b * b * b - a * a * a) / 3.0; };
   const double turning =
-      6.2e4 * cubes(0.0, 0.002) + 1.1e4 * cubes(0.002, 0.014) + 3.6e4 * cubes(0.014, 0.025);
+      6.2e4 * cubes(0.0, 0.003) + 1.5e4 * cubes(0.003, 0.015) + 3.6e4 * cubes(0.015, 0.025);
   const double reach = std::hypot(0.025, 0.003);
   const double shaft = turning / reach * (0.003 / reach) * (0.025 / reach);
-  // Within what comes in on the way sideways; the tip cuts with 0.6 N at most, mostly sideways.
-  EXPECT_GT(-std::stod(cells[7]), 0.98 * shaft + 0.3);
+  // Within what comes in on the way sideways; the tip cuts with 0.6 N at most.
+  EXPECT_GT(-std::stod(cells[7]), 0.98 * shaft);
   EXPECT_LT(-std::stod(cells[7]), 1.02 * shaft + 0.6 + 0.1);
 }
 

@@ -17,9 +17,9 @@ const std::string kSource = PALPATE_SOURCE_DIR;
 /// Those that need neither scans nor grids.
 const std::vector<std::string>& analyticScenes() {
   static const std::vector<std::string> all = {
-      "composite_tube", "container", "csg",   "csg_part", "cup",
-      "fields",         "flag",      "heart", "lattice",  "lump",
-      "metaballs",      "reference", "slab",  "sponge",   "valve_tube"};
+      "composite_tube", "container", "crease", "csg",    "csg_part",  "cup",
+      "fields",         "flag",      "flank",  "heart",  "lattice",   "lump",
+      "metaballs",      "reference", "slab",   "sponge", "valve_tube"};
   return all;
 }
 
