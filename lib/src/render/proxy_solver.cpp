@@ -182,7 +182,8 @@ void ProxySolver::pose(const NearCell& cell, CellProblem& out) const noexcept {
             {static_cast<std::uint8_t>(i), inside, -1});
     for (std::size_t c = 0; c < cuts_; ++c) {
       if (cut_[c].leaf == wall.leaf && cut_[c].inside == inside) {
-        out.add(cut_[c].plane, {static_cast<std::uint8_t>(i), inside, static_cast<std::int16_t>(c)});
+        out.add(cut_[c].plane,
+                {static_cast<std::uint8_t>(i), inside, static_cast<std::int16_t>(c)});
       }
     }
   }

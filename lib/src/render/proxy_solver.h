@@ -78,7 +78,7 @@ class ProxySolver {
   struct Source {
     std::uint8_t near = 0;  ///< index of the near wall
     bool inside = false;    ///< the side of it that the cell is on
-    std::int16_t cut = -1;   ///< index of the cut; -1: the wall as it is here
+    std::int16_t cut = -1;  ///< index of the cut; -1: the wall as it is here
 
     [[nodiscard]] bool isCut() const noexcept { return cut >= 0; }
   };
