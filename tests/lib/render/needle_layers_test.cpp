@@ -256,7 +256,7 @@ ScenePtr sceneOf(const std::vector<Tissue>& tissues, const Vec3& point, const Ve
 TEST(NeedleLayers, OneAfterTheOtherWithinATickAsTheMachineSays) {
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   const int runs = slow ? 4000 : 150;
-  const int kTicks = 1500;
+  constexpr int kTicks = 1500;
   long ticks = 0;
   long entries = 0;
   long many = 0;

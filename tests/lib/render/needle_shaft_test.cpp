@@ -11,8 +11,6 @@
 namespace palpate::test {
 namespace {
 
-using testing::EnergyMeter;
-
 /// Tissue that holds the shaft sideways and neither cuts nor rubs.
 std::string tissue(const std::string& lateral, const std::string& more = {}) {
   return "{stiffness: 300 N/m" + more +
