@@ -82,7 +82,7 @@ Row measured(const FieldPtr& field, const FieldPtr& bricks, const Mesh& mesh) {
     const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     for (int n = 0; n < 3; ++n) {
       const Vec3 on_side = 0.5 * (corners[n] + corners[(n + 1) % 3]);
-      // A wall within the solid, where parts lie in each other, is no surface.
+      // Where parts overlap, a wall within the solid does not belong to its surface.
       if (!bricks->sample(on_side).in_band || std::abs(bricks->value(on_side)) > 2.0 * kVoxel)
         continue;
       const Vec3 at = on_side + 0.2 * kVoxel * glm::normalize(middle - on_side);

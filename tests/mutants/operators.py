@@ -38,7 +38,7 @@ def blanked(text):
 
 
 def returned_by(head):
-    """The type before the name in a function's head, "" where there is no such type."""
+    """The type before the name in a function's head, or "" if it has none."""
     head = " ".join(head.split())
     if re.match(r"(if|for|while|switch|do|else|try|catch|return)\b", head) or "[" in head.split("(")[0]:
         return ""

@@ -1,4 +1,4 @@
-// palpate touch and needles: what is told of layers that the tip came into, however many in one tick.
+// palpate touch and needles: the summary names every layer that the tip came into, however many in one tick.
 
 #include <cmath>
 

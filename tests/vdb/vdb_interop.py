@@ -1,7 +1,7 @@
 """Writes .vdb files as users of python3-openvdb would, for vdb_interop_test.cpp and check_test.cpp.
 
 usage: vdb_interop.py FOLDER
-Each holds the ball about (1, 2, 3) mm with radius 6 mm, or something that is no surface.
+Each holds the ball about (1, 2, 3) mm with radius 6 mm, or something that is not a surface.
 """
 
 import sys

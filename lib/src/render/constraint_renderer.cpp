@@ -50,7 +50,7 @@ void ConstraintRenderer::start(const Vec3& hip) noexcept {
 }
 
 bool ConstraintRenderer::open(const ContactSet& contact) noexcept {
-  // NOLINTNEXTLINE(readability-use-anyofallof): it does more than to look.
+  // NOLINTNEXTLINE(readability-use-anyofallof): it does more than look.
   for (const WallContact& each : contact.walls()) {
     if (!each.facet.opens) continue;
     const double elastic = feel_.springOf(each).force(each.held.multiplier);

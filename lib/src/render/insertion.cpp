@@ -47,7 +47,7 @@ Insertion::Force Insertion::step(const Contents& contents, const Tick& tick) noe
   velocity_ = tick.velocity;
   for (RegionEntry& entry : tick.entries) cross(contents, entry);
   if (tick.region != region_) {
-    // More entries than a tick tells of.
+    // More entries than a tick has room for.
     RegionEntry rest{.from = region_, .to = tick.region, .point = tip_};
     cross(contents, rest);
   }

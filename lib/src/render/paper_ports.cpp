@@ -83,7 +83,7 @@ bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcep
 
 bool PaperRenderer::tryAbsentWalls(const Vec3& hip) noexcept {
   const Partition& partition = scene_->partition();
-  // NOLINTNEXTLINE(readability-use-anyofallof): it does more than to look.
+  // NOLINTNEXTLINE(readability-use-anyofallof): it does more than look.
   for (const RegionId to : free_ways_of_[state_.place.region]) {
     const RegionId inner = std::max(state_.place.region, to);
     if (!turn(partition.leavesOfRegion(inner)) || partition.regionOf(turned_) != to) continue;

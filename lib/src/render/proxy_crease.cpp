@@ -1,8 +1,8 @@
 #include <array>
 #include <cmath>
 
-#include "glide_checks.h"
 #include "proxy_solver.h"
+#include "step_checks.h"
 
 // A usual tick: the proxy glides along the crease where two smooth walls meet, pressed against both.
 

@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 
-#include "glide_checks.h"
 #include "proxy_solver.h"
+#include "step_checks.h"
 
 // The usual ticks: the proxy flies with the hand, or glides on one smooth wall with nothing else near. Between two:
 // proxy_crease.cpp.
@@ -25,7 +25,7 @@ struct Found {
 
 /// A wall that bends alike in all directions along it is a ball's, or a plane: the step to its point closest to a hand
 /// that is `pull` [m] away along it and `beyond` [m] behind it. `normal` is the wall's on the hand's free side, `side` times
-/// that outward. False where the wall bends otherwise, or where that point is no minimum by more than kFirm.
+/// that outward. False where the wall bends otherwise, or where that point is not a minimum by more than kFirm.
 bool ballStep(const Vec3& normal, double side, const Vec3& pull, double beyond, const Mat3& bend,
               double bend_square, Vec3& step) noexcept {
   const Vec3 by_normal = bend * normal;
@@ -47,7 +47,7 @@ bool ballStep(const Vec3& normal, double side, const Vec3& pull, double beyond, 
 }
 
 /// Newton's step along the plane with `normal`, for a hand whose part along it is `pull` [m] away: solves
-/// (I - bend) s = pull there. False where the place that it leads to is no minimum by more than kFirm.
+/// (I - bend) s = pull there. False where the place that it leads to is not a minimum by more than kFirm.
 bool newtonAlong(const Vec3& normal, const Vec3& pull, const Mat3& bend, Vec3& step) noexcept {
   Vec3 t1(0.0);
   Vec3 t2(0.0);

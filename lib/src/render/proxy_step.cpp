@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "proxy_solver.h"
+#include "step_checks.h"
 
 // One step of the proxy: to the best point of a cell that a tangent, curved and restored step gets to.
 
@@ -298,32 +299,24 @@ bool ProxySolver::keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept
   for (std::size_t i = 0; i < problem.planes; ++i) {
     const Source& from = problem.source[i];
     const NearWall& wall = near_.walls()[from.near];
-    const double turn = wall.bend_size * length;
     if (from.isCut()) continue;
-    const double dip = std::min(limits::kDipByBend * turn * length, limits::kDipByLength * length);
     const Leaf& own = walker_.leaf(wall.leaf);
     if (!own.is_flat && length > limits::kShareOfFeature * own.feature &&
         std::fabs(wall.distance) < length) {
+      // Less than what a thin wall is deep: a chord through one is not a way along another.
+      const double dip =
+          std::min(dipOfChord(wall.bend_size, length), limits::kShareOfFeature * own.feature);
       const int strides = static_cast<int>(std::ceil(length / (limits::kStride * own.feature)));
       batches_left_ -= strides / limits::kStridesPerBatch;
       for (int k = 1; k < strides; ++k) {
         const Vec3 p = x_ + (static_cast<double>(k) / strides) * (y - x_);
         const double gap = (from.inside ? -1.0 : 1.0) * own.field->value(p) / wall.slope;
-        // Less than what a thin wall is deep: a chord through one is no way along another.
-        if (gap < -std::min(dip, limits::kShareOfFeature * own.feature) - wall.tolerance) {
-          return false;
-        }
+        if (gap < -dip - wall.tolerance) return false;
       }
       continue;
     }
-    if (turn <= limits::kTurnsMuch) continue;
-    const bool is_winding = turn > limits::kTurnsMore;
-    for (const double share : {0.5, 0.25, 0.75}) {
-      if (share != 0.5 && !is_winding) break;
-      const Vec3 p = x_ + share * (y - x_);
-      const double gap = (from.inside ? -1.0 : 1.0) * own.field->value(p) / wall.slope;
-      if (gap < -dip - wall.tolerance) return false;
-    }
+    const double scale = (from.inside ? -1.0 : 1.0) / wall.slope;
+    if (!keepsOnChord(*own.field, x_, y, scale, wall.bend_size, wall.tolerance)) return false;
   }
   return true;
 }

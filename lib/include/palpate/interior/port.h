@@ -25,10 +25,10 @@ struct PassedBefore {
 
 /// How the force that a wall gives way to depends on the speed v >= 0 [m/s] of the hand into it: that at rest times
 ///   1 + (ratio - 1) v / (v + speed).
-/// So it goes from the force at rest to `ratio` times as much, which a fast hand comes near to, and is half way there at
-/// `speed`. That faster insertion makes the force and the deformation at rupture approach a limit, at a speed that is as
-/// the inverse of the tissue's relaxation time, is of Mahvash and Dupont 2010 (10.1109/TBME.2009.2036856); the curve
-/// between both ends is the simplest one that does so.
+/// A fast hand comes near to `ratio` times the force at rest, and is half way there at `speed`. Mahvash and Dupont 2010
+/// (10.1109/TBME.2009.2036856) found that the force and the deformation at rupture approach a limit as insertion gets
+/// faster, at a speed that goes with the inverse of the tissue's relaxation time. The curve between both ends is the
+/// simplest one that does so.
 struct RuptureRate {
   double ratio = 1.0;  ///< [-] more than 0; 1: the speed does not matter
   double speed = 0.0;  ///< [m/s] 0 or more, more than 0 unless `ratio` is 1

@@ -30,8 +30,7 @@ class Trace {
     rows_.reserve(capacity);
     entries_.reserve(capacity + kMoreEntries);
   }
-  /// Adds a row and the regions entered in its tick; rows beyond the capacity, and entries that there is no room for,
-  /// are counted as dropped, never silently.
+  /// Adds a row and the regions entered in its tick. Rows and entries that no longer fit are counted as dropped.
   void add(TraceRow row, std::span<const RegionEntry> entries = {}) noexcept {
     if (rows_.size() == rows_.capacity()) {
       ++dropped_;

@@ -1,5 +1,6 @@
 #pragma once
-/// What the quick ways along walls (proxy_glide.cpp, proxy_crease.cpp) ask of a wall before they trust a step on it.
+/// What the ways along walls (proxy_step.cpp, proxy_glide.cpp, proxy_crease.cpp) ask of a wall before they trust a step
+/// on it.
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +35,11 @@ namespace palpate {
          (leaf.is_flat || length <= limits::kShareOfFeature * leaf.feature);
 }
 
+/// [m] So far a chord of `length` [m] may dip into a wall that bends by `bend` [1/m].
+[[nodiscard]] inline double dipOfChord(double bend, double length) noexcept {
+  return std::min(limits::kDipByBend * bend * length, limits::kDipByLength) * length;
+}
+
 /// Whether the chord from `x` to `y` [m] keeps to the free side of `field`, but for what a wall bent by `bend` [1/m] makes
 /// it dip. A distance towards that side is S times `scale`.
 [[nodiscard]] inline bool keepsOnChord(const Field& field, const Vec3& x, const Vec3& y,
@@ -41,7 +47,7 @@ namespace palpate {
   const double length = glm::length(y - x);
   const double turn = bend * length;
   if (turn <= limits::kTurnsMuch) return true;
-  const double dip = std::min(limits::kDipByBend * turn, limits::kDipByLength) * length;
+  const double dip = dipOfChord(bend, length);
   for (const double share : {0.5, 0.25, 0.75}) {
     if (share != 0.5 && turn <= limits::kTurnsMore) break;
     if (scale * field.value(x + share * (y - x)) < -(dip + tolerance)) return false;
