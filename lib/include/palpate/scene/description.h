@@ -139,7 +139,7 @@ struct PortDescription {
   Parameter opens_at = 0.0;            ///< [N]
   std::optional<Parameter> back = {};  ///< [N]; not given: as opens_at
   double hole_radius = 0.0;            ///< [m] 0: opening it by force leaves no hole
-  double reopens_at = 0.0;             ///< [N] in a hole
+  Parameter reopens_at = 0.0;          ///< [N] in a hole
   double rearm = 0.0;                  ///< [m]
   SourcePlace place = {};
 };
