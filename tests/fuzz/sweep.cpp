@@ -132,8 +132,8 @@ int main(int argc, char** argv) {
     const std::string file = own / (std::string("mutant") + reader.extension);
     std::vector<double>
         sound;  // [s] twice what each seed takes, as the machine may be busier next time
-    for (const std::string& seed : seeds) {
-      std::ofstream(file, std::ios::binary) << seed;
+    for (const std::string& whole : seeds) {
+      std::ofstream(file, std::ios::binary) << whole;
       sound.push_back(2.0 * run(program, commandFor(reader, file, image), kMostSound).seconds);
     }
     for (const Damage& damage : palpate::fuzz::damages()) {

@@ -196,7 +196,7 @@ TEST(SharpEdges, AWallWithinTheSolidBesideASharpEdgeIsNotFelt) {
 }
 
 TEST(SharpEdges, AWallThatPassesThroughAnotherBesideASharpEdgeIsRefused) {
-  const auto codeOf = [](const Mesh& mesh) {
+  const auto code_of = [](const Mesh& mesh) {
     try {
       static_cast<void>(fieldsOf(mesh));
     } catch (const Error& error) {
@@ -205,10 +205,11 @@ TEST(SharpEdges, AWallThatPassesThroughAnotherBesideASharpEdgeIsRefused) {
     return std::string("none");
   };
   // Through the side of the can just below its rim: the rim itself stays outside of the ball.
-  EXPECT_EQ(codeOf(together(can(160), ballMesh(Vec3(15.0, 0.0, 7.0) * kMm, 2.0 * kMm, 3))),
+  EXPECT_EQ(code_of(together(can(160), ballMesh(Vec3(15.0, 0.0, 7.0) * kMm, 2.0 * kMm, 3))),
             "mesh.sharp_inner");
   // The same where no sharp edge is near does no harm: there the grid answers.
-  EXPECT_EQ(codeOf(together(can(160), ballMesh(Vec3(15.0, 0.0, 0.0) * kMm, 3.0 * kMm, 3))), "none");
+  EXPECT_EQ(code_of(together(can(160), ballMesh(Vec3(15.0, 0.0, 0.0) * kMm, 3.0 * kMm, 3))),
+            "none");
 }
 
 TEST(SharpEdges, PartsThatAreInsideOutOrWithinOthersAreTheSolidThatWasBaked) {

@@ -202,7 +202,7 @@ TEST(MaterialMaps, AHoleReopensAtTheForceOfThePlaceWhereItWasMade) {
   description.ports = {port};
   const ScenePtr scene = compile(description);
   // The force [N] at which the wall gives way at `x`, from outside.
-  const auto givesWay = [](Drive& hand, double x) {
+  const auto gives_way = [](Drive& hand, double x) {
     (void)hand.walk({x, 0, 1e-3});
     double most = 0.0;
     for (int i = 0; i < 6000 && hand.region() == "outside"; ++i) {
@@ -215,14 +215,14 @@ TEST(MaterialMaps, AHoleReopensAtTheForceOfThePlaceWhereItWasMade) {
   for (const double x : {-0.03, -0.01, 0.0, 0.02}) {
     Drive hand(scene);
     (void)hand.to({x, 0, 0.001});
-    EXPECT_NEAR(givesWay(hand, x), 3.0, 2e-3) << x;
+    EXPECT_NEAR(gives_way(hand, x), 3.0, 2e-3) << x;
     // Out again, and in a second time beside the middle of the hole: it keeps the force of where it was made.
     (void)hand.walk({x, 0, 8e-3});
     ASSERT_EQ(hand.region(), "outside");
-    EXPECT_NEAR(givesWay(hand, x + 1e-3), std::clamp(1.0 + 50.0 * x, 0.0, 4.0), 2e-3) << x;
+    EXPECT_NEAR(gives_way(hand, x + 1e-3), std::clamp(1.0 + 50.0 * x, 0.0, 4.0), 2e-3) << x;
     (void)hand.walk({x + 1e-3, 0, 8e-3});
     ASSERT_EQ(hand.region(), "outside");
-    EXPECT_NEAR(givesWay(hand, x + 9e-3), 3.0, 2e-3) << "no hole there: " << x;
+    EXPECT_NEAR(gives_way(hand, x + 9e-3), 3.0, 2e-3) << "no hole there: " << x;
   }
 }
 
