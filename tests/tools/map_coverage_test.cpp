@@ -92,5 +92,25 @@ TEST_F(MapCoverage, APortsMapIsHeldAgainstTheLayerBehindIt) {
   EXPECT_EQ(explained["map_gaps"][0]["name"], "cut/opens_at");
 }
 
+TEST_F(MapCoverage, AFlowAndTheForceOfAHoleAreHeldAgainstTheirLayersToo) {
+  (void)folder_.file("other.nii", image(500.0, 2.0));
+  (void)folder_.file(
+      "scene.yaml",
+      "palpate: 1\nlength: mm\nimages: {other: {file: other.nii}}\nmaterials:\n"
+      "  stream: {viscosity: 2 N.s/m, flow: [{image: other, transfer: [[0, -5 mm/s], "
+      "[99, 20 mm/s]]}, 0 m/s, 0 m/s]}\nlayers:\n"
+      "  - {name: ball, inside: {sphere: {center: [0, 0, 0], radius: 10}}, content: "
+      "stream}\nports:\n"
+      "  - {name: cut, between: [outside, ball], opens_at: 3 N, hole: {radius: 2, "
+      "reopens_at: {image: other, transfer: [[0, 0.1 N], [99, 1 N]]}}}\n");
+  const CommandResult result = run({"explain", "scene.yaml", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json explained = parseOnly(result);
+  ASSERT_EQ(explained["map_gaps"].size(), 2U) << explained["map_gaps"].dump(1);
+  EXPECT_EQ(explained["map_gaps"][0]["name"], "ball/flow_x");
+  EXPECT_EQ(explained["map_gaps"][1]["name"], "cut/reopens_at");
+  EXPECT_NEAR(explained["ports"][0]["hole"]["reopens_at_N"]["most"], 1.0, 1e-4);
+}
+
 }  // namespace
 }  // namespace palpate::testing

@@ -75,6 +75,13 @@ TEST_F(TouchShape, AnImage) {
   EXPECT_NE((none.err + none.out).find("--above VALUE"), std::string::npos) << none.err << none.out;
 }
 
+TEST_F(TouchShape, WhatIsGreaterThanAThresholdInAnImageOfDistancesIsTold) {
+  make("ball.nii.gz");
+  const CommandResult result = touch({"ball.nii.gz", "--above", "0"});
+  EXPECT_NE(result.err.find("look like signed distances"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("--distances"), std::string::npos) << result.err;
+}
+
 TEST_F(TouchShape, AMotionOfOnesOwn) {
   make("ball.vdb");
   const CommandResult result =

@@ -140,6 +140,27 @@ TEST_F(SceneMaps, AnImageIsFeltThroughItsTransferFunction) {
   EXPECT_NO_THROW((void)compile(description));
 }
 
+TEST_F(SceneMaps, AFlowComesFromAnImageAndMayBeBelowZero) {
+  const SceneDescription description =
+      read(text("100 N/m",
+                ", viscosity: 2 N.s/m, flow: [{image: ct, transfer: [[-100, -20 mm/s], [300, 1 "
+                "cm/s]]}, 0 mm/s, 5 mm/s]"));
+  const Flow& flow = description.materials[0].flow;
+  // -20, -5 and 10 mm/s at the second to fourth voxel: an eighth of each neighbor, three quarters of its own.
+  EXPECT_NEAR(flow.at({4e-3, 0, 0}).x, -5e-3, 1e-6);
+  EXPECT_NEAR(flow.at({0, 0, 0}).x, -20e-3, 1e-6);
+  EXPECT_NEAR(flow.x.range().least, -20e-3, 1e-6);
+  EXPECT_NEAR(flow.x.range().most, 10e-3, 1e-6);
+  EXPECT_EQ(flow.at({4e-3, 0, 0}).y, 0.0);
+  EXPECT_EQ(flow.at({4e-3, 0, 0}).z, 5e-3);
+  EXPECT_NO_THROW((void)compile(description));
+  // What is no velocity is refused where it stands, and a stiffness below 0 still is.
+  EXPECT_EQ(
+      refusal(text("100 N/m", ", flow: [{image: ct, transfer: [[0, 1 N]]}, 0 m/s, 0 m/s]")).code,
+      "scene.quantity");
+  EXPECT_EQ(refusal(text("{image: ct, transfer: [[0, -1 N/m]]}")).code, "scene.quantity");
+}
+
 struct Row {
   std::string stiffness;
   std::string code;

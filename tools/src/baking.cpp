@@ -7,12 +7,12 @@
 #include <set>
 
 #include "grid_baking.h"
-#include "image_distances.h"
 #include "input_kind.h"
 #include "loaded_scene.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/image.h"
+#include "palpate/vdb/image_distances.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
 #include "scan_options.h"
@@ -186,13 +186,13 @@ void tellLoss(const BakeOptions& options, const vdb::LevelSet& grid, Console& co
 
 /// Turns signed distances into what is greater than 0 inside. @throws Error if nothing is inside, or all is.
 void takeDistances(const BakeOptions& options, vdb::Image& image, Console& console) {
-  const std::optional<double> slope = slopeAtZero(image);
+  const std::optional<double> slope = vdb::slopeAtZero(image);
   if (!slope) {
     throw inputError("image.distances", "the values do not change their sign between any voxels",
                      "signed distances are negative inside; --above VALUE takes what is brighter",
                      options.input);
   }
-  if (!looksLikeDistances(image)) {
+  if (!vdb::looksLikeDistances(image)) {
     console.note(options.input + ": where its values are 0 they change by " +
                  formatNumber(*slope * 1e-3, 3) +
                  " a mm, so they are no distances in mm; only where they are 0 counts");
@@ -202,10 +202,8 @@ void takeDistances(const BakeOptions& options, vdb::Image& image, Console& conso
 
 /// What --above takes for the inside is the outside of an image of distances.
 void tellDistances(const BakeOptions& options, const vdb::Image& image, Console& console) {
-  if (!looksLikeDistances(image)) return;
-  console.note(options.input +
-               ": its values look like signed distances in mm, negative inside. --above takes "
-               "what is greater, which is the outside; --distances takes the inside");
+  const std::string note = vdb::distancesNote(image);
+  if (!note.empty()) console.note(options.input + ": " + note + "; --distances takes the inside");
 }
 
 std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {

@@ -48,6 +48,9 @@ std::vector<SceneParameter> sceneParameters(const SceneDescription& description)
     }
     if (const Material* content = named(description, layer.content)) {
       all.add(layer.name, "viscosity", "N.s/m", content->viscosity);
+      all.add(layer.name, "flow_x", "m/s", content->flow.x);
+      all.add(layer.name, "flow_y", "m/s", content->flow.y);
+      all.add(layer.name, "flow_z", "m/s", content->flow.z);
       all.add(layer.name, "lattice_force", "N", content->lattice.force);
       all.add(layer.name, "cutting", "N", content->cutting);
       addShaft(layer.name, "in", content->shaft.in, all);
@@ -57,6 +60,7 @@ std::vector<SceneParameter> sceneParameters(const SceneDescription& description)
   for (const PortDescription& port : description.ports) {
     all.add(port.name, "opens_at", "N", port.opens_at);
     if (port.back) all.add(port.name, "back", "N", *port.back);
+    all.add(port.name, "reopens_at", "N", port.reopens_at);
   }
   return all.take();
 }

@@ -56,8 +56,8 @@ std::vector<std::string> conditions(const Transition& t, const Scene& scene,
   }
   if (t.force != 0.0) {
     all.push_back("pressed with " + formatParameter(t.force) + " N");
-    if (port.hole_radius > 0.0 && port.reopens_at < t.force.range().most) {
-      all.back() += " (in a hole: " + formatNumber(port.reopens_at) + " N)";
+    if (port.hole_radius > 0.0 && port.reopens_at.range().least < t.force.range().most) {
+      all.back() += " (in a hole: " + formatParameter(port.reopens_at) + " N)";
     }
     if (port.rate.ratio != 1.0) {
       all.back() += " (by a fast hand: " + formatNumber(port.rate.ratio) + " times as much)";
@@ -287,9 +287,9 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
     }
     json["opens_at_N"] = parameterJson(port.opens_at);
     json["back_N"] = parameterJson(port.back);
-    json["hole"] = port.hole_radius > 0.0
-                       ? Json{{"radius_m", port.hole_radius}, {"reopens_at_N", port.reopens_at}}
-                       : Json();
+    json["hole"] = port.hole_radius > 0.0 ? Json{{"radius_m", port.hole_radius},
+                                                 {"reopens_at_N", parameterJson(port.reopens_at)}}
+                                          : Json();
     json["rate"] = port.rate.ratio != 1.0
                        ? Json{{"ratio", port.rate.ratio}, {"speed_m_per_s", port.rate.speed}}
                        : Json();

@@ -13,6 +13,7 @@
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/grid_memory.h"
+#include "palpate/vdb/image_distances.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/polyhedron.h"
 #include "palpate/vdb/scan_surface.h"
@@ -396,15 +397,21 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
   threshold.fill = reader.boolOr("fill", false);
   threshold.voxel_size = readPositiveOrNone(reader, "voxel");
   std::string summary = fileName(from.image->file->path()) + " above " + above.text;
-  return {lazyField(
-              common, layer, std::move(summary), from.place, from.sampler,
-              [file = from.image->file, threshold, bake = from.bake](const Progress& progress) {
-                return surfaceFromThreshold(file->image(), threshold, bake, progress);
-              },
-              [file = from.image->file, above = threshold.above](const Progress&) {
-                return boxWhere(file->image(), [&](float value) { return value > above; });
-              }),
-          {}};
+  return {
+      lazyField(
+          common, layer, std::move(summary), from.place, from.sampler,
+          [common, file = from.image->file, threshold, bake = from.bake](const Progress& progress) {
+            const std::string note = distancesNote(file->image());
+            if (!note.empty()) {
+              common->notes->add(file->path(),
+                                 {note + "; palpate convert --distances makes a grid of them"});
+            }
+            return surfaceFromThreshold(file->image(), threshold, bake, progress);
+          },
+          [file = from.image->file, above = threshold.above](const Progress&) {
+            return boxWhere(file->image(), [&](float value) { return value > above; });
+          }),
+      {}};
 }
 
 }  // namespace

@@ -77,9 +77,9 @@ Transfer readTransfer(MapReader& reader, const ParameterKind& of) {
       throw document.error(from.mark, "scene.kind", "an image's value is a number", hint);
     }
     const auto to = quantityOf(reader.loader(), item.items[1], of.dimension);
-    if (!to || *to < 0.0) {
+    if (!to || (*to < 0.0 && !of.is_signed)) {
       throw document.error(item.items[1].mark, "scene.quantity",
-                           "this is no '" + of.key + "' of 0 or more",
+                           "this is no '" + of.key + (of.is_signed ? "'" : "' of 0 or more"),
                            "write " + unitsOf(of.dimension));
     }
     if (!transfer.empty() && !(*value > transfer.back().first)) {

@@ -14,7 +14,7 @@ bool isWithin(const Vec3& a, const Vec3& b, double distance) noexcept {
 
 void Punctures::puncture(PortId id, const Port& port, const Vec3& point) noexcept {
   if (port.hole_radius > 0.0 && holeAt(id, point) == nullptr) {
-    const Hole hole{id, point, port.hole_radius, port.reopens_at};
+    const Hole hole{id, point, port.hole_radius, port.reopens_at.at(point)};
     if (hole_count_ < kMaxHoles) {
       holes_[hole_count_++] = hole;
     } else {

@@ -85,7 +85,7 @@ Vec3 HapticRenderer::dragForce(RegionId region, const Vec3& p, const Vec3& veloc
                                double share) noexcept {
   const double viscosity = contents_.viscosity(region, p);
   if (!(viscosity > 0.0)) return Vec3(0.0);
-  const Vec3 flow = contents_.flow(region);
+  const Vec3 flow = contents_.flow(region, p);
   state_.source.flow_push = share * viscosity * flow;
   return -(share * viscosity * (velocity - flow));
 }

@@ -74,13 +74,13 @@ std::vector<Port> SceneCompiler::makePorts() {
     port.direction = given.direction;
     port.opens_at = given.opens_at;
     port.back = given.back.value_or(given.opens_at);
-    for (const Parameter& force : {port.opens_at, port.back}) {
+    for (const Parameter& force : {port.opens_at, port.back, given.reopens_at}) {
       const MaterialMap::Range range = force.range();
       if (range.least >= 0.0 && range.least <= range.most && std::isfinite(range.most)) continue;
       throw errorAt(
           given.place, "scene.parameter",
           "port " + quoted(given.name) + " opens at a force that is not 0 N or more everywhere",
-          "all values of opens_at and back must be finite numbers from 0 on");
+          "all values of opens_at, back and reopens_at must be finite numbers from 0 on");
     }
     if (!(given.rate.ratio > 0.0 && std::isfinite(given.rate.ratio)) ||
         !(given.rate.speed >= 0.0 && std::isfinite(given.rate.speed)) ||

@@ -96,6 +96,13 @@ void checkMaterial(const Material& material) {
   checkParameter(material.stiffness, "stiffness", of);
   checkParameter(material.damping, "damping", of);
   checkParameter(material.viscosity, "viscosity", of);
+  for (const Parameter& along : {material.flow.x, material.flow.y, material.flow.z}) {
+    const MaterialMap::Range range = along.range();
+    if (std::isfinite(range.least) && range.least <= range.most && std::isfinite(range.most))
+      continue;
+    throw inputError("scene.parameter", "the flow of " + of + " is not finite everywhere",
+                     "all its values must be finite numbers");
+  }
   checkParameter(material.friction.static_ratio, "static friction", of);
   checkParameter(material.friction.kinetic_ratio, "kinetic friction", of);
   // Kinetic below static everywhere implies both; what is left, the loop clamps.

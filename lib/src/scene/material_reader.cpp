@@ -75,10 +75,8 @@ Material readMaterial(const SceneLoader& loader, const Node::Entry& entry) {
   material.viscosity = readParameter(reader, "viscosity", Dimension::kDamping, {});
   if (const Node* flow = reader.optional("flow")) {
     const auto& items = readList(document, *flow, "'flow'", 3, 3);
-    for (int i = 0; i < 3; ++i) {
-      material.flow[i] = readQuantity(document, items[static_cast<std::size_t>(i)],
-                                      Dimension::kVelocity, "a component of 'flow'");
-    }
+    material.flow = {readVelocity(loader, items[0], "flow"), readVelocity(loader, items[1], "flow"),
+                     readVelocity(loader, items[2], "flow")};
   }
   readTissue(reader, material);
   reader.finish();

@@ -21,14 +21,6 @@ double mostForceOf(const PortDescription& port) {
 
 }  // namespace
 
-double RegionReader::readForce(MapReader& reader, std::string_view key, double fallback) const {
-  const double force = reader.quantityOr(key, Dimension::kForce, fallback);
-  if (force < 0.0) {
-    throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be 0 N or more");
-  }
-  return force;
-}
-
 void RegionReader::readPorts(const Node& ports) {
   const Document& document = loader_.document();
   const auto& nodes = readList(document, ports, "'ports'", 1, kMostItems);
@@ -89,8 +81,8 @@ void RegionReader::readPuncture(MapReader& reader, PortDescription& port) const 
     if (port.hole_radius <= 0.0) {
       throw inner.errorAt("radius", "scene.range", "'radius' must be more than 0");
     }
-    port.reopens_at = readForce(inner, "reopens_at", 0.0);
-    if (port.reopens_at > mostForceOf(port)) {
+    port.reopens_at = readParameter(inner, "reopens_at", Dimension::kForce, {});
+    if (port.reopens_at.range().least > mostForceOf(port)) {
       throw inner.errorAt("reopens_at", "scene.range",
                           "'reopens_at' is more than what opens the port where it has no hole",
                           "make it less than opens_at and back");

@@ -49,6 +49,20 @@ Parameter readParameter(MapReader& reader, std::string_view key, std::optional<D
   return map;
 }
 
+Parameter readVelocity(const SceneLoader& loader, const Node& node, const std::string& key) {
+  const std::string what = "a component of " + inQuotes(key);
+  if (node.kind != Node::Kind::kMap) {
+    return readQuantity(loader.document(), node, Dimension::kVelocity, what);
+  }
+  Parameter map(loader.map(node, {key, Dimension::kVelocity, true}));
+  const MaterialMap::Range range = map.range();
+  if (!std::isfinite(range.least) || !std::isfinite(range.most)) {
+    throw loader.document().error(node.mark, "scene.range", what + " is not finite everywhere",
+                                  "mend the values that the map is made from");
+  }
+  return map;
+}
+
 Parameter requireParameter(MapReader& reader, std::string_view key,
                            std::optional<Dimension> dimension) {
   (void)reader.require(key);

@@ -2,6 +2,7 @@
 /// Parameters of materials and opening forces: constants, or maps that other modules read.
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "palpate/materials/parameter.h"
@@ -18,5 +19,9 @@ namespace palpate {
 /// The same where it must be given.
 [[nodiscard]] Parameter requireParameter(MapReader& reader, std::string_view key,
                                          std::optional<Dimension> dimension);
+
+/// A component of a velocity: a quantity, or a map of keys, below 0 too. `key` is of the list it stands in.
+[[nodiscard]] Parameter readVelocity(const SceneLoader& loader, const Node& node,
+                                     const std::string& key);
 
 }  // namespace palpate

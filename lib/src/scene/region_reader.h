@@ -39,7 +39,6 @@ class RegionReader {
   [[nodiscard]] std::string readSheetName(MapReader& reader, const Node& sheet) const;
   [[nodiscard]] AfterDescription readBefore(const Node& item) const;
   void readAfter(const Node& after, PortDescription& port) const;
-  [[nodiscard]] double readForce(MapReader& reader, std::string_view key, double fallback) const;
 
   const SceneLoader& loader_;
   const SceneRegistry& registry_;

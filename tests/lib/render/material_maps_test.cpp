@@ -190,6 +190,85 @@ TEST(MaterialMaps, APortOpensAtTheForceOfThePlace) {
   }
 }
 
+TEST(MaterialMaps, AHoleReopensAtTheForceOfThePlaceWhereItWasMade) {
+  SceneDescription description = body(named("skin"));
+  PortDescription port;
+  port.name = "cut";
+  port.from = "outside";
+  port.to = "body";
+  port.opens_at = 3.0;
+  port.hole_radius = 2e-3;
+  port.reopens_at = linearMap(1.0, {50, 0, 0}, {0.0, 4.0});
+  description.ports = {port};
+  const ScenePtr scene = compile(description);
+  // The force [N] at which the wall gives way at `x`, from outside.
+  const auto gives_way = [](Drive& hand, double x) {
+    (void)hand.walk({x, 0, 1e-3});
+    double most = 0.0;
+    for (int i = 0; i < 6000 && hand.region() == "outside"; ++i) {
+      (void)hand.to({x, 0, -1e-6 * i});
+      if (hand.region() == "outside") most = std::max(most, hand.last().force.z);
+    }
+    EXPECT_EQ(hand.region(), "body") << x;
+    return most;
+  };
+  for (const double x : {-0.03, -0.01, 0.0, 0.02}) {
+    Drive hand(scene);
+    (void)hand.to({x, 0, 0.001});
+    EXPECT_NEAR(gives_way(hand, x), 3.0, 2e-3) << x;
+    // Out again, and in a second time beside the middle of the hole: it keeps the force of where it was made.
+    (void)hand.walk({x, 0, 8e-3});
+    ASSERT_EQ(hand.region(), "outside");
+    EXPECT_NEAR(gives_way(hand, x + 1e-3), std::clamp(1.0 + 50.0 * x, 0.0, 4.0), 2e-3) << x;
+    (void)hand.walk({x + 1e-3, 0, 8e-3});
+    ASSERT_EQ(hand.region(), "outside");
+    EXPECT_NEAR(gives_way(hand, x + 9e-3), 3.0, 2e-3) << "no hole there: " << x;
+  }
+}
+
+TEST(MaterialMaps, TheMediumFlowsAsTheMapOfThePlaceSays) {
+  Material stream = named("stream");
+  stream.viscosity = 3.0;
+  // Two directions at once, below 0 too; the third stands still.
+  stream.flow = {linearMap(0.1, {20, 0, 0}, {-1.0, 1.0}), linearMap(-0.05, {0, 0, 10}, {-2.0, 2.0}),
+                 0.0};
+  for (const RendererKind kind : {RendererKind::kConstraint, RendererKind::kPaper}) {
+    SceneDescription description = body(stream);
+    PortDescription port;  // always open
+    port.name = "mouth";
+    port.from = "outside";
+    port.to = "body";
+    description.ports = {port};
+    Drive hand(compile(description), kind);
+    (void)hand.to({0, 0, 0.002});
+    (void)hand.walk({0, 0, -0.01});
+    ASSERT_EQ(hand.region(), "body");
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 p(0.03 * std::sin(0.1 * i), 0.01 * std::cos(0.2 * i),
+                   -0.02 - 0.01 * std::sin(0.3 * i));
+      (void)hand.walk(p);
+      // At rest: what is left is the medium's own push.
+      const TickResult tick = hand.to(p);
+      const Vec3 flow(0.1 + 20.0 * p.x, -0.05 + 10.0 * p.z, 0.0);
+      EXPECT_TRUE(isNear(tick.force, 3.0 * flow, 1e-12)) << i;
+    }
+  }
+}
+
+TEST(MaterialMaps, AFlowOfOneValueIsFeltAsTheConstantBitForBit) {
+  Material plain = named("stream");
+  plain.viscosity = 2.0;
+  plain.flow = Vec3(0.1, -0.2, 0.3);
+  Material mapped = plain;
+  mapped.flow = {flatMap(0.1), flatMap(-0.2), flatMap(0.3)};
+  Drive one(compile(body(plain)));
+  Drive two(compile(body(mapped)));
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p(1e-3 * i, -2e-4 * i, 3e-3 * std::cos(0.1 * i));
+    EXPECT_EQ(one.to(p).force, two.to(p).force);
+  }
+}
+
 TEST(MaterialMaps, OnePressedFacetOpensWhereItsForceFallsWhileSliding) {
   // Pressed with 2 N and drawn along the wall: it gives way where the map has come down to that.
   SceneDescription description = body(named("skin"));
@@ -229,6 +308,11 @@ TEST(MaterialMaps, WhatAParameterCannotBeIsRefusedAtSetUp) {
   wall.damping = -1.0;
   EXPECT_EQ(code(wall), "scene.parameter");
 
+  wall.damping = 0.0;
+  wall.flow = {0.0, linearMap(0.0, {1, 0, 0}, {-INFINITY, 1.0}), 0.0};
+  EXPECT_EQ(code(wall), "scene.parameter");
+  wall.flow = {};
+
   SceneDescription description = body(named("skin"));
   PortDescription port;
   port.name = "cut";
@@ -236,6 +320,11 @@ TEST(MaterialMaps, WhatAParameterCannotBeIsRefusedAtSetUp) {
   port.to = "body";
   port.back = flatMap(-1.0);
   description.ports = {port};
+  EXPECT_EQ(errorOf([&] { (void)compile(description); }).problem().code, "scene.parameter");
+  description.ports[0].back = {};
+  description.ports[0].opens_at = 2.0;
+  description.ports[0].hole_radius = 1e-3;
+  description.ports[0].reopens_at = linearMap(0.0, {1, 0, 0}, {-0.1, 1.0});
   EXPECT_EQ(errorOf([&] { (void)compile(description); }).problem().code, "scene.parameter");
 }
 

@@ -10,6 +10,7 @@
 #include "bake/solid.h"
 #include "mesh/edge_cells.h"
 #include "palpate/core/error.h"
+#include "palpate/core/stop.h"
 
 namespace palpate::vdb {
 namespace {
@@ -72,14 +73,23 @@ class SharpEdges final : public Field {
   /// [m] A place of a triangle, where triangles answer, that is no surface of the solid: a wall within it.
   [[nodiscard]] std::optional<Vec3> innerWall() const {
     for (const MeshTriangle& t : surface_.triangles) {
-      const Vec3& a = surface_.vertices[t[0]];
-      const Vec3 u = surface_.vertices[t[1]] - a;
-      const Vec3 v = surface_.vertices[t[2]] - a;
-      const double longest = std::max({glm::length(u), glm::length(v), glm::length(u - v)});
-      const double steps = std::max(1.0, std::ceil(longest / voxel_));
-      for (double i = 0.0; i <= steps; i += 1.0) {
-        for (double j = 0.0; i + j <= steps; j += 1.0) {
-          const Vec3 p = a + (i / steps) * u + (j / steps) * v;
+      pollStop();
+      // In rows along the longest side, so that a needle takes no more places than its length asks for.
+      std::size_t apex = 0;
+      for (std::size_t n = 1; n < 3; ++n) {
+        if (glm::length(sideOpposite(t, n)) > glm::length(sideOpposite(t, apex))) apex = n;
+      }
+      const Vec3& top = surface_.vertices[t[apex]];
+      const Vec3 down = surface_.vertices[t[(apex + 1) % 3]] - top;
+      const Vec3 base = sideOpposite(t, apex);
+      const double length = glm::length(base);
+      const double height = length > 0.0 ? glm::length(glm::cross(down, base)) / length : 0.0;
+      const int rows = stepsOf(height);
+      for (int i = 0; i <= rows; ++i) {
+        const double share = static_cast<double>(i) / rows;
+        const int places = stepsOf(share * length);
+        for (int j = 0; j <= places; ++j) {
+          const Vec3 p = top + share * (down + (static_cast<double>(j) / places) * base);
           const double to_edge = edgeNear(p).distance;
           if (to_edge >= kReach * voxel_) continue;
           const double most = to_edge < kMostRounding * voxel_ ? kMostRounding : kMostOff;
@@ -108,6 +118,15 @@ class SharpEdges final : public Field {
     Vec3 gradient{0.0};
     Mat3 hessian{0.0};
   };
+
+  /// [m] The side that does not touch that corner, from the next corner to the one after.
+  [[nodiscard]] Vec3 sideOpposite(const MeshTriangle& t, std::size_t corner) const noexcept {
+    return surface_.vertices[t[(corner + 2) % 3]] - surface_.vertices[t[(corner + 1) % 3]];
+  }
+  /// Steps of a voxel at most.
+  [[nodiscard]] int stepsOf(double way) const noexcept {
+    return std::max(1, static_cast<int>(std::ceil(way / voxel_)));
+  }
 
   struct EdgeNear {
     Vec3 place{0.0};        ///< of a sharp edge, nearest
@@ -201,11 +220,11 @@ double angleAt(const Vec3& corner, const Vec3& b, const Vec3& c) {
 void keepSurface(Solid& solid, const Field& baked, double voxel) {
   std::vector<double> outward(solid.parts.size(), 0.0);
   std::vector<bool> is_surface(solid.parts.size(), false);
-  const auto isOnSurface = [&](const Vec3& p) {
+  const auto is_on_surface = [&](const Vec3& p) {
     const FieldSample here = baked.sample(p);
     return here.in_band && std::abs(here.value) <= kMostRounding * voxel;
   };
-  const auto middleOf = [&](const MeshTriangle& t) {
+  const auto middle_of = [&](const MeshTriangle& t) {
     return (solid.vertices[t[0]] + solid.vertices[t[1]] + solid.vertices[t[2]]) / 3.0;
   };
   for (std::size_t n = 0; n < solid.triangles.size(); ++n) {
@@ -213,9 +232,9 @@ void keepSurface(Solid& solid, const Field& baked, double voxel) {
     const Vec3& a = solid.vertices[t[0]];
     const Vec3 twice_area = glm::cross(solid.vertices[t[1]] - a, solid.vertices[t[2]] - a);
     const Vec3 step = voxel * unitOr(twice_area, Vec3(0.0));
-    const Vec3 middle = middleOf(t);
+    const Vec3 middle = middle_of(t);
     const std::uint32_t part = solid.part_of[n];
-    if (isOnSurface(middle) || isOnSurface(a)) {
+    if (is_on_surface(middle) || is_on_surface(a)) {
       is_surface[part] = true;
       outward[part] +=
           glm::length(twice_area) * (baked.value(middle + step) - baked.value(middle - step));

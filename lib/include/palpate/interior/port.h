@@ -57,8 +57,8 @@ struct Port {
   Parameter back;            ///< [N] the same for coming back
   RuptureRate rate;          ///< how both depend on the speed that the wall is pressed at
   double hole_radius = 0.0;  ///< [m] of the hole that opening it by force leaves; 0: none is left
-  double reopens_at =
-      0.0;  ///< [N] in such a hole instead of opens_at and back, where these are more
+  /// [N] in such a hole instead of opens_at and back, where these are more. A map holds at the point where the wall gave way
+  Parameter reopens_at;
   /// [m] Opened by force, it does so again only when the proxy has been this far from there, or the hand
   /// is this far beyond the wall; 0: at once.
   double rearm = 0.0;

@@ -16,7 +16,7 @@ struct Hole {
   PortId port = 0;
   Vec3 point{0.0, 0.0, 0.0};  ///< [m, world]
   double radius = 0.0;        ///< [m] Port::hole_radius
-  double reopens_at = 0.0;    ///< [N] Port::reopens_at
+  double reopens_at = 0.0;    ///< [N] Port::reopens_at there
 };
 
 /// A bounded memory: a value of fixed size, to be copied to rewind. The hole made after the last that there is room for

@@ -3,6 +3,7 @@
 
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "palpate/core/math.h"
 #include "palpate/materials/parameter.h"
@@ -39,6 +40,24 @@ struct Composite {
       0.0;  ///< [m] how far along the inward normal is looked; more than 0 if there is a radius
 };
 
+/// A velocity each component of which may differ from place to place, along the axes of the world.
+struct Flow {
+  Parameter x;  ///< [m/s] any finite number, below 0 too
+  Parameter y;
+  Parameter z;
+
+  Flow() = default;
+  Flow(const Vec3& v) : x(v.x), y(v.y), z(v.z) {}  // NOLINT(google-explicit-constructor)
+  Flow(Parameter along_x, Parameter along_y, Parameter along_z)
+      : x(std::move(along_x)), y(std::move(along_y)), z(std::move(along_z)) {}
+
+  /// [m/s] at `p` [m]. Real-time safe.
+  [[nodiscard]] Vec3 at(const Vec3& p) const noexcept { return {x.at(p), y.at(p), z.at(p)}; }
+  friend bool operator==(const Flow& a, const Flow& b) noexcept {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+  }
+};
+
 /// One named material of a scene. A wall uses stiffness, damping, friction, texture, composite and
 /// shading; a content uses viscosity and flow. A material may serve as both. What is a Parameter may differ from place
 /// to place: it is asked for at the proxy. Where a wall's stiffness K does, the spring of
@@ -57,7 +76,7 @@ struct Material {
       0.0;              ///< [m] the force follows the normal averaged over this radius, so that the
                         ///< facets of a coarse mesh feel round; 0: off
   Parameter viscosity;  ///< [N s/m] Bv of the drag -Bv V while inside
-  Vec3 flow{0.0, 0.0, 0.0};  ///< [m/s] velocity of the medium: drag is -Bv (V - flow)
+  Flow flow = {};       ///< velocity of the medium: drag is -Bv (V - flow)
 
   // Of tissue and needles. What a content presses with has the material's own stiffness.
   SpringCurve curve = {};  ///< of a wall

@@ -38,11 +38,11 @@ class Contents {
     if (r.change.viscosity) return *r.change.viscosity;
     return r.material != nullptr ? r.material->viscosity.at(p) : 0.0;
   }
-  /// [m/s]
-  [[nodiscard]] Vec3 flow(RegionId region) const noexcept {
+  /// [m/s] at `p` [m]
+  [[nodiscard]] Vec3 flow(RegionId region, const Vec3& p) const noexcept {
     const Region& r = regions_[region];
     if (r.change.flow) return *r.change.flow;
-    return r.material != nullptr ? r.material->flow : Vec3(0.0);
+    return r.material != nullptr ? r.material->flow.at(p) : Vec3(0.0);
   }
   [[nodiscard]] bool hasLattice(RegionId region) const noexcept {
     return regions_[region].has_lattice;

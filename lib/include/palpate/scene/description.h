@@ -140,7 +140,7 @@ struct PortDescription {
   std::optional<Parameter> back = {};  ///< [N]; not given: as opens_at
   RuptureRate rate = {};               ///< of both
   double hole_radius = 0.0;            ///< [m] 0: opening it by force leaves no hole
-  double reopens_at = 0.0;             ///< [N] in a hole
+  Parameter reopens_at = 0.0;          ///< [N] in a hole
   double rearm = 0.0;                  ///< [m]
   SourcePlace place = {};
 };

@@ -62,6 +62,7 @@ class MapReader {
 struct ParameterKind {
   std::string key;                          ///< "stiffness"
   std::optional<Dimension> dimension = {};  ///< none: a ratio
+  bool is_signed = false;                   ///< values below 0 have a meaning, as of a velocity
 };
 
 /// What a loader extension needs to know of the file that is being read.

@@ -1,16 +1,19 @@
-#include "image_distances.h"
+#include "palpate/vdb/image_distances.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-namespace palpate::tools {
+#include "palpate/core/stop.h"
 
-std::optional<double> slopeAtZero(const vdb::Image& image) {
+namespace palpate::vdb {
+
+std::optional<double> slopeAtZero(const Image& image) {
   const Mat3 to_world = glm::transpose(glm::inverse(image.axes));
   std::vector<double> slopes;
   const auto [nx, ny, nz] = image.size;
   for (int k = 1; k + 1 < nz; ++k) {
+    pollStop();
     for (int j = 1; j + 1 < ny; ++j) {
       for (int i = 1; i + 1 < nx; ++i) {
         const float here = image.at(i, j, k);
@@ -34,10 +37,16 @@ std::optional<double> slopeAtZero(const vdb::Image& image) {
   return *middle;
 }
 
-bool looksLikeDistances(const vdb::Image& image) {
+bool looksLikeDistances(const Image& image) {
   constexpr double kPerMillimetre = 1e3;
   const auto slope = slopeAtZero(image);
   return slope && std::abs(*slope / kPerMillimetre - 1.0) < 0.2;
 }
 
-}  // namespace palpate::tools
+std::string distancesNote(const Image& image) {
+  if (!looksLikeDistances(image)) return {};
+  return "its values look like signed distances in mm, negative inside; what is greater than a "
+         "threshold is the outside of these";
+}
+
+}  // namespace palpate::vdb
