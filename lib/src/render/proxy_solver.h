@@ -109,6 +109,8 @@ class ProxySolver {
 
   enum class Look { kFree, kRests, kCrossed, kMoves, kNowhere };
   enum class Try { kMoved, kRests, kRefused };
+  /// What a step has to do: end on the walls and gain a share of what it promised; gain at all; or it may end in free space.
+  enum class StepRule { kUsual, kMustGain, kMayFly };
 
   /// [m] A step from `x` as short as this is none for a hand that is `wish` away.
   [[nodiscard]] static double restLength(const Vec3& x, const Vec3& wish) noexcept;
@@ -129,10 +131,12 @@ class ProxySolver {
   [[nodiscard]] Mat3 bendOf(const CellProblem& problem) const noexcept;
   [[nodiscard]] Try tryCell(CellProblem& problem, double ball) noexcept;
   [[nodiscard]] bool tryStep(const CellProblem& problem, const Vec3& step, double ball,
-                             bool must_gain) noexcept;
+                             StepRule rule) noexcept;
   [[nodiscard]] Vec3 limited(const CellProblem& problem, const Vec3& step,
                              double ball) const noexcept;
   [[nodiscard]] Vec3 bentBack(const CellProblem& problem, const Vec3& step) const noexcept;
+  [[nodiscard]] bool flyOff(double ball) noexcept;
+  [[nodiscard]] bool hasLandedFree(const CellProblem& problem) const noexcept;
   [[nodiscard]] bool restore(const CellProblem& problem, Vec3& y, double length) noexcept;
   [[nodiscard]] bool keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept;
   [[nodiscard]] bool go(const CellProblem& problem, const Vec3& y) noexcept;

@@ -53,7 +53,8 @@ ProxySolver::Try ProxySolver::moveOn() noexcept {
     if (curved.lowest < limits::kSaddle) longest = std::max(longest, turningLength(problem));
   }
   // No better point is further away than twice the distance to the aim.
-  double ball = std::min(limits::kBallOverStep * longest, 2.0 * glm::length(aim_));
+  const double whole = std::min(limits::kBallOverStep * longest, 2.0 * glm::length(aim_));
+  double ball = whole;
   bool rests = false;
   for (int shrink = 0; shrink <= limits::kShrinks && batches_left_ > 0; ++shrink) {
     while (!lookWithin(limits::kReachOverStep * ball)) {
@@ -75,7 +76,21 @@ ProxySolver::Try ProxySolver::moveOn() noexcept {
     ball *= limits::kShrink;
     if (ball <= rest_) break;
   }
-  return Try::kRefused;
+  return flyOff(whole) ? Try::kMoved : Try::kRefused;
+}
+
+/// Just before a sharp edge of one leaf no step along its wall ends on a wall again: over the edge, into free space.
+bool ProxySolver::flyOff(double ball) noexcept {
+  if (!lookWithin(limits::kReachOverStep * ball)) return false;
+  poseAll(aim_);
+  for (std::size_t i = 0; i < problems_; ++i) {
+    for (const double share : limits::kFlights) {
+      if (batches_left_ <= 0) return false;
+      const Vec3 step = share * problem_[i].solution.step;
+      if (tryStep(problem_[i], step, ball, StepRule::kMayFly)) return true;
+    }
+  }
+  return false;
 }
 
 ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcept {
@@ -100,7 +115,7 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
       const double far = std::min(turningLength(problem), ball);
       const double length = glm::length(step);
       if (far > limits::kFarther * length && length > 0.0 &&
-          tryStep(problem, (far / length) * step, ball, false)) {
+          tryStep(problem, (far / length) * step, ball, StepRule::kUsual)) {
         return Try::kMoved;
       }
     }
@@ -110,14 +125,14 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
         glm::length(bend * plain) > limits::kSingularTurn * glm::length(aim_)) {
       step = plain;
     }
-    if (tryStep(problem, step, ball, false)) return Try::kMoved;
+    if (tryStep(problem, step, ball, StepRule::kUsual)) return Try::kMoved;
     if (!addCuts(problem)) break;
     pose(problem.cell, problem);
     solve(problem, aim_);
   }
   for (const double share : limits::kShorter) {
     if (batches_left_ <= 0) break;
-    if (tryStep(problem, share * step, ball, false)) return Try::kMoved;
+    if (tryStep(problem, share * step, ball, StepRule::kUsual)) return Try::kMoved;
   }
   return Try::kRefused;
 }
@@ -158,7 +173,7 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
 }
 
 bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double ball,
-                          bool must_gain) noexcept {
+                          StepRule rule) noexcept {
   const Vec3 by = limited(problem, step, ball);
   const double length = glm::length(by);
   if (!(length > 0.0)) return false;
@@ -172,7 +187,10 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   }
   Vec3 y = x_ + by + bentBack(problem, by);
   has_landed_ = false;
-  if (!restore(problem, y, length)) return false;
+  if (!restore(problem, y, length)) {
+    if (rule != StepRule::kMayFly || !hasLandedFree(problem)) return false;
+    y = landed_at_;
+  }
   const Vec3 moved = y - x_;
   if (glm::length(moved) > limits::kReachOverStep * ball) return false;
   // How far the proxy is from its aim before and after, and by how much the step promised to change that.
@@ -187,8 +205,19 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   noise *= limits::kNoise * std::sqrt(before);
   const double gain = before - glm::dot(after, after);
   // A proxy beyond its walls comes back whatever it costs.
-  if (!trusts_sides_ && gain < (must_gain ? noise : limits::kGain * promise - noise)) return false;
+  const double least = rule == StepRule::kMustGain ? noise : limits::kGain * promise - noise;
+  if (!trusts_sides_ && gain < least) return false;
   return keepsOnWay(problem, y) && go(problem, y);
+}
+
+/// Whether the last step landed on the free side of all walls of its cell.
+bool ProxySolver::hasLandedFree(const CellProblem& problem) const noexcept {
+  if (!has_landed_) return false;
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    const Source& from = problem.source[i];
+    if (!from.isCut() && !(landed_[i].gap(from.inside) >= 0.0)) return false;
+  }
+  return true;
 }
 
 /// What brings a tangent step back onto the walls that hold it, as far as their curvature here tells. At a fold of one
@@ -474,7 +503,7 @@ bool ProxySolver::kick() noexcept {
     for (std::size_t i = 0; i < problems_; ++i) {
       for (const double way : {length, -length}) {
         if (batches_left_ <= 0) return false;
-        if (tryStep(problem_[i], way * curved.downhill, length, true)) return true;
+        if (tryStep(problem_[i], way * curved.downhill, length, StepRule::kMustGain)) return true;
       }
     }
   }

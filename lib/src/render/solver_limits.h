@@ -117,6 +117,8 @@ inline constexpr double kSharp = 0.01;
 /// A wall is a ball's where the sum of the squares of its curvatures differs by less than this share from that of two
 /// equal ones: they differ by 3e-5 then.
 inline constexpr double kEven = 1e-9;
+/// Where no step along the walls is kept, these shares of one are tried that may end in free space, over a sharp edge.
+inline constexpr double kFlights[] = {1.0, 0.1, 0.01};
 /// What a refused step is shortened to, in turn; then the ball shrinks by kShrink, kShrinks times.
 inline constexpr double kShorter[] = {0.5, 0.125, 0.02};
 inline constexpr double kShrink = 0.2;

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "lib/render/hard_judge.h"
+#include "lib/render/opaque.h"
+#include "palpate/fields/modify.h"
 #include "palpate/fields/primitives.h"
 
 namespace palpate::test {
@@ -89,6 +91,31 @@ TEST(LeftBehindInACorner, NotWhereTwoPlanesAreMet) {
       const double x = from + (goal - from) * i / steps;
       const TickResult& tick = drive.to({x, 0.020, 0.010});
       ASSERT_TRUE(isNear(tick.proxy, {std::min(x, 0.030), 0.020, 0.010}, 3e-9)) << x;
+    }
+  }
+}
+
+TEST(LeftBehindAtARim, NotJustBeforeASharpEdgeWhoseFieldIsNotADistance) {
+  // A cone taken in by 1 mm, as one leaf: beyond its rim of 60 degrees the field is that of the side alone.
+  const double slope = std::sqrt(3.0);
+  const FieldPtr solid = offset(cone(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 0.010, 0.010 * slope), -0.001);
+  const double rim = 0.010 - 3.0 * 0.001 / slope;
+  const auto at = [](double radius, double angle, double z) {
+    return Vec3(radius * std::cos(angle), radius * std::sin(angle), z);
+  };
+  ASSERT_NEAR(solid->value(at(rim, 0.0, 0.001)), 0.0, 1e-12);
+  for (const double before : {1e-4, 1e-6, 1e-7, 1.6e-8, 1e-8}) {
+    for (const double turn : {0.0, 0.01}) {
+      Drive drive(sceneOfLeaf(solid, solid->featureSize()));
+      (void)drive.to(at(0.006, 0.0, 0.0));
+      (void)drive.walk(at(0.006, 0.0, 0.0012));
+      // Held by the base, which lies at 1 mm, up to where the hand is this far from the rim, ...
+      (void)drive.walk(at(rim - before, 0.0, 0.0012), 1e-4);
+      ASSERT_TRUE(isNear(drive.last().proxy, at(rim - before, 0.0, 0.001), 3e-9)) << before;
+      // ... and over the rim onto the hand.
+      const TickResult& tick = drive.to(at(rim + 1e-4, turn, 0.0012));
+      EXPECT_TRUE(tick.settled) << before << " m before the rim, turned by " << turn;
+      EXPECT_TRUE(isNear(tick.proxy, drive.hip(), 3e-9)) << before << " " << turn;
     }
   }
 }
