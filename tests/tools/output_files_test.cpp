@@ -97,6 +97,21 @@ TEST_F(OutputFilesTest, AFileThatIsReplacedKeepsItsMode) {
   EXPECT_EQ(statusOf("b.vdb").st_mode & 07777U, 0600U);
 }
 
+TEST_F(OutputFilesTest, ALinkStaysAndLeadsToWhatIsNew) {
+  const std::string there = folder_.path("there");
+  ASSERT_EQ(mkdir(there.c_str(), 0700), 0);
+  (void)folder_.file("there/real.csv", "old");
+  ASSERT_EQ(symlink("there/real.csv", folder_.path("t.csv").c_str()), 0);
+  EXPECT_EQ(touch({"--trace", "t.csv"}).exit_code, 1);
+  EXPECT_EQ(textOf(there + "/real.csv"), "old");
+  ASSERT_EQ(touch({"--trace", "t.csv", "--force"}).exit_code, 0);
+  struct stat link = {};
+  ASSERT_EQ(lstat(folder_.path("t.csv").c_str(), &link), 0);
+  EXPECT_TRUE(S_ISLNK(link.st_mode));
+  EXPECT_EQ(withoutTimes(textOf(there + "/real.csv")), withoutTimes(plainTrace()));
+  EXPECT_EQ(filesIn(there).size(), 1U);
+}
+
 TEST_F(OutputFilesTest, ANewFileHasTheModeThatTheMaskLeaves) {
   ASSERT_EQ(touch({"--trace", "t.csv"}).exit_code, 0);
   const mode_t mask = umask(0);

@@ -86,6 +86,14 @@ std::string makeTemporary(const std::string& begin) {
   return {};
 }
 
+/// The file that a symbolic link leads to: it is replaced, and the link stays.
+std::string behindLink(const std::string& path) {
+  std::error_code failed;
+  if (!fs::is_symlink(fs::symlink_status(path, failed))) return path;
+  const fs::path target = fs::weakly_canonical(path, failed);
+  return failed ? path : target.string();
+}
+
 /// Gives `file` the mode of the one it will replace, and its owner where that is allowed.
 void keepMode(const std::string& file, const std::string& replaced) {
   struct stat old = {};
@@ -191,10 +199,11 @@ void OutputFiles::announce(const std::string& path, const std::vector<std::strin
           "set TMPDIR to a folder of yours", path);
     }
     standard_output_is_taken = standard_output_is_taken || is_standard;
-    files_.push_back({path, beside, true});
+    files_.push_back({path, beside, path, true});
     return;
   }
-  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".";
+  const std::string target = behindLink(path);
+  const fs::path folder = fs::path(target).has_parent_path() ? fs::path(target).parent_path() : ".";
   if (!fs::is_directory(folder, failed)) {
     throw operationError("output.no_folder", "there is no folder " + folder.string(),
                          "make it first: mkdir -p " + folder.string(), path);
@@ -211,14 +220,14 @@ void OutputFiles::announce(const std::string& path, const std::vector<std::strin
     throw operationError("output.exists", "the file exists already",
                          "choose another name, or say --force to replace it", path);
   }
-  const std::string beside = makeTemporary(path);
+  const std::string beside = makeTemporary(target);
   if (beside.empty()) {
     throw operationError(
         "output.not_writable",
         "cannot write to the folder " + folder.string() + ": " + std::strerror(errno),
         "choose a folder of yours", path);
   }
-  files_.push_back({path, beside, false});
+  files_.push_back({path, beside, target, false});
 }
 
 const std::string& OutputFiles::temporary(const std::string& path) const {
@@ -247,17 +256,17 @@ void OutputFiles::commit() {
   for (const File& file : files_) {
     if (file.is_direct) continue;
     std::error_code failed;
-    const bool existed = fs::exists(fs::symlink_status(file.path, failed));
-    keepMode(file.temporary, file.path);
-    if (!rename(file.temporary, file.path,
+    const bool existed = fs::exists(fs::symlink_status(file.target, failed));
+    keepMode(file.temporary, file.target);
+    if (!rename(file.temporary, file.target,
                 overwrite_)) {  // without --force: it came while we worked
       const int why = errno;
       undo();
       throw operationError("output.rename",
                            std::string("cannot give the file its name: ") + std::strerror(why), "",
-                           file.path);
+                           file.target);
     }
-    if (!existed) fresh.push_back(file.path);
+    if (!existed) fresh.push_back(file.target);
   }
   // What went through a pipe cannot be taken back, so it comes last.
   for (const File& file : files_) {

@@ -11,7 +11,7 @@ namespace palpate::tools {
 
 /// Checked before the work, written beside their names after it, renamed together at the end.
 /// Whatever is not committed is removed. A file that is replaced keeps its mode (and owner, if this
-/// process may give it). What is not a regular file is never replaced: devices and pipes are
+/// process may give it), and a symbolic link stays and leads to what is new. What is not a regular file is never replaced: devices and pipes are
 /// written directly, after the files, and "-" is standard output. The files written meanwhile have
 /// names that nobody can foresee, and are opened exclusively.
 class OutputFiles {
@@ -45,6 +45,7 @@ class OutputFiles {
   struct File {
     std::string path;
     std::string temporary;
+    std::string target;      ///< what is replaced: `path`, or where a link there leads
     bool is_direct = false;  ///< a pipe, a device or standard output: copied to, not renamed
   };
   bool overwrite_;
