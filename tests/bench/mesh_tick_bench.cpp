@@ -145,8 +145,12 @@ void compare(const char* name, const Mesh& mesh) {
   const FieldPtr bricks = gridField(bakeMesh(mesh, test::voxels(kVoxel)));
   print(name, "bricks", measured(bricks, bricks, mesh));
   try {
-    const FieldPtr sharp = withSharpEdges(bricks, mesh, 30.0 * kDegree, kVoxel);
-    print(name, "sharp", measured(sharp, bricks, mesh));
+    const SharpField sharp = withSharpEdges(bricks, mesh, 30.0 * kDegree, kVoxel);
+    print(name, "sharp", measured(sharp.field, bricks, mesh));
+    if (sharp.left_to_grid > 0) {
+      std::printf("| %-7s | sharp       | %zu of %zu edges left to the grid |\n", name,
+                  sharp.left_to_grid, sharp.edges);
+    }
   } catch (const Error& error) {
     std::printf("| %-7s | sharp       | %s |\n", name, error.what());
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "bake/edges.h"
@@ -70,8 +69,9 @@ class SharpEdges final : public Field {
     return smooth;
   }
 
-  /// [m] A place of a triangle, where triangles answer, that is no surface of the solid: a wall within it.
-  [[nodiscard]] std::optional<Vec3> innerWall() const {
+  /// Tells of places [m] on triangles, where triangles answer, that are not on the surface of the solid: on walls within it.
+  template <typename Tell>
+  void forInnerWalls(const Tell& tell) const {
     for (const MeshTriangle& t : surface_.triangles) {
       pollStop();
       // In rows along the longest side, so that a needle takes no more places than its length asks for.
@@ -94,11 +94,20 @@ class SharpEdges final : public Field {
           if (to_edge >= kReach * voxel_) continue;
           const double most = to_edge < kMostRounding * voxel_ ? kMostRounding : kMostOff;
           const FieldSample here = baked_->sample(p);
-          if (!here.in_band || std::abs(here.value) > most * voxel_) return p;
+          if (!here.in_band || std::abs(here.value) > most * voxel_) tell(p);
         }
       }
     }
-    return {};
+  }
+
+  /// Sharp edges within reach of a place, by number.
+  template <typename Tell>
+  void forEdgesNear(const Vec3& p, const Tell& tell) const {
+    for (const std::uint32_t edge : cells_.at(p).edges) {
+      const auto& [a, b] = surface_.sharp[edge];
+      const Vec3 way = p - nearestOf(surface_.vertices[a], surface_.vertices[b], p);
+      if (glm::length(way) < kReach * voxel_) tell(edge);
+    }
   }
 
   [[nodiscard]] Box3 bounds() const noexcept override { return baked_->bounds(); }
@@ -287,9 +296,18 @@ Surface surfaceOf(Solid&& solid, double angle) {
   return surface;
 }
 
+std::vector<std::array<std::uint32_t, 2>> without(
+    const std::vector<std::array<std::uint32_t, 2>>& edges, const std::vector<bool>& is_left) {
+  std::vector<std::array<std::uint32_t, 2>> kept;
+  for (std::size_t n = 0; n < edges.size(); ++n) {
+    if (!is_left[n]) kept.push_back(edges[n]);
+  }
+  return kept;
+}
+
 }  // namespace
 
-FieldPtr withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double voxel) {
+SharpField withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double voxel) {
   if (!baked || !(angle >= 0.0 && angle <= std::numbers::pi) || !(voxel > 0.0)) {
     throw inputError("mesh.sharp",
                      "sharp edges need a field, an angle from 0 to 180 degrees and a "
@@ -306,16 +324,33 @@ FieldPtr withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double v
   for (Vec3& v : solid.vertices) v *= voxel;
   keepSurface(solid, *baked, voxel);
   Surface surface = surfaceOf(std::move(solid), angle);
-  if (surface.sharp.empty()) return baked;
-  auto made = std::make_shared<SharpEdges>(std::move(baked), std::move(surface), voxel);
-  if (const std::optional<Vec3> inner = made->innerWall()) {
-    throw inputError(
-        "mesh.sharp_inner",
-        "by a sharp edge, at " + placeText(*inner, 1.0) +
-            ", is a wall that is not on the surface of the solid: parts overlap there, "
-            "or the grid has lost it",
-        "make the mesh one solid in a mesh editor; or leave sharp edges to the grid", mesh.source);
+  SharpField made;
+  made.edges = surface.sharp.size();
+  while (!surface.sharp.empty()) {
+    auto sharp = std::make_shared<SharpEdges>(baked, surface, voxel);
+    std::vector<bool> is_left(surface.sharp.size(), false);
+    bool is_sound = true;
+    sharp->forInnerWalls([&](const Vec3& p) {
+      if (is_sound && made.left_to_grid == 0) made.place = p;
+      is_sound = false;
+      sharp->forEdgesNear(p, [&](std::uint32_t edge) { is_left[edge] = true; });
+    });
+    if (is_sound) {
+      made.field = std::move(sharp);
+      return made;
+    }
+    surface.sharp = without(surface.sharp, is_left);
+    made.left_to_grid = made.edges - surface.sharp.size();
   }
+  if (made.left_to_grid > 0) {
+    throw inputError("mesh.sharp_inner",
+                     "by every sharp edge, at " + placeText(made.place, 1.0) +
+                         " for one, is a wall that is not on the surface of the solid: parts "
+                         "overlap there, or the grid has lost it",
+                     "make the mesh one solid in a mesh editor; or leave sharp edges to the grid",
+                     mesh.source);
+  }
+  made.field = std::move(baked);
   return made;
 }
 
