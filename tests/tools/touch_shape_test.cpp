@@ -82,6 +82,14 @@ TEST_F(TouchShape, WhatIsGreaterThanAThresholdInAnImageOfDistancesIsTold) {
   EXPECT_NE(result.err.find("--distances"), std::string::npos) << result.err;
 }
 
+TEST_F(TouchShape, AnImageOfDistancesIsWhatItWasMadeFrom) {
+  make("ball.nii.gz");
+  expectPressed(touch({"ball.nii.gz", "--distances"}), 1e-3);
+  const CommandResult both = touch({"ball.nii.gz", "--distances", "--above", "0"});
+  EXPECT_EQ(both.exit_code, 2) << both.err;
+  EXPECT_NE((both.err + both.out).find("exclude one another"), std::string::npos) << both.out;
+}
+
 TEST_F(TouchShape, AMotionOfOnesOwn) {
   make("ball.vdb");
   const CommandResult result =

@@ -271,6 +271,29 @@ TEST(ScanSurface, RecordsWhatItIs) {
   EXPECT_EQ(fine.info().metadata.at("threshold"), "above 1.5, largest piece, filled");
 }
 
+TEST(ScanSurface, BelowIsAboveOfTheNegative) {
+  const auto wavy = [](const Vec3& p) {
+    return glm::length(p - Vec3(5.2, 4.9, 5.4)) + 0.3 * std::sin(p.x);
+  };
+  const Image image = cubeImage(12, wavy);
+  const Image negative = cubeImage(12, [&](const Vec3& p) { return -wavy(p); });
+  const LevelSet below = surfaceFromThreshold(image, {.below = 3.0}, {});
+  EXPECT_EQ(below.info().metadata.at("threshold"), "below 3, largest piece");
+  const FieldPtr one = gridField(below, Sampler::kAccessor);
+  const FieldPtr other = thresholdField(negative, {.above = -3.0});
+  for (double x = 1.0; x < 10.0; x += 0.37) {
+    const Vec3 p = Vec3(x, 5.0, 0.5 * x + 2.0) * kMm;
+    EXPECT_EQ(one->value(p), other->value(p)) << x;
+  }
+  try {
+    (void)surfaceFromThreshold(image, {.below = -1.0}, {});
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.problem().code, "scan.empty");
+    EXPECT_NE(std::string(error.what()).find("smallest value is"), std::string::npos);
+  }
+}
+
 TEST(ScanSurface, TellsWhenNothingIsThere) {
   const Image image = cubeImage(6, [](const Vec3& p) { return p.x; });
   try {

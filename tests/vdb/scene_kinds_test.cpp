@@ -321,6 +321,7 @@ TEST_F(SceneKinds, WhatCanBeKnownIsRefusedWhenTheSceneIsRead) {
   expectError(layer("labels: {image: seg, match: []}"), "scene.kind", 6, 33, "list");
   expectError(layer("labels: {image: seg}"), "scene.missing_key", 6, 13, "match");
   expectError(layer("threshold: {image: seg}"), "scene.missing_key", 6, 16, "above");
+  expectError(layer("threshold: {image: seg, above: 1, below: 2}"), "scene.kind", 6, 46, "both");
   expectError(layer("threshold: {image: seg, above: 1, keep: biggest}"), "scene.kind", 6, 45,
               "keep: largest");
   EXPECT_TRUE(grids_.empty());

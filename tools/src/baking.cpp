@@ -184,8 +184,8 @@ void tellLoss(const BakeOptions& options, const vdb::LevelSet& grid, Console& co
   if (!note.empty()) console.note(options.input + ": " + grid.info().name + ": " + note);
 }
 
-/// Turns signed distances into what is greater than 0 inside. @throws Error if nothing is inside, or all is.
-void takeDistances(const BakeOptions& options, vdb::Image& image, Console& console) {
+/// Are the values of `image` distances in mm? @throws Error if nothing is inside, or all is.
+void checkDistances(const BakeOptions& options, const vdb::Image& image, Console& console) {
   const std::optional<double> slope = vdb::slopeAtZero(image);
   if (!slope) {
     throw inputError("image.distances", "the values do not change their sign between any voxels",
@@ -197,7 +197,6 @@ void takeDistances(const BakeOptions& options, vdb::Image& image, Console& conso
                  formatNumber(*slope * 1e-3, 3) +
                  " a mm, so they are no distances in mm; only where they are 0 counts");
   }
-  for (float& value : image.values) value = -value;
 }
 
 /// What --above takes for the inside is the outside of an image of distances.
@@ -230,7 +229,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   const auto layers = labelLayers(options);
 
   std::string unit;
-  vdb::Image image = readVoxels(options, unit);
+  const vdb::Image image = readVoxels(options, unit);
   const double asked = askedVoxel(options, lengthUnit(unit));
   for (const auto& note : image.notes) console.note(options.input + ": " + note);
   const double spacing = std::min(
@@ -239,10 +238,11 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
 
   std::vector<BakedGrid> grids;
   if (options.above || options.distances) {
-    if (options.distances) takeDistances(options, image, console);
+    if (options.distances) checkDistances(options, image, console);
     if (options.above) tellDistances(options, image, console);
     vdb::ThresholdOptions threshold;
     threshold.above = options.above.value_or(0.0);
+    if (options.distances) threshold.below = 0.0;
     threshold.largest_component = !options.distances && options.keep != "all";
     threshold.fill = options.fill;
     threshold.voxel_size = asked;

@@ -62,6 +62,7 @@ struct TouchOptions {
 
   // Where `scene` is a mesh, a scan or a grid.
   std::optional<double> above;
+  bool distances = false;  ///< image: its voxels are signed distances, negative inside
   std::vector<std::string> labels;
   std::string names;
   std::string units;

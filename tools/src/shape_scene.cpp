@@ -27,6 +27,7 @@ void refuse(bool given, const char* option, const char* applies_to) {
 
 void refuseImageOptions(const TouchOptions& o) {
   refuse(o.above.has_value(), "--above", "images and grids of densities");
+  refuse(o.distances, "--distances", "images");
   refuse(!o.labels.empty(), "--labels", "images");
   refuse(!o.names.empty(), "--names", "images");
   refuse(!o.scan.affine.empty(), "--affine", "images");
@@ -104,11 +105,13 @@ void addMesh(const TouchOptions& o, const std::string& file, Parts& parts) {
 void addImage(const TouchOptions& o, const std::string& file, Parts& parts) {
   refuse(!o.units.empty(), "--units", "meshes; an image says where its voxels are");
   refuse(!o.layer.empty(), "--layer", "grids");
-  if (o.above.has_value() == !o.labels.empty()) {
-    throw usageError(o.above ? "--above and --labels exclude one another"
-                             : "an image needs --above VALUE or --labels NAME,... to be a shape");
+  const int asked_for = (o.above ? 1 : 0) + (o.distances ? 1 : 0) + (o.labels.empty() ? 0 : 1);
+  if (asked_for != 1) {
+    throw usageError(asked_for > 1 ? "--above, --labels and --distances exclude one another"
+                                   : "an image needs --above VALUE, --labels NAME,... or "
+                                     "--distances to be a shape");
   }
-  refuse(o.above && !o.names.empty(), "--names", "--labels");
+  refuse(o.labels.empty() && !o.names.empty(), "--names", "--labels");
   Entries image;
   image.addText("file", file);
   image.addText("names", o.names.empty() ? "" : fs::absolute(o.names).string());
@@ -122,10 +125,14 @@ void addImage(const TouchOptions& o, const std::string& file, Parts& parts) {
     parts.layers += "  - {name: " + quoted(layerName(name, parts.names)) + ", " + kind + ": " +
                     surface.text() + ", wall: wall}\n";
   };
-  if (o.above) {
+  if (o.labels.empty()) {
     Entries surface;
     surface.add("image", "scan");
-    surface.add("above", formatNumber(*o.above, 17));
+    if (o.above) surface.add("above", formatNumber(*o.above, 17));
+    if (o.distances) {
+      surface.add("below", "0");
+      surface.add("keep", "all");
+    }
     add_layer(stemOf(o.scene), "threshold", surface);
   }
   for (const std::string& label : o.labels) {
@@ -138,6 +145,7 @@ void addImage(const TouchOptions& o, const std::string& file, Parts& parts) {
 }
 
 void addGrid(const TouchOptions& o, const std::string& file, Parts& parts) {
+  refuse(o.distances, "--distances", "images");
   refuse(!o.labels.empty(), "--labels", "images");
   refuse(!o.names.empty(), "--names", "images");
   refuse(!o.scan.affine.empty() || !o.scan.space.empty(), "--affine and --space",

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "bake/solid.h"
 #include "named_progress.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/bake.h"
@@ -220,8 +221,16 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
   };
   MeshWays ways;
   if (sharp_angle > 0.0) {
-    ways.finish = [read, sharp_angle](FieldPtr baked, const LevelSet& grid) {
-      return withSharpEdges(std::move(baked), read({}), sharp_angle, grid.info().voxel_size);
+    ways.finish = [common, path, read, sharp_angle](FieldPtr baked, const LevelSet& grid) {
+      SharpField made =
+          withSharpEdges(std::move(baked), read({}), sharp_angle, grid.info().voxel_size);
+      if (made.left_to_grid > 0) {
+        common->notes->add(
+            path, {std::to_string(made.left_to_grid) + " of " + std::to_string(made.edges) +
+                   " sharp edges are rounded as in a grid, as parts overlap beside them, at " +
+                   placeText(made.place, 1.0) + " for one; one solid would keep them sharp"});
+      }
+      return std::move(made.field);
     };
   }
   if (is_sharp && bake.shell_thickness == 0.0 && bake.smooth_angle == 0.0) {
@@ -386,8 +395,14 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
                                            const std::string& layer) {
   const LayerImage from(reader, layer, common->options.max_memory);
   ThresholdOptions threshold;
-  const Node& above = reader.require("above");
-  threshold.above = reader.requireNumber("above");
+  const bool is_below = reader.optional("below") != nullptr;
+  if (is_below && reader.optional("above") != nullptr) {
+    throw reader.errorAt("below", "scene.kind", "'threshold' has both 'above' and 'below'",
+                         "a surface lies around what is greater, or around what is less");
+  }
+  const char* key = is_below ? "below" : "above";
+  const Node& level = reader.require(key);
+  (is_below ? threshold.below.emplace() : threshold.above) = reader.requireNumber(key);
   const std::string keep = reader.textOr("keep", "largest");
   if (keep != "largest" && keep != "all") {
     throw reader.errorAt("keep", "scene.kind", "'keep' is `" + keep + "`",
@@ -396,20 +411,22 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
   threshold.largest_component = keep == "largest";
   threshold.fill = reader.boolOr("fill", false);
   threshold.voxel_size = readPositiveOrNone(reader, "voxel");
-  std::string summary = fileName(from.image->file->path()) + " above " + above.text;
+  std::string summary = fileName(from.image->file->path()) + " " + key + " " + level.text;
   return {
       lazyField(
           common, layer, std::move(summary), from.place, from.sampler,
           [common, file = from.image->file, threshold, bake = from.bake](const Progress& progress) {
-            const std::string note = distancesNote(file->image());
+            const std::string note = threshold.below ? std::string() : distancesNote(file->image());
             if (!note.empty()) {
               common->notes->add(file->path(),
-                                 {note + "; palpate convert --distances makes a grid of them"});
+                                 {note + "; below: 0 (--distances) takes the inside"});
             }
             return surfaceFromThreshold(file->image(), threshold, bake, progress);
           },
-          [file = from.image->file, above = threshold.above](const Progress&) {
-            return boxWhere(file->image(), [&](float value) { return value > above; });
+          [file = from.image->file, threshold](const Progress&) {
+            return boxWhere(file->image(), [&](float value) {
+              return threshold.below ? value < *threshold.below : value > threshold.above;
+            });
           }),
       {}};
 }

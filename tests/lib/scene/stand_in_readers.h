@@ -80,7 +80,7 @@ inline SceneRegistry standInReaders() {
   };
   registry.layers["threshold"] = [later, image](MapReader& reader, const std::string&) {
     const std::string file = image(reader);
-    (void)reader.requireNumber("above");
+    if (reader.optional("below") == nullptr) (void)reader.requireNumber("above");
     (void)reader.textOr("keep", "all");
     (void)reader.textOr("sampler", "");
     (void)reader.boolOr("fill", false);

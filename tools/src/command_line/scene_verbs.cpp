@@ -73,6 +73,8 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   g = "A mesh, an image or a grid instead of a scene (without a motion: pressed on from above)";
   add(app, g, "--above", "VALUE", o.above,
       "image, grid of densities: the surface around what is greater");
+  addFlag(app, g, "--distances", o.distances,
+          "image of signed distances, negative inside: the surface where they are 0");
   add(app, g, "--labels", "NAME,...", o.labels,
       "image: a layer for each of these labels, values or names")
       ->expected(1)

@@ -64,35 +64,48 @@ LevelSet bakeBand(const MaskedBand& of, const Image& image, double voxel_size, B
   return palpate::vdb::bake(*gridField(whole), bake, {});
 }
 
+std::string sideOf(bool is_below) { return is_below ? "below " : "above "; }
+
+Error nothingThere(const Image& image, bool is_below, double level) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  double last = is_below ? kNone : -kNone;
+  for (const float value : image.values) {
+    last = is_below ? std::fmin(last, static_cast<double>(value))
+                    : std::fmax(last, static_cast<double>(value));
+  }
+  return inputError(
+      "scan.empty",
+      "nothing in the image lies " + sideOf(is_below) + shortNumber(level) +
+          (is_below ? "; its smallest value is " : "; its largest value is ") + shortNumber(last),
+      is_below ? "choose a higher threshold" : "choose a lower threshold", image.source);
+}
+
 }  // namespace
 
 LevelSet surfaceFromThreshold(const Image& image, const ThresholdOptions& options,
                               const BakeOptions& bake, const Progress& progress) {
   report(progress, "threshold", 0.0);
-  if (!std::isfinite(options.above)) {
-    throw inputError("scan.threshold", "the threshold is " + shortNumber(options.above),
+  const bool is_below = options.below.has_value();
+  const double level = options.below.value_or(options.above);
+  if (!std::isfinite(level)) {
+    throw inputError("scan.threshold", "the threshold is " + shortNumber(level),
                      "give a finite intensity", image.source);
   }
-  const auto is_above = [&](float value) { return static_cast<double>(value) > options.above; };
-  Mask mask = maskOf(image, is_above, kBandMargin);
-  if (mask.inside.empty()) {
-    double largest = -std::numeric_limits<double>::infinity();
-    for (const float value : image.values) largest = std::fmax(largest, static_cast<double>(value));
-    throw inputError("scan.empty",
-                     "nothing in the image lies above " + shortNumber(options.above) +
-                         "; its largest value is " + shortNumber(largest),
-                     "choose a lower threshold", image.source);
-  }
+  const auto is_inside = [&](float value) {
+    return is_below ? static_cast<double>(value) < level : static_cast<double>(value) > level;
+  };
+  Mask mask = maskOf(image, is_inside, kBandMargin);
+  if (mask.inside.empty()) throw nothingThere(image, is_below, level);
   if (options.largest_component) keepLargestPiece(mask);
   if (options.fill) fillCavities(mask);
   report(progress, "threshold", kMaskDone);
   BakeOptions with_source = bake;
-  with_source.metadata["threshold"] = "above " + shortNumber(options.above) +
+  with_source.metadata["threshold"] = sideOf(is_below) + shortNumber(level) +
                                       (options.largest_component ? ", largest piece" : "") +
                                       (options.fill ? ", filled" : "");
   const Vec3 lengths(glm::length(image.axes[0]), glm::length(image.axes[1]),
                      glm::length(image.axes[2]));
-  Band band = bandOfThreshold(image, options.above, mask, lengths / smallestSpacing(image));
+  Band band = bandOfThreshold(image, level, mask, lengths / smallestSpacing(image));
   return bakeBand({std::move(mask), std::move(band)}, image, options.voxel_size,
                   std::move(with_source), progress);
 }

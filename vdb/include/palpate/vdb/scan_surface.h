@@ -22,17 +22,18 @@
 namespace palpate::vdb {
 
 struct ThresholdOptions {
-  double above = 0.0;             ///< inside is where the image is greater; NaN is outside
-  bool largest_component = true;  ///< keep only the largest piece; voxels hang together by faces
+  double above = 0.0;                ///< inside is where the image is greater; NaN is outside
+  std::optional<double> below = {};  ///< instead of `above`: inside is where the image is less
+  bool largest_component = true;     ///< keep only the largest piece; voxels hang together by faces
   /// Fill cavities: all that no path of outside voxels (across faces and edges) joins to the border
   /// of the image. What an air path leads into, like nose and windpipe, stays open.
   bool fill = false;
   double voxel_size = 0.0;  ///< [m] 0: bake.voxel_size; 0 as well: the image's smallest spacing
 };
 
-/// The wall is the iso-surface of the image, interpolated by a C2 tri-cubic spline, at `above`: where the
-/// image is smooth, to a small share of a voxel.
-/// @throws Error (kInput) if `above` is not finite, or nothing lies above it.
+/// The wall is the iso-surface of the image, interpolated by a C2 tri-cubic spline, at `above` (or
+/// `below`): where the image is smooth, to a small share of a voxel.
+/// @throws Error (kInput) if that is not finite, or nothing lies above (below) it.
 [[nodiscard]] LevelSet surfaceFromThreshold(const Image& image, const ThresholdOptions& options,
                                             const BakeOptions& bake, const Progress& progress = {});
 
