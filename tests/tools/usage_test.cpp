@@ -111,6 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{{"touch", "c.yaml", "--press", "0,0,0", "--trace", "c.yaml"},
               "would replace the input"},
         Wrong{{"touch", "c.yaml", "d.yaml", "--press", "0,0,0"}, "one argument too many"},
+        Wrong{{"touch", "c.yaml", "--insert", "0,0,60", "0,0"}, "'0,0' is not a point"},
         Wrong{{"bake", "c.yaml"}, "-o OUT.vdb is missing"},
         Wrong{{"bake", "c.yaml", "-o", "a.nii"}, "must end in .vdb"},
         Wrong{{"bake", "c.yaml", "-o", "a.vdb", "--voxel", "0"}, "greater than 0"},

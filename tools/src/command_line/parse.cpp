@@ -6,9 +6,20 @@
 namespace palpate::tools {
 namespace {
 
+bool isOfNumbers(const std::string& text) {
+  return text.find_first_not_of("0123456789+-.eE, ") == std::string::npos;
+}
+
+bool looksLikePoint(const std::string& text) {
+  return std::count(text.begin(), text.end(), ',') == 2 && isOfNumbers(text);
+}
+
 /// For an option that nobody knows: what may have been meant.
 Error unknownArgument(const CLI::App& app, const Verb& verb, const std::string& argument) {
   const std::string more = "see palpate " + std::string(verb.name) + " --help";
+  if (argument.find(',') != std::string::npos && isOfNumbers(argument)) {
+    return usageError("'" + argument + "' is not a point", "a point is three numbers: X,Y,Z");
+  }
   if (argument.empty() || argument[0] != '-') {
     return usageError("'" + argument + "' is one argument too many", more);
   }
@@ -21,11 +32,6 @@ Error unknownArgument(const CLI::App& app, const Verb& verb, const std::string& 
       suggest(word, std::vector<std::string_view>(names.begin(), names.end()));
   return usageError("'" + std::string(verb.name) + "' has no option " + word,
                     close.empty() ? more : "did you mean " + close + "?");
-}
-
-bool looksLikePoint(const std::string& text) {
-  return std::count(text.begin(), text.end(), ',') == 2 &&
-         text.find_first_not_of("0123456789+-.eE, ") == std::string::npos;
 }
 
 /// `--insert A B C` becomes `--insert A --insert B --insert C`, so that a list of points never swallows
