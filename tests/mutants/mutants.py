@@ -2,6 +2,7 @@
 """Do the tests see it when the sources are wrong? One small slip at a time in a copy of them; README.md has the rest."""
 
 import argparse
+import functools
 import hashlib
 import json
 import os
@@ -68,9 +69,10 @@ def configure(tree, build):
     if (build / "build.ninja").exists():
         return
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+    linker = ["-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=gold"] if shutil.which("ld.gold") else []
     subprocess.run(["cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug",
                     "-DCMAKE_CXX_FLAGS_DEBUG=", "-DCMAKE_CXX_FLAGS=-O1 -w", "-DPALPATE_VDB=OFF", "-DPALPATE_TESTS=ON",
-                    "-DPALPATE_INSTALL=OFF", *launcher], check=True, stdout=subprocess.DEVNULL)
+                    "-DPALPATE_INSTALL=OFF", *launcher, *linker], check=True, stdout=subprocess.DEVNULL)
 
 
 def compiles(build, target, log):
@@ -111,24 +113,47 @@ def suite_of(test):
     return re.sub(r"/\d+$", "", test.split(".")[0]).split("/")[-1]
 
 
-def times_of(exe, work):
-    """[s] of each test that passes as the sources stand; measured once for each build."""
+def listed(exe):
+    """The names of all tests."""
+    names, suite = [], ""
+    told = subprocess.run([exe, "--gtest_list_tests"], check=True, capture_output=True, text=True).stdout
+    for line in told.splitlines():
+        text = line.split("#")[0].rstrip()
+        if text.startswith("  "):
+            names.append(suite + text.strip())
+        elif text.endswith("."):
+            suite = text
+    return names
+
+
+def times_of(exe, work, chosen):
+    """[s] of each test that `chosen` picks and that passes as the sources stand; measured once for each build. It picks by
+    the times of an earlier build, so that the slow ones, which no mutant waits for, do not run again for a new one."""
     kept = work / "times.json"
-    digest = hashlib.sha256(Path(exe).read_bytes()).hexdigest()
     known = json.loads(kept.read_text()) if kept.exists() else {}
-    if known.get(exe.name, {}).get("digest") == digest:
-        return known[exe.name]["times"]
-    say(f"timing the tests of {exe.name}")
-    result = work / "baseline.json"
-    run_tests(exe, ["*"], 3600, work / "baseline.txt", result)
-    times = {}
-    for suite in json.loads(result.read_text())["testsuites"]:
-        for test in suite["testsuite"]:
-            if not test.get("failures") and test["result"] == "COMPLETED":
-                times[suite["name"] + "." + test["name"]] = float(test["time"].rstrip("s"))
-    known[exe.name] = {"digest": digest, "times": times}
-    kept.write_text(json.dumps(known))
-    return times
+    own = known.setdefault(exe.name, {})
+    measured = own.setdefault("times", {})
+    digest = hashlib.sha256(Path(exe).read_bytes()).hexdigest()
+    if own.get("digest") != digest:
+        own.update({"digest": digest, "passed": [], "failed": []})
+    tried = {*own["passed"], *own["failed"]}
+    guessed = {name: measured.get(name, 0.0) for name in listed(exe)}
+    wanted = [name for names, _ in chosen(guessed) for name in names if name not in tried]
+    if wanted:
+        say(f"timing {len(wanted)} tests of {exe.name}")
+        result = work / "baseline.json"
+        result.unlink(missing_ok=True)
+        run_tests(exe, wanted, 3600, work / "baseline.txt", result)
+        if not result.exists():
+            sys.exit(f"error: the tests do not come to an end as the sources stand, see {work / 'baseline.txt'}")
+        for suite in json.loads(result.read_text())["testsuites"]:
+            for test in suite["testsuite"]:
+                name = suite["name"] + "." + test["name"]
+                measured[name] = float(test["time"].rstrip("s"))
+                passed = not test.get("failures") and test["result"] == "COMPLETED"
+                own["passed" if passed else "failed"].append(name)
+        kept.write_text(json.dumps(known))
+    return {name: measured[name] for name in own["passed"]}
 
 
 def stages_of(module, times, seconds):
@@ -217,7 +242,8 @@ def try_module(workshop, module, options, equivalents):
     """How many were killed, how many count, and who survived."""
     if not workshop.make(module):
         sys.exit(f"error: the sources do not compile as they stand, see {workshop.folder / 'build.txt'}")
-    stages = stages_of(module, times_of(workshop.exe(module), workshop.folder), options.seconds)
+    choose = functools.partial(stages_of, module, seconds=options.seconds)
+    stages = choose(times_of(workshop.exe(module), workshop.folder, choose))
     if not stages:
         sys.exit(f"error: no test of {module} passes as the sources stand, see {workshop.folder / 'baseline.txt'}")
     candidates = [m for path in sources_of(module) for m in mutants_of(path, (ROOT / path).read_text())]

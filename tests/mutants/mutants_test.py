@@ -32,7 +32,7 @@ class Pretended:
 
 def tried(workshop, number=20, seed="1", equivalents=(), tests=("Cut.A",)):
     options = argparse.Namespace(seed=seed, number=number, seconds=20.0)
-    times, mutants.times_of = mutants.times_of, lambda _exe, _folder: dict.fromkeys(tests, 0.1)
+    times, mutants.times_of = mutants.times_of, lambda _exe, _folder, _chosen: dict.fromkeys(tests, 0.1)
     try:
         with contextlib.redirect_stdout(io.StringIO()):
             return mutants.try_module(workshop, "contact", options, dict.fromkeys(equivalents, "a reason"))
@@ -76,6 +76,42 @@ class Runner(unittest.TestCase):
         times = {"Planes.Slow": 30.0, "Sweep.A": 0.5, "Sweep.B": 0.1, "Cut.C": 4.0, "Elsewhere.D": 0.1}
         stages = mutants.stages_of("contact", times, 20.0)
         self.assertEqual([name for names, _ in stages for name in names], ["Sweep.B", "Sweep.A", "Cut.C"])
+
+    def test_of_a_new_build_only_what_may_be_chosen_is_timed_again(self):
+        script = """#!/usr/bin/env python3
+import json, sys
+from pathlib import Path
+tests = ["Cut.Quick", "Cut.Slow", "Cut.Broken"]
+if "--gtest_list_tests" in sys.argv:
+    print("Cut.\\n  Quick\\n  Slow\\n  Broken")
+    sys.exit()
+flags = dict(word[2:].split("=", 1) for word in sys.argv[1:] if "=" in word)
+wanted = Path(flags["gtest_flagfile"]).read_text().split("=")[1].split()[0].split(":")
+with open("ran.txt", "a") as out:
+    out.write(" ".join(wanted) + "\\n")
+of = {"Quick": "0.5s", "Slow": "50s", "Broken": "0.1s"}
+rows = [{"name": n, "time": of[n], "result": "COMPLETED", "failures": ["no"] * (n == "Broken")}
+        for n in (w.split(".")[1] for w in wanted)]
+Path(flags["gtest_output"][5:]).write_text(json.dumps({"testsuites": [{"name": "Cut", "testsuite": rows}]}))
+"""
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            work = Path(folder)
+            exe = work / "tests"
+
+            def quick(times):
+                return [([name for name in sorted(times) if times[name] < 20.0], 1.0)]
+
+            def times():
+                exe.chmod(0o755)
+                return mutants.times_of(exe, work, quick)
+
+            exe.write_text(script)
+            self.assertEqual(times(), {"Cut.Quick": 0.5, "Cut.Slow": 50.0})
+            self.assertEqual(times(), {"Cut.Quick": 0.5, "Cut.Slow": 50.0})  # as it was: nothing runs
+            exe.write_text(script + "# another build")
+            self.assertEqual(times(), {"Cut.Quick": 0.5})
+            ran = (work / "ran.txt").read_text().splitlines()
+            self.assertEqual(ran, ["Cut.Broken Cut.Quick Cut.Slow", "Cut.Broken Cut.Quick"])
 
     def test_suites_are_known_whatever_their_parameters(self):
         self.assertEqual([mutants.suite_of(t) for t in ["A.b", "Part/A.b/3", "A/0.b"]], ["A", "A", "A"])

@@ -64,9 +64,11 @@ LocalProjection projectLocally(const Vec3& from, const Vec3& target,
       out.settled = true;
       return out;
     }
-    // Between two faces of one kind a whole step may go to and fro for ever.
-    if (length > 0.9 * last) share = std::max(0.25, 0.5 * share);
-    last = length;
+    // Between two faces of one kind a whole step may go to and fro for ever; a turn that was cut short says nothing of that.
+    if (turns <= kLargestTurn) {
+      share = length > 0.9 * last ? std::max(0.25, 0.5 * share) : std::min(1.0, 2.0 * share);
+      last = length;
+    }
     out.at += share * step;
   }
   return out;

@@ -211,9 +211,10 @@ void Passages::arrive(PassedPorts& passed, RegionId from, RegionId to, bool keep
     passed.clear();
     return;
   }
-  for (std::size_t slot = 0; slot < counted_.size(); ++slot) {
-    const Port& port = ports_[counted_[slot]];
-    if (port.leads(to, from)) passed.takeBack(slot, port.countsInward(to, from));
+  for (const PortId id : counted_) {
+    const Port& port = ports_[id];
+    if (!port.leads(to, from)) continue;
+    passed.takeBack(static_cast<std::size_t>(port.slot), port.countsInward(to, from));
   }
 }
 

@@ -97,7 +97,6 @@ Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
   const double across = glm::length(outward);
   if (!state_.friction.is_felt || !(across > 0.0)) {
     const SeriesForce series = seriesForce(x, x - apart, walls_.stop(), walls_);
-    out.stiffness = std::max(0.0, glm::dot(series.force, apart)) / (length * length);
     out.force = series.force + series.by_press;
     out.rise = series.by_press;
     out.varies = series.by_press != Vec3(0.0);

@@ -43,11 +43,10 @@ void PaperWall::takeApart(const FieldPtr& field, const Pose& pose, bool is_inver
       {is_inverted ? complement(placed) : placed, partition.leavesOf(field.get()), {}});
 }
 
-bool PaperWall::setOpen(std::size_t face, bool is_open) noexcept {
-  if ((is_open_[face] != 0) == is_open) return false;
+void PaperWall::setOpen(std::size_t face, bool is_open) noexcept {
+  if ((is_open_[face] != 0) == is_open) return;
   is_open_[face] = is_open ? 1 : 0;
   open_count_ = is_open ? open_count_ + 1 : open_count_ - 1;
-  return true;
 }
 
 bool PaperWall::isWithinOpenings(const Vec3& p) const noexcept {

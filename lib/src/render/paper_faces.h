@@ -27,8 +27,8 @@ class PaperWall final : public Field {
   [[nodiscard]] std::vector<PaperFace>& faces() noexcept { return faces_; }
   [[nodiscard]] const std::vector<PaperFace>& faces() const noexcept { return faces_; }
 
-  /// Makes a face a wall, or an opening. True if it was not. Real-time safe.
-  bool setOpen(std::size_t face, bool is_open) noexcept;
+  /// Makes a face a wall, or an opening. Real-time safe.
+  void setOpen(std::size_t face, bool is_open) noexcept;
   [[nodiscard]] bool hasWalls() const noexcept { return open_count_ < faces_.size(); }
   /// Whether `p` [m] is on the layer's side of all openings; on one is not, as for the cells of ports.
   [[nodiscard]] bool isWithinOpenings(const Vec3& p) const noexcept;

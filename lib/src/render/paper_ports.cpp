@@ -113,6 +113,7 @@ Vec3 PaperRenderer::crossingPoint(const Vec3& hip) const noexcept {
 void PaperRenderer::enter(const RegionEntry& entry) noexcept {
   cell_.assign(turned_);
   state_.place.region = entry.to;
+  state_.paper.holds = false;  // what was felt may have been another surface
   if (entry_count_ < entries_.size()) entries_[entry_count_++] = entry;
   openFaces();
 }
@@ -134,9 +135,7 @@ void PaperRenderer::openFaces() noexcept {
                                                        : leads_out(port.from) || leads_out(port.to);
         return leads && scene_->passages().isDue(port, state_.place.passed);
       });
-      // What was felt was another surface.
-      if (wall.setOpen(f, is_open) && state_.paper.holds && state_.paper.layer == i)
-        state_.paper.holds = false;
+      wall.setOpen(f, is_open);
     }
   }
 }

@@ -91,12 +91,7 @@ PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
   }
 }
 
-void PaperRenderer::resume() noexcept {
-  // What was felt goes on, although faces are opened and shut to be as they were.
-  const PaperTouch felt = state_.paper;
-  openFaces();
-  state_.paper = felt;
-}
+void PaperRenderer::resume() noexcept { openFaces(); }
 
 void PaperRenderer::start(const HipState& hip) noexcept {
   state_.hip = hip.position;
@@ -119,10 +114,7 @@ TickResult PaperRenderer::step(const HipState& hip) noexcept {
 void PaperRenderer::feel(const HipState& hip, TickResult& out) noexcept {
   const Vec3& p = hip.position;
   out.proxy = p;
-  if (out.event_count > 0) {  // "ENTER_PORT, else if ...": a tick that passes a port feels nothing
-    state_.paper.holds = false;
-    return;
-  }
+  if (out.event_count > 0) return;  // "ENTER_PORT, else if ...": who passes a port feels nothing
   if (state_.place.region != kOutside) {
     const PaperWall& own = layers_[state_.place.region - 1U].wall;
     const bool in_openings = own.isWithinOpenings(p);

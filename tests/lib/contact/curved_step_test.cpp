@@ -190,5 +190,18 @@ TEST(CurvedStep, BetweenTwoWallsGoesAlongTheirCrease) {
   EXPECT_GT(seen, 400);
 }
 
+TEST(CurvedStep, FreeOrInACornerIsTheStepItself) {
+  const Mat3 bend = Mat3(0.3);
+  const std::vector<Plane> corner{{Vec3(1, 0, 0), 0.0}, {Vec3(0, 1, 0), 0.0}, {Vec3(0, 0, 1), 0.1}};
+  const Vec3 in(-1.0, -2.0, -3.0);
+  const PlaneSolution held = closestStep(in, corner);
+  ASSERT_EQ(held.count, 3);
+  EXPECT_LT(glm::length(curvedStep(in, corner, held, bend, 0.02).step - Vec3(0, 0, -0.1)), 1e-15);
+  const Vec3 off(1.0, 2.0, 3.0);
+  const PlaneSolution free = closestStep(off, corner);
+  ASSERT_EQ(free.count, 0);
+  EXPECT_EQ(curvedStep(off, corner, free, bend, 0.02).step, off);
+}
+
 }  // namespace
 }  // namespace palpate::test

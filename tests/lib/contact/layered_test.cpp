@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -184,6 +185,14 @@ TEST(StackStiffness, AllocatesNothing) {
   for (int i = 0; i < 20; ++i) sum += stackStiffness(layers, kRadius).stiffness;
   EXPECT_EQ(guard.violations(), 0);
   EXPECT_GT(sum, 0.0);
+}
+
+TEST(StackStiffness, OfOneLayerIsTheLayersOwn) {
+  const std::array<StackLayer, 1> one = {StackLayer{700.0, 0.0}};
+  const StackStiffness all = stackStiffness(one, kRadius);
+  EXPECT_EQ(all.stiffness, 700.0);
+  EXPECT_EQ(all.by_stiffness[0], 1.0);
+  EXPECT_EQ(all.by_thickness[0], 0.0);
 }
 
 }  // namespace

@@ -50,6 +50,22 @@ TEST(LocalProjection, LeavesWhatIsAllowedAlone) {
   EXPECT_EQ(out.at, Vec3(0.001, 0, 0.012));
 }
 
+TEST(LocalProjection, SettlesFarFromTheOriginDownToRounding) {
+  // At a thousand times the way to the target, what rounding leaves of a step is longer than 1e-12 of that way.
+  const Vec3 center(3.0, -2.0, 1.0);
+  const FieldPtr ball = sphere(center, 0.01);
+  const std::vector<HeldWall> walls{outsideOf(ball)};
+  Random random(5);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 u = random.direction();
+    const Vec3 v = glm::normalize(u + 0.3 * random.direction());
+    const LocalProjection out = projectLocally(center + 0.01 * u, center + 0.009 * v, walls);
+    ASSERT_TRUE(out.settled) << i;
+    ASSERT_EQ(out.count, 1U) << i;
+    EXPECT_LT(glm::length(out.at - (center + 0.01 * v)), 1e-13) << i;
+  }
+}
+
 /// Each wall a kind of its own, with a height and a stiffness that vary along it.
 class Kinds final : public SoftKinds {
  public:

@@ -171,5 +171,21 @@ TEST(Bands, MustReachAsFarAsWhatIsMadeOfThem) {
   EXPECT_EQ(code([&] { return offset(scale(grid, 2.0), 0.009); }), "field.band_too_narrow");
 }
 
+TEST(Bands, OfABlendOnlyWhatHasAShareMustBeInItsBand) {
+  constexpr double kRadius = 0.003;
+  const FieldPtr grid = std::make_shared<BandedBall>(0.004);
+  const FieldPtr far = sphere(kLeft + Vec3(0.2, 0, 0), 0.03);
+  for (const FieldPtr& both :
+       {smoothUnite({grid, far}, kRadius), smoothUnite({far, grid}, kRadius)}) {
+    const auto in_band = [&](const Vec3& p) {
+      EXPECT_EQ(both->sample(p).in_band, both->jet(p).in_band);
+      return both->sample(p).in_band;
+    };
+    EXPECT_TRUE(in_band(kLeft + Vec3(0.2, 0.031, 0))) << "the grid is far away and has no share";
+    EXPECT_TRUE(in_band(kLeft + Vec3(0, 0.031, 0))) << "on the grid's surface";
+    EXPECT_FALSE(in_band(kLeft + Vec3(0, 0.05, 0))) << "out of its band, and the nearest";
+  }
+}
+
 }  // namespace
 }  // namespace palpate::test

@@ -166,6 +166,16 @@ TEST(Heart, HasAGradientEverywhereOnItsSurface) {
   }
 }
 
+TEST(Heart, FarAwayItDoesNotBend) {
+  // As a cone: its curvature is one over the distance, and 1e-100 m^-1 is none.
+  const FieldPtr field = heart(kCenter, 0.06);
+  for (const Vec3& p : {Vec3(1e100, 0, 0), Vec3(-1e120, 2e120, 1e119), Vec3(0, 0, 1e200)}) {
+    const FieldJet jet = field->jet(p);
+    EXPECT_EQ(jet.value, field->value(p));
+    for (int c = 0; c < 3; ++c) EXPECT_LT(glm::length(jet.hessian[c]), 1e-90);
+  }
+}
+
 TEST(Quadric, IsTheSameWhateverTheScaleOfItsCoefficients) {
   const QuadricCoefficients one{.xx = 4, .yy = 9, .zz = 1, .y = 0.2, .constant = -1};
   QuadricCoefficients big = one;

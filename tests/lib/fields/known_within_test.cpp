@@ -74,5 +74,38 @@ TEST(KnownWithin, RefusesNothingAndAnEmptyBox) {
             "field.empty_box");
 }
 
+/// A ball whose Lipschitz bound holds in a box only.
+class BoundedIn final : public Field {
+ public:
+  explicit BoundedIn(const Box3& domain) : domain_(domain) {}
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    return ball_->sample(p);
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return ball_->bounds(); }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kImplicit; }
+  [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
+  [[nodiscard]] Box3 lipschitzDomain() const noexcept override { return domain_; }
+  [[nodiscard]] double featureSize() const noexcept override { return 0.04; }
+
+ private:
+  FieldPtr ball_ = sphere(Vec3(0.0), 0.04);
+  Box3 domain_;
+};
+
+TEST(KnownWithin, ItsLipschitzBoundHoldsEverywhereIfItDoesInTheWholeBox) {
+  const auto domain = [](const Vec3& lo, const Vec3& hi) {
+    return knownWithin(std::make_shared<BoundedIn>(Box3{lo, hi}), kBox)->lipschitzDomain();
+  };
+  EXPECT_FALSE(domain(kBox.lo - Vec3(0.01), kBox.hi + Vec3(0.01)).isBounded());
+  // One corner of the box is in it, the other is not.
+  const Vec3 middle = kBox.center();
+  const Box3 low = domain(kBox.lo - Vec3(0.01), middle);
+  EXPECT_EQ(low.lo, kBox.lo);
+  EXPECT_EQ(low.hi, middle);
+  const Box3 high = domain(middle, kBox.hi + Vec3(0.01));
+  EXPECT_EQ(high.lo, middle);
+  EXPECT_EQ(high.hi, kBox.hi);
+}
+
 }  // namespace
 }  // namespace palpate::test

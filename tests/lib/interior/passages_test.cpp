@@ -5,6 +5,7 @@
 #include "palpate/core/error.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/interior/port_machine.h"
+#include "support/test_maps.h"
 
 namespace palpate::test {
 namespace {
@@ -23,7 +24,7 @@ Port portOf(Ids from, Ids to) {
 
 /// Chambers 1, 2, 3 in a ring behind a door from outside: port 0 is the door, 1, 2, 3 lead on (1 to 2, 2 to 3,
 /// 3 to 1), 4 leads back from 2 to 1. All are counted.
-class Ring : public testing::Test {
+class Ring : public ::testing::Test {
  protected:
   Ring() {
     std::vector<Port> ports{portOf({0}, {1}), portOf({1}, {2}), portOf({2}, {3}), portOf({3}, {1}),
@@ -190,7 +191,7 @@ TEST(Port, LeadsByItsDirection) {
 }
 
 /// Two nested balls and a mask: leaf 0 is region 1's, leaf 1 region 2's, leaf 2 the mask (x < 0).
-class Facets : public testing::Test {
+class Facets : public ::testing::Test {
  protected:
   Facets()
       : layers_{sphere(Vec3(0.0), 0.2), sphere(Vec3(0.0), 0.1)},
@@ -287,12 +288,25 @@ TEST_F(Facets, OpeningForces) {
   Facet facet = look(outside_, {0}, {skin});
   EXPECT_EQ(facet.kind, Kind::kClosed);
   EXPECT_EQ(facet.opens_at, 3.0);
+  EXPECT_FALSE(facet.varies) << "it is the same all over the facet";
   EXPECT_EQ(look(shell_, {0}, {skin}).opens_at, 1.0);
   skin.back = 0.0;
   EXPECT_EQ(look(shell_, {0}, {skin}).kind, Kind::kOpen);
   skin.direction = PortDirection::kIn;
   EXPECT_EQ(look(shell_, {0}, {skin}).opens_at, 0.0) << "and closed: no force opens it";
   EXPECT_EQ(look(shell_, {0}, {skin}).kind, Kind::kClosed);
+}
+
+TEST_F(Facets, AnOpeningForceThatVariesSaysSo) {
+  Port skin = port({0}, {1});
+  skin.opens_at = testing::linearMap(3.0, Vec3(0, 0, 10.0), {1.0, 5.0});
+  EXPECT_TRUE(look(outside_, {0}, {skin}).varies);
+  EXPECT_DOUBLE_EQ(look(outside_ + Vec3(0, 0, 0.1), {0}, {skin}).opens_at, 4.0);
+  // Whatever else leads through there.
+  Port hard = port({0}, {1});
+  hard.opens_at = 5.0;
+  EXPECT_TRUE(look(outside_, {0}, {skin, hard}).varies);
+  EXPECT_TRUE(look(outside_, {0}, {hard, skin}).varies);
 }
 
 TEST_F(Facets, SeveralPortsOnOneFacet) {

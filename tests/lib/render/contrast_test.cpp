@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "lib/render/energy_loop.h"
+#include "palpate/contact/contact_patch.h"
 #include "palpate/fields/primitives.h"
 #include "support/test_maps.h"
 
@@ -105,6 +107,61 @@ TEST(Contrasts, AreToldWithWhatRemains) {
   EXPECT_LT(sharp[0].length, 0.2e-3);
   EXPECT_GT(sharp[0].length, 0.05e-3);
   EXPECT_GT(sharp[0].sideways, 0.05);
+}
+
+/// The energy [J] over the patch that a floor is felt by, with the hand at `hip` beneath it.
+double energyAt(const Parameter& stiffness, const Vec3& hip, double contrast) {
+  const Vec3 press(0, 0, -hip.z);
+  const PatchSample felt = overPatch(stiffness, Vec3(hip.x, hip.y, 0.0), press, contrast);
+  return 0.5 * felt.value * hip.z * hip.z;
+}
+
+TEST(Contrasts, TheForceIsWhatTheEnergyOverThePatchFallsBy) {
+  const Parameter stiffness = step(0.5e-3);
+  const ScenePtr scene = sceneWith(kFloor, stiffness);
+  const double contrast = contrastsOf(*scene).at(0).length;
+  constexpr double kStep = 1e-8;
+  for (const Vec3& hip : {mm(0, 0, -0.5), mm(0.3, 0.2, -1), mm(-0.8, 0, -2), mm(0.2, 0.1, -3)}) {
+    Drive hand(scene);
+    (void)hand.to(Vec3(hip.x, hip.y, 1e-3));
+    const Vec3 force = hand.walk(hip).force;
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 by(0.0);
+      by[axis] = kStep;
+      const double expected =
+          (energyAt(stiffness, hip - by, contrast) - energyAt(stiffness, hip + by, contrast)) /
+          (2.0 * kStep);
+      // Of the energy, a millijoule, 1e-13 is rounding: over the step 1e-8 N. The wall is met a billionth of a meter off.
+      EXPECT_NEAR(force[axis], expected, 1e-5) << axis << " " << hip.z;
+    }
+  }
+}
+
+TEST(Contrasts, ASharpStepIsFoundBesideALargerGentleOne) {
+  // Within a ball of 50 mm the logarithm rises evenly by 9, and by 0.1 more within 0.2 mm: there it is steepest.
+  constexpr double kHalf = 0.05;
+  constexpr double kGentle = 9.0 / (2.0 * kHalf);  // [1/m]
+  constexpr double kWidth = 0.2e-3;
+  constexpr double kAt = 0.02;
+  const auto map = std::make_shared<FunctionMap>(
+      [](const Vec3& p) {
+        MaterialMap::Sample out{1.0, Vec3(0.0)};
+        // Beside the ball's bounds there is nothing to find.
+        if (std::max(std::fabs(p.y), std::fabs(p.z)) > 1.001 * kHalf) return out;
+        const double t = std::clamp((p.x - kAt) / kWidth + 0.5, 0.0, 1.0);
+        out.value = std::exp(kGentle * (p.x + kHalf) + 0.1 * t * t * (3.0 - 2.0 * t));
+        out.gradient.x = out.value * (kGentle + 0.1 * 6.0 * t * (1.0 - t) / kWidth);
+        return out;
+      },
+      MaterialMap::Range{0.5, 2e4});
+  const std::vector<Contrast> found =
+      contrastsOf(*sceneWith(sphere(Vec3(0.0), kHalf), MaterialMapPtr(map)));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found[0].at.x, kAt, kWidth);
+  // In the step's middle; a secant is nowhere steeper, and over half of the step not less than half as steep.
+  const double steepest = kGentle + 0.1 * 1.5 / kWidth;
+  EXPECT_GE(found[0].length, (1.0 - 1e-6) / steepest);
+  EXPECT_LE(found[0].length, 2.0 / steepest);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // What a scene does not need is not made: beyond the device's workspace, and where no probe ever comes.
 
+#include "scene/need.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -323,6 +325,27 @@ TEST_F(Need, ThePapersRendererWantsThemAll) {
     EXPECT_EQ(error.problem().code, "render.paper_left_out");
   }
   EXPECT_NO_THROW((void)makeRenderer(compile(read(bone()), {}, Purpose::kShow), settings));
+}
+
+TEST_F(Need, ABoxIsMeasuredOnce) {
+  int measured = 0;
+  const auto costly = [&](double radius) {
+    return std::make_shared<FieldSource>(
+        "costly", [radius](const Progress&) { return sphere(Vec3(0.0), radius); },
+        [&measured, radius](const Progress&) {
+          ++measured;
+          return Box3{Vec3(-radius), Vec3(radius)};
+        });
+  };
+  SceneDescription description;
+  for (const double radius : {0.04, 0.02, 0.01}) {
+    LayerDescription layer;
+    layer.name = "layer" + std::to_string(description.layers.size());
+    layer.inside = costly(radius);
+    description.layers.push_back(layer);
+  }
+  EXPECT_EQ(reasonsToLeaveOut(description, {}).size(), 3U);
+  EXPECT_EQ(measured, 3) << "to measure may mean to read a file";
 }
 
 }  // namespace

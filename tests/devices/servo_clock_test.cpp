@@ -1,0 +1,61 @@
+// What the servo loop changes of its thread, and that it does so only when asked.
+
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/prctl.h>
+
+#include <atomic>
+
+#include "palpate/devices/servo_loop.h"
+#include "palpate/devices/virtual_device.h"
+
+namespace palpate::devices {
+namespace {
+
+const std::atomic<bool> kNeverStop{false};
+
+/// [ns] by which the kernel may wake this thread late.
+int slack() { return prctl(PR_GET_TIMERSLACK, 0, 0, 0, 0); }
+
+/// The slack within a tick of a loop with these settings.
+int slackDuring(const ServoSettings& settings) {
+  VirtualDevice device({{0.0, Vec3(0.0)}});
+  int out = -1;
+  const ServoTick tick = [&](const DeviceState& /*state*/) {
+    out = slack();
+    return Vec3(0.0);
+  };
+  static_cast<void>(runServo(device, tick, settings, kNeverStop));
+  return out;
+}
+
+TEST(ServoClock, ALoopByTheClockSleepsExactlyAndGivesTheSlackBack) {
+  const int before = slack();
+  if (before <= 1) GTEST_SKIP() << "this thread sleeps exactly already";
+  EXPECT_EQ(slackDuring({.realtime = true}), 1);
+  EXPECT_EQ(slack(), before);
+  EXPECT_EQ(slackDuring({.realtime = false}), before) << "nothing sleeps, nothing is changed";
+  EXPECT_EQ(slack(), before);
+}
+
+TEST(ServoClock, NeitherPriorityNorMemoryIsTakenUnlessAskedFor) {
+  int policy = -1;
+  int during = -1;
+  sched_param param{};
+  ASSERT_EQ(pthread_getschedparam(pthread_self(), &policy, &param), 0);
+  VirtualDevice device({{0.0, Vec3(0.0)}});
+  const ServoTick tick = [&](const DeviceState& /*state*/) {
+    pthread_getschedparam(pthread_self(), &during, &param);
+    return Vec3(0.0);
+  };
+  const ServoReport report =
+      runServo(device, tick, {.realtime = true, .elevate = false}, kNeverStop);
+  EXPECT_EQ(during, policy);
+  EXPECT_FALSE(report.has_priority);
+  EXPECT_FALSE(report.has_locked_memory);
+  EXPECT_FALSE(report.elevated);
+}
+
+}  // namespace
+}  // namespace palpate::devices

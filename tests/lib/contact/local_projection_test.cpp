@@ -1,0 +1,82 @@
+// The point of some walls nearest to a hand settles wherever the steps begin: also when they are cut short by the walls'
+// curvature, or go from one face of a wall to the other.
+
+#include "palpate/contact/local_projection.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "palpate/fields/primitives.h"
+#include "support/field_contract.h"
+
+namespace palpate::test {
+namespace {
+
+HeldWall outsideOf(const FieldPtr& field) {
+  HeldWall out;
+  out.field = field.get();
+  out.side = 1.0;
+  return out;
+}
+
+/// A hand up to 6 mm below the origin, in which the walls' surfaces meet.
+Vec3 handBelow(Random& random) {
+  const Vec3 u = random.direction();
+  return 6e-3 * (u.z > 0.0 ? -u : u);
+}
+
+/// The force that the walls make of the way from the point to the hand leaves nothing of it over.
+void expectHeld(const LocalProjection& out, const Vec3& hand, int trial) {
+  ASSERT_TRUE(out.settled) << trial;
+  Vec3 rest = hand - out.at;
+  for (std::size_t k = 0; k < out.count; ++k) {
+    EXPECT_GE(out.held[k].multiplier, 0.0);
+    rest += out.held[k].multiplier * out.held[k].normal;
+  }
+  // Settled means that a step is below 1e-12 of the way; where two walls are almost one, what is left of it is more.
+  EXPECT_LT(glm::length(rest), 1e-9 * glm::length(hand - out.at) + 1e-15) << trial;
+}
+
+TEST(LocalProjection, SettlesOnAnEllipsoidSmallerThanTheWay) {
+  Random random(31);
+  for (int i = 0; i < 1000; ++i) {
+    const double low = random.uniform(2e-3, 22e-3);
+    const Vec3 radii(random.uniform(2e-3, 22e-3), random.uniform(2e-3, 22e-3), low);
+    const FieldPtr field = ellipsoid(Vec3(0, 0, -low), radii);
+    const std::vector<HeldWall> walls{outsideOf(field)};
+    const Vec3 hand = handBelow(random);
+    expectHeld(projectLocally(Vec3(0.0), hand, walls), hand, i);
+  }
+}
+
+TEST(LocalProjection, SettlesBetweenTwoBalls) {
+  Random random(32);
+  for (int i = 0; i < 1000; ++i) {
+    std::vector<FieldPtr> balls;
+    for (int k = 0; k < 2; ++k) {
+      const Vec3 u = random.direction();
+      const double radius = random.uniform(2e-3, 22e-3);
+      balls.push_back(sphere((u.z > 0.0 ? -radius : radius) * u, radius));
+    }
+    const std::vector<HeldWall> walls{outsideOf(balls[0]), outsideOf(balls[1])};
+    const Vec3 hand = handBelow(random);
+    expectHeld(projectLocally(Vec3(0.0), hand, walls), hand, i);
+  }
+}
+
+TEST(LocalProjection, SettlesOnTheFacesOfOneWall) {
+  Random random(33);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 size(random.uniform(2e-3, 22e-3), random.uniform(2e-3, 22e-3),
+                    random.uniform(2e-3, 22e-3));
+    // One of its corners is at the origin, but for its rounding.
+    const FieldPtr field = roundedBox(-0.5 * size, size, 0.5e-3);
+    const std::vector<HeldWall> walls{outsideOf(field)};
+    const Vec3 hand = handBelow(random);
+    expectHeld(projectLocally(Vec3(0.0), hand, walls), hand, i);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test

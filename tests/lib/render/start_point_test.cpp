@@ -1,0 +1,64 @@
+// Where the proxy begins when no leaf's field leads to its region, as a grid's does not out of its band.
+
+#include <gtest/gtest.h>
+
+#include "lib/render/hard_judge.h"
+#include "palpate/fields/primitives.h"
+
+namespace palpate::test {
+namespace {
+
+/// Right in its sign everywhere, and in its value and gradient within `band` [m] of its surface alone.
+class NarrowBand final : public Field {
+ public:
+  NarrowBand(FieldPtr whole, double band) : whole_(std::move(whole)), band_(band) {}
+
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    const FieldSample s = whole_->sample(p);
+    if (std::fabs(s.value) < band_) return s;
+    return {std::copysign(band_, s.value), Vec3(0.0), false};
+  }
+  [[nodiscard]] double value(const Vec3& p) const noexcept override { return sample(p).value; }
+  [[nodiscard]] Box3 bounds() const noexcept override { return whole_->bounds(); }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kBound; }
+  [[nodiscard]] double lipschitz() const noexcept override { return whole_->lipschitz(); }
+  [[nodiscard]] double featureSize() const noexcept override { return whole_->featureSize(); }
+
+ private:
+  FieldPtr whole_;
+  double band_;
+};
+
+/// In the first tick the hand is at `hip`, and the proxy where the region `solid` was found.
+Vec3 begunAt(const FieldPtr& solid, const Vec3& hip) {
+  Drive hand(sceneOfSolid(std::make_shared<NarrowBand>(solid, 1e-3), true));
+  const TickResult out = hand.to(hip);
+  EXPECT_EQ(hand.region(), "solid");
+  return out.proxy;
+}
+
+TEST(StartPoint, ARegionWithoutBoundsIsFoundAMeterOff) {
+  // Nine tenths of a meter away, to whatever side: 48 directions leave nothing wider than 25 degrees between them.
+  for (const Vec3& side : {Vec3(1, -1, 0), Vec3(-1, 1, 0), Vec3(1, 1, 1), Vec3(-1, 1, 1),
+                           Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, -1, 0)}) {
+    const Vec3 u = glm::normalize(side);
+    const Vec3 found = begunAt(halfSpace(0.9 * u, -u), Vec3(0.0));
+    EXPECT_GE(glm::dot(found, u), 0.9 - 1e-6) << Judge::text(u);
+    EXPECT_LT(glm::length(found), 1.0 + 1e-9) << Judge::text(u);
+  }
+}
+
+TEST(StartPoint, ABallIsFoundFromAllSides) {
+  const Vec3 center(0.01, -0.02, 0.03);
+  constexpr double kRadius = 0.03;
+  Random random(2);
+  for (int i = 0; i < 50; ++i) {
+    // From two radii off it is 30 degrees wide to each side.
+    const Vec3 hip = center + 2.0 * kRadius * random.direction();
+    const Vec3 found = begunAt(sphere(center, kRadius), hip);
+    EXPECT_LE(glm::length(found - center), kRadius * (1.0 + 1e-6)) << Judge::text(hip);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
