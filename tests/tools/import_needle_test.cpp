@@ -110,8 +110,8 @@ struct Walked {
 
 Walked walked(const TempFolder& folder, const std::string& scene) {
   Walked out;
-  // Along y beside the axis, and then along z by 2 mm.
-  const CommandResult touch = runPalpate({"touch", scene, "--insert", "9,30,0", "9,4,0", "9,4,2",
+  // Along y, and then along z by 2 mm.
+  const CommandResult touch = runPalpate({"touch", scene, "--insert", "0,30,0", "0,-2,0", "0,-2,2",
                                           "--speed", "10mm/s", "--trace", scene + ".csv"},
                                          folder.path());
   EXPECT_EQ(touch.exit_code, 0) << touch.err;
@@ -120,10 +120,11 @@ Walked walked(const TempFolder& folder, const std::string& scene) {
   for (const std::string& row : linesOf(textOf(folder.path(scene + ".csv")))) {
     const std::vector<std::string> cells = cellsOf(row);
     if (cells[0] == "time_s" || cells.size() < 11 || row[0] < '0' || row[0] > '9') continue;
-    y = std::stod(cells[5]) * 1e3;
-    out.force = std::stod(cells[9]);
+    // Until it goes through a wall the tip stands on it.
     if (!last.empty() && cells[10] != last) out.y.push_back(y);
     last = cells[10];
+    y = std::stod(cells[5]) * 1e3;
+    out.force = std::stod(cells[9]);
   }
   out.y.push_back(y);
   return out;
@@ -155,8 +156,8 @@ TEST(ImportNeedle, ANeedleThatIsWalkedSidewaysIsHeld) {
   std::printf("  sideways %.3f N, without %.3f N, by the formula %.3f N more\n", held.force,
               free.force, expected);
   EXPECT_GT(expected, 0.1);
-  // A tenth: how the length that comes in while it turns lies, and the tip's own spring.
-  EXPECT_NEAR(std::fabs(held.force - free.force), expected, 0.1 * expected);
+  // 3 %: the needle gets 0.5 % longer as it turns, which counts by its cube, and what the tip presses on turns with it.
+  EXPECT_NEAR(std::fabs(held.force - free.force), expected, 0.03 * expected);
 }
 
 }  // namespace
