@@ -21,12 +21,11 @@ constexpr double kFirst = 0.05;
 constexpr double kRounding = 1e-15;
 
 struct Look {
-  std::array<Vec3, SoftKinds::kMost> at{};  ///< [m] by kind: the point of its walls
-  Vec3 sum{0.0, 0.0, 0.0};                  ///< [N] the energy's gradient
-  Mat3 rate{0.0};                           ///< [N/m] its derivative
-  Vec3 by_press{0.0, 0.0, 0.0};             ///< [N]
-  double energy = 0.0;                      ///< [J]
-  bool is_even = true;
+  std::array<Vec3, SoftKinds::kMost> at{};       ///< [m] by kind: the point of its walls
+  std::array<double, SoftKinds::kMost> depth{};  ///< [m] by kind: how deep its law is pressed
+  Vec3 sum{0.0, 0.0, 0.0};                       ///< [N] the energy's gradient
+  Mat3 rate{0.0};                                ///< [N/m] its derivative
+  double energy = 0.0;                           ///< [J]
 };
 
 Look lookFrom(const Vec3& place, const Vec3& hand, double stop, SoftKinds& kinds,
@@ -38,44 +37,31 @@ Look lookFrom(const Vec3& place, const Vec3& hand, double stop, SoftKinds& kinds
   out.energy = 0.5 * stop * glm::dot(off, off);
   const double size = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
   for (std::size_t m = 0; m < from.size(); ++m) {
-    SoftWalls walls;
-    kinds.look(m, from[m], place, walls);
-    out.at[m] = walls.on.at;
-    const Vec3 way = place - walls.on.at;
+    const LocalProjection on = kinds.nearest(m, from[m], place);
+    out.at[m] = on.at;
+    const Vec3 way = place - on.at;
     const double give = glm::length(way);
-    if (walls.on.count == 0 || !(give > kRounding * size)) continue;
+    if (on.count == 0 || !(give > kRounding * size)) continue;
+    const SharedWalls& law = kinds.law(m);
     const Vec3 u = way / give;
-    const SoftWall soft = softWall(walls.felt.law, stop, give);
+    const SoftWall soft = softWall(law, stop, give);
+    out.depth[m] = soft.depth;
     out.sum += soft.force * u;
     // The law's energy less what the stop would hold of it.
-    out.energy += walls.felt.law.energy(soft.depth) - 0.5 * soft.force * soft.force / stop;
+    out.energy += law.energy(soft.depth) - 0.5 * soft.force * soft.force / stop;
     const Mat3 along = outer(u, u);
     Mat3 follows(0.0);
     for (int i = 0; i < 3; ++i) {
       Vec3 axis(0.0);
       axis[i] = 1.0;
-      follows[i] = gradientByHand(axis, walls.on.walls());
+      follows[i] = gradientByHand(axis, on.walls());
     }
     out.rate += soft.tangent * along + (soft.force / give) * (Mat3(1.0) - follows - along);
-    if (walls.felt.stiffness_press != Vec3(0.0)) {
-      out.by_press += walls.felt.law.energyPerStiffness(soft.depth) * walls.felt.stiffness_press;
-    }
-    if (walls.felt.isEven()) continue;
-    out.is_even = false;
-    out.sum += gradientByHand(walls.felt.rise(soft.depth), walls.on.walls());
   }
   return out;
 }
 
 }  // namespace
-
-Vec3 FeltWall::rise(double depth) const noexcept {
-  Vec3 out(0.0);
-  if (height_rise != Vec3(0.0)) out += law.energyPerHeight(depth) * height_rise;
-  if (stiffness_rise != Vec3(0.0)) out += law.energyPerStiffness(depth) * stiffness_rise;
-  if (stiffening_rise != Vec3(0.0)) out += law.energyPerStiffening(depth) * stiffening_rise;
-  return out;
-}
 
 SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
                         SoftKinds& kinds) noexcept {
@@ -87,7 +73,6 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
   out.place = glm::mix(proxy, hand, kFirst);
   const double farthest = glm::length(hand - proxy);
   Look here = lookFrom(out.place, hand, stop, kinds, {from.data(), count});
-  Mat3 rate = here.rate;
   for (int i = 0; i < kMostSteps; ++i) {
     const double most =
         std::max(stop * glm::length(out.place - hand), 1e-3 * glm::length(here.sum));
@@ -98,7 +83,7 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
     }
     bool is_better = false;
     for (const double added : kAdded) {
-      const Vec3 step = -(glm::inverse(rate + Mat3(added * stop)) * here.sum);
+      const Vec3 step = -(glm::inverse(here.rate + Mat3(added * stop)) * here.sum);
       // Where a wall bulges towards the point the plain derivative may lead uphill, or far away.
       if (!(glm::dot(step, here.sum) < 0.0) || glm::length(step) > farthest) continue;
       const Vec3 next = out.place + step;
@@ -109,15 +94,6 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
           glm::length(there.sum) < left && there.energy <= here.energy + rounding;
       if (!is_lower && !is_flatter) continue;
       is_better = true;
-      const Vec3 moved = next - out.place;
-      const double square = glm::dot(moved, moved);
-      if (there.is_even || !(square > 0.0)) {
-        rate = there.rate;
-      } else {
-        // What varies along the walls is not in the derivative: it is learnt from the steps (Broyden 1965).
-        const Vec3 missed = there.sum - here.sum - rate * moved;
-        rate += outer(missed, moved / square);
-      }
       out.place = next;
       here = there;
       break;
@@ -128,8 +104,14 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
     }
   }
   out.energy = here.energy;
-  out.by_press = here.by_press;
   out.force = stop * (out.place - hand);
+  for (std::size_t m = 0; m < count; ++m) {
+    const SharedWalls& law = kinds.law(m);
+    if (!(here.depth[m] > 0.0) || law.isEven()) continue;
+    out.varies = true;
+    out.rise += law.rise(here.depth[m]);
+    out.by_press += law.byPress(here.depth[m]);
+  }
   return out;
 }
 

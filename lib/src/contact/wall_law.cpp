@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "soft_wall.h"
+
 namespace palpate {
 namespace {
-
-/// As a share of the stop's stiffness: a law of at most that stiffness is followed unchanged.
-constexpr double kFollowed = 1.0 / 1.02;
-constexpr int kMostSteps = 60;
 
 /// [N] The integral of the secant over the depth.
 double secantIntegral(const WallSpring& s, double depth) noexcept {
@@ -107,54 +105,7 @@ double WallLaw::energyPerStiffening(double depth) const noexcept {
 }
 
 SoftWall softWall(const WallLaw& law, double stop, double give) noexcept {
-  SoftWall out;
-  if (!(give > 0.0)) return out;
-  const double most = kFollowed * stop;
-  // The law is as stiff as the stop allows from `bend` on; it grows stiffer with the depth only.
-  const auto give_at = [&](double depth) { return depth - law.force(depth) / stop; };
-  double low = give;
-  double high = give;
-  double tangent = law.tangent(give);
-  if (law.spring.isStraight() && law.height == 0.0) {
-    const double own = std::min(law.spring.stiffness, most);
-    out.depth = give * stop / (stop - own);
-    out.force = own * out.depth;
-    out.tangent = stop * own / (stop - own);
-    return out;
-  }
-  // give <= d, and beyond it each piece of depth gives way by a share of 1 - most / stop at least.
-  high = give * stop / (stop - most);
-  if (law.tangent(high) > most) {
-    double below = 0.0;
-    double above = high;
-    for (int i = 0; i < kMostSteps; ++i) {
-      const double middle = 0.5 * (below + above);
-      (law.tangent(middle) > most ? above : below) = middle;
-    }
-    const double bent = give_at(below);
-    if (give >= bent) {
-      const double further = (give - bent) * stop / (stop - most);
-      out.depth = below + further;
-      out.force = law.force(below) + most * further;
-      out.tangent = stop * most / (stop - most);
-      return out;
-    }
-    high = below;
-  }
-  double depth = std::clamp(give * stop / std::max(stop - tangent, stop - most), low, high);
-  for (int i = 0; i < kMostSteps; ++i) {
-    const double off = give_at(depth) - give;
-    (off > 0.0 ? high : low) = depth;
-    tangent = law.tangent(depth);
-    double next = depth - off / std::max(1.0 - tangent / stop, 1e-3);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::fabs(next - depth) <= 1e-16 * depth) break;
-    depth = next;
-  }
-  out.depth = depth;
-  out.force = law.force(depth);
-  out.tangent = tangent / std::max(1.0 - tangent / stop, 1e-3);
-  return out;
+  return softWallOf(law, stop, give);
 }
 
 }  // namespace palpate

@@ -68,6 +68,36 @@ Facet CellWalker::facetAt(LeafId leaf) noexcept {
   return facet;
 }
 
+Facet CellWalker::facetAside(std::span<const LeafId> turned, std::span<const LeafId> surface,
+                             const Vec3& place) noexcept {
+  if (turned.size() + surface.size() > crossing_.size()) return {};
+  const Partition& partition = scene_.partition();
+  const Passages& passages = scene_.passages();
+  crossing_count_ = 0;
+  beyond_.assign(here_.sides);
+  for (const LeafId leaf : turned) {
+    flip(leaf, beyond_);
+    crossing_[crossing_count_++] = leaf;
+  }
+  RegionId near = here_.region;
+  if (!turned.empty()) {
+    near = regionBeyond();
+    if (near != here_.region &&
+        passages
+            .facet(partition, here_.region, near, here_.sides, beyond_, turned, here_.passed, place)
+            .isClosed()) {
+      return {};
+    }
+  }
+  aside_.assign(beyond_);
+  for (const LeafId leaf : surface) {
+    flip(leaf, beyond_);
+    crossing_[crossing_count_++] = leaf;
+  }
+  return passages.facet(partition, near, regionBeyond(), aside_, beyond_, surface, here_.passed,
+                        place);
+}
+
 bool CellWalker::isSameAcross(LeafId a, LeafId b) noexcept {
   KnownPair& known = known_pair_;
   if (known.state != state_ || known.a != a || known.b != b) {

@@ -15,6 +15,7 @@ CellWalker::CellWalker(const Scene& scene, PlaceState& state)
       tolerance_(leaves_.size()),
       here_(state),
       beyond_(leaves_.size()),
+      aside_(leaves_.size()),
       due_(leaves_.size()),
       hot_(leaves_.size()),
       measured_(leaves_.size()),

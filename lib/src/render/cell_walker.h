@@ -106,6 +106,11 @@ class CellWalker {
   [[nodiscard]] Facet facetAt(LeafId leaf) noexcept;
   /// True if across both `a` and `b` at once, two leaves that meet at the point, is the point's own region again.
   [[nodiscard]] bool isSameAcross(LeafId a, LeafId b) noexcept;
+  /// What the facet of the leaves `surface`, which coincide, is at a place [m] near the point that lies on the other side
+  /// of the leaves `turned`: as seen from what is there, if that is the point's own region or one that it leads to
+  /// freely; else one that is not closed. A hole that gave way once is not looked for.
+  [[nodiscard]] Facet facetAside(std::span<const LeafId> turned, std::span<const LeafId> surface,
+                                 const Vec3& place) noexcept;
   /// Goes through the facet of `leaf` where the point stands, whatever it is; a port is recorded, and the
   /// hole if the facet gave way to a `force` [N].
   void cross(LeafId leaf, const Facet& facet, double force = 0.0) noexcept;
@@ -183,6 +188,7 @@ class CellWalker {
   std::vector<double> tolerance_;  ///< of |S| by leaf: 1e-9 of the feature size, in units of S
   PlaceState& here_;
   Signs beyond_;                   ///< scratch of facetAt()
+  Signs aside_;                    ///< scratch of facetAside()
   std::vector<RegionId> holding_;  ///< layers that hold the cell, innermost (last) first
   bool is_sealed_ = false;
   LeafId blocked_by_ = 0;
@@ -234,7 +240,7 @@ class CellWalker {
   };
   KnownPair known_pair_;
 
-  std::array<LeafId, 8> crossing_{};  ///< scratch of gather()
+  std::array<LeafId, 40> crossing_{};  ///< scratch of gather() and facetAside()
   std::size_t crossing_count_ = 0;
 };
 

@@ -55,24 +55,22 @@ Feel::SpringForce Feel::evenForce(const ContactSet& c, const Vec3& apart) noexce
   SpringForce out;
   Vec3 by_press(0.0);
   double secant = 0.0;
-  if (walls_.isPlain(c.wall[0].facet)) {
+  if (walls_.isPlain(c.wall[0].facet) && !walls_.hasSeam()) {
     secant = wallMaterial(c.wall[0].facet).stiffness.at(walker_.position());
   } else {
-    const FeltWall felt = walls_.felt(c.wall[0], walker_.position());
+    const SharedWalls felt = walls_.shared(c.wall[0], walker_.position());
     const double length = glm::length(apart);
     out.varies = !felt.isEven();
     if (out.varies) {
-      out.rise = felt.rise(length);
-      if (felt.stiffness_press != Vec3(0.0)) {
-        by_press = felt.law.energyPerStiffness(length) * felt.stiffness_press;
-      }
+      by_press = felt.byPress(length);
+      out.rise = felt.rise(length) + by_press;
     }
-    if (felt.law.height != 0.0 || !felt.law.spring.isStraight()) {
-      out.stiffness = felt.law.force(length) / length;
+    secant = felt.force(length) / length;
+    if (!felt.isStraight()) {
+      out.stiffness = secant;
       out.force = out.stiffness * apart + by_press;
       return out;
     }
-    secant = felt.law.spring.stiffness;
   }
   double total = 0.0;
   for (const WallContact& each : c.walls()) {
@@ -98,8 +96,8 @@ Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
   if (!state_.friction.is_felt || !(across > 0.0)) {
     const SeriesForce series = seriesForce(x, x - apart, walls_.stop(), walls_);
     out.force = series.force + series.by_press;
-    out.rise = series.by_press;
-    out.varies = series.by_press != Vec3(0.0);
+    out.rise = series.rise + series.by_press;
+    out.varies = series.varies;
     return out;
   }
   const Vec3 u = outward / across;
@@ -110,10 +108,22 @@ Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
   const double straight = glm::dot(pressed, u);
   const double lag = glm::dot(c.left, c.left);
   out.stiffness = straight / length;
-  out.rise = series.by_press - along;
+  out.rise = series.rise + series.by_press - along;
   out.force = (length / across) * (pressed - along) - (straight * lag / (across * length)) * u -
               out.stiffness * c.left + series.by_press;
   return out;
+}
+
+double Feel::stored(const ContactSet& c, const Vec3& hip) noexcept {
+  if (c.count == 0) return 0.0;
+  const Vec3 x = walker_.position() + c.snug;
+  const Vec3 press = x - hip;
+  walls_.press(press);
+  if (walls_.differ(c, glm::length(press))) {
+    return seriesForce(x, hip, walls_.stop(), walls_).energy;
+  }
+  if (walls_.hasSeam()) return walls_.shared(c.wall[0], walker_.position()).energy(c.load());
+  return springOf(c.wall[0]).energy(c.load());
 }
 
 /// What the walls push with: the springs between the proxy and the hand. Whatever the walls were found to

@@ -20,11 +20,12 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   TickResult out;
   if (!state_.has_begun) start(hip.position);
   walker_.beginTick();
+  hand_ = hip.position;
   velocity_ = hip.velocity;
   has_given_way_ = false;
   out.settled = solver_.track(hip.position, state_.friction, *this);
   if (has_given_way_) {
-    state_.source.work += std::max(0.0, storedBehind(solver_.contact()) - released_);
+    state_.source.work += std::max(0.0, feel_.stored(solver_.contact(), hip.position) - released_);
   }
   feel_.fadeContent(hip.position);
 
@@ -61,18 +62,13 @@ bool ConstraintRenderer::open(const ContactSet& contact) noexcept {
             : scene_->ports()[each.facet.port].rate.share(-glm::dot(velocity_, each.held.normal));
     if (elastic >= share * each.facet.opens_at &&
         each.held.multiplier >= walker_.punctures().restOf(each.facet.port)) {
-      if (!has_given_way_) released_ = storedBehind(contact);
+      if (!has_given_way_) released_ = feel_.stored(contact, hand_);
       has_given_way_ = true;
       walker_.cross(each.leaf, each.facet, elastic);
       return true;
     }
   }
   return false;
-}
-
-/// [J] by the wall that counts most, where walls of several kinds hold the proxy.
-double ConstraintRenderer::storedBehind(const ContactSet& contact) noexcept {
-  return contact.count > 0 ? feel_.springOf(contact.wall[0]).energy(contact.load()) : 0.0;
 }
 
 Vec3 ConstraintRenderer::needleForce(const HipState& hip) noexcept {

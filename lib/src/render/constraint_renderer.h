@@ -27,13 +27,13 @@ class ConstraintRenderer final : public HapticRenderer, private WallOpener {
   [[nodiscard]] bool open(const ContactSet& contact) noexcept override;
   [[nodiscard]] Vec3 contentForce(const HipState& hip) noexcept;
   [[nodiscard]] Vec3 needleForce(const HipState& hip) noexcept;
-  [[nodiscard]] double storedBehind(const ContactSet& contact) noexcept;
 
   CellWalker walker_;
   ProxySolver solver_;
   Feel feel_;
 
   // Of this tick.
+  Vec3 hand_{0.0, 0.0, 0.0};      ///< [m]
   Vec3 velocity_{0.0, 0.0, 0.0};  ///< [m/s] of the hand
   bool has_given_way_ = false;    ///< a wall did
   double released_ = 0.0;         ///< [J] that was stored in the first one that did

@@ -17,6 +17,8 @@ class Feel {
 
   /// The force [N] of the walls that hold the proxy.
   [[nodiscard]] Vec3 walls(const ContactSet& contact, const HipState& hip) noexcept;
+  /// [J] What the springs of the walls that hold the proxy store against the hand at `hip` [m].
+  [[nodiscard]] double stored(const ContactSet& contact, const Vec3& hip) noexcept;
   /// Which share of the content is felt at the proxy now; once a tick.
   void fadeContent(const Vec3& hip) noexcept;
   /// The spring of a held wall at the proxy.

@@ -31,7 +31,7 @@ bool feelAlike(const Material& a, const Material& b) noexcept {
 }  // namespace
 
 FeltWalls::FeltWalls(const Scene& scene, CellWalker& walker)
-    : scene_(scene), walker_(walker), near_(scene, walker), beneath_(scene) {
+    : scene_(scene), walker_(walker), near_(scene, walker), beneath_(scene), seams_(scene, walker) {
   sortKinds();
 }
 
@@ -54,6 +54,40 @@ bool FeltWalls::mayDiffer(RegionId region) const {
   }
   for (const Sheet& sheet : scene_.passages().sheets()) add(sheet.material);
   return out;
+}
+
+/// A wall that two regions touch, with a way between the two beside it, may have one material seen from the one and another
+/// one seen from the other: what is before a seam changes as well.
+void FeltWalls::sortSeams() {
+  const std::size_t regions = scene_.regions().size();
+  const Passages& passages = scene_.passages();
+  const auto leads = [&](RegionId from, RegionId to) {
+    if (!scene_.touches(from, to)) return false;
+    if (passages.wall(from, to).absent) return true;
+    const std::span<const PortId> ports = passages.portsOf(from);
+    return std::any_of(ports.begin(), ports.end(),
+                       [&](PortId port) { return passages.ports()[port].leads(from, to); });
+  };
+  const auto kindOf = [&](RegionId from, RegionId to) {
+    const Wall& wall = passages.wall(from, to);
+    return wall.absent || wall.material < 0 ? -1 : kind_[static_cast<std::size_t>(wall.material)];
+  };
+  for (std::size_t a = 0; a < regions; ++a) {
+    for (std::size_t b = 0; b < regions; ++b) {
+      const auto here = static_cast<RegionId>(a);
+      const auto there = static_cast<RegionId>(b);
+      if (a == b || may_differ_[a] || !leads(here, there)) continue;
+      for (std::size_t c = 0; c < regions; ++c) {
+        const auto beyond = static_cast<RegionId>(c);
+        if (c == a || c == b || !scene_.touches(here, beyond) || !scene_.touches(there, beyond)) {
+          continue;
+        }
+        const int one = kindOf(here, beyond);
+        const int other = kindOf(there, beyond);
+        if (one >= 0 && other >= 0 && one != other) may_differ_[a] = true;
+      }
+    }
+  }
 }
 
 std::vector<bool> FeltWalls::usedByWalls() const {
@@ -124,6 +158,7 @@ void FeltWalls::sortKinds() {
   for (std::size_t i = 0; i < may_differ_.size(); ++i) {
     may_differ_[i] = mayDiffer(static_cast<RegionId>(i));
   }
+  sortSeams();
   stop_ = kStop * std::min(stiffest, kStiffest * straight);
 }
 

@@ -67,7 +67,7 @@ FeltWall FeltWalls::felt(LeafId leaf, const Facet& facet, const HeldWall& held, 
   const double contrast = contrast_[static_cast<std::size_t>(facet.material)];
   if (contrast < kInfinity) {
     const PatchSample patch = overPatch(wall.stiffness, x, press_, contrast);
-    linear = {patch.value, patch.by_place + patch.by_press};
+    linear = {patch.value, patch.by_place};
     out.stiffness_press = patch.by_press;
   } else {
     linear = stiffness(leaf, facet, held, x);
@@ -102,6 +102,63 @@ FeltWall FeltWalls::felt(LeafId leaf, const Facet& facet, const HeldWall& held, 
   return out;
 }
 
+/// Walls of one kind feel the same but for what lies behind them.
+bool FeltWalls::feelsAlike(const Facet& a, const Facet& b) const noexcept {
+  const auto kind = [&](const Facet& facet) {
+    return kind_[static_cast<std::size_t>(facet.material)];
+  };
+  if (kind(a) != kind(b)) return false;
+  const Material& own = material(a);
+  return a.beyond == b.beyond || (!(own.composite.radius > 0.0) && !(own.shading > 0.0));
+}
+
+SharedWalls FeltWalls::shared(LeafId leaf, const Facet& facet, const HeldWall& held, const Vec3& x,
+                              SmoothedField& smoothed) noexcept {
+  SharedWalls out;
+  const std::span<const Seams::Part> parts = seams_.at(leaf, held, x, press_);
+  std::array<bool, Seams::kMostParts> is_told{};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (is_told[i]) continue;
+    Seams::Part all = parts[i];
+    bool is_only = i == 0;
+    for (std::size_t k = i + 1; k < parts.size(); ++k) {
+      if (!feelsAlike(all.facet, parts[k].facet)) {
+        is_only = false;
+        continue;
+      }
+      is_told[k] = true;
+      all.share += parts[k].share;
+      all.by_place += parts[k].by_place;
+      all.by_press += parts[k].by_press;
+    }
+    if (is_only) break;
+    out.add(felt(leaf, all.facet, held, x, smoothed), all.share, all.by_place, all.by_press);
+  }
+  if (out.count() == 0) out.add(felt(leaf, facet, held, x, smoothed));
+  return out;
+}
+
+/// Where the proxy would be pressed against a wall: it need not hold the proxy now.
+Vec3 FeltWalls::footOn(const HeldWall& held) const noexcept {
+  const double slope = glm::length(held.jet.gradient);
+  const double off = slope > 0.0 ? held.side * held.jet.value / slope : 0.0;
+  return walker_.position() - off * held.normal;
+}
+
+void FeltWalls::setLaw(Group& group, SmoothedField& smoothed) noexcept {
+  const Near& wall = group.wall[0];
+  group.law = shared(wall.leaf, wall.facet, wall.held, footOn(wall.held), smoothed);
+}
+
+/// Whether other kinds of walls lie beside this one, within the patch of the press.
+bool FeltWalls::isShared(const Near& wall) noexcept {
+  const std::span<const Seams::Part> parts =
+      seams_.at(wall.leaf, wall.held, footOn(wall.held), press_);
+  return std::any_of(parts.begin(), parts.end(), [&](const Seams::Part& each) {
+    return !feelsAlike(each.facet, parts[0].facet);
+  });
+}
+
 /// Whether the proxy's region may end at this leaf: that of a layer which it touches, or of a sheet.
 bool FeltWalls::mayBound(LeafId leaf) const noexcept {
   const RegionId here = walker_.region();
@@ -127,17 +184,38 @@ int FeltWalls::ownOf(const Near& wall) const noexcept {
   return own.shading > 0.0 ? -1 - std::max(here, wall.facet.beyond) : 0;
 }
 
+/// Whether a wall on the surface that was asked for last is in a group.
+bool FeltWalls::isFeltAlready() const noexcept {
+  for (std::size_t g = 0; g < count_; ++g) {
+    for (std::size_t i = 0; i < group_[g].count; ++i) {
+      if (seams_.isOnSurface(group_[g].wall[i].leaf)) return true;
+    }
+  }
+  return false;
+}
+
 void FeltWalls::add(const Near& wall) noexcept {
   const int kind = kind_[static_cast<std::size_t>(wall.facet.material)];
   const int own = ownOf(wall);
+  const bool shares = isShared(wall);
   std::size_t g = 0;
-  while (g < count_ && (group_[g].kind != kind || group_[g].own != own)) ++g;
+  if (shares) {
+    has_seam_ = true;
+    // A surface is felt once, however many layers end there.
+    if (isFeltAlready()) return;
+    g = count_;
+  } else {
+    while (g < count_ && (group_[g].shares || group_[g].kind != kind || group_[g].own != own)) {
+      ++g;
+    }
+  }
   if (g == kMost) return;
   Group& group = group_[g];
   if (g == count_) {
     ++count_;
     group.kind = kind;
     group.own = own;
+    group.shares = shares;
     group.count = 0;
   }
   if (group.count == kMaxProjectionWalls) return;
@@ -146,17 +224,30 @@ void FeltWalls::add(const Near& wall) noexcept {
 }
 
 bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
+  findGroups(contact, reach);
+  if (count_ < 2) return false;
+  for (std::size_t i = 0; i < count_; ++i) setLaw(group_[i], smoothed_[i]);
+  return true;
+}
+
+void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
   count_ = 0;
-  if (!may_differ_[walker_.region()]) return false;
-  for (const WallContact& each : contact.walls()) add({each.leaf, each.facet, each.held});
+  has_seam_ = false;
+  seams_.clear();
+  if (!may_differ_[walker_.region()]) return;
   // Most often there is nothing but what holds the proxy, and what lies beneath that.
   bool is_alone = true;
   walker_.forWithin(reach, [&](LeafId id) {
     if (!holds(contact, id) && mayBound(id)) is_alone = false;
   });
-  if (is_alone) return count_ > 1;
+  if (!is_alone || contact.count > 1) {
+    // What one kind of walls alone would let the hand come to is no farther from the proxy than the hand is.
+    walker_.forWithin(2.0 * reach, [&](LeafId id) { seams_.add(id); });
+  }
+  for (const WallContact& each : contact.walls()) add({each.leaf, each.facet, each.held});
+  if (is_alone) return;
   // By the sides that the walker knows: the proxy may be a little beyond what counts as on a wall.
-  if (!near_.look(reach, true)) return count_ > 1;
+  if (!near_.look(reach, true)) return;
   const std::span<const NearWall> walls = near_.walls();
   // The cell that the walls which hold the proxy bound: what else bounds it is felt as well.
   for (const NearCell& cell : near_.cells()) {
@@ -175,12 +266,16 @@ bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
       const LeafId leaf = walls[i].leaf;
       if (holds(contact, leaf) || !(walls[i].slope > 0.0)) continue;
       if (walls[i].gap(inside) > reach) continue;
-      Near near{leaf, walker_.facetAt(leaf), {}};
-      if (!isWall(near.facet)) continue;
+      Near near{leaf, {}, {}};
       near.held.field = walker_.leaf(leaf).field.get();
       near.held.side = inside ? -1.0 : 1.0;
       near.held.jet = walker_.jetHere(leaf);
       near.held.normal = inside ? -walls[i].normal : walls[i].normal;
+      // Of leaves in one plane the walker sees that they are one wall only where it touches them.
+      near.facet = seams_.isAlone(leaf, near.held)
+                       ? walker_.facetAt(leaf)
+                       : seams_.facetOf(leaf, near.held, footOn(near.held));
+      if (isFeltAlready() || !isWall(near.facet)) continue;
       if (std::none_of(held.begin(), held.end(), [&](const WallContact& each) {
             return meet(walker_.position(), each.held, near.held, kFarthestMeeting * reach);
           })) {
@@ -190,7 +285,6 @@ bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
     }
     break;
   }
-  return count_ > 1;
 }
 
 /// The walls as planes, as they are at the proxy: where they fold, or their fields end.
@@ -216,21 +310,14 @@ LocalProjection FeltWalls::ontoPlanes(const Group& group, const Vec3& place) con
   return out;
 }
 
-void FeltWalls::look(std::size_t index, const Vec3& from, const Vec3& place,
-                     SoftWalls& out) noexcept {
+LocalProjection FeltWalls::nearest(std::size_t index, const Vec3& from,
+                                   const Vec3& place) noexcept {
   const Group& group = group_[index];
   const std::span<const HeldWall> held(group.held.data(), group.count);
   LocalProjection on = projectLocally(from, place, held);
   if (!on.settled) on = projectLocally(walker_.position(), place, held);
   if (!on.settled) on = ontoPlanes(group, place);
-  if (on.count > 0) {
-    const Near* wall = &group.wall[0];
-    for (std::size_t i = 0; i < group.count; ++i) {
-      if (group.held[i].field == on.held[0].field) wall = &group.wall[i];
-    }
-    out.felt = felt(wall->leaf, wall->facet, on.held[0], on.at, smoothed_[index]);
-  }
-  out.on = on;
+  return on;
 }
 
 }  // namespace palpate

@@ -9,6 +9,7 @@
 #include "palpate/contact/felt_height.h"
 #include "palpate/contact/series.h"
 #include "proxy_solver.h"
+#include "seams.h"
 
 namespace palpate {
 
@@ -23,16 +24,22 @@ class FeltWalls final : public SoftKinds {
   /// What that wall pushes with there.
   [[nodiscard]] FeltWall felt(LeafId leaf, const Facet& facet, const HeldWall& held, const Vec3& x,
                               SmoothedField& smoothed) noexcept;
-  [[nodiscard]] FeltWall felt(const WallContact& contact, const Vec3& x) noexcept {
-    return felt(contact.leaf, contact.facet, contact.held, x, smoothed_[0]);
+  /// What that wall and those beside it on the same surface push with there; press() and differ() come first.
+  [[nodiscard]] SharedWalls shared(LeafId leaf, const Facet& facet, const HeldWall& held,
+                                   const Vec3& x, SmoothedField& smoothed) noexcept;
+  [[nodiscard]] SharedWalls shared(const WallContact& contact, const Vec3& x) noexcept {
+    return shared(contact.leaf, contact.facet, contact.held, x, smoothed_[0]);
   }
+  /// True if a wall that holds the proxy shares the press with others: differ() found it.
+  [[nodiscard]] bool hasSeam() const noexcept { return has_seam_; }
 
   /// True if a wall of this material is one straight spring, the same everywhere.
   [[nodiscard]] bool isPlain(const Facet& facet) const noexcept {
     return is_plain_[static_cast<std::size_t>(facet.material)];
   }
 
-  /// Finds the walls within `reach` [m] of the proxy, which `contact` holds; true if they are of several kinds. Then
+  /// Finds the walls within `reach` [m] of the proxy, which `contact` holds; true if they are of several kinds that meet
+  /// at an angle. Then
   /// seriesForce() may be asked, until the walker moves.
   [[nodiscard]] bool differ(const ContactSet& contact, double reach) noexcept;
   /// The way from the hand to the proxy [m]: how wide a patch is pressed. Call it first in each tick.
@@ -41,8 +48,11 @@ class FeltWalls final : public SoftKinds {
   [[nodiscard]] double stop() const noexcept { return stop_; }
 
   [[nodiscard]] std::size_t count() const noexcept override { return count_; }
-  void look(std::size_t index, const Vec3& from, const Vec3& place,
-            SoftWalls& out) noexcept override;
+  [[nodiscard]] LocalProjection nearest(std::size_t index, const Vec3& from,
+                                        const Vec3& place) noexcept override;
+  [[nodiscard]] const SharedWalls& law(std::size_t index) const noexcept override {
+    return group_[index].law;
+  }
 
  private:
   /// Share of the depth to which a height may bring a wall down, or up.
@@ -57,10 +67,12 @@ class FeltWalls final : public SoftKinds {
   /// Walls of one kind.
   struct Group {
     int kind = -1;
-    int own = 0;  ///< what it is that feels so, where it does by what lies behind it
+    int own = 0;          ///< what it is that feels so, where it does by what lies behind it
+    bool shares = false;  ///< one surface, on which other walls bear part of the press
     std::array<Near, kMaxProjectionWalls> wall{};
     std::array<HeldWall, kMaxProjectionWalls> held{};
     std::size_t count = 0;
+    SharedWalls law;  ///< where the proxy is
   };
   void sortKinds();
   [[nodiscard]] bool mayDiffer(RegionId region) const;
@@ -71,7 +83,14 @@ class FeltWalls final : public SoftKinds {
   [[nodiscard]] bool mayBound(LeafId leaf) const noexcept;
   [[nodiscard]] bool isWall(const Facet& facet) const noexcept;
   [[nodiscard]] int ownOf(const Near& wall) const noexcept;
+  [[nodiscard]] bool feelsAlike(const Facet& a, const Facet& b) const noexcept;
+  void findGroups(const ContactSet& contact, double reach) noexcept;
+  [[nodiscard]] Vec3 footOn(const HeldWall& held) const noexcept;
+  [[nodiscard]] bool isFeltAlready() const noexcept;
+  [[nodiscard]] bool isShared(const Near& wall) noexcept;
+  void sortSeams();
   void add(const Near& wall) noexcept;
+  void setLaw(Group& group, SmoothedField& smoothed) noexcept;
   [[nodiscard]] LocalProjection ontoPlanes(const Group& group, const Vec3& place) const noexcept;
 
   const Scene& scene_;
@@ -82,9 +101,12 @@ class FeltWalls final : public SoftKinds {
   std::vector<double> reach_;  ///< [m] by material: of its texture
   std::vector<double>
       contrast_;  ///< [m] by material: infinite where its stiffness is felt at a point
-  std::vector<bool> is_plain_;    ///< by material
-  std::vector<bool> is_sheet_;    ///< by leaf
-  std::vector<bool> may_differ_;  ///< by region
+  std::vector<bool> is_plain_;  ///< by material
+  std::vector<bool> is_sheet_;  ///< by leaf
+  std::vector<bool>
+      may_differ_;  ///< by region: its walls, or those of regions that it leads to freely
+  Seams seams_;
+  bool has_seam_ = false;
   double stop_ = 0.0;
   Vec3 press_{0.0, 0.0, 0.0};
   std::array<Group, kMost> group_{};

@@ -69,27 +69,48 @@ TEST(LocalProjection, SettlesFarFromTheOriginDownToRounding) {
 /// Each wall a kind of its own, with a height and a stiffness that vary along it.
 class Kinds final : public SoftKinds {
  public:
-  Kinds(std::vector<FieldPtr> fields, std::vector<WallLaw> laws, bool varies)
-      : fields_(std::move(fields)), laws_(std::move(laws)), varies_(varies) {}
+  Kinds(std::vector<FieldPtr> fields, const std::vector<WallLaw>& laws)
+      : fields_(std::move(fields)), walls_(fields_.size()), laws_(laws) {
+    putProxy(Vec3(0.0));
+  }
+  /// The laws are those where the proxy is: bumps and a stiffness that differ from place to place.
+  void putProxy(const Vec3& p) {
+    for (std::size_t i = 0; i < walls_.size(); ++i) {
+      FeltWall felt;
+      felt.law = laws_[i];
+      felt.law.height = 0.1e-3 * std::sin(900.0 * p.x + 0.3) * std::cos(700.0 * p.y);
+      felt.height_rise =
+          0.1e-3 * Vec3(900.0 * std::cos(900.0 * p.x + 0.3) * std::cos(700.0 * p.y),
+                        -700.0 * std::sin(900.0 * p.x + 0.3) * std::sin(700.0 * p.y), 0);
+      felt.law.spring.stiffness *= 1.0 + 40.0 * p.y;
+      felt.stiffness_rise = Vec3(0, 40.0 * laws_[i].spring.stiffness, 0);
+      if (!varies_) {
+        felt = {};
+        felt.law = laws_[i];
+      }
+      walls_[i] = {};
+      walls_[i].add(felt);
+    }
+  }
+  void vary() {
+    varies_ = true;
+    putProxy(Vec3(0.0));
+  }
   [[nodiscard]] std::size_t count() const noexcept override { return fields_.size(); }
-  void look(std::size_t index, const Vec3& from, const Vec3& place,
-            SoftWalls& out) noexcept override {
+  [[nodiscard]] LocalProjection nearest(std::size_t index, const Vec3& from,
+                                        const Vec3& place) noexcept override {
     const HeldWall wall = outsideOf(fields_[index]);
-    out.on = projectLocally(from, place, {&wall, 1});
-    out.felt.law = laws_[index];
-    if (!varies_) return;
-    const Vec3& p = out.on.at;
-    out.felt.law.height = 0.1e-3 * std::sin(900.0 * p.x) * std::cos(700.0 * p.y);
-    out.felt.height_rise = 0.1e-3 * Vec3(900.0 * std::cos(900.0 * p.x) * std::cos(700.0 * p.y),
-                                         -700.0 * std::sin(900.0 * p.x) * std::sin(700.0 * p.y), 0);
-    out.felt.law.spring.stiffness *= 1.0 + 40.0 * p.y;
-    out.felt.stiffness_rise = Vec3(0, 40.0 * laws_[index].spring.stiffness, 0);
+    return projectLocally(from, place, {&wall, 1});
+  }
+  [[nodiscard]] const SharedWalls& law(std::size_t index) const noexcept override {
+    return walls_[index];
   }
 
  private:
   std::vector<FieldPtr> fields_;
+  std::vector<SharedWalls> walls_;
   std::vector<WallLaw> laws_;
-  bool varies_;
+  bool varies_ = false;
 };
 
 TEST(SeriesForce, IsMinusTheSlopeOfTheEnergy) {
@@ -106,7 +127,8 @@ TEST(SeriesForce, IsMinusTheSlopeOfTheEnergy) {
   int settled = 0;
   for (const auto& fields : shapes) {
     for (const bool varies : {false, true}) {
-      Kinds kinds(fields, {straight, hertz, okamura}, varies);
+      Kinds kinds(fields, {straight, hertz, okamura});
+      if (varies) kinds.vary();
       for (int i = 0; i < 40; ++i) {
         const Vec3 hand(random.uniform(-0.3e-3, 0.3e-3), random.uniform(-0.3e-3, 0.3e-3),
                         random.uniform(-1e-3, -0.2e-3));
@@ -123,6 +145,17 @@ TEST(SeriesForce, IsMinusTheSlopeOfTheEnergy) {
           // A difference over 0.2 um of some 1e-4 J that are known to 1e-16 of it.
           EXPECT_NEAR(here.force[axis], -slope, 1e-6) << i << " " << varies;
         }
+        EXPECT_EQ(here.varies, varies);
+        for (int axis = 0; axis < 2; ++axis) {
+          Vec3 by(0.0);
+          by[axis] = 1e-7;
+          kinds.putProxy(by);
+          const double after = seriesForce(proxy, hand, stop, kinds).energy;
+          kinds.putProxy(-by);
+          const double before = seriesForce(proxy, hand, stop, kinds).energy;
+          kinds.putProxy(proxy);
+          EXPECT_NEAR(here.rise[axis], (after - before) / 2e-7, 1e-6) << i;
+        }
       }
     }
   }
@@ -131,7 +164,7 @@ TEST(SeriesForce, IsMinusTheSlopeOfTheEnergy) {
 
 TEST(SeriesForce, OfOneKindIsItsOwnLaw) {
   const WallLaw hertz{{900.0, 0.0, 1.5, 1e-3}};
-  Kinds kinds({halfSpace(Vec3(0.0), Vec3(0, 0, 1))}, {hertz}, false);
+  Kinds kinds({halfSpace(Vec3(0.0), Vec3(0, 0, 1))}, {hertz});
   for (double d = 0.05e-3; d < 2e-3; d += 0.05e-3) {
     const SeriesForce out = seriesForce(Vec3(0.0), Vec3(0, 0, -d), 4000.0, kinds);
     EXPECT_NEAR(out.force.z, hertz.force(d), 1e-10);

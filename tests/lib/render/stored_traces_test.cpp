@@ -42,9 +42,9 @@ INSTANTIATE_TEST_SUITE_P(Examples, StoredTraces, ::testing::ValuesIn(analyticSce
                          nameOfExample);
 
 TEST(StoredTracesOfAll, NoExampleIsForgotten) {
-  // The others are of scans.
+  // The others are of images.
   std::set<std::string> known(analyticScenes().begin(), analyticScenes().end());
-  for (const char* other : {"five_layers", "head", "needle"}) known.insert(other);
+  for (const char* other : {"contrast", "five_layers", "head", "needle"}) known.insert(other);
   for (const auto& file : std::filesystem::directory_iterator(kSource + "/data/scenes")) {
     if (file.path().extension() != ".yaml") continue;
     EXPECT_TRUE(known.count(file.path().stem().string()) == 1) << file.path();

@@ -152,6 +152,7 @@ class SceneWriter {
     if (has_shaft) {
       line("  # of every needle's shaft");
       number("spring while it sticks", tissues_.shaft_spring);
+      number("Young's modulus E_n", tissues_.shaft_young);
     }
     for (const Tissue* tissue : used) {
       const SourcedNumber stiffness = tissues_.wallStiffness(*tissue);
@@ -169,6 +170,11 @@ class SceneWriter {
       number("cutting", tissue->cutting);
       number("shaft, sliding,", tissue->shaft);
       number("shaft, sticking,", tissue->shaft_static);
+      const std::optional<TissueTable::Lateral> lateral = tissues_.lateral(*tissue);
+      if (lateral) {
+        number("shaft, sideways,", lateral->stiffness);
+        number("and it tears at", lateral->strength);
+      }
       std::string entry = "  " + word(tissue->name) + ": {stiffness: ";
       entry += isMapped(*tissue) ? std::string("{image: ") + (options_.skin ? "body" : "ct") +
                                        ", transfer: " + tissue->stiffness_of_ct->text + "}"
@@ -183,7 +189,12 @@ class SceneWriter {
       if (tissue->shaft) {
         const SourcedNumber& stick = tissue->shaft_static ? *tissue->shaft_static : *tissue->shaft;
         entry += ", shaft: {stiffness: " + tissues_.shaft_spring->text +
-                 ", in: {static: " + stick.text + ", kinetic: " + tissue->shaft->text + "}}";
+                 ", in: {static: " + stick.text + ", kinetic: " + tissue->shaft->text + "}";
+        if (lateral) {
+          entry += ", lateral: {stiffness: " + lateral->stiffness.text +
+                   ", strength: " + lateral->strength.text + "}";
+        }
+        entry += "}";
       }
       line(entry + "}");
     }

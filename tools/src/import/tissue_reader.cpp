@@ -127,6 +127,9 @@ class TableReader {
     if (const Node* spring = root.optional("shaft_spring")) {
       table.shaft_spring = number(*spring, "shaft_spring", NumberKind::kStiffnessPerLength);
     }
+    if (const Node* young = root.optional("shaft_young")) {
+      table.shaft_young = number(*young, "shaft_young", NumberKind::kPressure);
+    }
     has_spring_ = table.shaft_spring.has_value();
     const Node& tissues = root.require("tissues");
     if (tissues.kind != Node::Kind::kMap || tissues.entries.empty()) {

@@ -55,6 +55,7 @@ struct TissueTable {
   SourcedNumber stiffest;    ///< [N/m]
   std::optional<SourcedNumber>
       shaft_spring;  ///< [N/m^2] of a shaft that sticks; given if a tissue has `shaft`
+  std::optional<SourcedNumber> shaft_young;  ///< [Pa] of a needle's shaft, a solid rod
   std::vector<Tissue> tissues;
 
   /// The first tissue that fits a label's name, or null.
@@ -63,6 +64,18 @@ struct TissueTable {
   [[nodiscard]] const Tissue* find(const std::string& name) const;
   /// Of a tissue's wall: measured, derived or assumed, and how it came about.
   [[nodiscard]] SourcedNumber wallStiffness(const Tissue& tissue) const;
+  /// What holds a needle's shaft sideways in a tissue that can be cut, on each length of it.
+  struct Lateral {
+    SourcedNumber stiffness;  ///< [N/m^2]
+    SourcedNumber strength;   ///< [N/m] the load that tears the tissue
+  };
+  /// None where the tissue has no `cutting` or no `shaft`, or the table says nothing of the shaft's modulus.
+  [[nodiscard]] std::optional<Lateral> lateral(const Tissue& tissue) const;
+
+ private:
+  /// [Pa] E of a tissue, or what its wall's stiffness says of it; and the words for it.
+  [[nodiscard]] SourcedNumber modulus(const Tissue& tissue) const;
+  [[nodiscard]] static double poissonOf(const Tissue& tissue);
 };
 
 /// @throws Error (kInput), with file, line and column, for what is no such table.

@@ -4,31 +4,9 @@
 #include <span>
 
 #include "palpate/contact/local_projection.h"
-#include "palpate/contact/wall_law.h"
+#include "palpate/contact/shared_walls.h"
 
 namespace palpate {
-
-/// A wall's law at one place, and how it changes with the place.
-struct FeltWall {
-  WallLaw law;
-  Vec3 height_rise{0.0, 0.0, 0.0};      ///< [-] gradient of its height by the place, ...
-  Vec3 stiffness_rise{0.0, 0.0, 0.0};   ///< [N/m^2] ... of its stiffness ...
-  Vec3 stiffening_rise{0.0, 0.0, 0.0};  ///< [N/m^3] ... and of its stiffening
-  Vec3 stiffness_press{0.0, 0.0,
-                       0.0};  ///< [N/m^2] gradient of its stiffness by the press: see overPatch()
-
-  [[nodiscard]] bool isEven() const noexcept {
-    return height_rise == Vec3(0.0) && stiffness_rise == Vec3(0.0) && stiffening_rise == Vec3(0.0);
-  }
-  /// [N] What the energy, `depth` [m] deep, rises by with the place.
-  [[nodiscard]] Vec3 rise(double depth) const noexcept;
-};
-
-/// Walls of one kind, as they are near one place.
-struct SoftWalls {
-  LocalProjection on;  ///< the nearest point that they allow
-  FeltWall felt;       ///< there
-};
 
 /// Walls of several kinds.
 class SoftKinds {
@@ -37,18 +15,24 @@ class SoftKinds {
   virtual ~SoftKinds() = default;
 
   [[nodiscard]] virtual std::size_t count() const noexcept = 0;
-  /// Kind `index` (below count()) for something at `place` [m]: the walls' nearest point to it, looked for from
-  /// `from` [m], and what they are like there. Real-time safe.
-  virtual void look(std::size_t index, const Vec3& from, const Vec3& place,
-                    SoftWalls& out) noexcept = 0;
+  /// The nearest point to `place` [m] that the walls of kind `index` (below count()) allow, looked for from `from` [m].
+  /// Real-time safe.
+  [[nodiscard]] virtual LocalProjection nearest(std::size_t index, const Vec3& from,
+                                                const Vec3& place) noexcept = 0;
+  /// What that kind pushes with: one law, where the proxy is.
+  [[nodiscard]] virtual const SharedWalls& law(std::size_t index) const noexcept = 0;
 };
 
 struct SeriesForce {
-  Vec3 force{0.0, 0.0, 0.0};  ///< [N] on the hand
+  Vec3 force{0.0, 0.0, 0.0};  ///< [N] on the hand, the laws and the proxy staying as they are
   Vec3 place{0.0, 0.0, 0.0};  ///< [m] between the stop and the walls
+  Vec3 rise{
+      0.0, 0.0,
+      0.0};  ///< [N] gradient of the energy by the proxy's place, where the laws change with it, ...
   Vec3 by_press{0.0, 0.0,
-                0.0};    ///< [N] gradient of the energy by the press, which is not in the force
+                0.0};    ///< [N] ... and by the press (see overPatch()); neither is in the force
   double energy = 0.0;   ///< [J] stored
+  bool varies = false;   ///< one of the two may be other than zero
   bool settled = false;  ///< false: Newton's steps ran out; the force is that of the last one
 };
 
@@ -57,7 +41,9 @@ struct SeriesForce {
 ///   E(hand) = min over z of stop |z - hand|^2 / 2 + sum over m of W_m(|z - y_m(z)|),  force = stop (z - hand) = -grad E.
 /// W_m is such that one kind alone pushes by its own law. So the force has a potential whatever the shapes of the walls,
 /// and is nowhere stiffer than the stop, which has to be stiffer than each law.
-/// `proxy` [m] is a point that all walls allow, near the hand: their nearest points are looked for from there.
+/// The laws are those at `proxy` [m], a point that all walls allow, near the hand: the walls' nearest points are looked for
+/// from there. Where laws differ from place to place, E changes with the proxy too: by `rise`, which is to be handed on to
+/// the hand as the proxy follows it.
 [[nodiscard]] SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
                                       SoftKinds& kinds) noexcept;
 

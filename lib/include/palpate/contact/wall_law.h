@@ -19,6 +19,8 @@ struct WallLaw {
   double held = 0.5;         ///< [-] more than 0, less than 1
   double reach = kInfinity;  ///< [m] at least |height| / held
 
+  /// True if the force is the spring's stiffness times the depth.
+  [[nodiscard]] bool isStraight() const noexcept { return spring.isStraight() && height == 0.0; }
   /// [N] that it pushes with, `depth` [m] deep; 0 for no depth.
   [[nodiscard]] double force(double depth) const noexcept {
     return depth > 0.0 ? spring.secant(depth) * (depth + shown(depth)) : 0.0;

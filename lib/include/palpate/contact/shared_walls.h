@@ -1,0 +1,70 @@
+#pragma once
+/// Walls beside each other on one surface, each of which bears its share of one press.
+
+#include <array>
+
+#include "palpate/contact/wall_law.h"
+
+namespace palpate {
+
+/// A wall's law at one place, and how it changes with the place.
+struct FeltWall {
+  WallLaw law;
+  Vec3 height_rise{0.0, 0.0, 0.0};      ///< [-] gradient of its height by the place, ...
+  Vec3 stiffness_rise{0.0, 0.0, 0.0};   ///< [N/m^2] ... of its stiffness ...
+  Vec3 stiffening_rise{0.0, 0.0, 0.0};  ///< [N/m^3] ... and of its stiffening
+  Vec3 stiffness_press{0.0, 0.0,
+                       0.0};  ///< [N/m^2] gradient of its stiffness by the press: see overPatch()
+
+  /// True if the law is the same everywhere, whatever the press.
+  [[nodiscard]] bool isEven() const noexcept {
+    return height_rise == Vec3(0.0) && stiffness_rise == Vec3(0.0) &&
+           stiffening_rise == Vec3(0.0) && stiffness_press == Vec3(0.0);
+  }
+  /// [N] What the energy, `depth` [m] deep, rises by with the place, where the press stays as it is, ...
+  [[nodiscard]] Vec3 rise(double depth) const noexcept;
+  /// [N] ... and the other way round.
+  [[nodiscard]] Vec3 byPress(double depth) const noexcept {
+    if (stiffness_press == Vec3(0.0)) return stiffness_press;
+    return law.energyPerStiffness(depth) * stiffness_press;
+  }
+};
+
+/// Walls that share a press. Each stores its share of what its own law would store alone; so the force has a potential,
+/// whatever the shares, if what they change by is in it as well. One wall: all of it. Values; real-time safe.
+class SharedWalls {
+ public:
+  /// More are left out: the ones that bear least.
+  static constexpr std::size_t kMost = 4;
+
+  /// Adds a wall that bears `share` [-] of the press; `by_place` [1/m] is the gradient of the share where the place moves
+  /// and the press stays as it is, `by_press` [1/m] the other way round.
+  void add(const FeltWall& felt, double share = 1.0, const Vec3& by_place = Vec3(0.0),
+           const Vec3& by_press = Vec3(0.0)) noexcept;
+
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] bool isStraight() const noexcept;
+  [[nodiscard]] bool isEven() const noexcept;
+  /// [N], [N/m], [J]: as those of WallLaw.
+  [[nodiscard]] double force(double depth) const noexcept;
+  [[nodiscard]] double tangent(double depth) const noexcept;
+  [[nodiscard]] double energy(double depth) const noexcept;
+  /// [N] Gradients of the energy, `depth` [m] deep, by the place and by the press.
+  [[nodiscard]] Vec3 rise(double depth) const noexcept;
+  [[nodiscard]] Vec3 byPress(double depth) const noexcept;
+
+ private:
+  struct Part {
+    FeltWall felt;
+    double share = 1.0;
+    Vec3 by_place{0.0, 0.0, 0.0};
+    Vec3 by_press{0.0, 0.0, 0.0};
+  };
+  std::array<Part, kMost> part_;
+  std::size_t count_ = 0;
+};
+
+/// As softWall() of one law.
+[[nodiscard]] SoftWall softWall(const SharedWalls& walls, double stop, double give) noexcept;
+
+}  // namespace palpate

@@ -1,0 +1,209 @@
+#include "seams.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver_limits.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kMostSteps = 20;
+/// Of the farthest: a step as short as this is the last.
+constexpr double kMet = 1e-12;
+/// Of the coordinates: so is one that is rounding.
+constexpr double kRounding = 1e-15;
+/// The least square of the sine of the angle at which two surfaces cross: along a flatter one there is no seam.
+constexpr double kFlattest = 1e-3;
+/// Nearer to its center of curvature than that (an eigenvalue) no point of a seam is the nearest.
+constexpr double kFirm = 0.02;
+/// Of the radius: a seam so near has its direction by the leaf alone, since the way to it is rounding.
+constexpr double kOnSeam = 1e-7;
+
+}  // namespace
+
+SeamShare seamShare(double distance, double radius) noexcept {
+  if (!(distance < radius)) return {};
+  const double u = distance / radius;
+  const double rate = 0.75 * (1.0 - u * u) / radius;
+  return {0.5 + 0.25 * u * (3.0 - u * u), rate, -u * rate};
+}
+
+SeamPoint seamPoint(const Field& wall, const Field& other, const Vec3& place,
+                    double farthest) noexcept {
+  SeamPoint out{place, false};
+  const double rounding =
+      kRounding * std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
+  for (int i = 0; i < kMostSteps; ++i) {
+    const FieldJet a = wall.jet(out.at);
+    const FieldJet b = other.jet(out.at);
+    const double slope_a = glm::length(a.gradient);
+    const double slope_b = glm::length(b.gradient);
+    if (!a.in_band || !b.in_band || !(slope_a > 0.0) || !(slope_b > 0.0)) return out;
+    const Vec3 m = a.gradient / slope_a;
+    const Vec3 n = b.gradient / slope_b;
+    const double cosine = glm::dot(m, n);
+    const double square = 1.0 - cosine * cosine;
+    if (!(square > kFlattest)) return out;
+    const auto across = [&](double by_m, double by_n) {
+      return ((by_m - cosine * by_n) / square) * m + ((by_n - cosine * by_m) / square) * n;
+    };
+    // What holds the point on the seam: the way to `place`, but for its part along the seam.
+    const Vec3 way = place - out.at;
+    const double way_m = glm::dot(way, m);
+    const double way_n = glm::dot(way, n);
+    const Vec3 along = glm::cross(m, n) / std::sqrt(square);
+    const double bend =
+        1.0 + (way_m - cosine * way_n) / square * glm::dot(along, a.hessian * along) / slope_a +
+        (way_n - cosine * way_m) / square * glm::dot(along, b.hessian * along) / slope_b;
+    if (!(bend > kFirm)) return out;
+    const Vec3 step =
+        (glm::dot(way, along) / bend) * along - across(a.value / slope_a, b.value / slope_b);
+    out.at += step;
+    if (!(glm::length(out.at - place) <= 3.0 * farthest)) return out;
+    if (glm::length(step) <= kMet * farthest + rounding) {
+      out.found = glm::length(out.at - place) < farthest;
+      return out;
+    }
+  }
+  return out;
+}
+
+/// As the walker gathers them: leaves that change side together with this one.
+void Seams::gather(LeafId leaf, const HeldWall& held) noexcept {
+  surface_[0] = leaf;
+  surface_count_ = 1;
+  const double steep = glm::length(held.jet.gradient);
+  const double off = steep > 0.0 ? held.side * held.jet.value / steep : 0.0;
+  for (std::size_t i = 0; i < count_ && surface_count_ < surface_.size(); ++i) {
+    const LeafId other = near_[i];
+    if (other == leaf) continue;
+    const FieldJet& jet = walker_.jetHere(other);
+    const double slope = glm::length(jet.gradient);
+    const double near = limits::kTouch * limits::kOnSurface *
+                        (walker_.leaf(other).feature + walker_.leaf(leaf).feature);
+    if (!(slope > 0.0)) continue;
+    if (!(std::fabs(walker_.side(other) * jet.value / slope - off) <= near)) continue;
+    const double cosine = walker_.side(other) / slope * glm::dot(held.normal, jet.gradient);
+    if (cosine > 1.0 - limits::kParallel) surface_[surface_count_++] = other;
+  }
+}
+
+bool Seams::isOnSurface(LeafId leaf) const noexcept {
+  const auto end = surface_.begin() + static_cast<std::ptrdiff_t>(surface_count_);
+  return std::find(surface_.begin(), end, leaf) != end;
+}
+
+void Seams::addSeam(const Seam& seam) noexcept {
+  for (std::size_t i = 0; i < seam_count_; ++i) {
+    Seam& known = seam_[i];
+    const double near = limits::kTouch * limits::kOnSurface * walker_.leaf(known.leaf[0]).feature;
+    if (known.count < known.leaf.size() && glm::length(known.at - seam.at) <= near &&
+        std::fabs(glm::dot(known.normal, seam.normal)) > 1.0 - limits::kParallel) {
+      known.leaf[known.count++] = seam.leaf[0];
+      return;
+    }
+  }
+  if (seam_count_ < seam_.size()) {
+    seam_[seam_count_++] = seam;
+    return;
+  }
+  Seam& last = *std::max_element(seam_.begin(), seam_.end(), [](const Seam& a, const Seam& b) {
+    return a.distance < b.distance;
+  });
+  if (seam.distance < last.distance) last = seam;
+}
+
+void Seams::findSeams(const HeldWall& held, const Vec3& place, double radius) noexcept {
+  seam_count_ = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const LeafId leaf = near_[i];
+    if (isOnSurface(leaf)) continue;
+    const Leaf& own = walker_.leaf(leaf);
+    const FieldSample there = own.field->sample(place);
+    if (!there.in_band || !(std::fabs(there.value) < own.lipschitz * radius)) continue;
+    const SeamPoint point = seamPoint(*held.field, *own.field, place, radius);
+    if (!point.found) continue;
+    Seam seam;
+    seam.leaf[seam.count++] = leaf;
+    seam.at = point.at;
+    const double side = there.value == 0.0 ? walker_.side(leaf) : std::copysign(1.0, there.value);
+    seam.normal = side * unitOr(there.gradient, Vec3(0.0));
+    const Vec3 way = place - point.at;
+    seam.distance = glm::length(way);
+    if (seam.distance > kOnSeam * radius) {
+      seam.away = way / seam.distance;
+    } else {
+      const Vec3 along = seam.normal - glm::dot(seam.normal, held.normal) * held.normal;
+      seam.away = unitOr(along, Vec3(0.0));
+    }
+    seam.share = seamShare(seam.distance, radius);
+    addSeam(seam);
+  }
+}
+
+Facet Seams::facetAcross(unsigned across, const Vec3& place) noexcept {
+  std::array<LeafId, 8 * kMostSeams> turned{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < seam_count_; ++i) {
+    const Seam& seam = seam_[i];
+    const bool is_across = ((across >> i) & 1U) != 0;
+    for (std::size_t k = 0; k < seam.count; ++k) {
+      // The walker's sides are those at the proxy: the place may be beyond the seam.
+      const double value = walker_.leaf(seam.leaf[k]).field->value(place);
+      const bool is_inside = value == 0.0 ? walker_.side(seam.leaf[k]) < 0.0 : value < 0.0;
+      if ((is_inside != is_across) != (walker_.side(seam.leaf[k]) < 0.0)) {
+        turned[count++] = seam.leaf[k];
+      }
+    }
+  }
+  return walker_.facetAside({turned.data(), count}, {surface_.data(), surface_count_}, place);
+}
+
+std::span<const Seams::Part> Seams::at(LeafId leaf, const HeldWall& held, const Vec3& place,
+                                       const Vec3& press) noexcept {
+  surface_count_ = 0;
+  if (count_ == 0) return {};
+  const double radius = glm::length(press);
+  if (!(radius > 0.0)) return {};
+  gather(leaf, held);
+  findSeams(held, place, radius);
+  if (seam_count_ == 0) return {};
+  const Vec3 deeper = press / radius;
+  double all = 0.0;
+  Vec3 all_by_place(0.0);
+  Vec3 all_by_press(0.0);
+  std::size_t count = 0;
+  const unsigned sides = 1U << seam_count_;
+  for (unsigned across = 0; across < sides; ++across) {
+    Part part;
+    part.facet = facetAcross(across, place);
+    if (!part.facet.isClosed() || part.facet.material < 0) continue;
+    // Of each seam one side: the shares multiply, as where seams cross at right angles.
+    for (std::size_t i = 0; i < seam_count_; ++i) {
+      const SeamShare& share = seam_[i].share;
+      const bool is_across = ((across >> i) & 1U) != 0;
+      const double value = is_across ? 1.0 - share.value : share.value;
+      const double sign = is_across ? -1.0 : 1.0;
+      part.by_place =
+          value * part.by_place + (sign * part.share * share.by_distance) * seam_[i].away;
+      part.by_press = value * part.by_press + (sign * part.share * share.by_radius) * deeper;
+      part.share *= value;
+    }
+    all += part.share;
+    all_by_place += part.by_place;
+    all_by_press += part.by_press;
+    part_[count++] = part;
+  }
+  // Where nothing is beside the wall, or something that is free, the rest of the surface bears all.
+  if (!(all > 0.0)) return {};
+  for (std::size_t i = 0; i < count; ++i) {
+    Part& part = part_[i];
+    part.share /= all;
+    part.by_place = (part.by_place - part.share * all_by_place) / all;
+    part.by_press = (part.by_press - part.share * all_by_press) / all;
+  }
+  return {part_.data(), count};
+}
+
+}  // namespace palpate
