@@ -65,14 +65,16 @@ TEST(LocalProjection, SettlesBetweenTwoBalls) {
   }
 }
 
-TEST(LocalProjection, SettlesOnTheFacesOfOneWall) {
+TEST(LocalProjection, SettlesOnTheFacesOfOneWallFromBothSides) {
   Random random(33);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     const Vec3 size(random.uniform(2e-3, 22e-3), random.uniform(2e-3, 22e-3),
                     random.uniform(2e-3, 22e-3));
     // One of its corners is at the origin, but for its rounding.
     const FieldPtr field = roundedBox(-0.5 * size, size, 0.5e-3);
-    const std::vector<HeldWall> walls{outsideOf(field)};
+    std::vector<HeldWall> walls{outsideOf(field)};
+    if (i % 2 == 1)
+      walls[0].side = -1.0;  // the hand is held within, where whole steps would go to and fro
     const Vec3 hand = handBelow(random);
     expectHeld(projectLocally(Vec3(0.0), hand, walls), hand, i);
   }

@@ -181,7 +181,7 @@ TEST(Bands, OfABlendOnlyWhatHasAShareMustBeInItsBand) {
       EXPECT_EQ(both->sample(p).in_band, both->jet(p).in_band);
       return both->sample(p).in_band;
     };
-    EXPECT_TRUE(in_band(kLeft + Vec3(0.2, 0.031, 0))) << "the grid is far away and has no share";
+    EXPECT_TRUE(in_band(kLeft + Vec3(0.2, 0.0305, 0))) << "the grid is far away and has no share";
     EXPECT_TRUE(in_band(kLeft + Vec3(0, 0.031, 0))) << "on the grid's surface";
     EXPECT_FALSE(in_band(kLeft + Vec3(0, 0.05, 0))) << "out of its band, and the nearest";
   }
