@@ -72,6 +72,11 @@ const Place kPlaces[] = {
      "[{name: b, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: other}, "
      "{name: a, inside: {sphere: {center: [0, 0, 6], radius: 8}}, wall: m, content: c}]",
      mm(0, 0, 30), mm(0, 0, 14)},
+    {"floor flush with another wall",
+     "[{name: a, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: m, content: "
+     "c}, "
+     "{name: b, inside: {box: {center: [10, 0, -5], size: [20, 40, 10]}}, wall: other}]",
+     mm(0, 0, 10), mm(0, 0, -0.7)},
     {"within a ball",
      "[{name: a, inside: {sphere: {center: [0, 0, 0], radius: 8}}, wall: m, content: c}]\nstart: "
      "{region: a}",

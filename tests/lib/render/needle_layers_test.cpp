@@ -250,7 +250,7 @@ ScenePtr sceneOf(const std::vector<Tissue>& tissues, const Vec3& point, const Ve
     ports += "}\n";
   }
   return test::sceneOf("palpate: 1\nlength: mm\nmaterials:\n" + materials + "layers:\n" + layers +
-                       "ports:\n" + ports);
+                       (ports.empty() ? "" : "ports:\n" + ports));
 }
 
 TEST(NeedleLayers, OneAfterTheOtherWithinATickAsTheMachineSays) {
