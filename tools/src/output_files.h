@@ -11,9 +11,10 @@ namespace palpate::tools {
 
 /// Checked before the work, written beside their names after it, renamed together at the end.
 /// Whatever is not committed is removed. A file that is replaced keeps its mode (and owner, if this
-/// process may give it), and a symbolic link stays and leads to what is new. What is not a regular file is never replaced: devices and pipes are
-/// written directly, after the files, and "-" is standard output. The files written meanwhile have
-/// names that nobody can foresee, and are opened exclusively.
+/// process may give it), and a symbolic link stays and leads to what is new. What is not a regular
+/// file is never replaced: devices and pipes are written directly, after the files, and "-" is
+/// standard output. The files written meanwhile have names that nobody can foresee, and are opened
+/// exclusively.
 class OutputFiles {
  public:
   /// Whether an output may be "-". Only what is written from front to back can be streamed.
