@@ -18,7 +18,7 @@ void SharedWalls::add(const FeltWall& felt, double share, const Vec3& by_place,
                       const Vec3& by_press) noexcept {
   std::size_t at = count_;
   if (count_ == kMost) {
-    const auto least = std::min_element(
+    auto* const least = std::min_element(
         part_.begin(), part_.end(), [](const Part& a, const Part& b) { return a.share < b.share; });
     if (!(least->share < share)) return;
     at = static_cast<std::size_t>(least - part_.begin());

@@ -68,7 +68,7 @@ void FeltWalls::sortSeams() {
     return std::any_of(ports.begin(), ports.end(),
                        [&](PortId port) { return passages.ports()[port].leads(from, to); });
   };
-  const auto kindOf = [&](RegionId from, RegionId to) {
+  const auto kind_of = [&](RegionId from, RegionId to) {
     const Wall& wall = passages.wall(from, to);
     return wall.absent || wall.material < 0 ? -1 : kind_[static_cast<std::size_t>(wall.material)];
   };
@@ -82,8 +82,8 @@ void FeltWalls::sortSeams() {
         if (c == a || c == b || !scene_.touches(here, beyond) || !scene_.touches(there, beyond)) {
           continue;
         }
-        const int one = kindOf(here, beyond);
-        const int other = kindOf(there, beyond);
+        const int one = kind_of(here, beyond);
+        const int other = kind_of(there, beyond);
         if (one >= 0 && other >= 0 && one != other) may_differ_[a] = true;
       }
     }
