@@ -90,7 +90,7 @@ void Seams::gather(LeafId leaf, const HeldWall& held) noexcept {
 }
 
 bool Seams::isOnSurface(LeafId leaf) const noexcept {
-  const auto end = surface_.begin() + static_cast<std::ptrdiff_t>(surface_count_);
+  const auto* const end = surface_.begin() + static_cast<std::ptrdiff_t>(surface_count_);
   return std::find(surface_.begin(), end, leaf) != end;
 }
 
