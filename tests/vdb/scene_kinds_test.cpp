@@ -183,7 +183,7 @@ TEST_F(SceneKinds, MeshesOfFlatFacesKeepTheirEdgesUnlessAGridIsAskedFor) {
       "  grid: {mesh: {file: octahedron.obj, voxel: 0.5}}\n"
       "  sharp: {mesh: {file: octahedron.obj, voxel: 0.5, sharp: 30}}\n");
   const Vec3 on_edge = Vec3(5.0, 0.0, 5.0) * kMm;
-  for (const std::size_t n : {0, 1}) {
+  for (const std::size_t n : {std::size_t{0}, std::size_t{1}}) {
     const FieldPtr& exact = scene.fields[n].source->get();
     EXPECT_NEAR(exact->value(on_edge), 0.0, 1e-15);
     EXPECT_EQ(exact->structure().operands.size(), 8U);

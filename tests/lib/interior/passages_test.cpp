@@ -155,7 +155,7 @@ TEST(PassedPorts, APortThatJoinsARegionToItselfByGlobsIsComeBackThrough) {
 }
 
 TEST(PassedPorts, MoreThanThereIsRoomForAreRefused) {
-  for (const std::size_t more : {0, 1}) {
+  for (const std::size_t more : {std::size_t{0}, std::size_t{1}}) {
     std::vector<Port> ports;
     Port last = portOf({0}, {1});
     for (std::size_t i = 0; i < PassedPorts::kCapacity + more; ++i) {

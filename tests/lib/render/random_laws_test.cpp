@@ -30,8 +30,8 @@ class Parts {
     const int count = 2 + pick(3);
     for (int i = 0; i < count; ++i) {
       const std::string n = std::to_string(i);
-      materials += "  m" + n + ": {stiffness: " + number_(random_.uniform(300.0, 3000.0)) + " N/m" +
-                   (pick(3) == 0 ? ", damping: 0.5 N.s/m" : "") + "}\n";
+      materials += "  m" + n + ": {stiffness: " + numberText(random_.uniform(300.0, 3000.0)) +
+                   " N/m" + (pick(3) == 0 ? ", damping: 0.5 N.s/m" : "") + "}\n";
       is_damped_ = is_damped_ || materials.ends_with("N.s/m}\n");
       layers += "  - {name: l" + n + ", inside: " + shape(i) + ", wall: m" + n + "}\n";
     }
@@ -44,15 +44,15 @@ class Parts {
 
  private:
   int pick(int n) { return static_cast<int>(random_.uniform(0.0, n)); }
-  static std::string number_(double value) {
+  static std::string numberText(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.17g", value);
     return text;
   }
   static std::string list(const Vec3& v) {
-    return "[" + number_(v.x) + ", " + number_(v.y) + ", " + number_(v.z) + "]";
+    return "[" + numberText(v.x) + ", " + numberText(v.y) + ", " + numberText(v.z) + "]";
   }
-  [[nodiscard]] std::string length(double value) const { return number_(pose_.scale * value); }
+  [[nodiscard]] std::string length(double value) const { return numberText(pose_.scale * value); }
   [[nodiscard]] std::string point(const Vec3& p) const { return list(pose_.point(p)); }
   [[nodiscard]] std::string direction(const Vec3& v) const { return list(pose_.turn * v); }
   [[nodiscard]] std::string size(const Vec3& v) const {

@@ -24,20 +24,20 @@ TEST(MapKinds, AReaderIsToldWhatItsMapIsOf) {
       "  wall: {stiffness: {field: K}, damping: {field: D}, friction: {static: {field: mu}}}\n"
       "  flow: {viscosity: {field: B}, flow: [{field: vx}, 0 m/s, {field: vz}]}\n",
       "test.yaml", registry);
-  const auto expectKind = [&](const std::string& name, const std::string& key,
-                              std::optional<Dimension> dimension, bool is_signed) {
+  const auto expect_kind = [&](const std::string& name, const std::string& key,
+                               std::optional<Dimension> dimension, bool is_signed) {
     ASSERT_EQ(asked.count(name), 1U) << name;
     EXPECT_EQ(asked[name].key, key);
     EXPECT_EQ(asked[name].dimension, dimension) << name;
     EXPECT_EQ(asked[name].is_signed, is_signed) << name;
   };
-  expectKind("K", "stiffness", Dimension::kStiffness, false);
-  expectKind("D", "damping", Dimension::kDamping, false);
-  expectKind("mu", "static", std::nullopt, false);
-  expectKind("B", "viscosity", Dimension::kDamping, false);
+  expect_kind("K", "stiffness", Dimension::kStiffness, false);
+  expect_kind("D", "damping", Dimension::kDamping, false);
+  expect_kind("mu", "static", std::nullopt, false);
+  expect_kind("B", "viscosity", Dimension::kDamping, false);
   // A medium may flow either way.
-  expectKind("vx", "flow", Dimension::kVelocity, true);
-  expectKind("vz", "flow", Dimension::kVelocity, true);
+  expect_kind("vx", "flow", Dimension::kVelocity, true);
+  expect_kind("vz", "flow", Dimension::kVelocity, true);
 }
 
 }  // namespace
