@@ -130,9 +130,15 @@ const Pair kPairs[] = {
 };
 
 TEST(Seams, GiveNoEnergy) {
-  const int loops = std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 20 : 1;
+  const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
+  const int loops = slow ? 20 : 1;
+  std::size_t turn = 0;
   for (const Place& place : kPlaces) {
-    for (const Pair& pair : kPairs) {
+    ++turn;
+    for (std::size_t k = 0; k < std::size(kPairs); ++k) {
+      // Each place with one pair of walls in turn, unless there is time for all.
+      if (!slow && k != turn % std::size(kPairs)) continue;
+      const Pair& pair = kPairs[k];
       const ScenePtr scene = sceneOf(place, pair.soft, pair.stiff);
       Random random(5);
       EnergyGiven worst;
