@@ -1,6 +1,7 @@
 #include "support/region_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -45,6 +46,53 @@ RegionTree::RegionTree(const Scene& scene, RegionId region) {
     feature_ = std::min(feature_, literal.feature);
     largest_feature_ = std::max(largest_feature_, literal.feature);
   }
+  for (const Literal& a : literals_) {
+    for (const Literal& b : literals_) {
+      has_both_sides_ |= a.field == b.field && a.sign != b.sign &&
+                         a.pose.rotation == b.pose.rotation &&
+                         a.pose.translation == b.pose.translation;
+    }
+  }
+}
+
+bool RegionTree::leaveNoRoom(const std::array<int, 3>& literals, const Vec3& center) const {
+  const auto [known, is_new] = leaves_no_room_.try_emplace(literals, true);
+  if (!is_new) return known->second;
+  const std::size_t count = literals[1] == literals[2] ? 2 : 3;
+  const double reach = 1e-4 * feature_;
+  constexpr std::array<Vec3, 4> kLooks = {Vec3(0.31, -0.77, 0.52), Vec3(-0.63, 0.19, -0.84),
+                                          Vec3(0.45, 0.88, 0.27), Vec3(0.71, -0.12, -0.36)};
+  for (const Vec3& look : kLooks) {
+    double sum = 0.0;
+    double size = 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double value =
+          literals_[static_cast<std::size_t>(literals[k])].value(center + reach * look);
+      sum += value;
+      size += std::fabs(value);
+    }
+    // Far above rounding (1e-12 of the reach), far below what bends do to surfaces that only touch (1e-4).
+    if (std::fabs(sum) > 1e-8 * size) known->second = false;
+  }
+  return known->second;
+}
+
+void RegionTree::dropEmpty(const Vec3& center, Nearby& out) const {
+  const auto is_empty = [&](std::uint32_t cell) {
+    std::vector<int> own;
+    for (std::size_t i = 0; i < out.literals.size(); ++i) {
+      if (((cell >> i) & 1U) != 0) own.push_back(out.literals[i]);
+    }
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      for (std::size_t j = i + 1; j < own.size(); ++j) {
+        for (std::size_t k = j; k < own.size(); ++k) {
+          if (leaveNoRoom({own[i], own[j], own[k]}, center)) return true;
+        }
+      }
+    }
+    return false;
+  };
+  out.cells.erase(std::remove_if(out.cells.begin(), out.cells.end(), is_empty), out.cells.end());
 }
 
 int RegionTree::addLiteral(Literal literal) {
@@ -93,13 +141,14 @@ double RegionTree::value(const Vec3& p) const noexcept {
   return out;
 }
 
-Slope RegionTree::slopeAt(const Literal& literal, const Vec3& p) const noexcept {
+Slope RegionTree::slopeAt(const Literal& literal, const Vec3& p, double widest) const noexcept {
   Slope best;
   best.gap = literal.value(p);
   best.doubt = kInfinity;
   // Order 4 over h, order 2 over h / 4; both near 1e-9 on a smooth surface. A seam or an apex within reach shows
   // in their difference, and asks for a smaller h.
-  for (double h = 1e-3 * literal.feature; best.doubt > 1e-8 && h > 5e-10; h *= 0.1) {
+  for (double h = std::min(1e-3 * literal.feature, widest); best.doubt > 1e-8 && h > 5e-10;
+       h *= 0.1) {
     Vec3 fine(0.0);
     Vec3 check(0.0);
     for (int i = 0; i < 3; ++i) {
@@ -122,6 +171,21 @@ Slope RegionTree::slopeAt(const Literal& literal, const Vec3& p) const noexcept 
   // Neither difference is that much off where they agree to the rounding of the shorter one.
   if (best.doubt < 3e-7) best.doubt = 1e-9;
   return best;
+}
+
+bool RegionTree::isOnCrease(const Literal& literal, const Vec3& p,
+                            const Slope& slope) const noexcept {
+  if (slope.steepness >= 0.999 * literal.lipschitz) return false;
+  const double h = 1e-6 * literal.feature;
+  const double center = literal.value(p);
+  double turn = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    Vec3 step(0.0);
+    step[i] = h;
+    turn += std::fabs(literal.value(p + step) + literal.value(p - step) - 2.0 * center);
+  }
+  // What is smooth bends by some millionths over that.
+  return turn > 0.02 * slope.steepness * h;
 }
 
 Mat3 RegionTree::hessianAt(const Literal& literal, const Vec3& p, double steepness) const noexcept {
@@ -207,21 +271,7 @@ void RegionTree::nearby(const Vec3& center, double radius, Nearby& out) const {
     }
   }
   const State state = reduce(root_, out.cells, out);
-  // What asks for both sides of one surface is that surface, not a place to be: labels that touch.
-  for (std::size_t i = 0; i < out.literals.size(); ++i) {
-    for (std::size_t j = i + 1; j < out.literals.size(); ++j) {
-      const Literal& a = literals_[static_cast<std::size_t>(out.literals[i])];
-      const Literal& b = literals_[static_cast<std::size_t>(out.literals[j])];
-      if (a.field != b.field || a.sign == b.sign || a.pose.rotation != b.pose.rotation ||
-          a.pose.translation != b.pose.translation) {
-        continue;
-      }
-      const std::uint32_t both = (std::uint32_t{1} << i) | (std::uint32_t{1} << j);
-      out.cells.erase(std::remove_if(out.cells.begin(), out.cells.end(),
-                                     [&](std::uint32_t cell) { return (cell & both) == both; }),
-                      out.cells.end());
-    }
-  }
+  if (has_both_sides_) dropEmpty(center, out);
   if (state == State::kAllowed) out.cells = {0};
   if (state == State::kForbidden) out.cells.clear();
 }

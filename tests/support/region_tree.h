@@ -1,7 +1,9 @@
 #pragma once
 // Where a proxy of a scene may be, asked of values of fields alone: nothing of lib's contact or rendering.
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "palpate/scene/scene.h"
@@ -50,7 +52,13 @@ class RegionTree {
   [[nodiscard]] double value(const Vec3& p) const noexcept;
 
   [[nodiscard]] const std::vector<Literal>& literals() const noexcept { return literals_; }
-  [[nodiscard]] Slope slopeAt(const Literal& literal, const Vec3& p) const noexcept;
+  /// By differences over `widest` [m] at most.
+  [[nodiscard]] Slope slopeAt(const Literal& literal, const Vec3& p,
+                              double widest = kInfinity) const noexcept;
+  /// Whether `slope`, of the literal at `p`, is the mean of those on both sides of a crease: differences across it agree
+  /// in that, which is less steep than either.
+  [[nodiscard]] bool isOnCrease(const Literal& literal, const Vec3& p,
+                                const Slope& slope) const noexcept;
   /// Of value / steepness.
   [[nodiscard]] Mat3 hessianAt(const Literal& literal, const Vec3& p,
                                double steepness) const noexcept;
@@ -72,6 +80,11 @@ class RegionTree {
   };
   enum class State : std::uint8_t { kAllowed, kForbidden, kOpen };
 
+  /// Whether literals that come near `center` ask for a surface or a line together, not for a place to be: their values
+  /// sum to 0 all around. Labels that touch have such pairs and triples.
+  [[nodiscard]] bool leaveNoRoom(const std::array<int, 3>& literals, const Vec3& center) const;
+  /// Drops the cells that hold such literals.
+  void dropEmpty(const Vec3& center, Nearby& out) const;
   int addField(const FieldPtr& field, double sign, const Pose& pose, bool is_moved);
   int addLiteral(Literal literal);
   State reduce(int node, std::vector<std::uint32_t>& cells, Nearby& out) const;
@@ -82,6 +95,9 @@ class RegionTree {
   };
   std::vector<Layer> layers_;
   std::vector<Literal> literals_;
+  bool has_both_sides_ = false;  ///< some field is asked for on either side of it
+  mutable std::map<std::array<int, 3>, bool>
+      leaves_no_room_;  ///< pairs have their second literal twice
   std::vector<Node> nodes_;
   int root_ = 0;
   double feature_ = kInfinity;

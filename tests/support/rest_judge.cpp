@@ -83,13 +83,23 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   const double moved = glm::length(now.proxy - before.proxy);
   bool is_suspect = !isDirect(before.proxy, now.proxy, moved);
   bool& is_minimum = out.is_minimum;
+  bool is_rest = false;    // by the walls' normals
+  bool is_pinned = false;  // by them and by values
   if (out.is_contact) {
     is_suspect |= moved > 4.0 * glm::length(hip - previous_hip) + 1e-3 * depth;
     const RestCheck checked = oracle_.check(now.proxy, hip);
     out.is_unjudged = !checked.is_judged;
     out.touching = checked.touching;
     out.has_kink = checked.has_kink;
-    is_minimum = checked.residual <= (3e-8 + checked.doubt) * depth + 1e-15;
+    is_rest = checked.residual <= (3e-8 + checked.doubt) * depth + 1e-15;
+    if (!is_rest && checked.has_kink && checked.residual <= 10.0 * kTolerance * depth) {
+      // The normals about a crease are those of places beside it: Newton's step says how far off the minimum is, and values
+      // that it is one.
+      is_pinned = checked.residual <= kTolerance * depth * oracle_.leastCurvature(now.proxy, hip) &&
+                  oracle_.gainNear(now.proxy, hip, 1e-4 * depth) == 0.0;
+      is_rest = is_pinned;
+    }
+    is_minimum = is_rest;
     if (is_minimum && (sampled || is_suspect)) {
       // By the tree alone: within a ten-thousandth of the depth nothing is nearer by more than a bulge allows.
       is_minimum = oracle_.gainNear(now.proxy, hip, 1e-4 * depth) <= 0.02 &&
@@ -115,6 +125,12 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   for (const Vec3& other : rest.others) {
     out.is_ambiguous |= glm::length(other - rest.point) > 10.0 * allowed;
     off = std::min(off, glm::length(now.proxy - other));
+  }
+  // What is thinner than its steps the oracle goes through: then it starts where the proxy is, with steps as small.
+  if (is_rest && off > allowed) {
+    out.is_ambiguous |=
+        is_pinned || glm::length(oracle_.stay(now.proxy, hip) - now.proxy) <= allowed;
+    is_minimum |= out.is_ambiguous;
   }
   // Either end will do, or another minimum between them; a point that is none will not.
   if (off <= allowed || (out.is_ambiguous && is_minimum)) return out;

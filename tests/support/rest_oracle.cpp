@@ -22,7 +22,23 @@ std::array<Vec3, 2> across(const Vec3& n) {
   return {u, glm::cross(n, u)};
 }
 
+/// [m] from a kink so far are the normals about it asked for: nearer by, differences would reach over it.
+double aroundKink(const Literal& literal, double radius) {
+  return std::max(radius, 4e-5 * literal.feature);
+}
+
 }  // namespace
+
+std::optional<HalfSpaceBound> RestOracle::planeAtKink(const Literal& literal, const Vec3& x,
+                                                      const Vec3& out) const {
+  const double widest = 0.05 * glm::length(out);
+  const Slope far = tree_.slopeAt(literal, x + out, widest);
+  const Slope near = tree_.slopeAt(literal, x + 0.5 * out, widest);
+  if (far.doubt > Slope::kSingular || near.doubt > Slope::kSingular) return std::nullopt;
+  // What the wall bends over that length, taken away.
+  const Vec3 normal = 2.0 * near.normal - far.normal;
+  return HalfSpaceBound{glm::normalize(normal), literal.value(x) / near.steepness};
+}
 
 bool RestOracle::addKink(Cell& cell, const Literal& literal, int index, const Vec3& x,
                          double radius) const {
@@ -30,22 +46,22 @@ bool RestOracle::addKink(Cell& cell, const Literal& literal, int index, const Ve
   // the other way any of them would do, and this is not the place to tell.
   constexpr int kAround = 48;
   const double center = literal.value(x);
+  const double around = aroundKink(literal, radius);
   for (int i = 0; i < kAround; ++i) {
-    const Vec3 y = x + radius * directionOf(i, kAround);
-    const double there = literal.value(y);
-    const double middle = literal.value(0.5 * (x + y));
-    if (middle < 0.5 * (center + there) - 1e-3 * radius) return false;
-    const Slope slope = tree_.slopeAt(literal, y);
-    if (slope.doubt > Slope::kSingular) continue;
-    const double gap = slope.gap + glm::dot(slope.normal, x - y);
-    cell.planes.push_back({slope.normal, std::max(gap, 0.0)});
+    const Vec3 out = around * directionOf(i, kAround);
+    const double there = literal.value(x + out);
+    const double middle = literal.value(x + 0.5 * out);
+    if (middle < 0.5 * (center + there) - 1e-3 * around) return false;
+    const std::optional<HalfSpaceBound> plane = planeAtKink(literal, x, out);
+    if (!plane.has_value()) continue;
+    cell.planes.push_back({plane->normal, std::max(plane->gap, 0.0)});
     cell.owner.push_back(index);
   }
   return true;
 }
 
 RestOracle::Cell RestOracle::cellAt(const Vec3& x, const Nearby& nearby, std::uint32_t bits,
-                                    double radius, double granted) const {
+                                    double radius, double granted, bool asks_creases) const {
   Cell cell;
   for (std::size_t i = 0; i < nearby.literals.size(); ++i) {
     if (((bits >> i) & 1U) == 0) continue;
@@ -54,7 +70,7 @@ RestOracle::Cell RestOracle::cellAt(const Vec3& x, const Nearby& nearby, std::ui
     const Slope slope = tree_.slopeAt(literal, x);
     if (slope.gap < -tree_.onSurface() - granted) cell.holds = false;
     cell.literals.push_back(index);
-    if (slope.doubt > Slope::kSingular) {
+    if (slope.doubt > Slope::kSingular || (asks_creases && tree_.isOnCrease(literal, x, slope))) {
       if (!addKink(cell, literal, index, x, radius)) cell.is_judged = false;
       continue;
     }
@@ -75,7 +91,7 @@ RestCheck RestOracle::check(const Vec3& x, const Vec3& hip) const {
   const Nearby nearby = nearby_;
   out.is_judged = !nearby.is_too_much;
   for (const std::uint32_t bits : nearby.cells) {
-    Cell cell = cellAt(x, nearby, bits, radius, 4.0 * tree_.onSurface());
+    Cell cell = cellAt(x, nearby, bits, radius, 4.0 * tree_.onSurface(), true);
     if (!cell.holds) continue;
     out.is_judged &= cell.is_judged;
     NearestOfPlanes next = PlaneProblem(cell.planes).nearestTo(way);
@@ -85,13 +101,12 @@ RestCheck RestOracle::check(const Vec3& x, const Vec3& hip) const {
     for (int more = 0; has_kink && more < 40; ++more) {
       const double length = glm::length(next.point);
       if (length <= 1e-9 * depth) break;
-      const Vec3 y = x + next.point * std::min(1.0, radius / length);
       for (const int index : cell.literals) {
         const Literal& literal = tree_.literals()[static_cast<std::size_t>(index)];
-        const Slope slope = tree_.slopeAt(literal, y);
-        if (slope.doubt > Slope::kSingular) continue;
-        const double gap = slope.gap + glm::dot(slope.normal, x - y);
-        cell.planes.push_back({slope.normal, std::max(gap - 4.0 * tree_.onSurface(), 0.0)});
+        const std::optional<HalfSpaceBound> plane = planeAtKink(
+            literal, x, next.point * (std::min(length, aroundKink(literal, radius)) / length));
+        if (!plane.has_value()) continue;
+        cell.planes.push_back({plane->normal, std::max(plane->gap - 4.0 * tree_.onSurface(), 0.0)});
       }
       next = PlaneProblem(cell.planes).nearestTo(way);
     }
@@ -158,7 +173,7 @@ RestOracle::Newton RestOracle::newton(const Vec3& x, const Vec3& hip, double rad
   tree_.nearby(x, radius, nearby_);
   const Nearby nearby = nearby_;
   for (const std::uint32_t bits : nearby.cells) {
-    const Cell cell = cellAt(x, nearby, bits, 0.1 * radius, tree_.onSurface());
+    const Cell cell = cellAt(x, nearby, bits, 0.1 * radius, tree_.onSurface(), false);
     if (!cell.holds) continue;
     const NearestOfPlanes next = PlaneProblem(cell.planes).nearestTo(way);
     const double residual = glm::length(next.point);
@@ -273,13 +288,13 @@ std::optional<Vec3> RestOracle::polish(const Vec3& x, const Vec3& hip, double h)
   return std::nullopt;
 }
 
-RestOracle::Flow RestOracle::flow(const Vec3& previous, const Vec3& hip, double h,
-                                  double kick) const {
+RestOracle::Flow RestOracle::flow(const Vec3& previous, const Vec3& hip, double h, double kick,
+                                  int steps) const {
   Flow out{previous};
   Vec3 x = previous;
   int resting = 0;
   int kicks = 0;
-  for (int step = 0; step < 40'000; ++step) {
+  for (int step = 0; step < steps; ++step) {
     const Vec3 way = hip - x;
     const double depth = glm::length(way);
     if (depth <= 1e-15) {
@@ -350,6 +365,10 @@ Rest RestOracle::solveOnce(const Vec3& previous, const Vec3& hip) const {
   out.has_settled = run.has_settled;
   measureBluntness(out, hip);
   return out;
+}
+
+Vec3 RestOracle::stay(const Vec3& x, const Vec3& hip) const {
+  return flow(x, hip, 1e-6 * glm::length(hip - x), 1.0, 200).point;
 }
 
 Rest RestOracle::solve(const Vec3& previous, const Vec3& hip) const {

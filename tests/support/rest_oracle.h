@@ -41,6 +41,9 @@ class RestOracle {
   /// One run of it, with the coarser step: a tenth of the time.
   [[nodiscard]] Rest solveOnce(const Vec3& previous, const Vec3& hip) const;
 
+  /// Where it goes from `x` with steps of 1e-6 of the depth: the finest walls hold it.
+  [[nodiscard]] Vec3 stay(const Vec3& x, const Vec3& hip) const;
+
   /// [-] Most that |x - P| falls on the way to a point `radius` away, as a share of it, by the tree's value
   /// alone: directions tried, then refined. Nothing if all of them are closed.
   [[nodiscard]] double gainNear(const Vec3& x, const Vec3& hip, double radius) const;
@@ -65,7 +68,10 @@ class RestOracle {
     double blunt = 1.0;
   };
   [[nodiscard]] Cell cellAt(const Vec3& x, const Nearby& nearby, std::uint32_t bits, double radius,
-                            double granted) const;
+                            double granted, bool asks_creases) const;
+  /// Of a literal that has no normal at `x`, the plane there that continues its surface at `x + out`.
+  [[nodiscard]] std::optional<HalfSpaceBound> planeAtKink(const Literal& literal, const Vec3& x,
+                                                          const Vec3& out) const;
   [[nodiscard]] bool addKink(Cell& cell, const Literal& literal, int index, const Vec3& x,
                              double radius) const;
   [[nodiscard]] std::optional<Vec3> project(const Vec3& goal, const Vec3& from, double h) const;
@@ -78,7 +84,8 @@ class RestOracle {
   };
   [[nodiscard]] double stepFor(const Vec3& previous, const Vec3& hip) const;
   void measureBluntness(Rest& rest, const Vec3& hip) const;
-  [[nodiscard]] Flow flow(const Vec3& previous, const Vec3& hip, double h, double kick) const;
+  [[nodiscard]] Flow flow(const Vec3& previous, const Vec3& hip, double h, double kick,
+                          int steps = 40'000) const;
 
   const RegionTree& tree_;
   mutable Nearby nearby_;

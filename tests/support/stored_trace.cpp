@@ -28,29 +28,6 @@ struct Row {
   std::string events = "-";  ///< ports passed since the last row
 };
 
-/// From place to place in and around the bounds of the scene, in about 150 ticks each, smoothly.
-std::vector<Vec3> pathThrough(const Scene& scene) {
-  Box3 box = scene.bounds();
-  if (!box.isBounded()) box = {Vec3(-0.04), Vec3(0.04)};
-  const Vec3 center = box.center();
-  const Vec3 half = 0.5 * box.size();
-  Random random(2026);
-  constexpr int kTicksALeg = 150;
-  std::vector<Vec3> corners = {center + 1.3 * half};
-  for (int leg = 0; leg <= kTicks / kTicksALeg; ++leg) {
-    // Now and then back out, so that what was passed is left again.
-    const double reach = leg % 4 == 3 ? 1.25 : 0.9;
-    corners.push_back(center + reach * half * random.in({Vec3(-1.0), Vec3(1.0)}));
-  }
-  std::vector<Vec3> out;
-  for (int i = 0; i < kTicks; ++i) {
-    const auto leg = static_cast<std::size_t>(i / kTicksALeg);
-    const double t = static_cast<double>(i % kTicksALeg) / kTicksALeg;
-    out.push_back(glm::mix(corners[leg], corners[leg + 1], t * t * (3.0 - 2.0 * t)));
-  }
-  return out;
-}
-
 std::vector<Row> feel(const ScenePtr& scene, RendererKind kind) {
   RendererSettings settings;
   settings.kind = kind;
@@ -115,6 +92,28 @@ std::vector<Row> rowsOf(const std::string& text) {
 }
 
 }  // namespace
+
+std::vector<Vec3> pathThrough(const Scene& scene) {
+  Box3 box = scene.bounds();
+  if (!box.isBounded()) box = {Vec3(-0.04), Vec3(0.04)};
+  const Vec3 center = box.center();
+  const Vec3 half = 0.5 * box.size();
+  Random random(2026);
+  constexpr int kTicksALeg = 150;
+  std::vector<Vec3> corners = {center + 1.3 * half};
+  for (int leg = 0; leg <= kTicks / kTicksALeg; ++leg) {
+    // Now and then back out, so that what was passed is left again.
+    const double reach = leg % 4 == 3 ? 1.25 : 0.9;
+    corners.push_back(center + reach * half * random.in({Vec3(-1.0), Vec3(1.0)}));
+  }
+  std::vector<Vec3> out;
+  for (int i = 0; i < kTicks; ++i) {
+    const auto leg = static_cast<std::size_t>(i / kTicksALeg);
+    const double t = static_cast<double>(i % kTicksALeg) / kTicksALeg;
+    out.push_back(glm::mix(corners[leg], corners[leg + 1], t * t * (3.0 - 2.0 * t)));
+  }
+  return out;
+}
 
 ::testing::AssertionResult compareWithStored(const ScenePtr& scene, RendererKind kind,
                                              const std::string& file) {

@@ -5,10 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "palpate/render/haptic_renderer.h"
 
 namespace palpate::test {
+
+/// The path [m] of a scene, 1200 ticks: from place to place in and around its bounds, smoothly, and now and then back out.
+[[nodiscard]] std::vector<Vec3> pathThrough(const Scene& scene);
 
 /// Drives a renderer of `kind` along the one path that `scene`'s bounds make, and compares what it says with
 /// `file`; or writes `file`. A scene that the renderer refuses is kept as one line with the reason's code.

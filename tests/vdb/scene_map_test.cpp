@@ -154,7 +154,7 @@ TEST_F(SceneMaps, AFlowComesFromAnImageAndMayBeBelowZero) {
   EXPECT_EQ(flow.at({4e-3, 0, 0}).y, 0.0);
   EXPECT_EQ(flow.at({4e-3, 0, 0}).z, 5e-3);
   EXPECT_NO_THROW((void)compile(description));
-  // What is no velocity is refused where it stands, and a stiffness below 0 still is.
+  // Anything but a velocity is refused where it stands, and so is a stiffness below 0.
   EXPECT_EQ(
       refusal(text("100 N/m", ", flow: [{image: ct, transfer: [[0, 1 N]]}, 0 m/s, 0 m/s]")).code,
       "scene.quantity");

@@ -38,42 +38,35 @@ bool SharedWalls::isEven() const noexcept {
          part_[0].by_press == Vec3(0.0);
 }
 
-double SharedWalls::force(double depth) const noexcept {
-  double out = 0.0;
-  for (std::size_t i = 0; i < count_; ++i) out += part_[i].share * part_[i].felt.law.force(depth);
+template <typename OfPart>
+auto SharedWalls::sum(const OfPart& of) const noexcept {
+  decltype(of(part_[0])) out(0.0);
+  for (std::size_t i = 0; i < count_; ++i) out += of(part_[i]);
   return out;
+}
+
+double SharedWalls::force(double depth) const noexcept {
+  return sum([&](const Part& part) { return part.share * part.felt.law.force(depth); });
 }
 
 double SharedWalls::tangent(double depth) const noexcept {
-  double out = 0.0;
-  for (std::size_t i = 0; i < count_; ++i) out += part_[i].share * part_[i].felt.law.tangent(depth);
-  return out;
+  return sum([&](const Part& part) { return part.share * part.felt.law.tangent(depth); });
 }
 
 double SharedWalls::energy(double depth) const noexcept {
-  double out = 0.0;
-  for (std::size_t i = 0; i < count_; ++i) out += part_[i].share * part_[i].felt.law.energy(depth);
-  return out;
+  return sum([&](const Part& part) { return part.share * part.felt.law.energy(depth); });
 }
 
 Vec3 SharedWalls::rise(double depth) const noexcept {
-  Vec3 out(0.0);
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Part& part = part_[i];
-    out += part.share * part.felt.rise(depth);
-    if (part.by_place != Vec3(0.0)) out += part.felt.law.energy(depth) * part.by_place;
-  }
-  return out;
+  return sum([&](const Part& part) {
+    return part.share * part.felt.rise(depth) + part.byShare(part.by_place, depth);
+  });
 }
 
 Vec3 SharedWalls::byPress(double depth) const noexcept {
-  Vec3 out(0.0);
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Part& part = part_[i];
-    out += part.share * part.felt.byPress(depth);
-    if (part.by_press != Vec3(0.0)) out += part.felt.law.energy(depth) * part.by_press;
-  }
-  return out;
+  return sum([&](const Part& part) {
+    return part.share * part.felt.byPress(depth) + part.byShare(part.by_press, depth);
+  });
 }
 
 SoftWall softWall(const SharedWalls& walls, double stop, double give) noexcept {

@@ -49,7 +49,8 @@ void CellWalker::place(const Vec3& p) noexcept {
 }
 
 void CellWalker::resume() noexcept {
-  ++stay_;
+  // So far on that no leaf counts as one that held the point a slide ago.
+  stay_ += limits::kStaysOfSlide + 1;
   ++state_;
   travel_ = 0.0;
   cold_due_ = 0.0;

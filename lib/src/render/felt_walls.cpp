@@ -131,7 +131,7 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
     if (!holds(contact, id) && mayBound(id)) is_alone = false;
   });
   if (!is_alone || contact.count > 1) {
-    // What one kind of walls alone would let the hand come to is no farther from the proxy than the hand is.
+    // One kind of walls alone would let the hand come no farther from the proxy than it is: so far a seam may matter.
     walker_.forWithin(2.0 * reach, [&](LeafId id) { seams_.add(id); });
   }
   for (const WallContact& each : contact.walls()) add({each.leaf, each.facet, each.held});

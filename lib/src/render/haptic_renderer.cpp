@@ -25,6 +25,7 @@ TickResult HapticRenderer::update(const HipState& hip) noexcept {
     state_.last.event_count = 0;
     crossing_count_ = 0;
     entry_count_ = 0;
+    unlimited_ = Vec3(0.0);
     TickResult held = state_.last;
     held.force = state_.guard.apply(Vec3(0.0), hip.dt);
     return held;
@@ -37,6 +38,7 @@ TickResult HapticRenderer::update(const HipState& hip) noexcept {
     source.work -= std::exchange(source.lattice_energy, 0.0);
     source.lattice_region = kOutside;
   }
+  unlimited_ = out.force;
   out.force = state_.guard.apply(out.force, hip.dt);
   state_.has_begun = true;
   state_.hip = hip.position;
@@ -54,6 +56,7 @@ void HapticRenderer::reset() noexcept {
   state_.last.region = scene_->startRegion();
   crossing_count_ = 0;
   entry_count_ = 0;
+  unlimited_ = Vec3(0.0);
   resume();
 }
 
@@ -77,6 +80,7 @@ bool HapticRenderer::setState(const RendererState& state) noexcept {
   state_ = state;
   crossing_count_ = 0;
   entry_count_ = 0;
+  unlimited_ = Vec3(0.0);
   resume();
   return true;
 }

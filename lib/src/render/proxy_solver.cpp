@@ -28,6 +28,10 @@ bool ProxySolver::CellProblem::holds(std::size_t plane_index) const noexcept {
 
 bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& opener) noexcept {
   batches_left_ = limits::kMaxBatches;
+  idle_steps_ = 0;
+  nearest_ = kInfinity;
+  before_.fill(Vec3(kInfinity));
+  hops_ = 0;
   trusts_sides_ = false;
   contact_.clear();
   if (goQuickly(hip, friction)) return true;
@@ -71,6 +75,10 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
         break;
     }
     if (outcome == Try::kMoved) {
+      if (idle_steps_ >= limits::kIdleSteps + (is_nearest_ ? 0 : limits::kIdleMore)) {
+        takeLastContact(hip);
+        return true;
+      }
       may_fly = true;
       continue;
     }

@@ -127,6 +127,7 @@ class ProxySolver {
   void poseAll(const Vec3& wish) noexcept;
   void pose(const NearCell& cell, CellProblem& out) const noexcept;
   void solve(CellProblem& problem, const Vec3& wish) const noexcept;
+  [[nodiscard]] double noiseOf(const CellProblem& problem) const noexcept;
   [[nodiscard]] double turningLength(const CellProblem& problem) const noexcept;
   [[nodiscard]] Mat3 bendOf(const CellProblem& problem) const noexcept;
   [[nodiscard]] Try tryCell(CellProblem& problem, double ball) noexcept;
@@ -143,7 +144,9 @@ class ProxySolver {
   [[nodiscard]] bool isCut(const CellProblem& problem, std::size_t i, Cut& out) const noexcept;
   [[nodiscard]] bool foundCrease(const CellProblem& problem, double length) const noexcept;
   [[nodiscard]] bool addCuts(const CellProblem& problem) noexcept;
-  [[nodiscard]] bool lookClose(const CellProblem& problem, const Vec3& way) noexcept;
+  [[nodiscard]] bool lookFar(const CellProblem& problem, const Vec3& step, double ball) noexcept;
+  bool lookAt(const CellProblem& problem, const Vec3& p) noexcept;
+  [[nodiscard]] bool lookCloser(const CellProblem& problem, const Vec3& way) noexcept;
   [[nodiscard]] bool kick() noexcept;
   void takeLastContact(const Vec3& hip) noexcept;
   void takeContact(const CellProblem& problem) noexcept;
@@ -170,11 +173,19 @@ class ProxySolver {
   std::array<WallThere, kMaxPlanes> landed_{};  ///< by plane: its wall where the last step landed
   Vec3 landed_at_{0.0, 0.0, 0.0};               ///< [m]
   bool has_landed_ = false;
+  bool leads_nowhere_ =
+      false;  ///< the last step is within the noise, and came back to where it began
   std::uint64_t reached_ = 0;  ///< by plane, a bit: the step at hand ends on it
   int rim_ = -1;    ///< leaf that a way back onto the walls has to end on as well; -1: none
   int other_ = -1;  ///< leaf that a quick way meets, or that no longer holds it; -1: none
   bool trusts_sides_ = false;
   int batches_left_ = 0;
+  int hops_ = 0;  ///< steps of this tick cut short where the whole of it ended in free space
+  double nearest_ =
+      kInfinity;  ///< [m^2] least squared distance from the aim before or after a step of this tick
+  std::array<Vec3, limits::kPlaces> before_{};  ///< [m] where the last steps of this tick began
+  bool is_nearest_ = false;  ///< the last step of this tick ended there, but for rounding
+  int idle_steps_ = 0;       ///< in a row, which lead nowhere (limits::kIdleSteps)
 };
 
 }  // namespace palpate

@@ -4,14 +4,10 @@
 #include "proxy_solver.h"
 #include "step_checks.h"
 
-// One step of the proxy: to the best point of a cell that a tangent, curved and restored step gets to.
+// One step of the proxy: to the best point of a cell that a tangent, curved and restored step gets to. How it is brought back
+// onto the walls: proxy_restore.cpp; what is learned from a step that was refused: proxy_cuts.cpp.
 
 namespace palpate {
-
-WallThere ProxySolver::wallAt(std::size_t near, const Vec3& p) const noexcept {
-  const LeafId id = near_.walls()[near].leaf;
-  return wallOf(id, walker_.leaf(id), walker_.leaf(id).field->sample(p));
-}
 
 /// sum of multiplier * Hessian of the distances to the walls that hold the solution.
 Mat3 ProxySolver::bendOf(const CellProblem& problem) const noexcept {
@@ -42,18 +38,31 @@ double ProxySolver::turningLength(const CellProblem& problem) const noexcept {
   return bend > 0.0 ? std::min(most, limits::kLargestTurn / bend) : 0.0;
 }
 
+/// [m] How far a place on the walls may be from another that is as good.
+double ProxySolver::noiseOf(const CellProblem& problem) const noexcept {
+  double out = 0.0;
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    out = std::max(out, limits::kNoise * near_.walls()[problem.source[i].near].tolerance);
+  }
+  return out;
+}
+
 /// A step in one of the cells that hold the proxy; kRests if there is none to make in any.
 ProxySolver::Try ProxySolver::moveOn() noexcept {
   double longest = 0.0;
+  double noise = 0.0;
   for (std::size_t i = 0; i < problems_; ++i) {
     const CellProblem& problem = problem_[i];
+    noise = std::max(noise, noiseOf(problem));
     const CurvedStep curved = curvedStep(aim_, problem.given(), problem.solution, bendOf(problem),
                                          limits::kLeastEigenvalue);
     longest = std::max({longest, glm::length(problem.solution.step), glm::length(curved.step)});
     if (curved.lowest < limits::kSaddle) longest = std::max(longest, turningLength(problem));
   }
-  // No better point is further away than twice the distance to the aim.
-  const double whole = std::min(limits::kBallOverStep * longest, 2.0 * glm::length(aim_));
+  // No better point is further away than twice the distance to the aim. The way back onto the walls is as long as their
+  // noise, however short the step.
+  const double whole =
+      std::max(std::min(limits::kBallOverStep * longest, 2.0 * glm::length(aim_)), noise);
   double ball = whole;
   bool rests = false;
   for (int shrink = 0; shrink <= limits::kShrinks && batches_left_ > 0; ++shrink) {
@@ -97,15 +106,16 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
   Vec3 step(0.0);
   const Vec3 first = problem.solution.step;
   bool is_refined = false;
+  bool ends_free = false;
   for (int round = 0; round < limits::kCutRounds && batches_left_ > 0; ++round) {
-    if (glm::length(problem.solution.step) <= rest_) {
-      // What was met far off is known only so well: asked for again close by before it counts as rest.
-      if (is_refined || !lookClose(problem, first)) return Try::kRests;
+    // What was met far off is known only so well: asked for again close by before a short step or rest.
+    if (!is_refined && lookCloser(problem, first)) {
       is_refined = true;
       pose(problem.cell, problem);
       solve(problem, aim_);
       continue;
     }
+    if (glm::length(problem.solution.step) <= rest_) return Try::kRests;
     const Mat3 bend = bendOf(problem);
     const CurvedStep curved =
         curvedStep(aim_, problem.given(), problem.solution, bend, limits::kLeastEigenvalue);
@@ -125,14 +135,22 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
         glm::length(bend * plain) > limits::kSingularTurn * glm::length(aim_)) {
       step = plain;
     }
-    if (tryStep(problem, step, ball, StepRule::kUsual)) return Try::kMoved;
-    if (!addCuts(problem)) break;
+    // What comes to a sharp edge by shares of a step goes over it after some.
+    if (tryStep(problem, step, ball,
+                hops_ < limits::kHops ? StepRule::kUsual : StepRule::kMayFly)) {
+      return Try::kMoved;
+    }
+    if (leads_nowhere_) return Try::kRests;
+    ends_free = hasLandedFree(problem);
+    if (!addCuts(problem) && !lookFar(problem, plain, ball)) break;
     pose(problem.cell, problem);
     solve(problem, aim_);
   }
   for (const double share : limits::kShorter) {
     if (batches_left_ <= 0) break;
-    if (tryStep(problem, share * step, ball, StepRule::kUsual)) return Try::kMoved;
+    if (!tryStep(problem, share * step, ball, StepRule::kUsual)) continue;
+    hops_ += ends_free ? 1 : 0;
+    return Try::kMoved;
   }
   return Try::kRefused;
 }
@@ -187,6 +205,7 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   }
   Vec3 y = x_ + by + bentBack(problem, by);
   has_landed_ = false;
+  leads_nowhere_ = false;
   if (!restore(problem, y, length)) {
     if (rule != StepRule::kMayFly || !hasLandedFree(problem)) return false;
     y = landed_at_;
@@ -198,128 +217,32 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   const Vec3 promised = aim_ - by;
   const double before = glm::dot(aim_, aim_);
   const double promise = std::max(0.0, before - glm::dot(promised, promised));
-  double noise = 0.0;
-  for (std::size_t i = 0; i < problem.planes; ++i) {
-    noise = std::max(noise, near_.walls()[problem.source[i].near].tolerance);
-  }
-  noise *= limits::kNoise * std::sqrt(before);
+  const double noise = noiseOf(problem);
+  const double slack = noise * std::sqrt(before);
   const double gain = before - glm::dot(after, after);
-  // A proxy beyond its walls comes back whatever it costs.
-  const double least = rule == StepRule::kMustGain ? noise : limits::kGain * promise - noise;
-  if (!trusts_sides_ && gain < least) return false;
-  return keepsOnWay(problem, y) && go(problem, y);
-}
-
-/// Whether the last step landed on the free side of all walls of its cell.
-bool ProxySolver::hasLandedFree(const CellProblem& problem) const noexcept {
-  if (!has_landed_) return false;
-  for (std::size_t i = 0; i < problem.planes; ++i) {
-    const Source& from = problem.source[i];
-    if (!from.isCut() && !(landed_[i].gap(from.inside) >= 0.0)) return false;
-  }
-  return true;
-}
-
-/// What brings a tangent step back onto the walls that hold it, as far as their curvature here tells. At a fold of one
-/// field only this tells how far off the wall it is that the field does not show there.
-Vec3 ProxySolver::bentBack(const CellProblem& problem, const Vec3& step) const noexcept {
-  std::array<Plane, 6> planes{};
-  std::size_t count = 0;
-  for (int k = 0; k < problem.solution.count; ++k) {
-    const auto i = static_cast<std::size_t>(problem.solution.plane[static_cast<std::size_t>(k)]);
-    const Source& from = problem.source[i];
-    const Mat3& bend = from.isCut() ? cut_[static_cast<std::size_t>(from.cut)].bend
-                                    : near_.walls()[from.near].bend;
-    const Vec3 turn = (from.inside ? -1.0 : 1.0) * (bend * step);
-    if (!isReached(i)) continue;
-    const double left = problem.plane[i].gap + glm::dot(problem.plane[i].normal, step);
-    const Vec3 normal = unitOr(problem.plane[i].normal + turn, problem.plane[i].normal);
-    const double off = left + 0.5 * glm::dot(step, turn);
-    planes[count++] = {normal, off};
-    planes[count++] = {-normal, -off};
-  }
-  if (count == 0) return Vec3(0.0);
-  const Vec3 back = closestStep(Vec3(0.0), {planes.data(), count}).step;
-  const double most = limits::kRestoredShare * glm::length(step);
-  return glm::dot(back, back) <= most * most ? back : Vec3(0.0);
-}
-
-/// Brings `y` [m] onto the walls that hold the solution and to the free side of all others of the cell, by the
-/// shortest way. False if that takes more than a share of `length` [m].
-bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) noexcept {
-  double moved = 0.0;
-  // Where a wall folds its field tells one of the planes that meet there at a time: those seen are kept.
-  std::array<Plane, kMaxSeen> seen{};  // gap at the world's origin
-  std::size_t seen_count = 0;
-  for (int round = 0; round < limits::kRestorations && batches_left_ > 0; ++round) {
-    --batches_left_;
-    std::array<Plane, kMaxPlanes> planes{};
-    std::size_t count = 0;
-    bool is_done = true;
-    double tolerance = 0.0;
-    for (std::size_t i = 0; i < problem.planes && count + 3 < kMaxPlanes; ++i) {
-      const Source& from = problem.source[i];
-      if (from.isCut()) continue;
-      const WallThere wall = wallAt(from.near, y);
-      const double gap = wall.gap(from.inside);
-      if (round == 0) landed_[i] = wall;
-      if (!(wall.slope > 0.0)) {
-        if (gap < 0.0) return false;
-        continue;
-      }
-      tolerance = std::max(tolerance, wall.tolerance);
-      const Vec3 normal = from.inside ? -wall.normal : wall.normal;
-      const double left = gap - limits::kRest * wall.tolerance;
-      planes[count++] = {normal, left};
-      const bool is_held = isReached(i);
-      const bool floats = is_held && left > wall.tolerance;
-      // What is held already stays so while the others come down.
-      if (floats || (is_held && left > -limits::kNoise * wall.tolerance)) {
-        planes[count++] = {-normal, -left};
-      }
-      is_done = is_done && gap >= 0.0 && !floats;
-      if (gap >= 0.0) continue;
-      std::size_t slot = 0;
-      while (slot < seen_count && glm::length(seen[slot].normal - normal) > limits::kCutTurn) {
-        ++slot;
-      }
-      if (slot == kMaxSeen) slot = static_cast<std::size_t>(round) % kMaxSeen;
-      seen[slot] = {normal, left - glm::dot(normal, y)};
-      seen_count = std::max(seen_count, slot + 1);
-    }
-    if (rim_ >= 0) {
-      const auto id = static_cast<LeafId>(rim_);
-      const WallThere wall = wallOf(id, walker_.leaf(id), walker_.leaf(id).field->sample(y));
-      if (!(wall.slope > 0.0)) return false;
-      const double side = walker_.side(id);
-      const double left = side * wall.distance - limits::kRest * wall.tolerance;
-      planes[count++] = {side * wall.normal, left};
-      planes[count++] = {-side * wall.normal, -left};
-      is_done = is_done && std::fabs(left) <= wall.tolerance;
-    }
-    if (is_done) return true;
-    if (round == 0 && rim_ < 0) {
-      landed_at_ = y;
-      has_landed_ = true;
-      if (foundCrease(problem, length)) return false;
-    }
-    const std::size_t here = count;
-    for (std::size_t i = 0; i < seen_count && count < kMaxPlanes; ++i) {
-      // The same wall as it is here knows better.
-      const bool is_here = std::any_of(planes.begin(), planes.begin() + here, [&](const Plane& p) {
-        return glm::length(p.normal - seen[i].normal) <= limits::kCutTurn;
-      });
-      if (is_here) continue;
-      planes[count++] = {seen[i].normal, seen[i].gap + glm::dot(seen[i].normal, y)};
-    }
-    const Vec3 by = closestStep(Vec3(0.0), {planes.data(), count}).step;
-    moved += glm::length(by);
-    if (!(moved <= limits::kRestoredShare * length + limits::kRestoredLeast * tolerance)) {
+  if (!trusts_sides_) {
+    // A proxy beyond its walls comes back whatever it costs.
+    const double least = rule == StepRule::kMustGain ? slack : limits::kGain * promise - slack;
+    if (gain < least) return false;
+    if (glm::length(moved) <= limits::kNowhere * rest_) {
+      leads_nowhere_ = length <= noise;
       return false;
     }
-    y += by;
   }
-  return false;
+  if (!keepsOnWay(problem, y) || !go(problem, y)) return false;
+  const double left = glm::dot(after, after);
+  nearest_ = std::min(nearest_, before);
+  const bool is_back = std::any_of(before_.begin(), before_.end(), [&](const Vec3& p) {
+    return glm::length(y - p) <= limits::kNowhere * rest_;
+  });
+  const bool is_nearer = left < (1.0 - limits::kRoundedGain) * nearest_;
+  const bool is_idle = is_back || (glm::length(moved) <= noise && !is_nearer);
+  idle_steps_ = is_idle ? idle_steps_ + 1 : 0;
+  is_nearest_ = left <= (1.0 + limits::kRoundedGain) * nearest_;
+  nearest_ = std::min(nearest_, left);
+  std::rotate(before_.begin(), before_.end() - 1, before_.end());
+  before_.front() = y - moved;
+  return true;
 }
 
 /// Whether the chord to `y` [m] keeps to the cell, but for what the walls' own curvature makes it dip.
@@ -375,108 +298,6 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
     (void)walker_.slideTo(y, problem.cell, leaves, {});
   }
   return true;
-}
-
-/// Whether the wall of plane `i` where the last step landed is one that the proxy has to respect here: the step ended
-/// beyond it, its plane is not the one here, and carried back it does not cut off the proxy.
-bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Cut& out) const noexcept {
-  const Source& from = problem.source[i];
-  const WallThere& wall = landed_[i];
-  if (from.isCut() || !(wall.slope > 0.0) || wall.gap(from.inside) >= 0.0) return false;
-  const NearWall& here = near_.walls()[from.near];
-  if (glm::length(wall.normal - here.normal) < limits::kCutTurn) return false;
-  const double side = from.inside ? -1.0 : 1.0;
-  const Vec3 off = x_ - landed_at_;
-  out = {};
-  out.leaf = here.leaf;
-  out.inside = from.inside;
-  out.away = glm::length(off);
-  out.plane.normal = side * wall.normal;
-  double left = wall.gap(from.inside) + glm::dot(out.plane.normal, off);
-  double slack = limits::kOnWall * here.tolerance;
-  // A wall that bends little between there and here is carried back with its curvature: along a crease the bends of
-  // both its walls decide how far to go.
-  const Leaf& leaf = walker_.leaf(here.leaf);
-  const FieldJet jet = leaf.field->jet(landed_at_);
-  const double slope = glm::length(jet.gradient);
-  if (jet.in_band && slope > 0.0) {
-    Mat3 bend = jet.hessian / slope;
-    unfoldBend(leaf, side, landed_at_, jet.gradient / slope, bend);
-    const Vec3 turn = bend * off;
-    const double size = glm::length(turn);
-    if (size <= limits::kCarries) {
-      out.bend = bend;
-      out.plane.normal = unitOr(out.plane.normal + side * turn, out.plane.normal);
-      left += 0.5 * side * glm::dot(off, turn);
-      slack += limits::kCarriedShare * size * out.away;
-    }
-  }
-  out.plane.gap = std::max(0.0, left);
-  return left >= -slack;
-}
-
-/// Whether a wall that the cell has as one smooth leaf stands more in the way than its curvature explains.
-bool ProxySolver::foundCrease(const CellProblem& problem, double length) const noexcept {
-  Cut cut;
-  for (std::size_t i = 0; i < problem.planes; ++i) {
-    const Source& from = problem.source[i];
-    if (from.isCut()) continue;
-    const NearWall& here = near_.walls()[from.near];
-    const double explained = here.bend_size * length * length + limits::kNoise * here.tolerance;
-    const double ahead = problem.plane[i].gap + glm::dot(problem.plane[i].normal, landed_at_ - x_);
-    if (landed_[i].gap(from.inside) < std::min(0.0, ahead) - explained && isCut(problem, i, cut)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Looks just ahead along `way` for the walls of cuts that hold the solution and were met far off. True if that
-/// found them anew.
-bool ProxySolver::lookClose(const CellProblem& problem, const Vec3& way) noexcept {
-  double feature = 0.0;
-  for (std::size_t i = 0; i < problem.planes; ++i) {
-    const Source& from = problem.source[i];
-    if (!from.isCut() || !problem.holds(i)) continue;
-    const double size = walker_.leaf(near_.walls()[from.near].leaf).feature;
-    if (cut_[static_cast<std::size_t>(from.cut)].away > limits::kNearer * limits::kClose * size) {
-      feature = std::max(feature, size);
-    }
-  }
-  if (feature == 0.0) return false;
-  landed_at_ = x_ + limits::kClose * feature * unitOr(way, Vec3(0.0));
-  has_landed_ = true;
-  --batches_left_;
-  for (std::size_t i = 0; i < problem.planes; ++i) {
-    if (!problem.source[i].isCut()) landed_[i] = wallAt(problem.source[i].near, landed_at_);
-  }
-  return addCuts(problem);
-}
-
-/// Keeps the tangent planes of the cell's walls that the last step ended beyond. Of walls that are hollow towards the
-/// proxy they hold everywhere. False if there is none.
-bool ProxySolver::addCuts(const CellProblem& problem) noexcept {
-  bool has_new = false;
-  if (!has_landed_) return false;
-  for (std::size_t i = 0; i < problem.planes && cuts_ < limits::kMaxCuts; ++i) {
-    Cut cut;
-    if (!isCut(problem, i, cut)) continue;
-    // Met again from nearer by, the same wall is better known; met as it was, there is nothing new.
-    std::size_t slot = cuts_;
-    bool is_new = true;
-    for (std::size_t c = 0; c < cuts_; ++c) {
-      if (cut_[c].leaf != cut.leaf || cut_[c].inside != cut.inside) continue;
-      const double turn = glm::length(cut_[c].plane.normal - cut.plane.normal);
-      if (turn < limits::kSameCut && cut_[c].plane.gap <= cut.plane.gap) is_new = false;
-      const bool is_nearer = limits::kNearer * cut.away < cut_[c].away;
-      if (turn < limits::kSameWall || (is_nearer && turn < limits::kCarries)) slot = c;
-    }
-    if (!is_new) continue;
-    cut_[slot] = cut;
-    cuts_ = std::max(cuts_, slot + 1);
-    has_new = true;
-  }
-  return has_new;
 }
 
 /// At rest by the first order: looks whether the proxy can come closer by the second.

@@ -13,7 +13,7 @@ constexpr int kMostSteps = 20;
 constexpr double kMet = 1e-12;
 /// Of the coordinates: so is one that is rounding.
 constexpr double kRounding = 1e-15;
-/// The least square of the sine of the angle at which two surfaces cross: along a flatter one there is no seam.
+/// Two surfaces make a seam if they cross at an angle whose sine has at least this square.
 constexpr double kFlattest = 1e-3;
 /// Nearer to its center of curvature than that (an eigenvalue) no point of a seam is the nearest.
 constexpr double kFirm = 0.02;

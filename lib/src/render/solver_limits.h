@@ -64,6 +64,15 @@ inline constexpr double kRestoredLeast = 1000.0;
 /// A step is kept if it gains this share of what it promised, less the noise of the distances.
 inline constexpr double kGain = 0.01;
 inline constexpr double kNoise = 10.0;
+/// A step that ends within this share of the length of rest from where it began is none.
+inline constexpr double kNowhere = 0.1;
+/// The proxy rests too after so many steps in a row that lead nowhere: back to where one of the steps before began, or within the
+/// noise of its walls and no nearer to the hand by more than this share of the squared depth, which is rounding. About an
+/// apex they lead back and forth. Some more may be made until one ends where the proxy is nearest.
+inline constexpr int kIdleSteps = 4;
+inline constexpr int kIdleMore = 2;
+inline constexpr int kPlaces = 4;  ///< steps before
+inline constexpr double kRoundedGain = 1e-14;
 /// A Newton step shorter than this share of the plain one, where the normal would turn by more than
 /// that [rad] over it, is one of a singular point: the plain step is tried in its place.
 inline constexpr double kSingularStep = 0.2;
@@ -95,7 +104,8 @@ inline constexpr double kFoldsLess = 0.1;
 inline constexpr double kSameCut = 1e-6;
 /// Cuts whose normals differ by less than this [rad] are of the same wall: the last one counts.
 inline constexpr double kSameWall = 0.1;
-/// Before the proxy rests on a cut, its wall is asked for this share of the feature size ahead.
+/// Before the proxy rests on a cut, or makes a step shorter than that, its wall is asked for this share of the feature size
+/// ahead.
 inline constexpr double kClose = 1e-5;
 /// Met so many times nearer by, a cut takes the place of one that it could have been carried to.
 inline constexpr double kNearer = 10.0;
@@ -119,6 +129,8 @@ inline constexpr double kSharp = 0.01;
 inline constexpr double kEven = 1e-9;
 /// Where no step along the walls is kept, these shares of one are tried that may end in free space, over a sharp edge.
 inline constexpr double kFlights[] = {1.0, 0.1, 0.01};
+/// ... at once, where so many steps were cut short for ending in free space.
+inline constexpr int kHops = 2;
 /// What a refused step is shortened to, in turn; then the ball shrinks by kShrink, kShrinks times.
 inline constexpr double kShorter[] = {0.5, 0.125, 0.02};
 inline constexpr double kShrink = 0.2;

@@ -65,41 +65,57 @@ std::string events(const TickResult& result, std::span<const std::string> ports)
 
 }  // namespace
 
-std::string traceCsv(std::span<const TraceRow> rows, std::span<const std::string> regions,
-                     std::span<const std::string> ports) {
-  std::vector<std::string> region_fields;
-  region_fields.reserve(regions.size());
-  for (const std::string& name : regions) region_fields.push_back(quoted(name));
+TraceText::TraceText(std::span<const std::string> regions, std::span<const std::string> ports)
+    : ports_(ports.begin(), ports.end()) {
+  regions_.reserve(regions.size());
+  for (const std::string& name : regions) regions_.push_back(quoted(name));
+}
 
+TraceText::TraceText(const Scene& scene) {
+  for (const Region& region : scene.regions()) regions_.push_back(quoted(region.name));
+  for (const Port& port : scene.ports()) ports_.push_back(port.name);
+}
+
+std::string_view TraceText::header() noexcept { return kHeader; }
+
+void TraceText::add(std::string& text, const TraceRow& row) const {
+  const std::string& region = nameOf(regions_, row.result.region, "region");
+  Numbers<10> numbers;
+  numbers.add(row.t);
+  numbers.add(row.hip);
+  numbers.add(row.result.proxy);
+  numbers.add(row.result.force);
+  text += numbers.text();
+  text += region;
+  text += row.result.contact ? ",1," : ",0,";
+  if (row.result.event_count > 0) text += events(row.result, ports_);
+  text += ',';
+  Numbers<1> time;
+  time.add(row.tick_ns);
+  text += time.text();
+  text.back() = '\n';
+}
+
+namespace {
+
+std::string textOf(std::span<const TraceRow> rows, const TraceText& format) {
   constexpr std::size_t kTypicalRow = 220;  // of numbers that use all their digits
   std::string out;
   out.reserve(kHeader.size() + kTypicalRow * rows.size());
   out += kHeader;
-  for (const TraceRow& row : rows) {
-    Numbers<10> numbers;
-    numbers.add(row.t);
-    numbers.add(row.hip);
-    numbers.add(row.result.proxy);
-    numbers.add(row.result.force);
-    out += numbers.text();
-    out += nameOf(region_fields, row.result.region, "region");
-    out += row.result.contact ? ",1," : ",0,";
-    if (row.result.event_count > 0) out += events(row.result, ports);
-    out += ',';
-    Numbers<1> time;
-    time.add(row.tick_ns);
-    out += time.text();
-    out.back() = '\n';
-  }
+  for (const TraceRow& row : rows) format.add(out, row);
   return out;
 }
 
+}  // namespace
+
+std::string traceCsv(std::span<const TraceRow> rows, std::span<const std::string> regions,
+                     std::span<const std::string> ports) {
+  return textOf(rows, TraceText(regions, ports));
+}
+
 std::string traceCsv(std::span<const TraceRow> rows, const Scene& scene) {
-  std::vector<std::string> regions;
-  for (const Region& region : scene.regions()) regions.push_back(region.name);
-  std::vector<std::string> ports;
-  for (const Port& port : scene.ports()) ports.push_back(port.name);
-  return traceCsv(rows, regions, ports);
+  return textOf(rows, TraceText(scene));
 }
 
 }  // namespace palpate

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <numbers>
 #include <utility>
 
 #include "palpate/fields/blend.h"
@@ -142,13 +141,7 @@ FieldReader::Built FieldReader::buildTransform(const Node::Entry& kind) {
   const Node& field = reader.require("field");
   Pose pose;
   const Node* rotate = reader.optional("rotate");
-  if (rotate != nullptr) {
-    MapReader rotation(loader_, *rotate, "'rotate'");
-    const Vec3 axis = rotation.requireDirection("axis");
-    const double degrees = rotation.requireNumber("degrees");
-    rotation.finish();
-    pose.rotation = rotationAbout(axis, degrees * std::numbers::pi / 180.0);
-  }
+  if (rotate != nullptr) pose.rotation = readRotation(loader_, *rotate);
   const bool translates = reader.optional("translate") != nullptr;
   if (translates) pose.translation = reader.requirePoint("translate");
   reader.finish();

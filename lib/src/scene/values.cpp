@@ -1,6 +1,7 @@
 #include "scene/values.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "scene/messages.h"
 #include "scene/unit_table.h"
@@ -217,6 +218,14 @@ void refuseEmpty(const Document& document, const Node::Entry& entry) {
     throw document.error(entry.key_mark, "scene.empty", inQuotes(entry.key) + " has no value",
                          std::move(hint));
   }
+}
+
+Mat3 readRotation(const SceneLoader& loader, const Node& node) {
+  MapReader reader(loader, node, "'rotate'");
+  const Vec3 axis = reader.requireDirection("axis");
+  const double degrees = reader.requireNumber("degrees");
+  reader.finish();
+  return rotationAbout(axis, degrees * std::numbers::pi / 180.0);
 }
 
 }  // namespace palpate

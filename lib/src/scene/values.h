@@ -24,6 +24,9 @@ namespace palpate {
 [[nodiscard]] double readLength(const SceneLoader& loader, const Node& node,
                                 const std::string& what);
 
+/// `{axis, degrees}`: a turn about an axis through the origin, by the right hand.
+[[nodiscard]] Mat3 readRotation(const SceneLoader& loader, const Node& node);
+
 /// The items of a list of at least `least` and, unless 0, at most `most` items, none of them empty.
 [[nodiscard]] const std::vector<Node>& readList(const Document& document, const Node& node,
                                                 const std::string& what, std::size_t least,

@@ -7,18 +7,12 @@
 
 #include <vector>
 
+#include "lib/contact/outside_of.h"
 #include "palpate/fields/primitives.h"
 #include "support/field_contract.h"
 
 namespace palpate::test {
 namespace {
-
-HeldWall outsideOf(const FieldPtr& field) {
-  HeldWall out;
-  out.field = field.get();
-  out.side = 1.0;
-  return out;
-}
 
 /// A hand up to 6 mm below the origin, in which the walls' surfaces meet.
 Vec3 handBelow(Random& random) {
@@ -77,6 +71,52 @@ TEST(LocalProjection, SettlesOnTheFacesOfOneWallFromBothSides) {
       walls[0].side = -1.0;  // the hand is held within, where whole steps would go to and fro
     const Vec3 hand = handBelow(random);
     expectHeld(projectLocally(Vec3(0.0), hand, walls), hand, i);
+  }
+}
+
+TEST(LocalProjection, FindsTheCircleWhereTwoBallsMeet) {
+  const FieldPtr left = sphere(Vec3(-0.006, 0, 0), 0.01);
+  const FieldPtr right = sphere(Vec3(0.006, 0, 0), 0.01);
+  const std::vector<HeldWall> walls{outsideOf(left), outsideOf(right)};
+  const double radius = 0.008;
+  Random random(1);
+  for (int i = 0; i < 200; ++i) {
+    const double angle = random.uniform(-0.5, 0.5);
+    const Vec3 from(0.0, radius * std::sin(angle), radius * std::cos(angle));
+    const double turned = angle + random.uniform(-0.2, 0.2);
+    const Vec3 target(random.uniform(-1e-4, 1e-4), 0.006 * std::sin(turned),
+                      0.006 * std::cos(turned));
+    const LocalProjection out = projectLocally(from, target, walls);
+    ASSERT_TRUE(out.settled) << i;
+    ASSERT_EQ(out.count, 2U) << i;
+    const Vec3 expected(0.0, radius * std::sin(turned), radius * std::cos(turned));
+    // Newton's last step is below 1e-12 of the way of 2 mm.
+    EXPECT_LT(glm::length(out.at - expected), 1e-14) << i;
+  }
+}
+
+TEST(LocalProjection, LeavesWhatIsAllowedAlone) {
+  const FieldPtr ball = sphere(Vec3(0.0), 0.01);
+  const std::vector<HeldWall> walls{outsideOf(ball)};
+  const LocalProjection out = projectLocally(Vec3(0, 0, 0.01), Vec3(0.001, 0, 0.012), walls);
+  EXPECT_TRUE(out.settled);
+  EXPECT_EQ(out.count, 0U);
+  EXPECT_EQ(out.at, Vec3(0.001, 0, 0.012));
+}
+
+TEST(LocalProjection, SettlesFarFromTheOriginDownToRounding) {
+  // At a thousand times the way to the target, what rounding leaves of a step is longer than 1e-12 of that way.
+  const Vec3 center(3.0, -2.0, 1.0);
+  const FieldPtr ball = sphere(center, 0.01);
+  const std::vector<HeldWall> walls{outsideOf(ball)};
+  Random random(5);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 u = random.direction();
+    const Vec3 v = glm::normalize(u + 0.3 * random.direction());
+    const LocalProjection out = projectLocally(center + 0.01 * u, center + 0.009 * v, walls);
+    ASSERT_TRUE(out.settled) << i;
+    ASSERT_EQ(out.count, 1U) << i;
+    EXPECT_LT(glm::length(out.at - (center + 0.01 * v)), 1e-13) << i;
   }
 }
 

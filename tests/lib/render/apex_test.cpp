@@ -7,6 +7,7 @@
 #include "lib/render/hard_judge.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
+#include "support/sanitized.h"
 
 namespace palpate::test {
 namespace {
@@ -83,6 +84,7 @@ TEST(Apex, CirclingInAConeGivesNoEnergy) {
   // About the axis, from within the cone of normals to well outside of it.
   for (const double radius : {0.3e-3, 1e-3, 2e-3, 3e-3}) {
     for (const double height : {28e-3, 30.5e-3, 32e-3}) {
+      if (kSanitized && radius != 1e-3) continue;
       SCOPED_TRACE(::testing::Message() << "radius " << radius << ", height " << height);
       const auto lap = [&](int steps) {
         double work = 0.0;

@@ -27,6 +27,16 @@ struct CsgFault {
   double depth = 0.0;  ///< [m]
   std::string cause = {};
   Vec3 hip{0.0};  ///< [m]
+
+  [[nodiscard]] std::string text() const {
+    char out[400];
+    std::snprintf(out, sizeof out,
+                  "  scene %llu tick %d: %s, by %.3g, depth %.3g mm, %s, hand (%.17g, %.17g, "
+                  "%.17g)\n",
+                  static_cast<unsigned long long>(scene), tick, nameOf(fault), off, 1e3 * depth,
+                  cause.c_str(), hip.x, hip.y, hip.z);
+    return out;
+  }
 };
 
 struct CsgCounts {
@@ -37,6 +47,7 @@ struct CsgCounts {
   long oracle_runs = 0;
   long ambiguous = 0;
   long unjudged = 0;
+  int given_up = 0;           ///< scenes ended early: the oracle does not settle where the hand is
   long unsettled = 0;         ///< ticks in contact that say so
   int longest_unsettled = 0;  ///< in a row
   long frozen = 0;            ///< times that the hand stood still in contact
@@ -95,6 +106,7 @@ class CsgRun {
 
  private:
   static constexpr double kStiffness = 1000.0;  // [N/m] of the default wall
+  static constexpr int kPatience = 5;  // ticks that the oracle has no answer for, in one scene
 
   void feel(const RandomScene& scene, const ScenePtr& compiled, const testing::RegionTree& tree,
             const Vec3& start) {
@@ -107,6 +119,7 @@ class CsgRun {
     int contacts = 0;
     int still = 0;
     int unsettled = 0;
+    int lost = 0;
     Vec3 settled_force(0.0);
     for (int tick = 1; tick <= most_ && contacts < contacts_; ++tick) {
       const Vec3 hip = hand.next(before.proxy, tree);
@@ -129,6 +142,11 @@ class CsgRun {
       }
       note(scene, verdict, tick, now, hip);
       if (verdict.is_contact) ++contacts;
+      // An oracle that does not settle takes seconds a tick to say so.
+      if (verdict.ran_oracle && verdict.is_unjudged && ++lost == kPatience) {
+        ++counts_.given_up;
+        return;
+      }
       before = now;
       last = hip;
     }
@@ -146,6 +164,8 @@ class CsgRun {
     if (counts_.list.size() < 200) {
       counts_.list.push_back({verdict.fault, scene.number, tick, verdict.off,
                               glm::length(now.proxy - hip), causeOf(verdict), hip});
+      // At once: a long run may be ended before it has told all.
+      std::fprintf(stderr, "%s", counts_.list.back().text().c_str());
     }
     if (const char* folder = std::getenv("PALPATE_CSG_KEEP")) keep(folder, scene);
   }

@@ -51,6 +51,18 @@ inline double workOfLap(const ScenePtr& scene, const Vec3& start, const EnergyLo
   return work - (renderer->sourceWork() - sources);
 }
 
+/// [N] What the energy [J] falls by around `hand` [m], by central differences over `step` [m].
+template <typename Energy>
+Vec3 fallOf(const Energy& energy, const Vec3& hand, double step) {
+  Vec3 out(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 by(0.0);
+    by[axis] = step;
+    out[axis] = (energy(hand - by) - energy(hand + by)) / (2.0 * step);
+  }
+  return out;
+}
+
 struct EnergyGiven {
   double work = 0.0;    // [J] in the limit of short steps
   double change = 0.0;  // [J] by the last halving of the step
@@ -78,6 +90,18 @@ inline EnergyLoop randomLoop(Random& random, const Vec3& center, double least, d
   out.center = center;
   for (Vec3& each : out.wave) each = random.uniform(least, most) * random.direction();
   return out;
+}
+
+/// Twelve small loops about `center` [m] in a world with friction: none may give more than 1 nJ.
+inline void expectFrictionTakes(const char* name, const ScenePtr& scene, Random& random,
+                                const Vec3& center) {
+  double most = -kInfinity;
+  for (int i = 0; i < 12; ++i) {
+    const EnergyLoop loop = randomLoop(random, center, 0.02e-3, 0.8e-3);
+    most = std::max(most, workOfLap(scene, mm(0, 0, 10), loop, 16'000));
+  }
+  std::printf("  friction %s: at most %.3g J\n", name, most);
+  EXPECT_LE(most, 1e-9) << name;
 }
 
 /// Looks for the loop that gives most, by changing the best one of before a little, `tries` times.

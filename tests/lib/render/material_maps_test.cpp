@@ -159,12 +159,17 @@ TEST(MaterialMaps, TextureIsAsHighAsThePlaceHasIt) {
   }
 }
 
-TEST(MaterialMaps, APortOpensAtTheForceOfThePlace) {
-  SceneDescription description = body(named("skin"));
+PortDescription cut() {
   PortDescription port;
   port.name = "cut";
   port.from = "outside";
   port.to = "body";
+  return port;
+}
+
+TEST(MaterialMaps, APortOpensAtTheForceOfThePlace) {
+  SceneDescription description = body(named("skin"));
+  PortDescription port = cut();
   port.opens_at = linearMap(2.0, {50, 0, 0}, {0.0, 4.0});
   port.back = linearMap(0.5, {10, 0, 0}, {0.1, 1.0});
   description.ports = {port};
@@ -192,10 +197,7 @@ TEST(MaterialMaps, APortOpensAtTheForceOfThePlace) {
 
 TEST(MaterialMaps, AHoleReopensAtTheForceOfThePlaceWhereItWasMade) {
   SceneDescription description = body(named("skin"));
-  PortDescription port;
-  port.name = "cut";
-  port.from = "outside";
-  port.to = "body";
+  PortDescription port = cut();
   port.opens_at = 3.0;
   port.hole_radius = 2e-3;
   port.reopens_at = linearMap(1.0, {50, 0, 0}, {0.0, 4.0});
@@ -272,10 +274,7 @@ TEST(MaterialMaps, AFlowOfOneValueIsFeltAsTheConstantBitForBit) {
 TEST(MaterialMaps, OnePressedFacetOpensWhereItsForceFallsWhileSliding) {
   // Pressed with 2 N and drawn along the wall: it gives way where the map has come down to that.
   SceneDescription description = body(named("skin"));
-  PortDescription port;
-  port.name = "cut";
-  port.from = "outside";
-  port.to = "body";
+  PortDescription port = cut();
   port.opens_at = linearMap(3.0, {-50, 0, 0}, {0.5, 6.0});
   description.ports = {port};
   Drive hand(compile(description));
@@ -314,10 +313,7 @@ TEST(MaterialMaps, WhatAParameterCannotBeIsRefusedAtSetUp) {
   wall.flow = {};
 
   SceneDescription description = body(named("skin"));
-  PortDescription port;
-  port.name = "cut";
-  port.from = "outside";
-  port.to = "body";
+  PortDescription port = cut();
   port.back = flatMap(-1.0);
   description.ports = {port};
   EXPECT_EQ(errorOf([&] { (void)compile(description); }).problem().code, "scene.parameter");
@@ -333,10 +329,7 @@ TEST(MaterialMaps, TheTickAllocatesNothing) {
   wall.stiffness = linearMap(1000.0, {2e4, 0, 0}, {200.0, 1800.0});
   wall.friction = {linearMap(0.3, {5, 0, 0}, {0.1, 0.5}), 0.1};
   SceneDescription description = body(wall);
-  PortDescription port;
-  port.name = "cut";
-  port.from = "outside";
-  port.to = "body";
+  PortDescription port = cut();
   port.opens_at = linearMap(2.0, {50, 0, 0}, {0.0, 4.0});
   description.ports = {port};
   Drive hand(compile(description));

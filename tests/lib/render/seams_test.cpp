@@ -236,13 +236,7 @@ TEST(Seams, FrictionOnlyTakesThere) {
   const ScenePtr scene =
       sceneOf(kPlaces[0], "stiffness: 1000 N/m, friction: {static: 0.4, kinetic: 0.3}",
               "stiffness: 3000 N/m, friction: {static: 0.2}");
-  double most = -1.0;
-  for (int i = 0; i < 12; ++i) {
-    const EnergyLoop loop = randomLoop(random, mm(0, 0, -0.5), 0.02e-3, 0.8e-3);
-    most = std::max(most, workOfLap(scene, mm(0, 0, 10), loop, 16'000));
-  }
-  std::printf("  friction on a seam: at most %.3g J\n", most);
-  EXPECT_LE(most, 1e-9);
+  expectFrictionTakes("on a seam", scene, random, mm(0, 0, -0.5));
 }
 
 TEST(Seams, AWallThatGivesWayBesideOneGivesBackNoMoreThanWasStored) {

@@ -8,14 +8,11 @@
 
 #include "lib/render/drive.h"
 #include "support/field_contract.h"
+#include "support/sanitized.h"
 
 namespace palpate::test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kTicks = 25'000;
-#else
-constexpr int kTicks = 250'000;  // four scenes: a million
-#endif
+constexpr int kTicks = kSanitized ? 25'000 : 250'000;  // four scenes: a million
 
 /// A hand that wanders, presses, flicks and jumps around a box, at 0.05 to 50 m/s.
 class Hand {

@@ -171,6 +171,13 @@ TEST_F(Need, BeyondTheDevicesWorkspaceNothingIsMade) {
   EXPECT_TRUE(made->passages().portsOf(kOutside).size() == 1);
   EXPECT_EQ(made->passages().portsOf(kOutside)[0], 1);
   EXPECT_EQ(made->device().reach().hi.x, 0.05);
+  // A workspace that is long along the device's z, which a turn makes the world's x.
+  const std::string tall = "workspace: {box: {center: [0, 0, 150], size: [100, 100, 400]}}";
+  EXPECT_EQ(leftOut(*scene("device: {" + tall + "}\n")), "far");
+  EXPECT_EQ(leftOut(*scene("device: {rotate: {axis: [0, 1, 0], degrees: 90}, " + tall + "}\n")),
+            "");
+  EXPECT_EQ(leftOut(*scene("device: {rotate: {axis: [0, 1, 0], degrees: -90}, " + tall + "}\n")),
+            "far");
 }
 
 TEST_F(Need, WhatIsFeltThroughAClosedWallIsMade) {

@@ -59,7 +59,14 @@ class SharedWalls {
     double share = 1.0;
     Vec3 by_place{0.0, 0.0, 0.0};
     Vec3 by_press{0.0, 0.0, 0.0};
+
+    /// [N] What the share's own gradient [1/m] adds; most walls are alone and have none.
+    [[nodiscard]] Vec3 byShare(const Vec3& gradient, double depth) const noexcept {
+      return gradient == Vec3(0.0) ? gradient : felt.law.energy(depth) * gradient;
+    }
   };
+  template <typename OfPart>
+  [[nodiscard]] auto sum(const OfPart& of) const noexcept;
   std::array<Part, kMost> part_;
   std::size_t count_ = 0;
 };

@@ -56,6 +56,9 @@ class HapticRenderer {
     return contents_.change(region, change);
   }
 
+  /// [N, world] The force of the last update() before its limits; zero if that held the last state.
+  [[nodiscard]] const Vec3& unlimitedForce() const noexcept { return unlimited_; }
+
   /// [J] Work on the hand since the first tick, up to the last, of what is a source of energy by its nature: flows,
   /// lattices whose potential differs where a region is entered and left, and walls that give way while the hand is so
   /// far ahead that the next one it comes to press holds more than they did. A hand that got no more than
@@ -67,9 +70,16 @@ class HapticRenderer {
 
   /// All that the last tick left for the next.
   [[nodiscard]] const RendererState& state() const noexcept { return state_; }
-  /// Goes on from `state` as the renderer that it was taken from would, but for rounding: what a renderer knows of the
-  /// leaves around it, which is not part of the state, decides which of them it looks at once more. False, and nothing is changed, if it cannot be a state of this scene. What setContent() changed is
-  /// not part of it. Until the next tick crossings() and entries() are empty.
+  /// The same, and this renderer goes on from it as each other does that is given it: bit for bit. What it knows of the
+  /// leaves around the proxy it finds anew in the next tick.
+  [[nodiscard]] const RendererState& checkpoint() noexcept {
+    resume();
+    return state_;
+  }
+  /// Goes on from `state` as the renderer that it was taken from would: bit for bit if that gave it by checkpoint(), else
+  /// but for rounding, since what a renderer knows of the leaves around the proxy, which is no part of the state, decides
+  /// which of them it looks at once more. False, and nothing is changed, if it cannot be a state of this scene. What
+  /// setContent() changed is not part of it. Until the next tick crossings() and entries() are empty.
   [[nodiscard]] bool setState(const RendererState& state) noexcept;
 
  protected:
@@ -100,6 +110,7 @@ class HapticRenderer {
   /// The entries of the last step().
   [[nodiscard]] virtual std::span<const RegionEntry> entered() const noexcept = 0;
 
+  Vec3 unlimited_{0.0, 0.0, 0.0};   ///< [N] of the last tick
   std::size_t crossing_count_ = 0;  ///< of the last tick
   std::size_t entry_count_ = 0;     ///< of the last tick
 };

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "palpate/render/haptic_renderer.h"
@@ -58,6 +59,22 @@ class Trace {
   std::vector<RegionEntry> entries_;
   std::uint64_t dropped_ = 0;
   std::uint64_t dropped_entries_ = 0;
+};
+
+/// Trace rows as CSV, one at a time: header() and then add() for each gives what traceCsv() gives. Names come from the scene.
+class TraceText {
+ public:
+  explicit TraceText(const Scene& scene);
+  /// `regions` by RegionId, `ports` by PortId.
+  TraceText(std::span<const std::string> regions, std::span<const std::string> ports);
+
+  [[nodiscard]] static std::string_view header() noexcept;
+  /// Appends the row to `text`. @throws Error (kInput) for an id that has no name.
+  void add(std::string& text, const TraceRow& row) const;
+
+ private:
+  std::vector<std::string> regions_;  ///< quoted where that is needed
+  std::vector<std::string> ports_;
 };
 
 /// As CSV, with the header

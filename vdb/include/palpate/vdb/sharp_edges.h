@@ -9,7 +9,7 @@
 namespace palpate::vdb {
 
 struct SharpField {
-  FieldPtr field;                ///< what was baked, if there is no sharp edge
+  FieldPtr field;                ///< the baked field itself if there is no sharp edge
   std::size_t edges = 0;         ///< sharp sides of triangles
   std::size_t left_to_grid = 0;  ///< of these; beside them is a wall within the solid, ...
   Vec3 place{0.0};               ///< ... [m] here for one

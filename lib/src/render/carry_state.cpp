@@ -1,0 +1,117 @@
+#include "palpate/render/carry_state.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace palpate {
+namespace {
+
+/// The place of the one called `name` among `all`.
+template <typename Named>
+std::optional<std::size_t> placeOf(std::span<const Named> all, std::string_view name) {
+  const auto at =
+      std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+  if (at == all.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - all.begin());
+}
+
+std::string inQuotes(const std::string& name) { return "'" + name + "'"; }
+
+/// The port in `to` with the name that port `id` has in `from`; none is told in `lost`.
+std::optional<PortId> portThere(PortId id, const Scene& from, const Scene& to,
+                                std::vector<std::string>& lost) {
+  const std::string& name = from.ports()[id].name;
+  if (const auto there = placeOf(to.ports(), name)) return static_cast<PortId>(*there);
+  const std::string what = "port " + inQuotes(name);
+  if (std::find(lost.begin(), lost.end(), what) == lost.end()) lost.push_back(what);
+  return std::nullopt;
+}
+
+/// -1 for none, and for one that is not there.
+int materialThere(int id, const Scene& from, const Scene& to) {
+  if (id < 0) return -1;
+  const auto there = placeOf(to.materials(), from.materials()[static_cast<std::size_t>(id)].name);
+  return there ? static_cast<int>(*there) : -1;
+}
+
+PassedPorts carried(const PassedPorts& passed, const Scene& from, const Scene& to,
+                    std::vector<std::string>& lost) {
+  PassedPorts out;
+  for (std::size_t id = 0; id < from.ports().size(); ++id) {
+    const int slot = from.ports()[id].slot;
+    if (slot < 0 || passed.turn(static_cast<std::size_t>(slot)) == 0) continue;
+    const auto there = portThere(static_cast<PortId>(id), from, to, lost);
+    // One that no `after` names any more is not asked for.
+    if (!there || to.ports()[*there].slot < 0) continue;
+    const bool inward = passed.turn(static_cast<std::size_t>(slot)) > 0;
+    for (std::int64_t n = passed.times(static_cast<std::size_t>(slot)); n > 0; --n) {
+      out.pass(static_cast<std::size_t>(to.ports()[*there].slot), inward, false);
+    }
+  }
+  return out;
+}
+
+Punctures carried(const Punctures& punctures, const Scene& from, const Scene& to,
+                  std::vector<std::string>& lost) {
+  Punctures out;
+  for (const Hole& hole : punctures.holes()) {
+    if (const auto there = portThere(hole.port, from, to, lost)) {
+      out.puncture(*there, to.ports()[*there], hole.point);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+CarriedState carryState(const RendererState& state, RendererKind kind, const Scene& from,
+                        const Scene& to) {
+  CarriedState out;
+  const std::string& name = from.regions()[state.place.region].name;
+  const auto region = placeOf(to.regions(), name);
+  const PassedPorts passed = carried(state.place.passed, from, to, out.lost);
+  const Punctures punctures = carried(state.place.punctures, from, to, out.lost);
+  const bool is_there =
+      region && (kind == RendererKind::kPaper || to.regionAt(state.place.point) == *region);
+  out.goes_on = state.has_begun && is_there;
+  out.state.guard = state.guard;
+  out.state.source.work = state.source.work;
+  if (!out.goes_on) {
+    if (!region) out.lost.push_back("region " + inQuotes(name));
+    if (state.has_begun && region && !is_there)
+      out.lost.push_back("the probe's place in region " + inQuotes(name));
+    out.state.guard.reset();
+    out.state.last.region = to.startRegion();
+    return out;
+  }
+  const auto there = static_cast<RegionId>(*region);
+  out.state.has_begun = true;
+  out.state.hip = state.hip;
+  out.state.last = state.last;
+  out.state.last.region = there;
+  out.state.last.event_count = 0;
+  PlaceState& place = out.state.place;
+  place.point = state.place.point;
+  place.region = there;
+  place.sides = Signs(to.partition().leaves().size());
+  to.partition().signsAt(place.point, place.sides);
+  place.passed = passed;
+  place.punctures = punctures;
+  out.state.friction = state.friction;
+  out.state.fade.region = there;
+  out.state.pressed = materialThere(state.pressed, from, to);
+  const RelaxationState& relaxed = state.relaxation;
+  const auto pressed_from = placeOf(to.regions(), from.regions()[relaxed.region].name);
+  const int wall = materialThere(relaxed.material, from, to);
+  if (pressed_from && wall >= 0) {
+    out.state.relaxation = relaxed;
+    out.state.relaxation.region = static_cast<RegionId>(*pressed_from);
+    out.state.relaxation.material = wall;
+  }
+  return out;
+}
+
+}  // namespace palpate
