@@ -15,6 +15,7 @@ namespace palpate::devices {
 namespace {
 
 constexpr std::string_view kHeader = "t,x,y,z";
+constexpr std::string_view kDeviceHeader = "t,device_x,device_y,device_z";
 constexpr std::size_t kColumns = 4;
 constexpr std::array<const char*, kColumns> kNames{"t", "x", "y", "z"};
 
@@ -78,7 +79,7 @@ class LineReader {
     end_ -= begin_;
     begin_ = 0;
     if (end_ == buffer_.size()) {
-      // A line that fills the whole buffer is no row of four numbers: hand it out as it is.
+      // A line that fills the whole buffer is not a row of four numbers: hand it out as it is.
       at_end_ = true;
       return;
     }
@@ -96,13 +97,14 @@ class LineReader {
   bool at_end_ = false;
 };
 
-/// True if `line` is four finite numbers between commas and nothing else.
-bool parseRow(std::string_view line, std::array<double, kColumns>& out) {
+/// True if `line` is four numbers between commas and nothing else; by kSound finite ones.
+bool parseRow(std::string_view line, PathRules rules, std::array<double, kColumns>& out) {
   const char* at = line.data();
   const char* end = at + line.size();
   for (std::size_t i = 0; i < kColumns; ++i) {
     const auto [after, error] = std::from_chars(at, end, out[i]);
-    if (error != std::errc{} || !std::isfinite(out[i])) return false;
+    if (error != std::errc{}) return false;
+    if (rules == PathRules::kSound && !std::isfinite(out[i])) return false;
     at = after;
     if (i + 1 == kColumns) return at == end;
     if (at == end || *at != ',') return false;
@@ -145,25 +147,28 @@ Error badRow(const LineReader& reader, std::string_view line) {
   return reader.error("path.number", "not a row of four numbers", hint, line, 0);
 }
 
-void readHeader(LineReader& reader, const std::string& file) {
+DeviceFrame readHeader(LineReader& reader, const std::string& file) {
   std::string_view line;
   if (!reader.next(line)) {
     throw inputError("path.empty", "the file is empty",
                      "it must begin with the line t,x,y,z and hold one row a tick", file);
   }
-  if (line == kHeader) return;
+  if (line == kHeader) return DeviceFrame::kWorld;
+  if (line == kDeviceHeader) return DeviceFrame::kDevice;
   const bool has_mark = line.substr(0, 3) == "\xEF\xBB\xBF";
   throw reader.error("path.header",
                      has_mark ? "the file begins with a byte order mark"
                               : "the first line must be exactly t,x,y,z",
-                     has_mark ? "save it as plain UTF-8, without the mark"
-                              : "put the header t,x,y,z (s, m, m, m) on the first line",
+                     has_mark
+                         ? "save it as plain UTF-8, without the mark"
+                         : "put the header t,x,y,z (s, m, m, m) on the first line, or "
+                           "t,device_x,device_y,device_z for positions in a device's own frame",
                      line, 0);
 }
 
 }  // namespace
 
-Path readPath(const std::string& file) {
+RecordedPath readPath(const std::string& file, PathRules rules) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) {
     throw inputError("path.unreadable", "this is a folder, not a file", "give a CSV file", file);
@@ -175,18 +180,20 @@ Path readPath(const std::string& file) {
                      exists ? "the file cannot be opened" : "there is no such file",
                      exists ? "check its permissions" : "check the path and its spelling", file);
   }
-  readHeader(reader, file);
-
-  Path path;
+  RecordedPath recorded{.points = {}, .frame = readHeader(reader, file)};
+  Path& path = recorded.points;
   std::string_view line;
   std::array<double, kColumns> row{};
   while (reader.next(line)) {
-    if (!parseRow(line, row)) throw badRow(reader, line);
-    if (!path.empty() && !(row[0] > path.back().t)) {
-      throw reader.error("path.time",
-                         "t = '" + std::string(line.substr(0, line.find(','))) +
-                             "' does not come after the row before it",
-                         "rows must be in order of time, and no two at one time", line, 0);
+    if (!parseRow(line, rules, row)) throw badRow(reader, line);
+    if (rules == PathRules::kSound && !path.empty() && !(row[0] > path.back().t)) {
+      throw reader.error(
+          "path.time",
+          "t = '" + std::string(line.substr(0, line.find(','))) +
+              "' does not come after the row before it",
+          "rows must be in order of time, and no two at one time, unless the path is taken "
+          "as recorded",
+          line, 0);
     }
     path.push_back({row[0], {row[1], row[2], row[3]}});
   }
@@ -196,7 +203,7 @@ Path readPath(const std::string& file) {
   if (path.empty()) {
     throw inputError("path.empty", "there is a header but no row", "add one row a tick", file);
   }
-  return path;
+  return recorded;
 }
 
 }  // namespace palpate::devices

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -48,8 +49,8 @@ Vec3 between(const Vec3& a, const Vec3& b, double u) {
 }
 
 /// Samples `position(t)` for t = i / rate until `duration` has passed; the last row is at `end`.
-template <typename Position>
-Path sampled(double duration, double rate, const Vec3& end, const Position& position) {
+PathFormula sampled(double duration, double rate, const Vec3& end,
+                    std::function<Vec3(double)> position) {
   requirePositive("rate", rate);
   const double exact = duration * rate;
   // A duration that is a whole number of ticks must not get one more by rounding.
@@ -59,14 +60,13 @@ Path sampled(double duration, double rate, const Vec3& end, const Position& posi
                      "the path would take " + std::to_string(last) + " rows, more than 10^8",
                      "lower the rate, or raise the speed");
   }
-  const auto count = static_cast<std::size_t>(last);
+  return {static_cast<std::size_t>(last), rate, end, std::move(position)};
+}
+
+Path rowsOf(const PathFormula& formula) {
   Path path;
-  path.reserve(count + 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double t = static_cast<double>(i) / rate;
-    path.push_back({t, position(t)});
-  }
-  path.push_back({static_cast<double>(count) / rate, end});
+  path.reserve(formula.size());
+  for (std::size_t i = 0; i < formula.size(); ++i) path.push_back(formula.at(i));
   return path;
 }
 
@@ -98,12 +98,12 @@ class Polyline {
 };
 
 /// There, hold, and back if asked.
-Path traverse(const Polyline& line, double speed, double hold, bool back, double rate) {
+PathFormula traverse(const Polyline& line, double speed, double hold, bool back, double rate) {
   requirePositive("speed", speed);
   requireNotNegative("hold", hold);
   const double there = line.length() / speed;
   const double duration = there + hold + (back ? there : 0.0);
-  return sampled(duration, rate, back ? line.front() : line.back(), [&](double t) {
+  return sampled(duration, rate, back ? line.front() : line.back(), [=](double t) {
     if (t <= there) return line.at(speed * t);
     if (t <= there + hold || !back) return line.back();
     return line.at(line.length() - speed * (t - there - hold));
@@ -112,7 +112,7 @@ Path traverse(const Polyline& line, double speed, double hold, bool back, double
 
 }  // namespace
 
-Path generate(const PressPath& shape, double rate) {
+PathFormula formula(const PressPath& shape, double rate) {
   requireFinite("surface", shape.surface);
   const Vec3 normal = unitNormal(shape.normal);
   requireNotNegative("depth", shape.depth);
@@ -124,7 +124,7 @@ Path generate(const PressPath& shape, double rate) {
   return traverse(line, shape.speed, shape.hold, true, rate);
 }
 
-Path generate(const StrokePath& shape, double rate) {
+PathFormula formula(const StrokePath& shape, double rate) {
   requireFinite("from", shape.from);
   requireFinite("to", shape.to);
   requirePositive("speed", shape.speed);
@@ -133,13 +133,13 @@ Path generate(const StrokePath& shape, double rate) {
   require(length > 0.0 && std::isfinite(length), "`from` and `to` must be apart; they are [m]",
           length);
   const double duration = 2.0 * length * shape.repeats / shape.speed;
-  return sampled(duration, rate, shape.from, [&](double t) {
+  return sampled(duration, rate, shape.from, [shape, length](double t) {
     const double along = std::fmod(shape.speed * t, 2.0 * length);
     return between(shape.from, shape.to, std::min(along, 2.0 * length - along) / length);
   });
 }
 
-Path generate(const TapPath& shape, double rate) {
+PathFormula formula(const TapPath& shape, double rate) {
   requireFinite("surface", shape.surface);
   const Vec3 normal = unitNormal(shape.normal);
   requireNotNegative("depth", shape.depth);
@@ -150,14 +150,14 @@ Path generate(const TapPath& shape, double rate) {
   const double amplitude = 0.5 * (shape.clearance + shape.depth);
   require(amplitude > 0.0, "depth and clearance together must be above 0", amplitude);
   const Vec3 rest = shape.surface + shape.clearance * normal;
-  return sampled(shape.taps / shape.frequency, rate, rest, [&](double t) {
+  return sampled(shape.taps / shape.frequency, rate, rest, [=](double t) {
     const double cycles = shape.frequency * t;
     const double phase = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));
     return shape.surface + (mean + amplitude * std::cos(phase)) * normal;
   });
 }
 
-Path generate(const InsertPath& shape, double rate) {
+PathFormula formula(const InsertPath& shape, double rate) {
   require(shape.points.size() >= 2, "an insertion needs two points or more",
           static_cast<double>(shape.points.size()));
   for (const Vec3& point : shape.points) requireFinite("points", point);
@@ -166,5 +166,10 @@ Path generate(const InsertPath& shape, double rate) {
           line.length());
   return traverse(line, shape.speed, shape.hold, shape.back, rate);
 }
+
+Path generate(const PressPath& shape, double rate) { return rowsOf(formula(shape, rate)); }
+Path generate(const StrokePath& shape, double rate) { return rowsOf(formula(shape, rate)); }
+Path generate(const TapPath& shape, double rate) { return rowsOf(formula(shape, rate)); }
+Path generate(const InsertPath& shape, double rate) { return rowsOf(formula(shape, rate)); }
 
 }  // namespace palpate::devices

@@ -81,7 +81,7 @@ std::int64_t turnOf(const ServoSettings& settings) noexcept {
 }  // namespace
 
 ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings& settings,
-                     const std::atomic<bool>& stop) {
+                     const std::atomic<bool>& stop, const ServoObserver& observer) {
   check(tick, settings);
   ServoReport report;
   const OpenDevice open(device);
@@ -117,22 +117,34 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
     }
     if (has_reading) watch.turn(now, read == DeviceStatus::kOk);
     Vec3 force(0.0);
-    if (has_reading && watch.hasExpired()) {
+    ServoTurn done{.is_stale = read == DeviceStatus::kStale};
+    const bool ticks = has_reading && !watch.hasExpired();
+    if (has_reading && !ticks) {
       ++report.stale;
-    } else if (has_reading) {
+    } else if (ticks) {
       force = tick(last);
       ++report.ticks;
       if (!isFinite(force) || !isFinite(last.position) || !isFinite(last.velocity)) {
         force = Vec3(0.0);
         ++report.zeroed;
+        done.is_zeroed = true;
       } else if (const double length = glm::length(force); length > limit) {
         force *= limit / length;
         ++report.shortened;
+        done.is_shortened = true;
       }
-      force *= watch.share();
+      done.share = watch.share();
+      force *= done.share;
     }
-    if (ends(device.write(force), report.exit)) break;
+    const DeviceStatus wrote = device.write(force);
+    const std::uint64_t overruns = schedule.overruns();
     if (settings.realtime) schedule.end(monotonicNs());
+    if (ticks && observer) {
+      done.written = force;
+      done.is_late = schedule.overruns() != overruns;
+      observer(done);
+    }
+    if (ends(wrote, report.exit)) break;
   }
   report.overruns = schedule.overruns();
   report.worst_lateness = 1e-9 * static_cast<double>(schedule.worstLateness());

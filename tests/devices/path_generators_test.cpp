@@ -6,6 +6,8 @@
 
 #include "palpate/core/error.h"
 #include "palpate/devices/path.h"
+#include "palpate/devices/virtual_device.h"
+#include "support/alloc_guard.h"
 
 namespace palpate::devices {
 namespace {
@@ -202,6 +204,41 @@ TEST(Generators, RefuseParametersOutOfRange) {
 }
 
 TEST(Generators, RefuseAPathTooLongToHold) { expectRefused(PressPath{.speed = 1e-12}); }
+
+// What is computed row by row is what is kept in memory, bit for bit, and a hand that follows it is the same hand.
+TEST(PathFormula, IsThePathThatIsGenerated) {
+  const auto compare = [](const auto& shape, double rate) {
+    const Path path = generate(shape, rate);
+    const PathFormula rows = formula(shape, rate);
+    ASSERT_EQ(rows.size(), path.size());
+    VirtualDevice kept(path);
+    VirtualDevice computed(rows);
+    kept.open();
+    computed.open();
+    EXPECT_EQ(kept.info().workspace.lo, computed.info().workspace.lo);
+    EXPECT_EQ(kept.info().workspace.hi, computed.info().workspace.hi);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      ASSERT_EQ(rows.at(i).t, path[i].t);
+      ASSERT_EQ(rows.at(i).position, path[i].position);
+      DeviceState a;
+      DeviceState b;
+      ASSERT_EQ(kept.read(a), DeviceStatus::kOk);
+      const testing::AllocGuard guard;
+      const DeviceStatus status = computed.read(b);
+      ASSERT_EQ(guard.violations(), 0);
+      ASSERT_EQ(status, DeviceStatus::kOk);
+      ASSERT_EQ(a.time, b.time);
+      ASSERT_EQ(a.position, b.position);
+      ASSERT_EQ(a.velocity, b.velocity);
+    }
+    DeviceState none;
+    EXPECT_EQ(computed.read(none), DeviceStatus::kEnd);
+  };
+  compare(PressPath{.surface = {0.01, 0.0, 0.02}, .normal = {0.3, 0.2, 1.0}}, 997.0);
+  compare(StrokePath{.from = {0.0, 0.0, 0.0}, .to = {0.03, 0.01, 0.0}, .repeats = 2}, 1000.0);
+  compare(TapPath{.taps = 2}, 1234.5);
+  compare(InsertPath{.points = {{0.0, 0.0, 0.03}, {0.0, 0.0, 0.0}, {0.01, 0.0, 0.0}}}, 1000.0);
+}
 
 }  // namespace
 }  // namespace palpate::devices

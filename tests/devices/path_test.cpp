@@ -5,9 +5,11 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <random>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/virtual_device.h"
 #include "support/temp_file.h"
 
 namespace palpate::devices {
@@ -17,7 +19,7 @@ using testing::TempFolder;
 
 Path read(std::string_view text) {
   const TempFolder folder;
-  return readPath(folder.file("path.csv", text));
+  return readPath(folder.file("path.csv", text)).points;
 }
 
 /// What readPath() says of `text`.
@@ -42,6 +44,43 @@ TEST(ReadPath, ReadsRowsInOrder) {
   EXPECT_EQ(path[0].position, Vec3(1.0, 2.0, 3.0));
   EXPECT_EQ(path[1].t, 0.001);
   EXPECT_EQ(path[1].position, Vec3(-0.001, 0.5, 4.0));
+}
+
+TEST(ReadPath, TheHeaderSaysInWhichFrameItIs) {
+  const TempFolder folder;
+  const RecordedPath world = readPath(folder.file("w.csv", "t,x,y,z\n0,1,2,3\n"));
+  const RecordedPath device =
+      readPath(folder.file("d.csv", "t,device_x,device_y,device_z\r\n0,1,2,3\r\n"));
+  EXPECT_EQ(world.frame, DeviceFrame::kWorld);
+  EXPECT_EQ(device.frame, DeviceFrame::kDevice);
+  ASSERT_EQ(device.points.size(), 1U);
+  EXPECT_EQ(device.points[0].position, Vec3(1.0, 2.0, 3.0));
+}
+
+TEST(ReadPath, AsRecordedItHoldsFaults) {
+  const TempFolder folder;
+  const std::string file =
+      folder.file("f.csv", "t,x,y,z\n0.2,nan,2,3\n0.2,-inf,1e-3,3\n0.1,1,2,3\nnan,0,0,1\n");
+  const Path path = readPath(file, PathRules::kAsRecorded).points;
+  ASSERT_EQ(path.size(), 4U);
+  EXPECT_TRUE(std::isnan(path[0].position.x));
+  EXPECT_EQ(path[1].position.x, -kInfinity);
+  EXPECT_EQ(path[1].t, path[0].t);
+  EXPECT_EQ(path[2].t, 0.1);
+  EXPECT_TRUE(std::isnan(path[3].t));
+  // Text that is not a number at all is still refused.
+  for (const char* row : {"0,x,1,2", "0,1,2", "0,1,2,3,4", "0,,1,2", "", "# 1", "0, 1,2,3"}) {
+    const std::string bad = folder.file("b.csv", std::string("t,x,y,z\n") + row + "\n");
+    EXPECT_THROW((void)readPath(bad, PathRules::kAsRecorded), Error) << row;
+  }
+  VirtualDevice device(path, DeviceFrame::kWorld, PathRules::kAsRecorded);
+  device.open();
+  for (const PathPoint& point : path) {
+    DeviceState state;
+    ASSERT_EQ(device.read(state), DeviceStatus::kOk);
+    EXPECT_EQ(state.position.z, point.position.z);
+    EXPECT_EQ(state.velocity, Vec3(0.0)) << "no time rises here";
+  }
 }
 
 TEST(ReadPath, LineEndsMayBeCrlfAndTheLastMayBeMissing) {
@@ -116,6 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"SpacedHeader", "t, x, y, z\n0,1,2,3\n", "path.header", 1, 1, "t, x, y, z"},
         BadFile{"UpperHeader", "T,X,Y,Z\n0,1,2,3\n", "path.header", 1, 1, "T,X,Y,Z"},
         BadFile{"BlankHeader", "\nt,x,y,z\n", "path.header", 1, 1, ""},
+        BadFile{"MixedHeader", "t,device_x,y,z\n0,1,2,3\n", "path.header", 1, 1, "device_x,y,z"},
         BadFile{"ByteOrderMark", "\xEF\xBB\xBFt,x,y,z\n0,1,2,3\n", "path.header", 1, 1, "mark"},
         BadFile{"Comment", "t,x,y,z\n0,1,2,3\n# end\n", "path.comment", 3, 1, "# end"},
         BadFile{"SlashComment", "t,x,y,z\n// 0,1,2,3\n", "path.comment", 2, 1, "// 0,1,2,3"},

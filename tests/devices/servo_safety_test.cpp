@@ -41,6 +41,35 @@ TEST(ServoSafety, TwentyMillisecondsWithoutAReadingAndTheForceIsZero) {
   EXPECT_EQ(report.stale, 481U);
 }
 
+TEST(ServoSafety, AnObserverSeesWhatBecameOfEachForce) {
+  ScriptedDevice device;
+  script(device, 30, 200);
+  device.nan_positions = {40};
+  device.max_force = 4.0;  // of the 5 N that are asked for
+  std::vector<ServoTurn> turns;
+  turns.reserve(1000);
+  const auto observe = [&](const ServoTurn& turn) { turns.push_back(turn); };
+  const ServoReport report = runServo(device, push, {}, kNeverStop, observe);
+  ASSERT_EQ(turns.size(), report.ticks);
+  ASSERT_EQ(turns.size(), 20U + 200U) << "ticks, not turns that wrote zero without one";
+  std::uint64_t zeroed = 0;
+  std::uint64_t shortened = 0;
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const std::size_t written_at = i < 20 ? i : i + 11;
+    ASSERT_EQ(turns[i].written, device.written[written_at]) << i;
+    ASSERT_EQ(turns[i].is_stale, i > 0 && i < 20) << i;
+    ASSERT_NEAR(glm::length(turns[i].written), turns[i].is_zeroed ? 0.0 : 4.0 * turns[i].share,
+                1e-12);
+    zeroed += turns[i].is_zeroed ? 1 : 0;
+    shortened += turns[i].is_shortened ? 1 : 0;
+  }
+  EXPECT_EQ(zeroed, 1U);
+  EXPECT_EQ(zeroed, report.zeroed);
+  EXPECT_EQ(shortened, report.shortened);
+  EXPECT_EQ(turns[20].share, 0.0) << "after the watchdog from zero";
+  EXPECT_EQ(turns.back().share, 1.0);
+}
+
 TEST(ServoSafety, TheWatchdogCountsInTimeNotInTurns) {
   ScriptedDevice device;
   script(device, 500, 0);

@@ -219,13 +219,16 @@ TEST_F(Touch, RealTimeKeepsToTheClockAndReportsOverruns) {
   EXPECT_TRUE(parseOnly(result)["realtime"]["overruns"].is_number());
 }
 
-TEST_F(Touch, AnInterruptEndsTheLoopAndLeavesNothing) {
+TEST_F(Touch, AnInterruptEndsTheLoopAndKeepsWhatWasFelt) {
   const CommandResult result =
       runInterrupted({"touch", "c.yaml", "--press", "0,0,-40", "--normal", "0,0,-1", "--hold",
-                      "3600", "--realtime", "--trace", "t.csv"},
+                      "3600", "--realtime", "--trace", "t.csv", "--plot", "p.svg"},
                      folder_.path(), SIGINT);
   EXPECT_EQ(result.out, "");
-  EXPECT_EQ(filesIn(folder_.path()), std::vector<std::string>{"c.yaml"});
+  EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"c.yaml", "t.csv"}));
+  const std::string trace = textOf(folder_.path("t.csv"));
+  EXPECT_EQ(trace.find(kHeader), 0U);
+  EXPECT_EQ(trace.back(), '\n') << "whole rows";
 }
 
 TEST_F(Touch, NothingIsOverwrittenUnlessForced) {

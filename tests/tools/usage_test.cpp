@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{{"touch", "c.yaml", "--press", "0,0,0", "--rate", "-1"}, "--rate"},
         Wrong{{"touch", "c.yaml", "--insert", "0,0,0"}, "two points"},
         Wrong{{"touch", "c.yaml", "--stroke", "0,0,0", "1,0,0", "2,0,0"}, "two points"},
-        Wrong{{"touch", "c.yaml", "--press", "0,0,0", "--hold", "1e9"}, "too long"},
+        Wrong{{"touch", "c.yaml", "--press", "0,0,0", "--hold", "1e9"}, "20 million ticks"},
         Wrong{{"touch", "c.yaml", "--press", "0,0,0", "--renderer", "papyrus"}, "papyrus"},
         Wrong{{"touch", "c.yaml", "--press", "0,0,0", "--max-force", "0"},
               "--max-force must be greater than 0"},

@@ -104,9 +104,9 @@ std::vector<ContentSetting> readSettings(const std::vector<std::string>& texts) 
   return settings;
 }
 
-std::vector<ContentEvent> contentEvents(const std::vector<ContentSetting>& settings,
-                                        const Scene& scene, double end) {
-  std::vector<ContentEvent> events;
+std::vector<devices::ContentEvent> contentEvents(const std::vector<ContentSetting>& settings,
+                                                 const Scene& scene, double end) {
+  std::vector<devices::ContentEvent> events;
   std::vector<ContentChange> now(scene.regions().size());
   Contents tried(scene);
   for (const ContentSetting& setting : settings) {

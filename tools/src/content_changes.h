@@ -4,17 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "palpate/render/contents.h"
+#include "palpate/devices/session.h"
 #include "report.h"
 
 namespace palpate::tools {
-
-/// From `time` on the region's content is as the scene says but for `change`: what was set before is in it.
-struct ContentEvent {
-  double time = 0.0;  ///< [s] of the hand's path
-  RegionId region = kOutside;
-  ContentChange change = {};
-};
 
 /// One `--set`, read.
 struct ContentSetting {
@@ -28,10 +21,10 @@ struct ContentSetting {
 /// From texts MATERIAL.KEY=VALUE@TIME, by time. @throws Error (kUsage) for one that is not such a text.
 [[nodiscard]] std::vector<ContentSetting> readSettings(const std::vector<std::string>& texts);
 
-/// What they come to in a scene, by time, for a motion that lasts to `end` [s]. @throws Error (kInput) for a material
+/// What they come to in a scene, by time and each with what was set before, for a motion that lasts to `end` [s]. @throws Error (kInput) for a material
 /// that is no region's content, a value that it cannot have, or a time after the end.
-[[nodiscard]] std::vector<ContentEvent> contentEvents(const std::vector<ContentSetting>& settings,
-                                                      const Scene& scene, double end);
+[[nodiscard]] std::vector<devices::ContentEvent> contentEvents(
+    const std::vector<ContentSetting>& settings, const Scene& scene, double end);
 
 [[nodiscard]] Json settingsJson(const std::vector<ContentSetting>& settings);
 

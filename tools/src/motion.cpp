@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "output_files.h"
@@ -11,7 +12,7 @@
 namespace palpate::tools {
 namespace {
 
-// No sensible path is longer; a slip in --hold or --speed must not fill the memory.
+// No sensible path is longer; a slip in --hold or --speed must not run for hours, or fill the disk.
 constexpr double kLongestPath = 20e6;  // [ticks], 5.5 hours at 1 kHz
 
 Error usageError(std::string message, std::string hint = {}) {
@@ -61,8 +62,8 @@ int atLeastOne(int value, const char* what) {
 void checkDuration(double seconds, double rate) {
   if (seconds * rate > kLongestPath) {
     throw usageError(
-        "the motion would last " + formatSeconds(seconds) + ", too long to keep in memory",
-        "raise --speed or shorten the way");
+        "the motion would last " + formatSeconds(seconds) + ", more than 20 million ticks",
+        "raise --speed, or shorten the way or --hold");
   }
 }
 
@@ -90,13 +91,42 @@ void checkMotion(const TouchOptions& o) {
   only(o.frequency.has_value(), "--frequency", {"--tap"});
   only(o.taps.has_value(), "--taps", {"--tap"});
   only(o.back, "--back", {"--insert"});
+  only(o.as_recorded, "--as-recorded", {"--path"});
   if (motion == "--stroke" && o.stroke.size() != 2) throw usageError("--stroke takes two points");
   if (motion == "--insert" && o.insert.size() < 2)
     throw usageError("--insert takes two points or more");
 }
 
-devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {
-  if (!o.path.empty()) return devices::readPath(inputName(o.path));
+namespace {
+
+Motion recordedMotion(const TouchOptions& o) {
+  Motion motion;
+  motion.rules = o.as_recorded ? devices::PathRules::kAsRecorded : devices::PathRules::kSound;
+  motion.recorded = devices::readPath(inputName(o.path), motion.rules);
+  const devices::Path& path = motion.recorded.points;
+  const auto is_time = [](const devices::PathPoint& point) { return std::isfinite(point.t); };
+  const auto first = std::find_if(path.begin(), path.end(), is_time);
+  if (first != path.end()) {
+    motion.begin = first->t;
+    motion.end = std::find_if(path.rbegin(), path.rend(), is_time)->t;
+  }
+  motion.period = nominalPeriod(path, o.rate);
+  return motion;
+}
+
+template <typename Shape>
+Motion formulaMotion(const Shape& shape, double rate) {
+  Motion motion;
+  motion.formula = devices::formula(shape, rate);
+  motion.end = motion.formula->at(motion.formula->size() - 1).t;
+  motion.period = 1.0 / rate;
+  return motion;
+}
+
+}  // namespace
+
+Motion makeMotion(const TouchOptions& o, const LengthUnit& unit) {
+  if (!o.path.empty()) return recordedMotion(o);
   const auto point = [&](const std::string& text, const char* what) {
     return parsePoint(text, unit, what);
   };
@@ -125,7 +155,7 @@ devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {
     shape.speed = speed(shape.speed);
     shape.hold = notNegative(o.hold.value_or(shape.hold), "--hold");
     checkDuration(2.0 * (shape.depth + shape.clearance) / shape.speed + shape.hold, o.rate);
-    return devices::generate(shape, o.rate);
+    return formulaMotion(shape, o.rate);
   }
   if (!o.tap.empty()) {
     devices::TapPath shape;
@@ -133,7 +163,7 @@ devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {
     shape.frequency = positive(o.frequency.value_or(shape.frequency), "--frequency");
     shape.taps = atLeastOne(o.taps.value_or(shape.taps), "--taps");
     checkDuration(shape.taps / shape.frequency, o.rate);
-    return devices::generate(shape, o.rate);
+    return formulaMotion(shape, o.rate);
   }
   if (!o.stroke.empty()) {
     devices::StrokePath shape;
@@ -142,7 +172,7 @@ devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {
     shape.speed = speed(shape.speed);
     shape.repeats = atLeastOne(o.repeats.value_or(shape.repeats), "--repeats");
     checkDuration(2.0 * shape.repeats * glm::distance(shape.from, shape.to) / shape.speed, o.rate);
-    return devices::generate(shape, o.rate);
+    return formulaMotion(shape, o.rate);
   }
   devices::InsertPath shape;
   double way = 0.0;
@@ -156,13 +186,23 @@ devices::Path makeMotion(const TouchOptions& o, const LengthUnit& unit) {
   shape.hold = notNegative(o.hold.value_or(shape.hold), "--hold");
   shape.back = o.back;
   checkDuration(2.0 * way / shape.speed + shape.hold, o.rate);
-  return devices::generate(shape, o.rate);
+  return formulaMotion(shape, o.rate);
+}
+
+devices::VirtualDevice deviceOf(Motion motion) {
+  if (motion.formula) return devices::VirtualDevice(std::move(*motion.formula));
+  return devices::VirtualDevice(std::move(motion.recorded.points), motion.recorded.frame,
+                                motion.rules);
 }
 
 double nominalPeriod(const devices::Path& path, double rate) {
-  if (path.size() < 2) return 1.0 / rate;
-  std::vector<double> steps(path.size() - 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = path[i + 1].t - path[i].t;
+  std::vector<double> steps;
+  steps.reserve(path.size());
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const double step = path[i].t - path[i - 1].t;
+    if (step > 0.0 && std::isfinite(step)) steps.push_back(step);
+  }
+  if (steps.empty()) return 1.0 / rate;
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   return *middle;

@@ -2,6 +2,7 @@
 /// What the user asked for: one plain struct a verb. Lengths and points stay text until the unit of the
 /// input is known.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -52,11 +53,14 @@ struct TouchOptions {
   std::string alpha_form;  ///< "by_field", "printed" or "newton"
   std::string interior;    ///< "together" or "wall"
   bool realtime = false;
-  double rate = 1000.0;  ///< [Hz]
+  bool as_recorded = false;  ///< path: its faults, too
+  int states = 10000;        ///< [ticks] record: from state to state; 0: none
+  double rate = 1000.0;      ///< [Hz]
   std::string max_force;
   std::string slew;
   std::string ramp;
   std::string trace;
+  std::string record;
   std::string image;
   std::string plot;
 
@@ -70,6 +74,13 @@ struct TouchOptions {
   std::string voxel;
   ScanOptions scan;
   std::string write_scene;
+};
+
+struct ReplayOptions {
+  std::string record;
+  std::string scene;       ///< empty: that of the record
+  std::string renderer;    ///< empty: that of the record
+  std::uint64_t from = 0;  ///< [tick]
 };
 
 struct BakeOptions {
@@ -188,8 +199,9 @@ struct HelpOptions {
   bool markdown = false;
 };
 
-using VerbOptions = std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions,
-                                 ImportOptions, InfoOptions, CheckOptions, QueryOptions,
-                                 ExplainOptions, RenderOptions, BenchOptions, AccuracyOptions>;
+using VerbOptions =
+    std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions, ImportOptions, InfoOptions,
+                 CheckOptions, QueryOptions, ExplainOptions, RenderOptions, BenchOptions,
+                 AccuracyOptions, ReplayOptions>;
 
 }  // namespace palpate::tools

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -244,6 +245,29 @@ void OutputFiles::write(const std::string& path, std::string_view text) const {
     throw operationError("output.write", std::string("cannot write: ") + std::strerror(errno),
                          "look for room on the disk", path);
   }
+}
+
+void OutputFiles::place(const std::string& path) {
+  const auto at = std::find_if(files_.begin(), files_.end(),
+                               [&](const File& file) { return file.path == path; });
+  if (at == files_.end()) throw std::logic_error("output was not announced: " + path);
+  if (at->is_direct) {
+    throw Error(ErrorKind::kUsage, {"usage.output_stream", "this output must be a regular file",
+                                    "choose another name", path});
+  }
+  keepMode(at->temporary, at->target);
+  if (!rename(at->temporary, at->target, overwrite_)) {
+    throw operationError("output.rename",
+                         std::string("cannot give the file its name: ") + std::strerror(errno), "",
+                         at->target);
+  }
+  files_.erase(at);
+}
+
+void OutputFiles::keep(const std::string& path) {
+  const auto at = std::find_if(files_.begin(), files_.end(),
+                               [&](const File& file) { return file.path == path; });
+  if (at != files_.end() && !at->is_direct) place(path);
 }
 
 void OutputFiles::commit() {

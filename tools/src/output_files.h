@@ -39,6 +39,13 @@ class OutputFiles {
   /// Writes `text` to the temporary of `path`. @throws Error (kOperation).
   void write(const std::string& path, std::string_view text) const;
 
+  /// Gives the announced file `path` its name now, before it is written whole: for a record, of which what is there should
+  /// have its name whatever ends the run. @throws Error: kOperation as commit(); kUsage if it is a pipe or a device.
+  void place(const std::string& path);
+
+  /// The same for what a run that failed has to keep; nothing for a pipe or a device, or if `path` is empty.
+  void keep(const std::string& path);
+
   /// Gives all announced files their names. @throws Error (kOperation).
   void commit();
 

@@ -23,6 +23,7 @@ void catchStopSignals() {
   struct sigaction ignore = {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &ignore, nullptr);
+  sigaction(SIGXFSZ, &ignore, nullptr);  // and so is a file that may grow no further
 }
 
 const std::atomic<bool>& stopRequested() noexcept { return stop_requested; }

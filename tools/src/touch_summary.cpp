@@ -1,101 +1,98 @@
 #include "touch_summary.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "json_parts.h"
-#include "quantile.h"
 
 namespace palpate::tools {
 
-namespace {
+TouchMeter::TouchMeter(RendererKind kind) {
+  if (kind == RendererKind::kConstraint) summary_.unsettled.emplace();
+}
 
-/// Follows the proxy from region to region.
-class Visits {
- public:
-  void add(const TraceRow& row, std::span<const RegionEntry> entries) {
-    const TickResult& r = row.result;
-    if (visits_.empty()) begin(row.t, entries.empty() ? r.region : entries.front().from);
-    for (const RegionEntry& entry : entries) pass(row.t, entry);
-    // Depths count from where the probe first met a wall: pressed one, or passed a port.
-    if (!first_wall_ && (r.contact || r.event_count > 0)) first_wall_ = r.proxy;
-    // Entries that a full trace dropped.
-    if (visits_.back().region != r.region) begin(row.t, r.region, depthOf(r.proxy));
-    Visit& now = visits_.back();
-    now.seconds = row.t - now.t;
-    now.depth = std::max(now.depth, depthOf(r.proxy));
-    now.peak_force = std::max(now.ticks == 0 ? 0.0 : now.peak_force, glm::length(r.force));
-    ++now.ticks;
+void TouchMeter::add(const devices::RecordedTick& recorded, std::span<const RegionEntry> entries) {
+  const double t = recorded.tick.reading.time;
+  const Vec3& hip = recorded.tick.hip.position;
+  const TickResult& r = recorded.tick.result;
+  if (summary_.ticks == 0) {
+    begin_ = t;
+  } else if (isFinite(hip - last_hip_)) {
+    summary_.work += glm::dot(last_force_, hip - last_hip_);
   }
-  [[nodiscard]] std::vector<Visit> take() { return std::move(visits_); }
-
- private:
-  void begin(double t, RegionId region, double depth = 0.0) {
-    Visit visit;
-    visit.region = region;
-    visit.t = t;
-    visit.entry_depth = visit.depth = depth;
-    visits_.push_back(visit);
+  last_hip_ = hip;
+  last_force_ = r.force;
+  ++summary_.ticks;
+  summary_.seconds = t - begin_;
+  times_.add(recorded.tick.renderer_ns);
+  visit(t, r, entries);
+  const double force = glm::length(r.force);
+  if (force > summary_.peak_force) {
+    summary_.peak_force = force;
+    summary_.peak_force_at = r.proxy;
   }
-  void pass(double t, const RegionEntry& entry) {
-    if (!first_wall_) first_wall_ = entry.point;
-    const double depth = depthOf(entry.point);
-    Visit& left = visits_.back();
-    left.depth = std::max(left.depth, depth);
-    left.seconds = t - left.t;
-    if (left.ticks == 0) left.peak_force = entry.force + entry.cut;
-    begin(t, entry.to, depth);
-    visits_.back().port = entry.port;
-    visits_.back().rupture = entry.force;
-  }
-  [[nodiscard]] double depthOf(const Vec3& p) const {
-    return first_wall_ ? glm::distance(*first_wall_, p) : 0.0;
-  }
-
-  std::vector<Visit> visits_;
-  std::optional<Vec3> first_wall_;
-};
-
-}  // namespace
-
-TouchSummary summarize(const Trace& trace, RendererKind kind) {
-  TouchSummary summary;
-  const std::span<const TraceRow> rows = trace.rows();
-  if (kind == RendererKind::kConstraint) summary.unsettled.emplace();
-  summary.ticks = rows.size();
-  if (rows.empty()) return summary;
-  summary.seconds = rows.back().t - rows.front().t;
-
-  Visits visits;
-  std::vector<std::int64_t> times;
-  times.reserve(rows.size());
-  const TraceRow* before = nullptr;
-  for (const TraceRow& row : rows) {
-    const TickResult& r = row.result;
-    if (before != nullptr && isFinite(row.hip - before->hip)) {
-      summary.work += glm::dot(before->result.force, row.hip - before->hip);
+  if (r.contact) ++summary_.contact_ticks;
+  if (summary_.unsettled) summary_.unsettled->add(r.settled);
+  for (std::size_t i = 0; i < r.event_count; ++i) {
+    if (summary_.ports.size() < TouchSummary::kMostListed) {
+      summary_.ports.push_back({t, r.events[i]});
+    } else {
+      ++summary_.more_ports;
     }
-    before = &row;
-    times.push_back(row.tick_ns);
-    visits.add(row, trace.entriesOf(row));
-    const double force = glm::length(r.force);
-    if (force > summary.peak_force) {
-      summary.peak_force = force;
-      summary.peak_force_at = r.proxy;
-    }
-    if (r.contact) ++summary.contact_ticks;
-    if (summary.unsettled) summary.unsettled->add(r.settled);
-    for (std::size_t i = 0; i < r.event_count; ++i) summary.ports.push_back({row.t, r.events[i]});
   }
-  summary.visits = visits.take();
-  summary.met_something = summary.contact_ticks > 0 || !summary.ports.empty() ||
-                          summary.visits.size() > 1 || summary.peak_force > 0.0;
-  std::sort(times.begin(), times.end());
-  summary.tick_median = quantile(times, 0.5);
-  summary.tick_p99 = quantile(times, 0.99);
-  summary.tick_p999 = quantile(times, 0.999);
-  summary.tick_max = static_cast<double>(times.back());
-  return summary;
+}
+
+TouchSummary TouchMeter::summary() const {
+  TouchSummary out = summary_;
+  if (has_visit_ && out.more_visits == 0) out.visits.push_back(visit_);
+  out.met_something =
+      out.contact_ticks > 0 || !out.ports.empty() || out.visits.size() > 1 || out.peak_force > 0.0;
+  out.tick_median = times_.quantile(0.5);
+  out.tick_p99 = times_.quantile(0.99);
+  out.tick_p999 = times_.quantile(0.999);
+  out.tick_max = times_.longest();
+  return out;
+}
+
+void TouchMeter::visit(double t, const TickResult& r, std::span<const RegionEntry> entries) {
+  if (!has_visit_) begin(t, entries.empty() ? r.region : entries.front().from);
+  for (const RegionEntry& entry : entries) pass(t, entry);
+  // Depths count from where the probe first met a wall: pressed one, or passed a port.
+  if (!first_wall_ && (r.contact || r.event_count > 0)) first_wall_ = r.proxy;
+  // Entries that a full record dropped.
+  if (visit_.region != r.region) begin(t, r.region, depthOf(r.proxy));
+  visit_.seconds = t - visit_.t;
+  visit_.depth = std::max(visit_.depth, depthOf(r.proxy));
+  visit_.peak_force = std::max(visit_.ticks == 0 ? 0.0 : visit_.peak_force, glm::length(r.force));
+  ++visit_.ticks;
+}
+
+void TouchMeter::begin(double t, RegionId region, double depth) {
+  // One is kept free, for the one that goes on.
+  if (has_visit_ && summary_.visits.size() + 1 < TouchSummary::kMostListed) {
+    summary_.visits.push_back(visit_);
+  } else if (has_visit_) {
+    ++summary_.more_visits;
+  }
+  visit_ = {};
+  visit_.region = region;
+  visit_.t = t;
+  visit_.entry_depth = visit_.depth = depth;
+  has_visit_ = true;
+}
+
+void TouchMeter::pass(double t, const RegionEntry& entry) {
+  if (!first_wall_) first_wall_ = entry.point;
+  const double depth = depthOf(entry.point);
+  visit_.depth = std::max(visit_.depth, depth);
+  visit_.seconds = t - visit_.t;
+  if (visit_.ticks == 0) visit_.peak_force = entry.force + entry.cut;
+  begin(t, entry.to, depth);
+  visit_.port = entry.port;
+  visit_.rupture = entry.force;
+}
+
+double TouchMeter::depthOf(const Vec3& p) const {
+  return first_wall_ ? glm::distance(*first_wall_, p) : 0.0;
 }
 
 Json summaryJson(const TouchSummary& s, const Scene& scene) {
@@ -122,10 +119,12 @@ Json summaryJson(const TouchSummary& s, const Scene& scene) {
          {"depth_m", v.depth},
          {"peak_force_N", v.peak_force}});
   }
+  json["more_regions"] = s.more_visits;
   json["events"] = Json::array();
   for (const PassedPort& p : s.ports) {
     json["events"].push_back({{"t", p.t}, {"port", scene.ports()[p.port].name}});
   }
+  json["more_events"] = s.more_ports;
   json["tick_ns"] = {
       {"median", s.tick_median}, {"p99", s.tick_p99}, {"p99.9", s.tick_p999}, {"max", s.tick_max}};
   return json;
@@ -143,7 +142,8 @@ std::string summaryText(const TouchSummary& s, const Scene& scene) {
   std::string text = "Regions in order (depth of walls and tip from the first wall met)\n";
   Table table(
       {"#", "region", "entered at", "depth at entry", "wall gave way at", "deepest", "peak force"});
-  for (std::size_t i = 0; i < s.visits.size(); ++i) {
+  constexpr std::size_t kMostRows = 1000;
+  for (std::size_t i = 0; i < std::min(s.visits.size(), kMostRows); ++i) {
     const Visit& v = s.visits[i];
     table.add({std::to_string(i + 1), scene.regions()[v.region].name, formatNumber(v.t, 4) + " s",
                length(v.entry_depth),
@@ -151,17 +151,20 @@ std::string summaryText(const TouchSummary& s, const Scene& scene) {
                length(v.depth), formatNumber(v.peak_force, 3) + " N"});
   }
   text += table.text("  ");
+  if (s.visits.size() + s.more_visits > kMostRows) {
+    text += "  ... and " + std::to_string(s.visits.size() + s.more_visits - kMostRows) + " more\n";
+  }
 
   text += "\nPorts passed";
   if (s.ports.empty()) text += ": none";
   text += "\n";
-  constexpr std::size_t kMostListed = 24;
-  for (std::size_t i = 0; i < std::min(s.ports.size(), kMostListed); ++i) {
+  constexpr std::size_t kMostPorts = 24;
+  for (std::size_t i = 0; i < std::min(s.ports.size(), kMostPorts); ++i) {
     text +=
         "  " + formatNumber(s.ports[i].t, 4) + " s  " + scene.ports()[s.ports[i].port].name + "\n";
   }
-  if (s.ports.size() > kMostListed) {
-    text += "  ... and " + std::to_string(s.ports.size() - kMostListed) + " more\n";
+  if (s.ports.size() + s.more_ports > kMostPorts) {
+    text += "  ... and " + std::to_string(s.ports.size() + s.more_ports - kMostPorts) + " more\n";
   }
 
   text += "\nPeak force  " + formatNumber(s.peak_force, 4) + " N";

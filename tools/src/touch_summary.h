@@ -1,5 +1,5 @@
 #pragma once
-/// What a trace amounts to: regions in order, ports passed, forces, and how long a tick took.
+/// What a touch amounts to: regions in order, ports passed, forces, and how long a tick took.
 
 #include <cstdint>
 #include <optional>
@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "palpate/render/trace.h"
+#include "palpate/devices/recorder.h"
 #include "report.h"
 #include "text.h"
+#include "tick_times.h"
 #include "unsettled.h"
 
 namespace palpate::tools {
@@ -38,6 +39,8 @@ struct PassedPort {
 };
 
 struct TouchSummary {
+  static constexpr std::size_t kMostListed = 100000;
+
   std::uint64_t ticks = 0;
   double seconds = 0.0;  ///< [s] of hand time
   std::uint64_t contact_ticks = 0;
@@ -49,12 +52,38 @@ struct TouchSummary {
   double work = 0.0;           ///< [J] on the hand, each force held until the next tick
   double source_work =
       0.0;  ///< [J] HapticRenderer::sourceWork(), filled in by who has the renderer
+  /// The first kMostListed of each; of those that came later, how many.
   std::vector<Visit> visits;
   std::vector<PassedPort> ports;
+  std::uint64_t more_visits = 0;
+  std::uint64_t more_ports = 0;
   double tick_median = 0.0, tick_p99 = 0.0, tick_p999 = 0.0, tick_max = 0.0;  ///< [ns]
 };
 
-[[nodiscard]] TouchSummary summarize(const Trace& trace, RendererKind kind);
+/// Sums up ticks as they come, in constant memory.
+class TouchMeter final : public devices::RecordSink {
+ public:
+  explicit TouchMeter(RendererKind kind);
+  void add(const devices::RecordedTick& recorded, std::span<const RegionEntry> entries) override;
+  /// Of all ticks so far.
+  [[nodiscard]] TouchSummary summary() const;
+
+ private:
+  /// Follows the proxy from region to region.
+  void visit(double t, const TickResult& result, std::span<const RegionEntry> entries);
+  void begin(double t, RegionId region, double depth = 0.0);
+  void pass(double t, const RegionEntry& entry);
+  [[nodiscard]] double depthOf(const Vec3& p) const;
+
+  TouchSummary summary_;
+  Visit visit_;  ///< that goes on
+  bool has_visit_ = false;
+  std::optional<Vec3> first_wall_;
+  TickTimes times_;
+  double begin_ = 0.0;  ///< [s]
+  Vec3 last_hip_{0.0};
+  Vec3 last_force_{0.0};
+};
 
 [[nodiscard]] Json summaryJson(const TouchSummary& summary, const Scene& scene);
 [[nodiscard]] std::string summaryText(const TouchSummary& summary, const Scene& scene);

@@ -180,12 +180,17 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
 
   const DeviceMapping& device = scene.device();
   const Box3 reach = device.reach();
-  report.json["device"] = {{"offset", vectorJson(device.offset / unit)},
-                           {"scale", device.scale},
-                           {"clutch", device.clutch},
-                           {"reach", reach.isBounded() ? Json::array({vectorJson(reach.lo / unit),
-                                                                      vectorJson(reach.hi / unit)})
-                                                       : Json()}};
+  const Mat3& axes = device.rotation;
+  report.json["device"] = {
+      {"offset", vectorJson(device.offset / unit)},
+      {"axes", Json::array({vectorJson(axes[0]), vectorJson(axes[1]), vectorJson(axes[2])})},
+      {"scale", device.scale},
+      {"force", device.force},
+      {"stiffness_at_hand", device.stiffnessAtHand()},
+      {"clutch", device.clutch},
+      {"reach", reach.isBounded()
+                    ? Json::array({vectorJson(reach.lo / unit), vectorJson(reach.hi / unit)})
+                    : Json()}};
 
   report.text = options.scene + ": the probe starts in " + regions[scene.startRegion()].name +
                 "; renderer " + report.json["renderer"].get<std::string>() + "; lengths in " +
@@ -193,6 +198,14 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
   if (reach.isBounded()) {
     report.text += "The device reaches from " + formatVector(reach.lo / unit) + " to " +
                    formatVector(reach.hi / unit) + "\n";
+  }
+  if (axes != Mat3(1.0)) {
+    report.text += "The device's x, y and z point along " + formatDirection(axes[0]) + ", " +
+                   formatDirection(axes[1]) + " and " + formatDirection(axes[2]) + "\n";
+  }
+  if (device.stiffnessAtHand() != 1.0) {
+    report.text += "At the hand a stiffness is " + formatNumber(device.stiffnessAtHand(), 4) +
+                   " times that of the scene\n";
   }
   report.text += "\n";
 

@@ -1,5 +1,3 @@
-#include <chrono>
-#include <cmath>
 #include <filesystem>
 
 #include "content_changes.h"
@@ -8,130 +6,19 @@
 #include "map_coverage.h"
 #include "motion.h"
 #include "output_files.h"
-#include "palpate/devices/servo_loop.h"
-#include "palpate/devices/virtual_device.h"
-#include "palpate/render/trace.h"
+#include "palpate/devices/record_file.h"
+#include "palpate/devices/session.h"
 #include "picture/picture.h"
+#include "scene_hash.h"
 #include "shape_scene.h"
-#include "stop_signal.h"
 #include "text.h"
 #include "touch_plot.h"
-#include "touch_summary.h"
+#include "touch_run.h"
+#include "touch_settings.h"
 #include "verbs.h"
 #include "wall_notes.h"
 
 namespace palpate::tools {
-namespace {
-
-RendererSettings rendererSettings(const std::string& name) {
-  if (name == "paper") return {RendererKind::kPaper};
-  if (name == "constraint") return {RendererKind::kConstraint};
-  return {};
-}
-
-bool givesPaperParameters(const TouchOptions& o) {
-  return !o.epsilon.empty() || o.halvings || o.alpha || !o.alpha_form.empty() ||
-         !o.interior.empty();
-}
-
-PaperParameters paperParameters(const TouchOptions& o, const LengthUnit& unit) {
-  PaperParameters paper;
-  if (!o.epsilon.empty()) {
-    paper.epsilon = parseLength(o.epsilon, unit, "--epsilon");
-    if (!(*paper.epsilon > 0.0)) {
-      throw Error(ErrorKind::kUsage, {"usage.touch", "--epsilon must be greater than 0"});
-    }
-  }
-  paper.max_halvings = o.halvings;
-  paper.alpha = o.alpha;
-  if (o.alpha_form == "by_field") paper.alpha_form = AlphaForm::kByMetric;
-  if (o.alpha_form == "printed") paper.alpha_form = AlphaForm::kLength;
-  if (o.alpha_form == "newton") paper.alpha_form = AlphaForm::kNewton;
-  if (o.interior == "together") paper.interior = PaperInterior::kTogether;
-  if (o.interior == "wall") paper.interior = PaperInterior::kWall;
-  return paper;
-}
-
-double positive(double value, const char* what) {
-  if (value > 0.0) return value;
-  throw Error(ErrorKind::kUsage, {"usage.touch", std::string(what) + " must be greater than 0",
-                                  "leave it out for no limit"});
-}
-
-ForceLimits forceLimits(const TouchOptions& o) {
-  ForceLimits limits;
-  if (!o.max_force.empty()) {
-    limits.max_force = positive(parseForce(o.max_force, "--max-force"), "--max-force");
-  }
-  if (!o.slew.empty()) limits.max_growth = positive(parseForceRate(o.slew, "--slew"), "--slew");
-  if (!o.ramp.empty()) limits.ramp = positive(parseTime(o.ramp, "--ramp"), "--ramp");
-  return limits;
-}
-
-Json limitsJson(const ForceLimits& limits) {
-  const auto or_null = [](double value, bool given) { return given ? Json(value) : Json(); };
-  return {{"max_force_N", or_null(limits.max_force, std::isfinite(limits.max_force))},
-          {"slew_N_per_s", or_null(limits.max_growth, std::isfinite(limits.max_growth))},
-          {"ramp_s", or_null(limits.ramp, limits.ramp > 0.0)}};
-}
-
-std::string limitsText(const ForceLimits& limits) {
-  std::string text;
-  const auto add = [&](bool given, const std::string& part) {
-    if (given) text += (text.empty() ? "" : ", ") + part;
-  };
-  add(std::isfinite(limits.max_force), "at most " + formatNumber(limits.max_force) + " N");
-  add(std::isfinite(limits.max_growth),
-      "growing by at most " + formatNumber(limits.max_growth) + " N/s");
-  add(limits.ramp > 0.0, "from 0 in " + formatSeconds(limits.ramp));
-  return text.empty() ? text : "Force       " + text + "\n";
-}
-
-/// Runs the loop over the whole path and keeps every tick.
-Trace follow(HapticRenderer& renderer, devices::Path path, const devices::ServoSettings& settings,
-             const std::vector<ContentEvent>& changes, devices::ServoReport& report) {
-  Trace trace(path.size());
-  std::size_t next_change = 0;
-  double last_time = path.front().t - 1.0 / settings.rate;
-  devices::VirtualDevice device(std::move(path));
-  const auto tick = [&](const devices::DeviceState& state) {
-    TraceRow row;
-    row.t = state.time;
-    row.hip = state.position;
-    const double dt = state.time - last_time;
-    last_time = state.time;
-    for (; next_change < changes.size() && changes[next_change].time <= state.time; ++next_change) {
-      // Each was tried on the scene before.
-      (void)renderer.setContent(changes[next_change].region, changes[next_change].change);
-    }
-    const auto before = std::chrono::steady_clock::now();
-    row.result = renderer.update({state.position, state.velocity, dt});
-    const auto after = std::chrono::steady_clock::now();
-    row.tick_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count();
-    trace.add(row, renderer.entries());
-    return row.result.force;
-  };
-  report = devices::runServo(device, tick, settings, stopRequested());
-  return trace;
-}
-
-void checkExit(devices::ServoExit exit) {
-  switch (exit) {
-    case devices::ServoExit::kEnd:
-      return;
-    case devices::ServoExit::kStopped:
-      throw Error(ErrorKind::kCancelled, {"cancelled", "stopped at your request"});
-    case devices::ServoExit::kTimeout:
-      throw Error(ErrorKind::kDevice, {"device.timeout", "the device does not answer any more"});
-    case devices::ServoExit::kDisconnected:
-      throw Error(ErrorKind::kDevice, {"device.disconnected", "the device was disconnected"});
-    case devices::ServoExit::kFault:
-      throw Error(ErrorKind::kDevice, {"device.fault", "the device reported a fault"});
-  }
-}
-
-}  // namespace
-
 namespace {
 
 bool hasMotion(const TouchOptions& o) {
@@ -152,6 +39,25 @@ void pressOnSurface(const Scene& scene, TouchOptions& options, Console& console)
                "; --press X,Y,Z presses elsewhere");
 }
 
+/// What a record says that it was made with.
+void describe(RecordAbout& about, const TouchOptions& options, const devices::DeviceInfo& device,
+              const Scene& scene, const std::string& scene_text) {
+  about.version = PALPATE_VERSION;
+  about.build = devices::stateBuild();
+  about.scene = std::filesystem::absolute(options.scene).string();
+  about.scene_text = scene_text;
+  about.scene_hash = sceneHash(options.scene, scene_text);
+  about.device = device.name;
+  about.frame = device.frame;
+  about.max_force = device.max_force;
+  about.rate = options.rate;
+  about.realtime = options.realtime;
+  about.states_every = static_cast<std::uint64_t>(options.states);
+  about.options = options;
+  for (const Region& region : scene.regions()) about.regions.push_back(region.name);
+  for (const Port& port : scene.ports()) about.ports.push_back(port.name);
+}
+
 }  // namespace
 
 Report run(const TouchOptions& asked, const GeneralOptions& general, Console& console) {
@@ -166,13 +72,11 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   }
   if (finds_place) options.press = "0,0,0";  // for now: its parameters apply
   checkMotion(options);
-  ForceLimits limits = forceLimits(options);
+  (void)forceLimits(options);  // errors in them come before any work
   const std::vector<ContentSetting> content_settings = readSettings(options.set);
   OutputFiles files(general);
   const std::vector<std::string> inputs = {options.scene, options.path};
-  if (!options.trace.empty()) {
-    files.announce(options.trace, inputs, OutputFiles::Streams::kYes);
-  }
+  announceRecords(files, options, inputs);
   if (!options.image.empty()) {
     if (!hasExtension(options.image, ".png")) {
       throw Error(ErrorKind::kUsage,
@@ -198,9 +102,9 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   }
 
   LoadedScene loaded(options.scene, console, 0, scene_text);
-  RendererSettings settings = rendererSettings(options.renderer);
-  const bool is_paper =
-      settings.kind.value_or(loaded.description().renderer) == RendererKind::kPaper;
+  RendererSettings settings = rendererSettings(options, loaded.unit());
+  settings.kind = settings.kind.value_or(loaded.description().renderer);
+  const bool is_paper = settings.kind == RendererKind::kPaper;
   if (!is_paper && givesPaperParameters(options)) {
     throw Error(ErrorKind::kUsage,
                 {"usage.touch",
@@ -208,13 +112,13 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
                  "the paper's renderer",
                  "add --renderer paper"});
   }
-  settings.paper = paperParameters(options, loaded.unit());
   // A picture shows all layers, and so does the paper's table.
   const bool wants_all = is_paper || !options.image.empty();
   const ScenePtr scene = loaded.compile(wants_all ? Purpose::kShow : Purpose::kTouch);
   if (finds_place) pressOnSurface(*scene, options, console);
-  devices::Path path = makeMotion(options, loaded.unit());
-  limits.period = nominalPeriod(path, options.rate);
+  Motion motion = makeMotion(options, loaded.unit());
+  ForceLimits& limits = settings.limits;
+  limits.period = motion.period;
   for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
     console.warn(gapText(gap, scene->lengthUnit(), scene->metresPerUnit()));
   }
@@ -223,30 +127,34 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
       if (note.is_warning) console.warn(note.text);
     }
   }
-  settings.limits = limits;
-  const auto renderer = makeRenderer(scene, settings);
-  const std::vector<ContentEvent> changes = contentEvents(content_settings, *scene, path.back().t);
-
-  devices::ServoSettings servo;
-  servo.realtime = options.realtime;
-  servo.rate = options.rate;
-  servo.elevate = options.realtime;
+  devices::SessionSettings how{.renderer = settings};
+  how.changes = contentEvents(content_settings, *scene, motion.end);
+  how.servo.realtime = options.realtime;
+  how.servo.rate = options.rate;
+  how.servo.elevate = options.realtime;
+  if (!options.record.empty()) how.checkpoint_every = static_cast<std::uint64_t>(options.states);
+  devices::Session session(scene, std::move(how));
   if (options.realtime) {
-    console.note("following the hand's path for " + formatSeconds(path.back().t - path.front().t) +
+    console.note("following the hand's path for " + formatSeconds(motion.end - motion.begin) +
                  " in real time");
   }
-  devices::ServoReport servo_report;
-  const Trace trace = follow(*renderer, std::move(path), servo, changes, servo_report);
-  checkExit(servo_report.exit);
-  const RendererKind kind = settings.kind.value_or(scene->renderer());
-  TouchSummary summary = summarize(trace, kind);
-  summary.source_work = renderer->sourceWork();
+  devices::VirtualDevice device = deviceOf(std::move(motion));
+  RecordAbout about;
+  about.shows_all = wants_all;
+  about.renderer = rendererName(*settings.kind);
+  if (!options.record.empty()) {
+    describe(about, options, device.info(), *scene, scene_text);
+    about.period = limits.period;
+  }
+  const TouchRun run = runTouch(session, device, options, about, files, console,
+                                !options.image.empty() || !options.plot.empty());
+  const TouchSummary& summary = run.summary;
+  const devices::ServoReport& servo_report = run.servo;
 
-  if (!options.trace.empty()) files.write(options.trace, traceCsv(trace.rows(), *scene));
   if (!options.image.empty()) {
     PictureOptions picture;
     picture.title = std::filesystem::path(options.scene).filename().string();
-    picture.track = trackOf(trace.rows());
+    picture.track = trackOf(run.thin->rows());
     picture.image = pictureImage(loaded, "");
     picture.colors = loaded.colors();
     picture.anatomical = !loaded.images().empty();
@@ -254,15 +162,14 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   }
   if (!options.plot.empty()) {
     const std::string title = std::filesystem::path(options.scene).filename().string();
-    files.write(options.plot, forcePlot(trace, *scene, title));
+    files.write(options.plot, forcePlot(*run.thin, *scene, title));
   }
   checkStop();
   files.commit();
 
   Report report;
-  report.json = {{"schema", "palpate.touch/1"},
-                 {"scene", options.scene},
-                 {"renderer", kind == RendererKind::kPaper ? "paper" : "constraint"}};
+  report.json = {
+      {"schema", "palpate.touch/1"}, {"scene", options.scene}, {"renderer", about.renderer}};
   report.json.update(summaryJson(summary, *scene));
   if (options.realtime) {
     report.json["realtime"] = {{"overruns", servo_report.overruns},
@@ -277,6 +184,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   report.json["limits"] = limitsJson(limits);
   report.json["grids"] = loaded.gridsJson();
   report.json["trace"] = options.trace.empty() ? Json() : Json(options.trace);
+  report.json["record"] = options.record.empty() ? Json() : Json(options.record);
   report.json["image"] = options.image.empty() ? Json() : Json(options.image);
   report.json["written_scene"] = options.write_scene.empty() ? Json() : Json(options.write_scene);
   report.json["plot"] = options.plot.empty() ? Json() : Json(options.plot);
@@ -297,6 +205,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   if (!grids.empty()) report.text += "\nGrids\n" + grids;
   std::string written;
   if (!options.trace.empty()) written += "Trace    " + options.trace + "\n";
+  if (!options.record.empty()) written += "Record   " + options.record + "\n";
   if (!options.image.empty()) written += "Picture  " + options.image + "\n";
   if (!options.plot.empty()) written += "Plot     " + options.plot + "\n";
   if (!options.write_scene.empty()) written += "Scene    " + options.write_scene + "\n";

@@ -7,7 +7,7 @@
 
 namespace palpate::tools {
 
-[[nodiscard]] Report run(const TouchOptions& options, const GeneralOptions& general,
+[[nodiscard]] Report run(const TouchOptions& asked, const GeneralOptions& general,
                          Console& console);
 [[nodiscard]] Report run(const BakeOptions& options, const GeneralOptions& general,
                          Console& console);
@@ -28,6 +28,8 @@ namespace palpate::tools {
 [[nodiscard]] Report run(const BenchOptions& options, const GeneralOptions& general,
                          Console& console);
 [[nodiscard]] Report run(const AccuracyOptions& options, const GeneralOptions& general,
+                         Console& console);
+[[nodiscard]] Report run(const ReplayOptions& options, const GeneralOptions& general,
                          Console& console);
 
 }  // namespace palpate::tools

@@ -61,9 +61,10 @@ std::vector<std::string> spreadPoints(const Verb& verb, const std::vector<std::s
 }  // namespace
 
 const std::vector<Verb>& verbs() {
-  static const std::vector<Verb> all = {touchVerb(),  importVerb(), bakeVerb(),     convertVerb(),
-                                        infoVerb(),   checkVerb(),  queryVerb(),    explainVerb(),
-                                        renderVerb(), benchVerb(),  accuracyVerb(), helpVerb()};
+  static const std::vector<Verb> all = {touchVerb(),   replayVerb(), importVerb(), bakeVerb(),
+                                        convertVerb(), infoVerb(),   checkVerb(),  queryVerb(),
+                                        explainVerb(), renderVerb(), benchVerb(),  accuracyVerb(),
+                                        helpVerb()};
   return all;
 }
 

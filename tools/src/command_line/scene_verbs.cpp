@@ -10,7 +10,11 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   app.add_option("scene", o.scene);
   const char* g = "The hand's motion, exactly one of";
   add(app, g, "--path", "FILE.csv", o.path,
-      "follow a recorded hand: header t,x,y,z in s and m, one row a tick");
+      "follow a recorded hand: header t,x,y,z in s and m, one row a tick; "
+      "t,device_x,device_y,device_z: through the scene's device");
+  addFlag(app, g, "--as-recorded", o.as_recorded,
+          "path: also rows that are not numbers (nan, inf), and times that do not rise, as a fault "
+          "left them");
   add(app, g, "--press", "X,Y,Z", o.press, "press on this point of a surface, hold, and let go");
   addList(app, g, "--stroke", "A B", o.stroke, "stroke in a straight line from A to B and back");
   add(app, g, "--tap", "X,Y,Z", o.tap, "tap on this point of a surface");
@@ -65,6 +69,12 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       "0.2 (s), 200ms");
   g = "Output files";
   add(app, g, "--trace", "FILE.csv", o.trace, "write one row a tick (SI units)");
+  add(app, g, "--record", "FILE.npy", o.record,
+      "write all that goes into each tick and comes out, for replay and NumPy; beside it "
+      "FILE.npy.json and FILE.npy.states");
+  add(app, g, "--states", "N", o.states,
+      "record: keep a state every N ticks, from which a replay can begin; 0: none (default 10000)")
+      ->check(CLI::Range(0, 1000000000));
   add(app, g, "--image", "FILE.png", o.image,
       "draw the scene cut open, with the path and the forces");
   add(app, g, "--plot", "FILE.svg", o.plot, "draw the force over the depth of the hand");
@@ -88,6 +98,18 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   add(app, g, "--units", "UNIT", o.units,
       "mesh, or grid that does not say: what one unit is (default: mm; glTF and GLB are metres)");
   addScan(app, "What an image or a mesh leaves open", o.scan, true);
+}
+
+void defineReplay(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<ReplayOptions>(invocation);
+  app.add_option("record", o.record);
+  const char* g = "Options";
+  add(app, g, "--scene", "SCENE", o.scene, "feel this scene instead of the record's");
+  add(app, g, "--renderer", "NAME", o.renderer,
+      "constraint or paper (default: the one of the record)")
+      ->check(CLI::IsMember({"constraint", "paper"}));
+  add(app, g, "--from", "TICK", o.from,
+      "compare from this tick on, and begin at the last state saved before it (default 0)");
 }
 
 void defineQuery(CLI::App& app, Invocation& invocation) {
@@ -149,6 +171,27 @@ Verb touchVerb() {
         need(!chosen<TouchOptions>(i).scene.empty(), "SCENE, MESH, IMAGE or GRID");
       },
       true};
+}
+
+Verb replayVerb() {
+  return {
+      "replay",
+      "Feel a record anew, and say whether the same comes out",
+      "palpate replay press.npy --from 5000",
+      "palpate replay FILE.npy [OPTIONS]",
+      "Feeds the readings of a record (palpate touch ... --record FILE.npy) to the same scene, "
+      "or to "
+      "another,\n"
+      "and compares what comes out of each tick with the record, bit for bit: velocity, proxy, "
+      "forces,\n"
+      "region, ports. It reports the first tick that is different and the largest differences of "
+      "force and\n"
+      "proxy. States are for the build that saved them; any build can replay from the first "
+      "tick.\n"
+      "Exit code 0 if all is the same, 1 if not; 3 if the record cannot be read.",
+      {},
+      defineReplay,
+      [](const Invocation& i) { need(!chosen<ReplayOptions>(i).record.empty(), "FILE.npy"); }};
 }
 
 Verb queryVerb() {

@@ -39,6 +39,7 @@ struct Verb {
 [[nodiscard]] Verb queryVerb();
 [[nodiscard]] Verb explainVerb();
 [[nodiscard]] Verb renderVerb();
+[[nodiscard]] Verb replayVerb();
 // file_verbs.cpp
 [[nodiscard]] Verb bakeVerb();
 [[nodiscard]] Verb convertVerb();

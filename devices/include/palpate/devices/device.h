@@ -11,8 +11,9 @@ namespace palpate::devices {
 /// One reading.
 struct DeviceState {
   double time = 0.0;             ///< [s] since the device was opened
-  Vec3 position{0.0, 0.0, 0.0};  ///< [m, world]
-  Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s, world]
+  Vec3 position{0.0, 0.0, 0.0};  ///< [m] in the frame that DeviceInfo says
+  Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s] the same
+  std::uint32_t buttons = 0;     ///< a bit each, 1: pressed
 };
 
 enum class DeviceStatus : std::uint8_t {
@@ -24,10 +25,17 @@ enum class DeviceStatus : std::uint8_t {
   kFault,         ///< the device reported an error and has cut its motors
 };
 
+/// What the coordinates of a device mean.
+enum class DeviceFrame : std::uint8_t {
+  kDevice,  ///< its own: a scene's DeviceMapping leads to the world
+  kWorld,   ///< the scene's, as most recorded paths are
+};
+
 struct DeviceInfo {
   std::string name;
   double max_force = 0.0;  ///< [N] continuous; the servo loop never writes a longer force
-  Box3 workspace;          ///< [m, device]
+  Box3 workspace;          ///< [m] in the frame
+  DeviceFrame frame = DeviceFrame::kDevice;  ///< of positions, velocities, forces and the workspace
 };
 
 /// open() and close() are called while no loop runs; read() and write() from the servo thread only.
@@ -44,7 +52,8 @@ class Device {
 
   // Real time: no allocation, no lock, no exception, bounded wait.
   [[nodiscard]] virtual DeviceStatus read(DeviceState& out) noexcept = 0;
-  [[nodiscard]] virtual DeviceStatus write(const Vec3& force) noexcept = 0;  ///< [N, world]
+  [[nodiscard]] virtual DeviceStatus write(
+      const Vec3& force) noexcept = 0;  ///< [N] in the same frame
 
  protected:
   Device() = default;

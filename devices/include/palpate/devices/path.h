@@ -1,25 +1,63 @@
 #pragma once
 /// Hand paths: where the HIP is, tick by tick.
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "palpate/core/math.h"
+#include "palpate/devices/device.h"
 
 namespace palpate::devices {
 
 struct PathPoint {
   double t = 0.0;                ///< [s]
-  Vec3 position{0.0, 0.0, 0.0};  ///< [m, world]
+  Vec3 position{0.0, 0.0, 0.0};  ///< [m, world], or of a recording in the frame that it says
 };
 using Path = std::vector<PathPoint>;
 
-/// CSV with the header `t,x,y,z` (s, m), one row a tick; t must rise. Lines end in LF or CRLF, the
+/// A path whose rows are computed when they are asked for: of one size, however long it is.
+class PathFormula {
+ public:
+  /// Row i < `last` is at position(i / rate), row `last` at `end`; `position` must not allocate, lock or throw.
+  PathFormula(std::size_t last, double rate, const Vec3& end, std::function<Vec3(double)> position)
+      : last_(last), rate_(rate), end_(end), position_(std::move(position)) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return last_ + 1; }
+  [[nodiscard]] PathPoint at(std::size_t row) const {
+    const double t = static_cast<double>(row) / rate_;
+    return {t, row < last_ ? position_(t) : end_};
+  }
+
+ private:
+  std::size_t last_;
+  double rate_;  ///< [Hz]
+  Vec3 end_;     ///< [m]
+  std::function<Vec3(double)> position_;
+};
+
+struct RecordedPath {
+  Path points;
+  DeviceFrame frame = DeviceFrame::kWorld;
+};
+
+/// What a path may hold.
+enum class PathRules : std::uint8_t {
+  kSound,       ///< finite positions, at times that rise
+  kAsRecorded,  ///< whatever a device may have said: positions and times that are not numbers, times that do not rise
+};
+
+/// CSV with the header `t,x,y,z` (s, m), or `t,device_x,device_y,device_z` for what a device itself said (DeviceFrame::kDevice), one
+/// row a tick; t must rise. Lines end in LF or CRLF, the
 /// last may have no end. Nothing else is let in: no comment, blank line, space, quote, NaN or
 /// infinity. The file is read in pieces: memory is what the path itself takes.
+/// By PathRules::kAsRecorded `nan`, `inf` and `-inf` are let in, and any time.
 /// @throws Error (kInput) with file:line:column and the offending line for anything else; codes
 /// path.unreadable, .empty, .header, .comment, .blank, .columns, .number, .not_finite, .time.
-[[nodiscard]] Path readPath(const std::string& file);
+[[nodiscard]] RecordedPath readPath(const std::string& file, PathRules rules = PathRules::kSound);
 
 // Generators. Row i is at t = i / rate, exactly; the first row is the start and the last row the end
 // point, exactly, at the first sample not before the end of the motion. In between, positions are the
@@ -38,7 +76,8 @@ struct PressPath {
   double speed = 0.05;          ///< [m/s] above 0
   double hold = 0.2;            ///< [s] 0 or more
 };
-[[nodiscard]] Path generate(const PressPath& shape, double rate);  ///< rate [Hz]
+[[nodiscard]] PathFormula formula(const PressPath& shape, double rate);  ///< rate [Hz]
+[[nodiscard]] Path generate(const PressPath& shape, double rate);        ///< all of its rows
 
 /// Straight stroke between two points at constant speed, there and back `repeats` times: at the
 /// distance |((speed t + L) mod 2 L) - L| from `from`, L = |to - from|. Begins and ends at `from`.
@@ -48,7 +87,8 @@ struct StrokePath {
   double speed = 0.1;        ///< [m/s] above 0
   int repeats = 1;           ///< 1 or more
 };
-[[nodiscard]] Path generate(const StrokePath& shape, double rate);
+[[nodiscard]] PathFormula formula(const StrokePath& shape, double rate);
+[[nodiscard]] Path generate(const StrokePath& shape, double rate);  ///< all of its rows
 
 /// Sinusoidal taps along `normal`: from `clearance` above to `depth` below, `taps` times: height
 /// (clearance - depth) / 2 + (clearance + depth) / 2 cos(2 pi frequency t).
@@ -60,7 +100,8 @@ struct TapPath {
   double frequency = 4.0;       ///< [Hz] above 0
   int taps = 4;                 ///< 1 or more
 };
-[[nodiscard]] Path generate(const TapPath& shape, double rate);
+[[nodiscard]] PathFormula formula(const TapPath& shape, double rate);
+[[nodiscard]] Path generate(const TapPath& shape, double rate);  ///< all of its rows
 
 /// Straight through way points at constant speed, there and (if asked) back: at the arc length
 /// speed t of the polyline. Ends at the last point, or at the first if `back`. With hold >= 1 / rate a
@@ -71,6 +112,7 @@ struct InsertPath {
   double hold = 0.1;         ///< [s] at the far end, 0 or more
   bool back = true;
 };
-[[nodiscard]] Path generate(const InsertPath& shape, double rate);
+[[nodiscard]] PathFormula formula(const InsertPath& shape, double rate);
+[[nodiscard]] Path generate(const InsertPath& shape, double rate);  ///< all of its rows
 
 }  // namespace palpate::devices

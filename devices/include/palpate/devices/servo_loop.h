@@ -12,6 +12,19 @@ namespace palpate::devices {
 /// The force [N] for a reading. Must not allocate, lock, throw or block.
 using ServoTick = std::function<Vec3(const DeviceState&)>;
 
+/// What became of the force of one tick.
+struct ServoTurn {
+  Vec3 written{0.0, 0.0, 0.0};  ///< [N] to the device
+  double share = 1.0;         ///< [-] of the force that was let through: below 1 after the watchdog
+  bool is_stale = false;      ///< the tick got the previous reading again
+  bool is_zeroed = false;     ///< not finite: written as zero
+  bool is_shortened = false;  ///< to the device's maximum
+  bool is_late = false;       ///< ended after the next tick was due (realtime only)
+};
+
+/// Called for each tick once its force was written. Must not allocate, lock, throw or block; without `realtime` it may block.
+using ServoObserver = std::function<void(const ServoTurn&)>;
+
 struct ServoSettings {
   bool realtime = false;  ///< false: as fast as possible, one reading after the other
   double rate = 1000.0;   ///< [Hz] 1 to 1e5; without `realtime` only the watchdog asks for it
@@ -60,6 +73,7 @@ struct ServoReport {
 /// @throws Error (kDevice) from opening; Error (kUsage) for an empty `tick`, a bad rate (realtime),
 /// watchdog or recovery.
 [[nodiscard]] ServoReport runServo(Device& device, const ServoTick& tick,
-                                   const ServoSettings& settings, const std::atomic<bool>& stop);
+                                   const ServoSettings& settings, const std::atomic<bool>& stop,
+                                   const ServoObserver& observer = {});
 
 }  // namespace palpate::devices

@@ -1,0 +1,91 @@
+#include "palpate/devices/replay.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "row_format.h"
+
+namespace palpate::devices {
+namespace {
+
+/// The same bits, or both are not numbers.
+bool isSame(double a, double b) noexcept {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) ||
+         (std::isnan(a) && std::isnan(b));
+}
+bool isSame(const TickRecord::Vector& a, const TickRecord::Vector& b) noexcept {
+  return isSame(a[0], b[0]) && isSame(a[1], b[1]) && isSame(a[2], b[2]);
+}
+template <typename Other>
+bool isSame(const Other& a, const Other& b) noexcept {
+  return a == b;
+}
+
+/// All of what decides and what comes out of a tick; not what a clock or the loop's writing adds.
+std::string differences(const TickRecord& a, const TickRecord& b) {
+  std::string names;
+  const auto look = [&](const auto& left, const auto& right, const char* name) {
+    if (isSame(left, right)) return;
+    names += (names.empty() ? "" : ", ") + std::string(name);
+  };
+  look(a.dt, b.dt, "dt");
+  look(a.hip, b.hip, "hip");
+  look(a.hip_velocity, b.hip_velocity, "hip_velocity");
+  look(a.proxy, b.proxy, "proxy");
+  look(a.unlimited_force, b.unlimited_force, "unlimited_force");
+  look(a.force, b.force, "force");
+  look(a.device_force, b.device_force, "device_force");
+  look(a.region, b.region, "region");
+  look(a.event_count, b.event_count, "event_count");
+  look(a.events, b.events, "events");
+  look(a.contact, b.contact, "contact");
+  look(a.settled, b.settled, "settled");
+  look(a.clutch, b.clutch, "clutch");
+  return names;
+}
+
+/// Infinite if they differ and one of them is not a number.
+double apart(const TickRecord::Vector& a, const TickRecord::Vector& b) {
+  if (isSame(a, b)) return 0.0;
+  const double length = glm::length(vectorOf(a) - vectorOf(b));
+  return std::isfinite(length) ? length : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+ReplayReport replay(RecordReader& record, Session& session, DeviceFrame frame, std::uint64_t from,
+                    const std::function<bool()>& stops) {
+  constexpr std::uint64_t kAskEvery = 1024;
+  ReplayReport report;
+  TickRecord then;
+  while (record.next(then)) {
+    if (stops && report.ticks % kAskEvery == 0 && stops()) break;
+    const std::uint64_t expected = session.ticks();
+    if (then.tick != expected) {
+      report.gap = expected;
+      break;
+    }
+    const TickRecord now = rowOf({.tick = session.step(readingOf(then), frame), .turn = {}});
+    ++report.ticks;
+    if (then.tick < from) continue;
+    ++report.compared;
+    const std::string what = differences(then, now);
+    if (what.empty()) continue;
+    ++report.different;
+    if (!report.first) report.first = ReplayReport::First{then.tick, then.t, what};
+    if (const double force = apart(then.force, now.force); force > report.most_force) {
+      report.most_force = force;
+      report.most_force_tick = then.tick;
+    }
+    if (const double proxy = apart(then.proxy, now.proxy); proxy > report.most_proxy) {
+      report.most_proxy = proxy;
+      report.most_proxy_tick = then.tick;
+    }
+    if (then.region != now.region) ++report.regions;
+    if (then.contact != now.contact) ++report.contacts;
+  }
+  return report;
+}
+
+}  // namespace palpate::devices

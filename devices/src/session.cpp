@@ -1,0 +1,146 @@
+#include "palpate/devices/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "palpate/core/error.h"
+#include "palpate/devices/recorder.h"
+
+namespace palpate::devices {
+namespace {
+
+void check(const Scene& scene, const SessionSettings& settings) {
+  if (settings.clutch_button < 0 || settings.clutch_button > 31) {
+    throw Error(ErrorKind::kUsage, {"session.button", "a clutch button is 0 to 31, not " +
+                                                          std::to_string(settings.clutch_button)});
+  }
+  double last = -kInfinity;
+  for (const ContentEvent& event : settings.changes) {
+    if (!(event.time >= last)) {
+      throw Error(
+          ErrorKind::kUsage,
+          {"session.changes", "changes of contents must go by time: " + std::to_string(event.time) +
+                                  " s comes after " + std::to_string(last) + " s"});
+    }
+    last = event.time;
+  }
+  Contents contents(scene);
+  for (const ContentEvent& event : settings.changes) {
+    if (contents.change(event.region, event.change)) continue;
+    throw Error(ErrorKind::kUsage,
+                {"session.changes", "region " + std::to_string(event.region) +
+                                        " cannot have the content that is asked for at " +
+                                        std::to_string(event.time) + " s"});
+  }
+}
+
+}  // namespace
+
+Session::Session(ScenePtr scene, SessionSettings settings)
+    : scene_(std::move(scene)),
+      settings_(std::move(settings)),
+      renderer_(makeRenderer(scene_, settings_.renderer)),
+      tracker_(settings_.velocity) {
+  check(*scene_, settings_);
+}
+
+SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcept {
+  SessionTick tick;
+  tick.number = ticks_;
+  tick.reading = reading;
+  tick.is_checkpoint =
+      settings_.checkpoint_every > 0 && ticks_ > 0 && ticks_ % settings_.checkpoint_every == 0;
+  if (tick.is_checkpoint) saveCheckpoint();
+  ++ticks_;
+  if (std::isfinite(reading.time)) {
+    tick.dt = has_begun_ ? std::max(0.0, reading.time - last_time_) : 1.0 / settings_.servo.rate;
+    last_time_ = reading.time;
+    has_begun_ = true;
+  }
+
+  const DeviceMapping& mapping = scene_->device();
+  const bool is_mapped = frame == DeviceFrame::kDevice;
+  // Of the device's positions: a clutch that is let go must not look like a leap of the hand.
+  const Vec3 velocity = tracker_.add(reading.time, reading.position).value;
+  const Vec3 position = is_mapped ? mapping.toWorld(reading.position) : reading.position;
+  tick.is_held = mapping.clutch &&
+                 (reading.buttons >> static_cast<unsigned>(settings_.clutch_button) & 1U) != 0;
+  const bool is_sound = isFinite(position) && isFinite(velocity);
+  // A broken reading neither engages the clutch nor lets it go.
+  const Clutched now =
+      is_sound ? clutch_.step(position, is_mapped ? mapping.velocityToWorld(velocity) : velocity,
+                              tick.is_held, tick.dt)
+               : Clutched{position, velocity, 0.0};
+
+  changeUntil(reading.time);
+  tick.hip = {now.position, now.velocity, tick.dt};
+  const auto before = std::chrono::steady_clock::now();
+  tick.result = renderer_->update(tick.hip);
+  const auto after = std::chrono::steady_clock::now();
+  tick.unlimited = renderer_->unlimitedForce();
+  tick.renderer_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count();
+  const Vec3 felt = now.share * tick.result.force;
+  tick.force = is_mapped ? mapping.forceToDevice(felt) : felt;
+  return tick;
+}
+
+void Session::changeUntil(double time) noexcept {
+  for (; next_change_ < settings_.changes.size() && settings_.changes[next_change_].time <= time;
+       ++next_change_) {
+    const ContentEvent& event = settings_.changes[next_change_];
+    (void)renderer_->setContent(event.region, event.change);  // each was tried before
+  }
+}
+
+void Session::saveCheckpoint() noexcept {
+  checkpoint_.renderer = renderer_->checkpoint();
+  checkpoint_.tracker = tracker_;
+  checkpoint_.clutch = clutch_;
+  checkpoint_.ticks = ticks_;
+  checkpoint_.next_change = next_change_;
+  checkpoint_.last_time = last_time_;
+  checkpoint_.has_begun = has_begun_;
+}
+
+bool Session::resume(const SessionState& state) noexcept {
+  if (ticks_ > 0 || state.next_change > settings_.changes.size()) return false;
+  if (!renderer_->setState(state.renderer)) return false;
+  for (; next_change_ < state.next_change; ++next_change_) {
+    const ContentEvent& event = settings_.changes[next_change_];
+    (void)renderer_->setContent(event.region, event.change);
+  }
+  tracker_ = state.tracker;
+  clutch_ = state.clutch;
+  ticks_ = state.ticks;
+  last_time_ = state.last_time;
+  has_begun_ = state.has_begun;
+  // The tick that the state was taken before begins with taking it again, as it did there.
+  return true;
+}
+
+ServoReport Session::run(Device& device, const std::atomic<bool>& stop, const Listener& listener) {
+  const DeviceFrame frame = device.info().frame;
+  const auto tick = [&](const DeviceState& reading) {
+    const SessionTick now = step(reading, frame);
+    if (listener) listener(now, *renderer_);
+    return now.force;
+  };
+  return runServo(device, tick, settings_.servo, stop);
+}
+
+ServoReport Session::run(Device& device, const std::atomic<bool>& stop, Recorder& recorder) {
+  const DeviceFrame frame = device.info().frame;
+  SessionTick now;
+  const auto tick = [&](const DeviceState& reading) {
+    now = step(reading, frame);
+    return now.force;
+  };
+  return runServo(device, tick, settings_.servo, stop, [&](const ServoTurn& turn) {
+    recorder.add(now, turn, renderer_->entries(), now.is_checkpoint ? &checkpoint_ : nullptr);
+  });
+}
+
+}  // namespace palpate::devices

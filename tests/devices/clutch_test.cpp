@@ -1,0 +1,122 @@
+// A hand that lets go of the world and takes hold of it elsewhere.
+
+#include "palpate/devices/clutch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "palpate/devices/session.h"
+#include "palpate/scene/scene_file.h"
+
+namespace palpate::devices {
+namespace {
+
+constexpr double kTick = 1e-3;  // [s]
+
+/// A wall below z = 0 with friction, which breaks loose without a jump, and damping, under a bath that drags.
+ScenePtr wallUnderOil() {
+  return compile(parseScene(R"(
+palpate: 1
+length: mm
+device: {scale: 2, clutch: true}
+materials:
+  wall: {stiffness: 800 N/m, damping: 1 N.s/m, friction: {static: 0.2, kinetic: 0.2}}
+  oil: {viscosity: 3 N.s/m}
+layers:
+  - {name: bath, inside: {box: {center: [0, 0, 0], size: [400, 400, 400]}}, content: oil, wall: absent}
+  - {name: floor, inside: {box: {center: [0, 0, -50], size: [300, 300, 100]}}, wall: wall}
+)",
+                            "clutch.yaml"));
+}
+
+/// Feeds a session of that scene, one reading a millisecond.
+class Hand {
+ public:
+  explicit Hand(const ScenePtr& scene) : session_(scene) {}
+  SessionTick to(const Vec3& device, bool held) {
+    return session_.step({.time = kTick * n_++, .position = device, .buttons = held ? 1U : 0U},
+                         DeviceFrame::kDevice);
+  }
+
+ private:
+  Session session_;
+  int n_ = 0;
+};
+
+/// Presses and strokes: 1.8 mm deep at the most, at up to 37 mm/s and 0.23 m/s^2. [m, device]
+Vec3 stroke(int n) {
+  const double t = n * kTick;
+  return {0.006 * std::sin(6.0 * t), 0.002 * t, -0.0009 * (1.0 - std::cos(9.0 * t))};
+}
+
+TEST(Clutch, NothingJumpsWhereAMovingHandEngagesOrLetsGo) {
+  const ScenePtr scene = wallUnderOil();
+  for (const int engaged : {301, 350, 422}) {
+    for (const int for_ticks : {1, 7, 30, 200}) {
+      Hand with(scene);
+      Hand without(scene);
+      SessionTick last;
+      double largest = 0.0;
+      for (int n = 0; n < engaged + for_ticks + 200; ++n) {
+        const bool held = n >= engaged && n < engaged + for_ticks;
+        const SessionTick tick = with.to(stroke(n), held);
+        // The reading that engages it is felt as if there were no clutch.
+        if (n <= engaged) {
+          const SessionTick free = without.to(stroke(n), false);
+          EXPECT_LT(glm::length(tick.force - free.force), 1e-12);
+          EXPECT_LT(glm::length(tick.hip.position - free.hip.position), 1e-12);
+        }
+        if (n > engaged && n <= engaged + for_ticks) {
+          EXPECT_LT(glm::length(tick.hip.position - last.hip.position), 1e-12) << n;
+        }
+        if (n > 250) largest = std::max(largest, glm::length(tick.force));
+        if (n > engaged) {
+          // From one tick to the next what is felt changes by at most 1.5 of itself in kFade; drag and damping, 4 N s/m, by
+          // the world's 0.46 m/s^2 and by the same fade of its 0.08 m/s; the springs, 800 N/m, by that speed. Without the
+          // fades drag alone would leap by 0.3 N.
+          const double fade = 1.5 * kTick / Clutch::kFade;
+          const double most =
+              fade * largest + 4.0 * (0.46 * kTick + fade * 0.08) + 800.0 * 0.08 * kTick;
+          EXPECT_LT(most, 0.2);
+          EXPECT_LT(glm::length(tick.force - last.force), most) << n;
+        }
+        last = tick;
+      }
+      EXPECT_GT(largest, 0.5);
+    }
+  }
+}
+
+TEST(Clutch, AHandThatIsHeldForLongLetsGoOfNothingAndTakesHoldOfTheSame) {
+  const ScenePtr scene = wallUnderOil();
+  Hand hand(scene);
+  for (int n = 0; n <= 400; ++n) (void)hand.to(stroke(n), false);
+  // It rests, so that springs and friction alone are felt.
+  Vec3 device = stroke(400);
+  SessionTick before;
+  for (int n = 0; n < 100; ++n) before = hand.to(device, false);
+  ASSERT_GT(glm::length(before.force), 0.5);
+  double last = glm::length(before.force);
+  SessionTick tick;
+  for (int n = 0; n < 200; ++n) {
+    tick = hand.to(device, true);
+    device += Vec3(2e-5, -1e-5, 5e-5);
+    EXPECT_LT(glm::length(tick.hip.position - before.hip.position), 1e-15);
+    EXPECT_EQ(tick.hip.velocity, Vec3(0.0));
+    EXPECT_LE(glm::length(tick.force), last + 1e-12);
+    last = glm::length(tick.force);
+  }
+  EXPECT_EQ(last, 0.0);
+  const SessionTick let_go = hand.to(device, false);
+  EXPECT_LT(glm::length(let_go.hip.position - before.hip.position), 1e-12);
+  EXPECT_LT(glm::length(let_go.force - tick.force), 1e-12);
+  for (int n = 0; n < 200; ++n) tick = hand.to(device, false);
+  EXPECT_LT(glm::length(tick.force - before.force), 1e-9);
+  // And moves by the scale from there.
+  tick = hand.to(device + Vec3(0.0, 0.0, 1e-4), false);
+  EXPECT_LT(glm::length(tick.hip.position - before.hip.position - Vec3(0.0, 0.0, 2e-4)), 1e-15);
+}
+
+}  // namespace
+}  // namespace palpate::devices

@@ -1,0 +1,171 @@
+#include "record_about.h"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <type_traits>
+
+#include "palpate/core/error.h"
+#include "report.h"
+
+namespace palpate::tools {
+namespace {
+
+constexpr const char* kSchema = "palpate.record/1";
+
+Error badAbout(const std::string& message, const std::string& file) {
+  return inputError("record.about", message,
+                    "a record is three files that go together: FILE.npy, FILE.npy.json and "
+                    "FILE.npy.states",
+                    file);
+}
+
+/// Takes values out of an object, and says which one is wrong.
+class Values {
+ public:
+  Values(const Json& object, std::string file) : object_(&object), file_(std::move(file)) {}
+
+  void take(const char* key, std::string& out) const {
+    if (const Json* value = find(key, &Json::is_string)) out = value->get<std::string>();
+  }
+  void take(const char* key, bool& out) const {
+    if (const Json* value = find(key, &Json::is_boolean)) out = value->get<bool>();
+  }
+  void take(const char* key, double& out) const {
+    if (const Json* value = find(key, &Json::is_number)) out = value->get<double>();
+  }
+  void take(const char* key, std::uint64_t& out) const {
+    if (const Json* value = find(key, &Json::is_number_unsigned)) out = value->get<std::uint64_t>();
+  }
+  void take(const char* key, devices::DeviceFrame& out) const {
+    std::string frame;
+    take(key, frame);
+    if (frame != "device" && frame != "world") throw bad(key);
+    out = frame == "device" ? devices::DeviceFrame::kDevice : devices::DeviceFrame::kWorld;
+  }
+  void take(const char* key, std::optional<double>& out) const {
+    if (isNull(key)) return;
+    out.emplace();
+    take(key, *out);
+  }
+  void take(const char* key, std::optional<int>& out) const {
+    if (isNull(key)) return;
+    double number = 0.0;
+    take(key, number);
+    constexpr double kMost = 1e6;
+    if (!(std::fabs(number) <= kMost)) throw bad(key);
+    out = static_cast<int>(number);
+  }
+  void take(const char* key, std::vector<std::string>& out) const {
+    const Json* list = find(key, &Json::is_array);
+    for (const Json& item : *list) {
+      if (!item.is_string()) throw bad(key);
+      out.push_back(item.get<std::string>());
+    }
+  }
+  [[nodiscard]] Values part(const std::string& key) const {
+    return {*find(key, &Json::is_object), file_};
+  }
+  [[nodiscard]] Error bad(const std::string& key) const {
+    return badAbout("'" + key + "' is missing, or has a value that it cannot have", file_);
+  }
+
+ private:
+  using Is = bool (Json::*)() const noexcept;
+  [[nodiscard]] const Json* find(const std::string& key, Is is) const {
+    const auto at = object_->find(key);
+    if (at == object_->end() || !((*at).*is)()) throw bad(key);
+    return &*at;
+  }
+  [[nodiscard]] bool isNull(const char* key) const {
+    const auto at = object_->find(key);
+    return at != object_->end() && at->is_null();
+  }
+
+  const Json* object_;
+  std::string file_;
+};
+
+/// Calls `visit` with section ("" for the object itself), key and value for each that a record's file holds: so writing and
+/// reading name the same.
+template <typename About, typename Visit>
+void eachValue(About& about, const Visit& visit) {
+  visit("", "version", about.version);
+  visit("", "build", about.build);
+  visit("", "scene", about.scene);
+  visit("", "scene_text", about.scene_text);
+  visit("", "scene_hash", about.scene_hash);
+  visit("", "shows_all", about.shows_all);
+  visit("", "renderer", about.renderer);
+  visit("", "rate_Hz", about.rate);
+  visit("", "realtime", about.realtime);
+  visit("", "period_s", about.period);
+  visit("", "states_every", about.states_every);
+  visit("device", "name", about.device);
+  visit("device", "frame", about.frame);
+  visit("device", "max_force_N", about.max_force);
+  auto& options = about.options;
+  visit("options", "epsilon", options.epsilon);
+  visit("options", "halvings", options.halvings);
+  visit("options", "alpha", options.alpha);
+  visit("options", "alpha_form", options.alpha_form);
+  visit("options", "interior", options.interior);
+  visit("options", "max_force", options.max_force);
+  visit("options", "slew", options.slew);
+  visit("options", "ramp", options.ramp);
+  visit("options", "set", options.set);
+  visit("", "regions", about.regions);
+  visit("", "ports", about.ports);
+}
+
+template <typename Value>
+Json jsonOf(const Value& value) {
+  return value;
+}
+template <typename Value>
+Json jsonOf(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+Json jsonOf(devices::DeviceFrame frame) {
+  return frame == devices::DeviceFrame::kDevice ? "device" : "world";
+}
+
+}  // namespace
+
+std::string aboutFile(const std::string& record) { return record + ".json"; }
+std::string statesFile(const std::string& record) { return record + ".states"; }
+
+std::string aboutText(const RecordAbout& about) {
+  Json json = {{"schema", kSchema}, {"seed", nullptr}};
+  eachValue(about, [&](const std::string& section, const char* key, const auto& value) {
+    Json& object = section.empty() ? json : json[section];
+    object[key] = jsonOf(value);
+  });
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+ReadAbout readAbout(const std::string& record) {
+  const std::string file = aboutFile(record);
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw badAbout("there is no such file, or it cannot be read", file);
+  std::ostringstream bytes;
+  bytes << in.rdbuf();
+  ReadAbout out{.about = {}, .text = bytes.str()};
+  const Json json = Json::parse(out.text, nullptr, false);
+  if (!json.is_object() || json.value("schema", Json()) != Json(kSchema)) {
+    throw badAbout("this does not say what a record was made with", file);
+  }
+  RecordAbout& about = out.about;
+  const Values all(json, file);
+  eachValue(about, [&](const std::string& section, const char* key, auto& value) {
+    (section.empty() ? all : all.part(section)).take(key, value);
+  });
+  if (about.renderer != "paper" && about.renderer != "constraint") throw all.bad("renderer");
+  if (!(about.rate >= 1.0 && about.rate <= 1e5)) throw all.bad("rate_Hz");
+  if (!(about.period > 0.0)) throw all.bad("period_s");
+  about.options.renderer = about.renderer;
+  return out;
+}
+
+}  // namespace palpate::tools

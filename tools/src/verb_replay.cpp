@@ -1,0 +1,173 @@
+#include <filesystem>
+
+#include "content_changes.h"
+#include "input_kind.h"
+#include "loaded_scene.h"
+#include "palpate/devices/replay.h"
+#include "record_about.h"
+#include "scene_hash.h"
+#include "shape_scene.h"
+#include "stop_signal.h"
+#include "text.h"
+#include "touch_settings.h"
+#include "verbs.h"
+
+namespace palpate::tools {
+namespace {
+
+/// The scene of the record, or the one that was asked for instead.
+struct ReplayScene {
+  std::string file;
+  std::string text;  ///< of a mesh, image or grid
+};
+
+ReplayScene sceneOf(const ReplayOptions& options, const RecordAbout& about, Console& console) {
+  if (!options.scene.empty()) {
+    if (isShape(options.scene)) {
+      throw Error(ErrorKind::kUsage,
+                  {"usage.replay", "--scene takes a scene, not a mesh, an image or a grid",
+                   "write one with palpate touch ... --write-scene FILE.yaml", options.scene});
+    }
+    return {options.scene, {}};
+  }
+  std::error_code failed;
+  if (!std::filesystem::exists(about.scene, failed)) {
+    throw inputError("record.scene", "the scene that was felt is not there: " + about.scene,
+                     "say where it is now: --scene SCENE", aboutFile(options.record));
+  }
+  if (sceneHash(about.scene, about.scene_text) != about.scene_hash) {
+    console.warn("the scene " + about.scene + " is not what it was when it was felt");
+  }
+  return {about.scene, about.scene_text};
+}
+
+/// Where the session begins: at a state, if there is a good one.
+std::optional<devices::SessionState> stateFor(const ReplayOptions& options, const ReadAbout& read,
+                                              Console& console) {
+  const std::uint64_t every = read.about.states_every;
+  if (options.from == 0 || every == 0 || options.from < every) return std::nullopt;
+  if (!options.scene.empty() || !options.renderer.empty()) {
+    console.note(
+        "another scene or renderer begins at the first tick: states are for those that "
+        "they were saved of");
+    return std::nullopt;
+  }
+  devices::StateReader states(statesFile(options.record), read.text);
+  std::optional<devices::SessionState> state = states.before(options.from);
+  if (!state) console.warn("there is no whole state before that tick; begun at the first");
+  return state;
+}
+
+Json reportJson(const ReplayOptions& options, const devices::ReplayReport& report,
+                std::uint64_t begun_at, const devices::RecordReader& record) {
+  Json json = {{"schema", "palpate.replay/1"},    {"record", options.record},
+               {"rows", record.size()},           {"rows_promised", record.promised()},
+               {"begun_at_tick", begun_at},       {"ticks", report.ticks},
+               {"compared", report.compared},     {"different", report.different},
+               {"is_same", report.different == 0}};
+  json["first"] = Json();
+  if (report.first) {
+    json["first"] = {
+        {"tick", report.first->tick}, {"t", report.first->t}, {"what", report.first->what}};
+  }
+  json["largest_force_N"] = report.most_force;
+  json["largest_force_tick"] = report.most_force > 0.0 ? Json(report.most_force_tick) : Json();
+  json["largest_proxy_m"] = report.most_proxy;
+  json["largest_proxy_tick"] = report.most_proxy > 0.0 ? Json(report.most_proxy_tick) : Json();
+  json["other_regions"] = report.regions;
+  json["other_contacts"] = report.contacts;
+  json["gap_at_tick"] = report.gap ? Json(*report.gap) : Json();
+  return json;
+}
+
+std::string reportText(const devices::ReplayReport& report, std::uint64_t begun_at,
+                       const Scene& scene) {
+  std::string text = "Compared    " + formatCount(report.compared) + " ticks";
+  if (begun_at > 0) text += ", begun at the state before tick " + std::to_string(begun_at);
+  text += "\n";
+  if (report.gap) {
+    text += "Gap         the record has no tick " + std::to_string(*report.gap) +
+            "; nothing after it was compared\n";
+  }
+  if (!report.first) return text + "Different   none: the same bit for bit\n";
+  const auto at = [](std::uint64_t tick, double most) {
+    return most > 0.0 ? " at tick " + std::to_string(tick) + "\n" : std::string("\n");
+  };
+  text += "Different   " + formatCount(report.different) + " ticks\n";
+  text += "First       tick " + std::to_string(report.first->tick) + ", " +
+          formatNumber(report.first->t, 6) + " s: " + report.first->what + "\n";
+  text += "Force       apart by up to " + formatNumber(report.most_force, 4) + " N" +
+          at(report.most_force_tick, report.most_force);
+  text += "Proxy       apart by up to " +
+          formatNumber(report.most_proxy / scene.metresPerUnit(), 4) + " " + scene.lengthUnit() +
+          at(report.most_proxy_tick, report.most_proxy);
+  return text + "Regions     other in " + formatCount(report.regions) + " ticks, contact in " +
+         formatCount(report.contacts) + "\n";
+}
+
+}  // namespace
+
+Report run(const ReplayOptions& options, const GeneralOptions&, Console& console) {
+  devices::RecordReader record(options.record);
+  const ReadAbout read = readAbout(options.record);
+  const RecordAbout& about = read.about;
+  if (record.size() < record.promised()) {
+    console.warn("the record was cut: " + std::to_string(record.size()) + " of " +
+                 std::to_string(record.promised()) + " ticks are there");
+  }
+  if (record.size() == 0) {
+    throw inputError("record.empty", "there is no tick in the record", {}, options.record);
+  }
+  record.seek(options.from);
+  devices::TickRecord row;
+  if (!record.next(row)) {
+    throw inputError(
+        "record.from", "the record has no tick " + std::to_string(options.from) + " or later",
+        "it has " + std::to_string(record.size()) + " ticks; the first is 0", options.record);
+  }
+
+  const ReplayScene chosen = sceneOf(options, about, console);
+  LoadedScene loaded(chosen.file, console, 0, chosen.text);
+  TouchOptions asked = about.options;
+  if (!options.renderer.empty()) asked.renderer = options.renderer;
+  const bool shows_all = about.shows_all || asked.renderer == "paper";
+  const ScenePtr scene = loaded.compile(shows_all ? Purpose::kShow : Purpose::kTouch);
+  devices::SessionSettings how{.renderer = rendererSettings(asked, loaded.unit())};
+  how.renderer.limits.period = about.period;
+  how.changes = contentEvents(readSettings(asked.set), *scene, kInfinity);
+  how.servo.rate = about.rate;
+  how.checkpoint_every = about.states_every;
+  devices::Session session(scene, std::move(how));
+
+  const std::optional<devices::SessionState> state = stateFor(options, read, console);
+  if (state && !session.resume(*state)) {
+    throw inputError("record.states",
+                     "the state before tick " + std::to_string(state->ticks) +
+                         " cannot be one of this scene: it is not what it was",
+                     "replay from the first tick, or give the scene that was felt: --scene SCENE",
+                     statesFile(options.record));
+  }
+  const std::uint64_t begun_at = session.ticks();
+  record.seek(begun_at);
+  const devices::ReplayReport done =
+      devices::replay(record, session, about.frame, options.from,
+                      [] { return stopRequested().load(std::memory_order_relaxed); });
+  checkStop();
+  if (done.compared == 0) {
+    throw inputError("record.gap",
+                     "the record has no tick " + std::to_string(done.gap.value_or(begun_at)) +
+                         ", so nothing after it can be felt anew",
+                     "begin after it: --from TICK, at a tick after a state that was saved later",
+                     options.record);
+  }
+
+  Report report;
+  report.json = reportJson(options, done, begun_at, record);
+  report.json["scene"] = chosen.file;
+  report.json["renderer"] = asked.renderer;
+  report.text = reportText(done, begun_at, *scene);
+  report.is_yes = done.different == 0;
+  return report;
+}
+
+}  // namespace palpate::tools
