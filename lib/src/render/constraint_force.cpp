@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "feel.h"
 
@@ -126,6 +127,27 @@ double Feel::stored(const ContactSet& c, const Vec3& hip) noexcept {
   return springOf(c.wall[0]).energy(c.load());
 }
 
+/// A wall behind a softer one is felt from where they meet on: where the proxy comes to their edge, at once, as deep as
+/// the hand is in it by then. What it stores more does not come from the hand. True if there was such a wall.
+bool Feel::countSudden(const ContactSet& c, const Vec3& hip) noexcept {
+  SourceState& source = state_.source;
+  const FeltLeaves now = walls_.leaves();
+  const FeltLeaves before = std::exchange(source.felt, now);
+  const auto end = now.leaf.begin() + static_cast<std::ptrdiff_t>(now.count);
+  const bool is_sudden =
+      before.count > 0 && std::any_of(now.leaf.begin(), end, [&](LeafId id) {
+        return !before.has(id) &&
+               std::none_of(c.walls().begin(), c.walls().end(),
+                            [&](const WallContact& each) { return each.leaf == id; });
+      });
+  if (!is_sudden) return false;
+  const double all = stored(c, hip);
+  walls_.findOnly(&before);
+  source.work += std::max(0.0, all - stored(c, hip));
+  walls_.findOnly(nullptr);
+  return true;
+}
+
 /// What the walls push with: the springs between the proxy and the hand. Whatever the walls were found to
 /// be, for one stiffness it is that times the way from the hand to the proxy.
 Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
@@ -133,6 +155,7 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   const Vec3& x = walker_.position();
   const Vec3 apart = x - hip.position;
   state_.friction.lean = Vec3(0.0);
+  if (apart == Vec3(0.0) || c.count == 0) state_.source.felt = {};
   if (apart == Vec3(0.0)) {
     state_.pressed = -1;
     return Vec3(0.0);
@@ -153,7 +176,8 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   // From the walls' surfaces, off which the proxy stands a little.
   const Vec3 press = apart + c.snug;
   walls_.press(press);
-  const bool differ = walls_.differ(c, glm::length(press));
+  bool differ = walls_.differ(c, glm::length(press));
+  if (countSudden(c, hip.position)) differ = walls_.differ(c, glm::length(press));
   const SpringForce springs = differ ? mixedForce(c, press, outward) : evenForce(c, press);
   double damping = 0.0;
   for (const WallContact& each : c.walls()) {

@@ -24,9 +24,8 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   velocity_ = hip.velocity;
   has_given_way_ = false;
   out.settled = solver_.track(hip.position, state_.friction, *this);
-  if (has_given_way_) {
-    state_.source.work += std::max(0.0, feel_.stored(solver_.contact(), hip.position) - released_);
-  }
+  const double in_walls = has_given_way_ ? feel_.stored(solver_.contact(), hip.position) : 0.0;
+  const double in_tissue = state_.needle.stored();
   feel_.fadeContent(hip.position);
 
   out.proxy = walker_.position() + solver_.contact().snug;
@@ -36,6 +35,10 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   out.force = feel_.walls(solver_.contact(), hip);
   out.contact = state_.pressed >= 0;
   out.force += contentForce(hip);
+  if (has_given_way_) {
+    // A wall that lets go throws the tip on: against stiffer walls, and into tissue that sticks to the shaft.
+    state_.source.work += std::max(0.0, in_walls + state_.needle.stored() - in_tissue - released_);
+  }
   return out;
 }
 

@@ -40,6 +40,7 @@ class Feel {
   };
 
   void relax(const ContactSet& contact, const HipState& hip) noexcept;
+  [[nodiscard]] bool countSudden(const ContactSet& contact, const Vec3& hip) noexcept;
   [[nodiscard]] SpringForce evenForce(const ContactSet& contact, const Vec3& apart) noexcept;
   [[nodiscard]] SpringForce mixedForce(const ContactSet& contact, const Vec3& apart,
                                        const Vec3& outward) noexcept;

@@ -113,6 +113,14 @@ void FeltWalls::add(const Near& wall) noexcept {
   group.wall[group.count++] = wall;
 }
 
+FeltLeaves FeltWalls::leaves() const noexcept {
+  FeltLeaves out;
+  for (std::size_t g = 0; g < count_; ++g) {
+    for (std::size_t i = 0; i < group_[g].count; ++i) out.add(group_[g].wall[i].leaf);
+  }
+  return out;
+}
+
 bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
   findGroups(contact, reach);
   if (count_ < 2) return false;
@@ -155,6 +163,7 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
       if (!inside && ((cell.outside >> i) & 1U) == 0) continue;
       const LeafId leaf = walls[i].leaf;
       if (holds(contact, leaf) || !(walls[i].slope > 0.0)) continue;
+      if (known_ != nullptr && !known_->has(leaf)) continue;
       if (walls[i].gap(inside) > reach) continue;
       Near near{leaf, {}, {}};
       near.held.field = walker_.leaf(leaf).field.get();

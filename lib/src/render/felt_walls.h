@@ -8,6 +8,7 @@
 #include "near_walls.h"
 #include "palpate/contact/felt_height.h"
 #include "palpate/contact/series.h"
+#include "palpate/render/renderer_state.h"
 #include "proxy_solver.h"
 #include "seams.h"
 
@@ -42,6 +43,10 @@ class FeltWalls final : public SoftKinds {
   /// at an angle. Then
   /// seriesForce() may be asked, until the walker moves.
   [[nodiscard]] bool differ(const ContactSet& contact, double reach) noexcept;
+  /// The leaves of the walls that differ() found, those of the contact among them.
+  [[nodiscard]] FeltLeaves leaves() const noexcept;
+  /// Until it is called with null, differ() finds no walls beside the contact's but `known`.
+  void findOnly(const FeltLeaves* known) noexcept { known_ = known; }
   /// The way from the hand to the proxy [m]: how wide a patch is pressed. Call it first in each tick.
   void press(const Vec3& way) noexcept { press_ = way; }
   /// [N/m] Stiffer than any wall of the scene, at any depth that its shapes have room for.
@@ -111,6 +116,7 @@ class FeltWalls final : public SoftKinds {
   Vec3 press_{0.0, 0.0, 0.0};
   std::array<Group, kMost> group_{};
   std::size_t count_ = 0;
+  const FeltLeaves* known_ = nullptr;
   std::array<SmoothedField, kMost> smoothed_{};
 };
 

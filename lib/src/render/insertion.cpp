@@ -64,6 +64,7 @@ Insertion::Force Insertion::step(const Contents& contents, const Tick& tick) noe
     if (!contents.holdsNeedle(last.region) && glm::dot(tick.tip - entry, along) < -kAround) letGo();
   }
   tip_ = tick.tip;
+  stored_ = 0.0;
   if (count_ == 0) {
     felt_ = Vec3(0.0);
     beyond_ = tick.hand - tick.tip;
@@ -73,6 +74,10 @@ Insertion::Force Insertion::step(const Contents& contents, const Tick& tick) noe
   Layer& layer = layers_[count_ - 1];
   layer.cut.restOn(tick.tip, tick.rests_on);
   const Vec3 cut = cutForce(contents, layer.region, layer.cut, tick.tip);
+  if (cut != Vec3(0.0)) {
+    const double stiffness = contents.material(layer.region)->stiffness.at(layer.cut.end());
+    stored_ += 0.5 * glm::dot(cut, cut) / stiffness;
+  }
   felt_ = feltBeyond(cut - shaft.against * shaft.axis, tick);
   return {felt_ - shaft.damping * shaft.axis, shaft.lateral};
 }
@@ -111,11 +116,13 @@ Insertion::ShaftForce Insertion::shaftForce(const Contents& contents, const Tick
     const double all = layer.slip.step(law, length, advance, speed);
     const double sticking = law.stiffness * layer.slip.stretch() * length;
     out.against += sticking;
+    stored_ += layer.slip.stored(law.stiffness);
     out.damping += all - sticking;
     const ShaftFriction::Lateral& lateral = tissue->shaft.lateral;
     if (!(lateral.stiffness > 0.0)) continue;
     turning += layer.channel.step({lateral.stiffness, lateral.strength},
                                   glm::distance(fulcrum, begin), glm::distance(fulcrum, end), axis);
+    stored_ += layer.channel.stored(lateral.stiffness, axis);
   }
   reach_ = reach;
   if (reach > 0.0) out.lateral = turning / reach;

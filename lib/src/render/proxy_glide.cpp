@@ -96,11 +96,16 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
   other_ = -1;
   const Vec3 x = walker_.position();
   const Leaf& leaf = walker_.leaf(id);
-  const Facet facet = walker_.facetAt(id);
-  if (!isPlainWall(leaf, facet)) return false;
-  const Parameter& static_ratio =
-      scene_.materials()[static_cast<std::size_t>(facet.material)].friction.static_ratio;
-  if (static_ratio.isConstant() && static_ratio.at(x) > 0.0) return false;
+  Facet facet = walker_.facetAt(id);
+  if (!isWallHere(leaf, facet)) return false;
+  const Friction& rough = frictionOf(facet);
+  const bool may_lag = !rough.static_ratio.isConstant() || rough.static_ratio.at(x) > 0.0;
+  const bool slides_easily =
+      may_lag && rough.static_ratio.range().least > rough.kinetic_ratio.range().most;
+  FrictionState after{};
+  after.sticks = friction.sticks;
+  after.lean = friction.lean;
+  Vec3 lag(0.0);
   const double side = walker_.side(id);
   const bool inside = side < 0.0;
 
@@ -113,8 +118,10 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
     if (round == limits::kGlides || !(wall.slope > 0.0)) return false;
     const double gap = wall.gap(inside);
     const double left = gap - limits::kRest * wall.tolerance;
-    const bool is_on = std::fabs(left) <= (limits::kOnWall - limits::kRest) * wall.tolerance;
-    if (round == 0 && !is_on) return false;
+    const double within = (limits::kOnWall - limits::kRest) * wall.tolerance;
+    if (round == 0 && std::fabs(left) > within) return false;
+    // Behind its surface, by rounding, it is brought back before it: nothing else would, however long it glides.
+    const bool is_on = gap >= 0.0 && left <= within;
     const Mat3 bend = jet.hessian * (1.0 / wall.slope);
     const double bend_square = squareOf(bend);
     bend_size = std::sqrt(bend_square);
@@ -125,7 +132,19 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
     const double along = glm::dot(normal, wish);
     const double multiplier = -sink - along;
     if (!(multiplier > rest_)) return false;
-    const Vec3 pull = wish - along * normal;
+    Vec3 pull = wish - along * normal;
+    if (may_lag) {
+      FrictionRatios ratios;
+      if (round > 0 && !after.sticks && slides_easily) {
+        // What slides, slides on: the map of the other ratio need not be read.
+        ratios = {rough.static_ratio.range().least, rough.kinetic_ratio.at(y)};
+      } else {
+        ratios.take(rough, y);
+      }
+      const Vec3 rest = after.lean - glm::dot(after.lean, normal) * normal;
+      lag = lagOf(ratios, pull, rest, -gap - along, round == 0, after);
+      pull -= lag;
+    }
     // The place is a minimum where the wall's curvature, times how far the hand is beyond it, stays below 1.
     const bool is_rest = is_on && glm::dot(pull, pull) <= rest_ * rest_;
     if (is_rest && multiplier * bend_size < 1.0 - limits::kFirm) break;
@@ -150,11 +169,10 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
 
   // A hand between the surface and the proxy, which stands off it, does not press.
   if (!(side * glm::dot(wall.normal, y - hip) - wall.gap(inside) > rest_)) return false;
-  if (static_ratio.at(y) > 0.0) return false;
   if (y != x) {
-    const Vec3 before = hip - x;
-    const Vec3 after = hip - y;
-    if (glm::dot(after, after) > glm::dot(before, before)) return false;
+    const Vec3 far_before = hip - x;
+    const Vec3 far_after = hip - y;
+    if (glm::dot(far_after, far_after) > glm::dot(far_before, far_before)) return false;
     const double way = glm::length(y - x);
     if (!keepsOnChord(*leaf.field, x, y, side / wall.slope, bend_size, wall.tolerance))
       return false;
@@ -169,9 +187,15 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
     walker_.jump(y, way);
     walker_.know(id, jet);
   }
-  friction.sticks = false;
-  friction.is_felt = false;
+  if (y != x && !isPlainWall(leaf, facet)) {
+    // Here an opening may have begun, a hole, or another force may open it.
+    const int material = facet.material;
+    facet = walker_.facetAt(id);
+    if (!isWallHere(leaf, facet) || facet.material != material) return false;
+  }
+  friction = after;
   takeOnly(id, facet, wall, jet, hip - y);
+  contact_.lag = lag;
   return true;
 }
 

@@ -34,7 +34,7 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
   hops_ = 0;
   trusts_sides_ = false;
   contact_.clear();
-  if (goQuickly(hip, friction)) return true;
+  if (goQuickly(hip, friction) && !opener.open(contact_)) return true;
   bool may_fly = true;
   for (bool is_first = true; batches_left_ > 0; is_first = false) {
     x_ = walker_.position();
@@ -269,41 +269,36 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
   contact_.left = tangentialPart(wish_, contact_.held().walls());
 }
 
-/// The cone: while it sticks the proxy may lag by static_ratio of the load, else it slides until it lags
-/// by kinetic_ratio of it. Where stiffness varies, its own lean pulls at the proxy too: the cone is about where the
-/// proxy would rest without friction. So the lean is felt through the lag, the same whether it sticks or slides.
 /// Of several walls the roughest counts, for the load of all.
 void ProxySolver::holdByFriction(FrictionState& friction, bool is_first) noexcept {
   ContactSet& c = contact_;
-  double static_ratio = 0.0;
-  double kinetic_ratio = 0.0;
-  for (const WallContact& each : c.walls()) {
-    const Friction& own =
-        scene_.materials()[static_cast<std::size_t>(each.facet.material)].friction;
-    static_ratio = std::max(static_ratio, own.static_ratio.at(x_));
-    kinetic_ratio = std::max(kinetic_ratio, own.kinetic_ratio.at(x_));
-  }
-  if (static_ratio <= 0.0 || walker_.isSealed()) {
-    friction.sticks = false;
-    friction.is_felt = false;
-    return;
-  }
-  friction.is_felt = true;
-  kinetic_ratio = std::min(kinetic_ratio, static_ratio);
+  FrictionRatios ratios;
+  for (const WallContact& each : c.walls()) ratios.take(frictionOf(each.facet), x_);
   const Vec3 rest = tangentialPart(friction.lean, c.held().walls());
-  const Vec3& pulled = c.left;
+  c.lag = lagOf(ratios, c.left, rest, c.load(), is_first, friction);
+}
+
+/// The cone: while it sticks the proxy may lag by static_ratio of the load, else it slides until it lags
+/// by kinetic_ratio of it. Where stiffness varies, its own lean pulls at the proxy too: the cone is about where the
+/// proxy would rest without friction. So the lean is felt through the lag, the same whether it sticks or slides.
+Vec3 ProxySolver::lagOf(const FrictionRatios& ratios, const Vec3& pulled, const Vec3& rest,
+                        double load, bool is_first, FrictionState& friction) const noexcept {
+  friction.is_felt = ratios.at_rest > 0.0 && !walker_.isSealed();
+  if (!friction.is_felt) {
+    friction.sticks = false;
+    return Vec3(0.0);
+  }
   const Vec3 off = pulled - rest;
   const double pull = glm::length(off);
-  const double load = c.load();
-  const double kinetic = kinetic_ratio * load;
-  if (friction.sticks && pull > static_ratio * load) friction.sticks = false;
+  const double kinetic = std::min(ratios.sliding, ratios.at_rest) * load;
+  if (friction.sticks && pull > ratios.at_rest * load) friction.sticks = false;
   // What slides sticks again when the hand no longer pulls it on, which shows when a tick begins: at the
   // end of its own slide it is always where the cone just holds it, and a hand that moves on would
   // feel a saw.
   if (!friction.sticks && is_first && pull <= kinetic * (1.0 + limits::kSticksWithin)) {
     friction.sticks = true;
   }
-  c.lag = friction.sticks || pull <= kinetic ? pulled : rest + off * (kinetic / pull);
+  return friction.sticks || pull <= kinetic ? pulled : rest + off * (kinetic / pull);
 }
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 /// and only if it rests in every cell that holds it. So edges, corners of any number of walls, apexes and
 /// the rims of unions need no rule of their own.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -150,7 +151,21 @@ class ProxySolver {
   [[nodiscard]] bool kick() noexcept;
   void takeLastContact(const Vec3& hip) noexcept;
   void takeContact(const CellProblem& problem) noexcept;
+  /// The roughest of some walls, [-].
+  struct FrictionRatios {
+    double at_rest = 0.0;
+    double sliding = 0.0;
+    void take(const Friction& own, const Vec3& x) noexcept {
+      at_rest = std::max(at_rest, own.static_ratio.at(x));
+      sliding = std::max(sliding, own.kinetic_ratio.at(x));
+    }
+  };
   void holdByFriction(FrictionState& friction, bool is_first) noexcept;
+  [[nodiscard]] Vec3 lagOf(const FrictionRatios& ratios, const Vec3& pulled, const Vec3& rest,
+                           double load, bool is_first, FrictionState& friction) const noexcept;
+  [[nodiscard]] const Friction& frictionOf(const Facet& facet) const noexcept {
+    return scene_.materials()[static_cast<std::size_t>(facet.material)].friction;
+  }
   [[nodiscard]] bool isReached(std::size_t plane) const noexcept {
     return ((reached_ >> plane) & 1U) != 0;
   }

@@ -10,10 +10,14 @@
 
 namespace palpate {
 
-/// Whether a wall whose facet this is stays as it is while the proxy glides on it: nothing opens, nothing sticks.
+/// Whether the facet belongs to a wall of one leaf that holds the proxy here. It may open once the proxy rests.
+[[nodiscard]] inline bool isWallHere(const Leaf& leaf, const Facet& facet) noexcept {
+  return !leaf.is_between && facet.isClosed() && facet.kind != Facet::Kind::kInternal;
+}
+
+/// Whether a wall whose facet this is stays as it is while the proxy glides on it: nothing opens.
 [[nodiscard]] inline bool isPlainWall(const Leaf& leaf, const Facet& facet) noexcept {
-  return !leaf.is_between && facet.isClosed() && !facet.opens && !facet.varies &&
-         facet.kind != Facet::Kind::kInternal;
+  return isWallHere(leaf, facet) && !facet.opens && !facet.varies;
 }
 
 /// Whether the step to `there` landed on the wall that `here` and its bend of norm `bend` [1/m] promise, `off` [m] beside

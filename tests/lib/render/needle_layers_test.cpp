@@ -319,6 +319,8 @@ TEST(NeedleLayers, NoWayInAndOutGivesEnergyBeyondCountedSources) {
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   const int runs = slow ? 400 : 25;
   double counted = 0.0;
+  double all_slack = 0.0;
+  double all_work = 0.0;
   for (int run = 0; run < runs; ++run) {
     Random random(static_cast<std::uint64_t>(run) + 500);
     const std::vector<Tissue> tissues = randomTissues(random);
@@ -345,9 +347,12 @@ TEST(NeedleLayers, NoWayInAndOutGivesEnergyBeyondCountedSources) {
       force = r.force;
       ASSERT_LE(work - renderer->sourceWork(), slack) << "run " << run << ", tick " << i;
     }
-    EXPECT_LT(slack, 0.2 * std::fabs(work)) << "run " << run;
+    all_slack += slack;
+    all_work += std::fabs(work);
     counted += renderer->sourceWork();
   }
+  // Or the bound would say little.
+  EXPECT_LT(all_slack, 0.2 * all_work);
   EXPECT_GT(counted, 0.0);
 }
 
@@ -379,6 +384,45 @@ TEST(NeedleLayers, AStiffWallMetBehindASoftOneIsACountedSource) {
   go(-0.009);
   EXPECT_GT(work, 0.15);
   EXPECT_LE(work, renderer->sourceWork() + 2e-4);
+}
+
+// 10 mm of a shaft in tissue that sticks to it, held back by a skin which lets go at 0.05 N: as the tip comes on by
+// 0.625 mm, the tissue is drawn along. What it gives the hand on its way back is counted.
+TEST(NeedleLayers, AShaftThatASkinLetsGoOfStretchesItsTissueAsACountedSource) {
+  std::vector<Tissue> tissues(2);
+  tissues[0].kind = Kind::kOpen;
+  tissues[0].stiffness = 100.0;
+  tissues[0].cutting = 0.02;
+  tissues[0].shaft = 1e5;
+  tissues[0].held = tissues[0].slides = 1e4;
+  tissues[1].top = 0.010;
+  tissues[1].stiffness = 80.0;
+  tissues[1].opens_at = tissues[1].back = 0.05;
+  const auto renderer = makeRenderer(sceneOf(tissues, Vec3(0.0), Vec3(0.0, 0.0, 1.0)));
+  double work = 0.0;
+  double last = 0.0;
+  Vec3 force(0.0);
+  const auto go = [&](double to) {
+    const int n = static_cast<int>(std::lround(std::fabs(to - last) / 1e-6));
+    const double from = last;
+    for (int i = 1; i <= n; ++i) {
+      const double z = from + (to - from) * i / n;
+      const TickResult r = renderer->update({Vec3(0.0, 0.0, z), Vec3(0.0), 1e-3});
+      work += 0.5 * (force.z + r.force.z) * (z - last);
+      last = z;
+      force = r.force;
+    }
+  };
+  go(-0.0106);
+  const double before = renderer->sourceWork();
+  EXPECT_DOUBLE_EQ(before, 0.0);
+  const double given = work;
+  go(-0.010626);
+  EXPECT_GT(renderer->sourceWork(), 0.0);
+  go(-0.0106);
+  EXPECT_LT(given, 0.0);
+  go(-0.0002);
+  EXPECT_LE(work, renderer->sourceWork() + 1e-7);
 }
 
 // Five skins of 1 mm: each its own force, all in one tick of a hand that is 30 mm ahead.

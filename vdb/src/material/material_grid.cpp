@@ -93,6 +93,24 @@ MaterialMap::Sample spline(const T* corner, int row, const Weights& x, const Wei
   return out;
 }
 
+/// The same without the gradient.
+template <typename T>
+double splineValue(const T* corner, int row, const Weights& x, const Weights& y,
+                   const Weights& z) noexcept {
+  double out = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    double plane = 0.0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const T* const line = corner + (static_cast<int>(k) * row + static_cast<int>(j)) * row;
+      plane += y.value[j] * (x.value[0] * static_cast<double>(line[0]) +
+                             x.value[1] * static_cast<double>(line[1]) +
+                             x.value[2] * static_cast<double>(line[2]));
+    }
+    out += z.value[k] * plane;
+  }
+  return out;
+}
+
 /// Counts (or values) of a block with its rim; voxels beyond the grid are those at its edge.
 template <typename T, typename Count>
 void fillBlock(const Image& voxels, const std::array<int, 3>& first, T* out, const Count& count) {
@@ -231,37 +249,74 @@ void MaterialGrid::store(Image voxels, double tolerance, const Quantisation* kno
   blocks_ = std::move(blocks);
 }
 
-MaterialMap::Sample MaterialGrid::sample(const Vec3& p) const noexcept {
+struct MaterialGrid::Place {
+  std::size_t corner = 0;  ///< of the 27 voxels, in the data of the blocks
+  std::array<double, 3> off{};
+  const Blocks::Block* block = nullptr;
+};
+
+MaterialGrid::Place MaterialGrid::placeOf(const Vec3& p) const noexcept {
   const Blocks& blocks = *blocks_;
   const Vec3 at = to_index_ * (p - origin_);
   std::array<int, 3> nearest{};
-  std::array<double, 3> off{};
+  Place out;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const double last = blocks.size[a] - 1.0;
+    const int last = blocks.size[a] - 1;
     // Half a voxel beyond the outermost centre the three voxels are one, and so on from there.
     const double u = std::clamp(at[axis], -0.5, last + 0.5);
-    const double middle = std::min(std::floor(u + 0.5), last);
-    nearest[a] = static_cast<int>(middle);
-    off[a] = u - middle;
+    // Not below zero, so that cutting it off rounds it down.
+    nearest[a] = std::min(static_cast<int>(u + 0.5), last);
+    out.off[a] = u - nearest[a];
   }
-  const Blocks::Block& block = blocks.blockOf(nearest[0], nearest[1], nearest[2]);
+  out.block = &blocks.blockOf(nearest[0], nearest[1], nearest[2]);
+  out.corner =
+      out.block->first * Blocks::kVolume + Blocks::cornerOf(nearest[0], nearest[1], nearest[2]);
+  return out;
+}
+
+template <typename OfData>
+auto MaterialGrid::read(const OfData& of) const noexcept {
+  const Blocks& blocks = *blocks_;
+  switch (info_.quantisation.bits) {
+    case 8:
+      return of(blocks.bytes.data());
+    case 16:
+      return of(blocks.words.data());
+    default:
+      return of(blocks.floats.data());
+  }
+}
+
+MaterialMap::Sample MaterialGrid::sample(const Vec3& p) const noexcept {
+  const Place place = placeOf(p);
   const Quantisation& how = info_.quantisation;
-  if (block.first == Blocks::kUniform) {
-    return {how.least + how.step * static_cast<double>(block.uniform), Vec3(0.0)};
+  if (place.block->first == Blocks::kUniform) {
+    return {how.least + how.step * static_cast<double>(place.block->uniform), Vec3(0.0)};
   }
-  const std::size_t corner =
-      block.first * Blocks::kVolume + Blocks::cornerOf(nearest[0], nearest[1], nearest[2]);
-  const Weights x(off[0]);
-  const Weights y(off[1]);
-  const Weights z(off[2]);
-  Sample out = how.bits == 8    ? spline(blocks.bytes.data() + corner, Blocks::kRow, x, y, z)
-               : how.bits == 16 ? spline(blocks.words.data() + corner, Blocks::kRow, x, y, z)
-                                : spline(blocks.floats.data() + corner, Blocks::kRow, x, y, z);
+  const Weights x(place.off[0]);
+  const Weights y(place.off[1]);
+  const Weights z(place.off[2]);
+  Sample out =
+      read([&](const auto* data) { return spline(data + place.corner, Blocks::kRow, x, y, z); });
   // Between its voxels but for rounding.
   out.value = std::clamp(how.least + how.step * out.value, range_.least, range_.most);
   out.gradient = to_world_slope_ * out.gradient;
   return out;
+}
+
+double MaterialGrid::value(const Vec3& p) const noexcept {
+  const Place place = placeOf(p);
+  const Quantisation& how = info_.quantisation;
+  if (place.block->first == Blocks::kUniform) {
+    return how.least + how.step * static_cast<double>(place.block->uniform);
+  }
+  const Weights x(place.off[0]);
+  const Weights y(place.off[1]);
+  const Weights z(place.off[2]);
+  const double count = read(
+      [&](const auto* data) { return splineValue(data + place.corner, Blocks::kRow, x, y, z); });
+  return std::clamp(how.least + how.step * count, range_.least, range_.most);
 }
 
 Image MaterialGrid::voxels() const {

@@ -31,6 +31,12 @@ class ShaftChannel {
   [[nodiscard]] Vec3 step(const ChannelLaw& law, double begin, double end,
                           const Vec3& direction) noexcept;
 
+  /// [J] In a tissue as stiff as `stiffness` [N/m^2], about a needle that lies along `direction` [-].
+  [[nodiscard]] double stored(double stiffness, const Vec3& direction) const noexcept {
+    const Vec3 aside = direction_ - direction;
+    return 0.5 * stiffness * moment_ * glm::dot(aside, aside);
+  }
+
   /// [-] Mean direction from the fulcrum; at most 1 long.
   [[nodiscard]] const Vec3& direction() const noexcept { return direction_; }
   /// [m^3] (end^3 - begin^3) / 3 of the last step.

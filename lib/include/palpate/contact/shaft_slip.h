@@ -28,6 +28,10 @@ class ShaftSlip {
 
   [[nodiscard]] bool isSliding() const noexcept { return is_sliding_; }
   [[nodiscard]] double stretch() const noexcept { return stretch_; }  ///< [m] mean over the length
+  /// [J] in the tissue drawn along, as stiff as `stiffness` [N/m^2].
+  [[nodiscard]] double stored(double stiffness) const noexcept {
+    return 0.5 * stiffness * stretch_ * stretch_ * length_;
+  }
 
  private:
   double stretch_ = 0.0;

@@ -51,6 +51,9 @@ class Insertion {
 
   [[nodiscard]] Force step(const Contents& contents, const Tick& tick) noexcept;
   void reset() noexcept { *this = {}; }
+  /// [J] At the last step, in what sticks to the shaft, holds it sideways, and is pressed by the tip before it is cut; and
+  /// what a hand that went on without the tip takes on its way back to it.
+  [[nodiscard]] double stored() const noexcept { return stored_ - glm::dot(felt_, beyond_); }
   /// Whether this can be an insertion in a scene of so many regions.
   [[nodiscard]] bool isOf(std::size_t regions) const noexcept;
 
@@ -96,6 +99,7 @@ class Insertion {
   Vec3 velocity_{0.0, 0.0, 0.0};  ///< [m/s] at this step
   Vec3 felt_{0.0, 0.0, 0.0};      ///< [N] of cutting and what sticks, at the last step
   Vec3 beyond_{0.0, 0.0, 0.0};    ///< [m] from the tip to the hand, at the last step
+  double stored_ = 0.0;           ///< [J]
   double reach_ = 0.0;  ///< [m] from where the shaft first went in to the tip, at the last step
 };
 

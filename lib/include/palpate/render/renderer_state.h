@@ -2,6 +2,8 @@
 /// RendererState: all that one tick of a renderer leaves for the next. Whoever has this value and the scene has the
 /// renderer: copied it is a snapshot, given back it rewinds.
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -57,6 +59,24 @@ struct PaperTouch {
   PaperContact contact;
 };
 
+/// The leaves whose walls the hand felt at the last tick, in contact.
+struct FeltLeaves {
+  static constexpr std::size_t kMost = 16;
+  std::array<LeafId, kMost> leaf{};
+  std::size_t count = 0;
+  bool is_full = false;  ///< there were more: any leaf may have been felt
+
+  void add(LeafId id) noexcept {
+    if (has(id)) return;
+    is_full = count == kMost;
+    if (!is_full) leaf[count++] = id;
+  }
+  [[nodiscard]] bool has(LeafId id) const noexcept {
+    const auto end = leaf.begin() + static_cast<std::ptrdiff_t>(count);
+    return is_full || std::find(leaf.begin(), end, id) != end;
+  }
+};
+
 /// Counts of energy that does not come from the hand.
 struct SourceState {
   Vec3 flow_push{0.0, 0.0, 0.0};  ///< [N] of flows at the last tick
@@ -64,6 +84,7 @@ struct SourceState {
   bool in_lattice = false;        ///< felt at the last tick
   RegionId lattice_region = kOutside;
   std::uint32_t lattice_version = 0;
+  FeltLeaves felt;
   double work = 0.0;  ///< [J] done on the hand since the first tick
 };
 

@@ -54,7 +54,7 @@ class MaterialGrid final : public MaterialMap {
   ~MaterialGrid() override;
 
   [[nodiscard]] Sample sample(const Vec3& p) const noexcept override;
-  [[nodiscard]] double value(const Vec3& p) const noexcept override { return sample(p).value; }
+  [[nodiscard]] double value(const Vec3& p) const noexcept override;
   [[nodiscard]] Range range() const noexcept override { return range_; }
 
   [[nodiscard]] const MaterialGridInfo& info() const noexcept { return info_; }
@@ -63,7 +63,11 @@ class MaterialGrid final : public MaterialMap {
 
  private:
   struct Blocks;
+  struct Place;
 
+  [[nodiscard]] Place placeOf(const Vec3& p) const noexcept;
+  template <typename OfData>
+  [[nodiscard]] auto read(const OfData& of) const noexcept;
   void store(Image voxels, double tolerance, const Quantisation* known, std::uint64_t max_memory);
 
   MaterialGridInfo info_;
