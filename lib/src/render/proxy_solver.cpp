@@ -32,6 +32,7 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
   nearest_ = kInfinity;
   before_.fill(Vec3(kInfinity));
   hops_ = 0;
+  crossed_ = {};
   trusts_sides_ = false;
   contact_.clear();
   if (goQuickly(hip, friction) && !opener.open(contact_)) return true;
@@ -48,6 +49,7 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
     Try outcome = Try::kMoved;
     switch (lookAround(friction, is_first)) {
       case Look::kNowhere:
+        takeLastContact(hip);
         return false;
       case Look::kCrossed:
         may_fly = true;
@@ -132,6 +134,7 @@ ProxySolver::Look ProxySolver::lookAround(FrictionState& friction, bool is_first
       if (wall.gap(from.inside) > limits::kOnWall * wall.tolerance + rest_) continue;
       const Facet facet = walker_.facetAt(wall.leaf);
       if (facet.isClosed() || facet.kind == Facet::Kind::kInternal) continue;
+      if (!goesOnInto(facet.beyond, problem)) continue;
       if (!walker_.mayCross()) return Look::kNowhere;
       walker_.cross(wall.leaf, facet);
       return Look::kCrossed;
@@ -147,6 +150,24 @@ ProxySolver::Look ProxySolver::lookAround(FrictionState& friction, bool is_first
     if (glm::length(problem_[i].solution.step) > rest_) return Look::kMoves;
   }
   return Look::kRests;
+}
+
+/// Whether the proxy goes on into `beyond`, which is open. At an edge where two regions that lead freely into each other
+/// both end at walls, the hand may draw it into each from the other. Back where it was at this place it does not go, unless
+/// a step leads on from there and none does from here; then it does not come again.
+bool ProxySolver::goesOnInto(RegionId beyond, const CellProblem& problem) noexcept {
+  if (crossed_.place != x_) crossed_ = {.place = x_};
+  const bool leads_on = glm::length(problem.solution.step) > rest_;
+  const auto end = crossed_.from.begin() + static_cast<std::ptrdiff_t>(crossed_.count);
+  const auto* const back = std::find_if(
+      crossed_.from.begin(), end, [&](const Crossed::From& each) { return each.region == beyond; });
+  if (back != end) {
+    if (leads_on || !back->leads_on || crossed_.is_last) return false;
+    crossed_.is_last = true;
+  }
+  if (crossed_.count == crossed_.from.size()) return false;
+  crossed_.from[crossed_.count++] = {walker_.region(), leads_on};
+  return true;
 }
 
 /// Near walls and cells within `radius` [m]. Where no cell holds the proxy (a field that lies about its bound

@@ -108,6 +108,18 @@ class ProxySolver {
     double away = 0.0;  ///< [m] how far off it was met
   };
 
+  /// The regions that were left at one place in this tick.
+  struct Crossed {
+    struct From {
+      RegionId region = kOutside;
+      bool leads_on = false;  ///< a step led on from there, along what was crossed
+    };
+    Vec3 place{kInfinity, kInfinity, kInfinity};  ///< [m]
+    std::array<From, 16> from{};
+    std::size_t count = 0;
+    bool is_last = false;  ///< where it is now, it stays
+  };
+
   enum class Look { kFree, kRests, kCrossed, kMoves, kNowhere };
   enum class Try { kMoved, kRests, kRefused };
   /// What a step has to do: end on the walls and gain a share of what it promised; gain at all; or it may end in free space.
@@ -123,6 +135,7 @@ class ProxySolver {
   void takeOnly(LeafId id, const Facet& facet, const WallThere& wall, const FieldJet& jet,
                 const Vec3& wish) noexcept;
   [[nodiscard]] Look lookAround(FrictionState& friction, bool is_first) noexcept;
+  [[nodiscard]] bool goesOnInto(RegionId beyond, const CellProblem& problem) noexcept;
   [[nodiscard]] Try moveOn() noexcept;
   [[nodiscard]] bool lookWithin(double radius) noexcept;
   void poseAll(const Vec3& wish) noexcept;
@@ -195,6 +208,7 @@ class ProxySolver {
   int other_ = -1;  ///< leaf that a quick way meets, or that no longer holds it; -1: none
   bool trusts_sides_ = false;
   int batches_left_ = 0;
+  Crossed crossed_;
   int hops_ = 0;  ///< steps of this tick cut short where the whole of it ended in free space
   double nearest_ =
       kInfinity;  ///< [m^2] least squared distance from the aim before or after a step of this tick
