@@ -35,7 +35,7 @@ FeltWalls::FeltWalls(const Scene& scene, CellWalker& walker)
   sortKinds();
 }
 
-/// Whether the walls that the region touches may be of several kinds.
+/// Whether the region's walls may be of several kinds.
 bool FeltWalls::mayDiffer(RegionId region) const {
   int first = -1;
   bool out = false;
@@ -50,19 +50,18 @@ bool FeltWalls::mayDiffer(RegionId region) const {
   for (std::size_t i = 0; i < scene_.regions().size(); ++i) {
     const auto other = static_cast<RegionId>(i);
     const Wall& wall = scene_.passages().wall(region, other);
-    if (other != region && scene_.touches(region, other) && !wall.absent) add(wall.material);
+    if (other != region && !wall.absent) add(wall.material);
   }
   for (const Sheet& sheet : scene_.passages().sheets()) add(sheet.material);
   return out;
 }
 
-/// A wall that two regions touch, with a way between the two beside it, may have one material seen from the one and another
+/// A wall that two regions share, with a way between the two beside it, may have one material seen from the one and another
 /// one seen from the other: what is before a seam changes as well.
 void FeltWalls::sortSeams() {
   const std::size_t regions = scene_.regions().size();
   const Passages& passages = scene_.passages();
   const auto leads = [&](RegionId from, RegionId to) {
-    if (!scene_.touches(from, to)) return false;
     if (passages.wall(from, to).absent) return true;
     const std::span<const PortId> ports = passages.portsOf(from);
     return std::any_of(ports.begin(), ports.end(),
@@ -79,9 +78,7 @@ void FeltWalls::sortSeams() {
       if (a == b || may_differ_[a] || !leads(here, there)) continue;
       for (std::size_t c = 0; c < regions; ++c) {
         const auto beyond = static_cast<RegionId>(c);
-        if (c == a || c == b || !scene_.touches(here, beyond) || !scene_.touches(there, beyond)) {
-          continue;
-        }
+        if (c == a || c == b) continue;
         const int one = kind_of(here, beyond);
         const int other = kind_of(there, beyond);
         if (one >= 0 && other >= 0 && one != other) may_differ_[a] = true;

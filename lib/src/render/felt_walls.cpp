@@ -49,20 +49,10 @@ bool meet(const Vec3& x, const HeldWall& a, const HeldWall& b, double farthest) 
 
 }  // namespace
 
-/// Whether the proxy's region may end at this leaf: that of a layer which it touches, or of a sheet.
-bool FeltWalls::mayBound(LeafId leaf) const noexcept {
-  const RegionId here = walker_.region();
-  const auto regions = scene_.partition().regionsOf(leaf);
-  return is_sheet_[leaf] || std::any_of(regions.begin(), regions.end(), [&](RegionId each) {
-           return each == here || scene_.touches(here, each);
-         });
-}
-
-/// Whether the proxy's region ends at this facet, as far as the scene knows.
-bool FeltWalls::isWall(const Facet& facet) const noexcept {
-  const RegionId here = walker_.region();
-  return facet.isClosed() && facet.material >= 0 &&
-         (facet.beyond == here || scene_.touches(here, facet.beyond));
+/// Whether the proxy's region may end at this facet. Whether it does, only the place tells: what the scene knows of regions
+/// that touch was found by looking here and there.
+bool FeltWalls::isWall(const Facet& facet) noexcept {
+  return facet.isClosed() && facet.material >= 0;
 }
 
 /// Walls of one material differ by what lies behind them, or by the solid whose shape is smoothed.
@@ -136,7 +126,7 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
   // Most often there is nothing but what holds the proxy, and what lies beneath that.
   bool is_alone = true;
   walker_.forWithin(reach, [&](LeafId id) {
-    if (!holds(contact, id) && mayBound(id)) is_alone = false;
+    if (!holds(contact, id)) is_alone = false;
   });
   if (!is_alone || contact.count > 1) {
     // One kind of walls alone would let the hand come no farther from the proxy than it is: so far a seam may matter.

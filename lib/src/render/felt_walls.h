@@ -85,8 +85,7 @@ class FeltWalls final : public SoftKinds {
   [[nodiscard]] const Material& material(const Facet& facet) const noexcept {
     return scene_.materials()[static_cast<std::size_t>(facet.material)];
   }
-  [[nodiscard]] bool mayBound(LeafId leaf) const noexcept;
-  [[nodiscard]] bool isWall(const Facet& facet) const noexcept;
+  [[nodiscard]] static bool isWall(const Facet& facet) noexcept;
   [[nodiscard]] int ownOf(const Near& wall) const noexcept;
   [[nodiscard]] bool feelsAlike(const Facet& a, const Facet& b) const noexcept;
   void findGroups(const ContactSet& contact, double reach) noexcept;

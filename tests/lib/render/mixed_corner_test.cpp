@@ -57,5 +57,45 @@ TEST(MixedCorner, AHertzianWallDoesToo) {
   }
 }
 
+/// Within a cone, whose wall meets that of a cylinder in a shallow valley; `third` is a layer more.
+ScenePtr valley(const char* third) {
+  return sceneOf(std::string(R"(
+palpate: 1
+length: mm
+start: {region: cone}
+materials:
+  m_cone: {stiffness: 1100 N/m}
+  m_third: {stiffness: 1900 N/m}
+  m_cyl: {stiffness: 1500 N/m}
+layers:
+  - {name: cone, wall: m_cone, inside: {cone: {base: [-7.52, -3.76, -3.22], axis: [0.91, -0.02, -0.42], radius: 4.06, height: 6.14}}}
+  - {name: third, wall: m_third, inside: )") +
+                 third + R"(}
+  - {name: cyl, wall: m_cyl, inside: {cylinder: {center: [6.28, -3.86, -0.45], axis: [-0.01, -0.49, 0.87], radius: 9.72, height: 40}}}
+)");
+}
+
+// A lid 15 um behind the proxy leaves so little room that the scene's own look at itself finds no place where cone and
+// cylinder meet. They are felt together all the same, as if the lid were far away.
+TEST(MixedCorner, WallsThatMeetInALittleGapAreFeltTogether) {
+  const auto lid = makeRenderer(
+      valley("{half_space: {point: [-2.989895, -4.624097, -4.937474], normal: [0.782617, "
+             "-0.615225, 0.094917]}}"));
+  const auto far = makeRenderer(valley("{sphere: {center: [100, 0, 0], radius: 5}}"));
+  const Vec3 from(-0.0029848293947153993, -0.0046260122321973686, -0.0049369066530820438);
+  const Vec3 to(-0.001805452761208366, -0.0060633425918614316, -0.0048050826722480068);
+  TickResult with;
+  TickResult without;
+  constexpr int kSteps = 400;
+  for (int i = 0; i <= kSteps; ++i) {
+    const Vec3 hand = glm::mix(from, to, 1.0 * i / kSteps);
+    with = lid->update({hand});
+    without = far->update({hand});
+    EXPECT_LT(glm::length(with.force - without.force), 1e-6) << "step " << i;
+  }
+  // The cone's law alone would be 2.04 N along its normal; by springs in series it is this.
+  EXPECT_LT(glm::length(without.force - Vec3(-1.698, 1.367, -0.155)), 2e-3);
+}
+
 }  // namespace
 }  // namespace palpate::test
