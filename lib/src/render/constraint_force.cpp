@@ -133,7 +133,7 @@ bool Feel::countSudden(const ContactSet& c, const Vec3& hip) noexcept {
   SourceState& source = state_.source;
   const FeltLeaves now = walls_.leaves();
   const FeltLeaves before = std::exchange(source.felt, now);
-  const auto end = now.leaf.begin() + static_cast<std::ptrdiff_t>(now.count);
+  const auto* const end = now.leaf.begin() + static_cast<std::ptrdiff_t>(now.count);
   const bool is_sudden =
       before.count > 0 && std::any_of(now.leaf.begin(), end, [&](LeafId id) {
         return !before.has(id) &&

@@ -72,7 +72,7 @@ struct FeltLeaves {
     if (!is_full) leaf[count++] = id;
   }
   [[nodiscard]] bool has(LeafId id) const noexcept {
-    const auto end = leaf.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto* const end = leaf.begin() + static_cast<std::ptrdiff_t>(count);
     return is_full || std::find(leaf.begin(), end, id) != end;
   }
 };
