@@ -158,7 +158,7 @@ ProxySolver::Look ProxySolver::lookAround(FrictionState& friction, bool is_first
 bool ProxySolver::goesOnInto(RegionId beyond, const CellProblem& problem) noexcept {
   if (crossed_.place != x_) crossed_ = {.place = x_};
   const bool leads_on = glm::length(problem.solution.step) > rest_;
-  const auto* const end = crossed_.from.begin() + static_cast<std::ptrdiff_t>(crossed_.count);
+  auto* const end = crossed_.from.begin() + static_cast<std::ptrdiff_t>(crossed_.count);
   const auto* const back = std::find_if(
       crossed_.from.begin(), end, [&](const Crossed::From& each) { return each.region == beyond; });
   if (back != end) {
