@@ -265,8 +265,9 @@ MaterialGrid::Place MaterialGrid::placeOf(const Vec3& p) const noexcept {
     const int last = blocks.size[a] - 1;
     // Half a voxel beyond the outermost centre the three voxels are one, and so on from there.
     const double u = std::clamp(at[axis], -0.5, last + 0.5);
-    // Not below zero, so that cutting it off rounds it down.
-    nearest[a] = std::min(static_cast<int>(u + 0.5), last);
+    // From the first voxel's outer face; not below zero, so that cutting it off rounds it down.
+    const double voxels = u + 0.5;
+    nearest[a] = std::min(static_cast<int>(voxels), last);
     out.off[a] = u - nearest[a];
   }
   out.block = &blocks.blockOf(nearest[0], nearest[1], nearest[2]);
