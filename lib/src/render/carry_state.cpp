@@ -20,7 +20,7 @@ std::optional<std::size_t> placeOf(std::span<const Named> all, std::string_view 
 
 std::string inQuotes(const std::string& name) { return "'" + name + "'"; }
 
-/// The port in `to` with the name that port `id` has in `from`; none is told in `lost`.
+/// The port in `to` with the name that port `id` has in `from`; `lost` lists the ones that `to` does not have.
 std::optional<PortId> portThere(PortId id, const Scene& from, const Scene& to,
                                 std::vector<std::string>& lost) {
   const std::string& name = from.ports()[id].name;

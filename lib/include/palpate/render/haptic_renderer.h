@@ -77,7 +77,7 @@ class HapticRenderer {
     return state_;
   }
   /// Goes on from `state` as the renderer that it was taken from would: bit for bit if that gave it by checkpoint(), else
-  /// but for rounding, since what a renderer knows of the leaves around the proxy, which is no part of the state, decides
+  /// but for rounding, since what a renderer knows of the leaves around the proxy, which is not in the state, decides
   /// which of them it looks at once more. False, and nothing is changed, if it cannot be a state of this scene. What
   /// setContent() changed is not part of it. Until the next tick crossings() and entries() are empty.
   [[nodiscard]] bool setState(const RendererState& state) noexcept;
