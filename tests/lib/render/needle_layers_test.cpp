@@ -356,6 +356,27 @@ TEST(NeedleLayers, NoWayInAndOutGivesEnergyBeyondCountedSources) {
   EXPECT_GT(counted, 0.0);
 }
 
+/// A hand on its way along the axis, and the work that is done on it.
+struct AxisHand {
+  HapticRenderer& renderer;
+  double pace = 1e-5;  // [m] a tick, at most
+  double at = 0.0;     // [m]
+  double work = 0.0;   // [J]
+  double force = 0.0;  // [N] at the last tick
+
+  void go(double to) {
+    const int n = static_cast<int>(std::lround(std::fabs(to - at) / pace));
+    const double from = at;
+    for (int i = 1; i <= n; ++i) {
+      const double z = from + (to - from) * i / n;
+      const TickResult r = renderer.update({Vec3(0.0, 0.0, z), Vec3(0.0), 1e-3});
+      work += 0.5 * (force + r.force.z) * (z - at);
+      at = z;
+      force = r.force.z;
+    }
+  }
+};
+
 // A stiff wall 10 mm behind a soft one that gives way at 30 mm: what it gives the hand on its way back is counted.
 TEST(NeedleLayers, AStiffWallMetBehindASoftOneIsACountedSource) {
   std::vector<Tissue> tissues(2);
@@ -365,25 +386,12 @@ TEST(NeedleLayers, AStiffWallMetBehindASoftOneIsACountedSource) {
   tissues[1].kind = Kind::kClosed;
   tissues[1].stiffness = 1000.0;
   const auto renderer = makeRenderer(sceneOf(tissues, Vec3(0.0), Vec3(0.0, 0.0, 1.0)));
-  double work = 0.0;
-  double last = 0.0;
-  Vec3 force(0.0);
-  const auto go = [&](double to) {
-    const int n = static_cast<int>(std::lround(std::fabs(to - last) / 1e-5));
-    const double from = last;
-    for (int i = 1; i <= n; ++i) {
-      const double z = from + (to - from) * i / n;
-      const TickResult r = renderer->update({Vec3(0.0, 0.0, z), Vec3(0.0), 1e-3});
-      work += 0.5 * (force.z + r.force.z) * (z - last);
-      last = z;
-      force = r.force;
-    }
-  };
-  go(-0.0305);
+  AxisHand hand{*renderer, 1e-5};
+  hand.go(-0.0305);
   EXPECT_NEAR(renderer->sourceWork(), 0.5 * 1000.0 * 0.02 * 0.02 - 0.5 * 100.0 * 0.03 * 0.03, 2e-4);
-  go(-0.009);
-  EXPECT_GT(work, 0.15);
-  EXPECT_LE(work, renderer->sourceWork() + 2e-4);
+  hand.go(-0.009);
+  EXPECT_GT(hand.work, 0.15);
+  EXPECT_LE(hand.work, renderer->sourceWork() + 2e-4);
 }
 
 // 10 mm of a shaft in tissue that sticks to it, held back by a skin which lets go at 0.05 N: as the tip comes on by
@@ -399,30 +407,17 @@ TEST(NeedleLayers, AShaftThatASkinLetsGoOfStretchesItsTissueAsACountedSource) {
   tissues[1].stiffness = 80.0;
   tissues[1].opens_at = tissues[1].back = 0.05;
   const auto renderer = makeRenderer(sceneOf(tissues, Vec3(0.0), Vec3(0.0, 0.0, 1.0)));
-  double work = 0.0;
-  double last = 0.0;
-  Vec3 force(0.0);
-  const auto go = [&](double to) {
-    const int n = static_cast<int>(std::lround(std::fabs(to - last) / 1e-6));
-    const double from = last;
-    for (int i = 1; i <= n; ++i) {
-      const double z = from + (to - from) * i / n;
-      const TickResult r = renderer->update({Vec3(0.0, 0.0, z), Vec3(0.0), 1e-3});
-      work += 0.5 * (force.z + r.force.z) * (z - last);
-      last = z;
-      force = r.force;
-    }
-  };
-  go(-0.0106);
+  AxisHand hand{*renderer, 1e-6};
+  hand.go(-0.0106);
   const double before = renderer->sourceWork();
   EXPECT_DOUBLE_EQ(before, 0.0);
-  const double given = work;
-  go(-0.010626);
+  const double given = hand.work;
+  hand.go(-0.010626);
   EXPECT_GT(renderer->sourceWork(), 0.0);
-  go(-0.0106);
+  hand.go(-0.0106);
   EXPECT_LT(given, 0.0);
-  go(-0.0002);
-  EXPECT_LE(work, renderer->sourceWork() + 1e-7);
+  hand.go(-0.0002);
+  EXPECT_LE(hand.work, renderer->sourceWork() + 1e-7);
 }
 
 // Five skins of 1 mm: each its own force, all in one tick of a hand that is 30 mm ahead.
