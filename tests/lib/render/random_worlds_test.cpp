@@ -226,9 +226,11 @@ TEST(RandomWorlds, AnyKeysTogetherKeepToTheRules) {
         const double done = 0.5 * glm::dot(force + r.force, way);
         work += done;
         moved += std::fabs(done);
-        // Where the force steps within a tick, as a wall gives way, the trapezium is off by up to that.
+        // Where the force steps within a tick, as a wall gives way or a content begins or ends, the trapezium is off
+        // by up to that. World 81 goes from 20 mN of a lattice to none: 28 nJ at 1 kHz, -16 nJ at 8 kHz.
         const double change = glm::length(r.force - force);
-        if (change > 1e4 * glm::length(way)) slack += 0.5 * change * glm::length(way);
+        const bool steps = change > 1e4 * glm::length(way) || !renderer->entries().empty();
+        if (steps) slack += 0.5 * change * glm::length(way);
         force = r.force;
         ASSERT_LE(work - renderer->sourceWork(), slack + 1e-3 * moved) << i;
       }
