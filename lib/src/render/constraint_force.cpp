@@ -10,6 +10,9 @@ namespace palpate {
 
 namespace {
 
+/// Of the hand's way: where the proxy goes farther in a tick, it does not follow the hand but leaves the place that held it.
+constexpr double kLeap = 4.0;
+
 /// What relaxes alike is handed on from wall to wall: the tissue goes on behind them.
 bool relaxAlike(const Maxwell& a, const Maxwell& b) noexcept {
   return a.time == b.time && a.stiffness == b.stiffness;
@@ -58,6 +61,7 @@ Feel::SpringForce Feel::evenForce(const ContactSet& c, const Vec3& apart) noexce
   double secant = 0.0;
   if (walls_.isPlain(c.wall[0].facet) && !walls_.hasSeam()) {
     secant = wallMaterial(c.wall[0].facet).stiffness.at(walker_.position());
+    out.energy = 0.5 * secant * glm::dot(apart, apart);
   } else {
     const SharedWalls felt = walls_.shared(c.wall[0], walker_.position());
     const double length = glm::length(apart);
@@ -67,6 +71,7 @@ Feel::SpringForce Feel::evenForce(const ContactSet& c, const Vec3& apart) noexce
       out.rise = felt.rise(length) + by_press;
     }
     secant = felt.force(length) / length;
+    out.energy = felt.energy(length);
     if (!felt.isStraight()) {
       out.stiffness = secant;
       out.force = out.stiffness * apart + by_press;
@@ -96,6 +101,7 @@ Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
   const double across = glm::length(outward);
   if (!state_.friction.is_felt || !(across > 0.0)) {
     const SeriesForce series = seriesForce(x, x - apart, walls_.stop(), walls_);
+    out.energy = series.energy;
     out.force = series.force + series.by_press;
     out.rise = series.rise + series.by_press;
     out.varies = series.varies;
@@ -103,6 +109,7 @@ Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
   }
   const Vec3 u = outward / across;
   const SeriesForce series = seriesForce(x, x - length * u, walls_.stop(), walls_);
+  out.energy = series.energy;
   const Vec3& pressed = series.force;
   const HeldWalls held = c.held();
   const Vec3 along = tangentialPart(pressed, held.walls());
@@ -148,6 +155,36 @@ bool Feel::countSudden(const ContactSet& c, const Vec3& hip) noexcept {
   return true;
 }
 
+/// Where friction lets go, or the place that held the proxy is one no longer, the proxy leaps: maybe to stiffer walls, in
+/// which the hand is as deep as it is by then. What these store beyond what was stored, and what the hand did in this tick,
+/// does not come from the hand. Between walls of one stiffness a leap only loses, since it brings the proxy closer.
+void Feel::countLeap(const ContactSet& c, const HipState& hip,
+                     const SpringForce& springs) noexcept {
+  if (!walls_.mayDiffer()) return;
+  StoredState& last = state_.source.stored;
+  StoredState now;
+  for (const WallContact& each : c.walls()) now.leaves.add(each.leaf);
+  now.energy = springs.energy;
+  now.push = springs.force - springs.held;
+  now.has_friction = state_.friction.is_felt;
+  now.region = walker_.region();
+  const Vec3 way = hip.position - state_.hip;
+  const auto& held = now.leaves;
+  const bool is_same =
+      held.count == last.leaves.count &&
+      std::all_of(held.leaf.begin(), held.leaf.begin() + static_cast<std::ptrdiff_t>(held.count),
+                  [&](LeafId id) { return last.leaves.has(id); });
+  if (!is_same && last.leaves.count > 0 && last.region == now.region) {
+    const Vec3 leap = walker_.position() + c.snug - state_.last.proxy;
+    const bool leaps = glm::dot(leap, leap) > kLeap * kLeap * glm::dot(way, way);
+    if (last.has_friction || now.has_friction || leaps) {
+      const double done = -0.5 * glm::dot(last.push + now.push, way);
+      state_.source.work += std::max(0.0, now.energy - last.energy - done);
+    }
+  }
+  last = now;
+}
+
 /// What the walls push with: the springs between the proxy and the hand. Whatever the walls were found to
 /// be, for one stiffness it is that times the way from the hand to the proxy.
 Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
@@ -155,7 +192,10 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   const Vec3& x = walker_.position();
   const Vec3 apart = x - hip.position;
   state_.friction.lean = Vec3(0.0);
-  if (apart == Vec3(0.0) || c.count == 0) state_.source.felt = {};
+  if (apart == Vec3(0.0) || c.count == 0) {
+    state_.source.felt = {};
+    state_.source.stored = {};
+  }
   if (apart == Vec3(0.0)) {
     state_.pressed = -1;
     return Vec3(0.0);
@@ -179,6 +219,7 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   bool differ = walls_.differ(c, glm::length(press));
   if (countSudden(c, hip.position)) differ = walls_.differ(c, glm::length(press));
   const SpringForce springs = differ ? mixedForce(c, press, outward) : evenForce(c, press);
+  countLeap(c, hip, springs);
   double damping = 0.0;
   for (const WallContact& each : c.walls()) {
     damping += wallMaterial(each.facet).damping.at(x) * each.held.multiplier;

@@ -32,6 +32,7 @@ class Feel {
  private:
   /// What the springs of walls come to.
   struct SpringForce {
+    double energy = 0.0;        ///< [J]
     Vec3 force{0.0, 0.0, 0.0};  ///< [N]
     Vec3 held{0.0, 0.0, 0.0};   ///< [N] to be taken off it: of what the walls do not hold
     double stiffness = 0.0;     ///< [N/m] against what friction holds
@@ -41,6 +42,8 @@ class Feel {
 
   void relax(const ContactSet& contact, const HipState& hip) noexcept;
   [[nodiscard]] bool countSudden(const ContactSet& contact, const Vec3& hip) noexcept;
+  void countLeap(const ContactSet& contact, const HipState& hip,
+                 const SpringForce& springs) noexcept;
   [[nodiscard]] SpringForce evenForce(const ContactSet& contact, const Vec3& apart) noexcept;
   [[nodiscard]] SpringForce mixedForce(const ContactSet& contact, const Vec3& apart,
                                        const Vec3& outward) noexcept;

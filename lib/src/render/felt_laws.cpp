@@ -57,7 +57,21 @@ FeltWall FeltWalls::felt(LeafId leaf, const Facet& facet, const HeldWall& held, 
     out.law.reach = kInfinity;
     out.height_rise -= side * smooth.gradient;
   }
+  for (Vec3* rise : {&out.stiffness_rise, &out.stiffening_rise, &out.height_rise}) {
+    *rise = byProxy(held, *rise);
+  }
   return out;
+}
+
+/// What rises by `rise` a meter over a wall, a meter of the proxy's: the proxy's foot goes with it, but stays on the wall.
+Vec3 FeltWalls::byProxy(const HeldWall& held, const Vec3& rise) const noexcept {
+  if (rise == Vec3(0.0)) return rise;
+  const Vec3 along = rise - glm::dot(rise, held.normal) * held.normal;
+  const double slope = glm::length(held.jet.gradient);
+  if (!(slope > 0.0)) return along;
+  // The derivative of footOn(): the normal turns as the proxy goes.
+  const Vec3 turn = (held.jet.value / (slope * slope)) * (held.jet.hessian * along);
+  return along - (turn - glm::dot(turn, held.normal) * held.normal);
 }
 
 /// Walls of one kind feel the same but for what lies behind them.

@@ -43,6 +43,8 @@ class FeltWalls final : public SoftKinds {
   /// at an angle. Then
   /// seriesForce() may be asked, until the walker moves.
   [[nodiscard]] bool differ(const ContactSet& contact, double reach) noexcept;
+  /// Whether walls of the present region, or of those that it leads to freely, may push by different laws.
+  [[nodiscard]] bool mayDiffer() const noexcept { return may_differ_[walker_.region()]; }
   /// The leaves of the walls that differ() found, those of the contact among them.
   [[nodiscard]] FeltLeaves leaves() const noexcept;
   /// Until it is called with null, differ() finds no walls beside the contact's but `known`.
@@ -89,6 +91,7 @@ class FeltWalls final : public SoftKinds {
   [[nodiscard]] int ownOf(const Near& wall) const noexcept;
   [[nodiscard]] bool feelsAlike(const Facet& a, const Facet& b) const noexcept;
   void findGroups(const ContactSet& contact, double reach) noexcept;
+  [[nodiscard]] Vec3 byProxy(const HeldWall& held, const Vec3& rise) const noexcept;
   [[nodiscard]] Vec3 footOn(const HeldWall& held) const noexcept;
   [[nodiscard]] bool isFeltAlready() const noexcept;
   [[nodiscard]] bool isShared(const Near& wall) noexcept;

@@ -42,6 +42,26 @@ bool PaperRenderer::turn(std::span<const LeafId> leaves) noexcept {
   return is_changed;
 }
 
+/// The faces of the region `to`, or of the one that is left for it, whichever lies further in. Where a face of the other
+/// lies at the same place, a tick comes through both at once.
+bool PaperRenderer::turnTo(RegionId to, const Vec3& hip) noexcept {
+  const Partition& partition = scene_->partition();
+  const RegionId inner = std::max(state_.place.region, to);
+  const RegionId outer = std::min(state_.place.region, to);
+  if (!turn(partition.leavesOfRegion(inner))) return false;
+  if (partition.regionOf(turned_) == to) return true;
+  if (outer == kOutside) return false;
+  const Vec3 at = crossingPoint(hip);
+  const LeafId through = turned_leaf_;
+  for (const LeafId leaf : partition.leavesOfRegion(outer)) {
+    if (turned_.inside(leaf) == now_.inside(leaf)) continue;
+    turned_leaf_ = leaf;
+    if (glm::distance(crossingPoint(hip), at) <= layers_[inner - 1].beneath) turned_.flip(leaf);
+  }
+  turned_leaf_ = through;
+  return partition.regionOf(turned_) == to;
+}
+
 bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcept {
   const Port& port = scene_->ports()[id];
   const Partition& partition = scene_->partition();
@@ -49,13 +69,11 @@ bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcep
   for (const std::vector<RegionId>* side : {&port.to, &port.from}) {
     for (const RegionId to : *side) {
       if (to == state_.place.region || !port.leads(state_.place.region, to)) continue;
-      const RegionId inner = std::max(state_.place.region, to);
-      const bool is_on_face = !port.on.empty();
-      if (!turn(is_on_face ? std::span<const LeafId>(port.on) : partition.leavesOfRegion(inner)) ||
-          partition.regionOf(turned_) != to) {
-        continue;
-      }
-      if (is_on_face) {
+      if (port.on.empty()) {
+        if (!turnTo(to, hip)) continue;
+      } else {
+        if (!turn(port.on) || partition.regionOf(turned_) != to) continue;
+        const RegionId inner = std::max(state_.place.region, to);
         // The walls beside the face must have been passed neither before nor now.
         scratch_.assign(now_);
         if (inner == state_.place.region) {
@@ -82,11 +100,9 @@ bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcep
 }
 
 bool PaperRenderer::tryAbsentWalls(const Vec3& hip) noexcept {
-  const Partition& partition = scene_->partition();
   // NOLINTNEXTLINE(readability-use-anyofallof): it does more than look.
   for (const RegionId to : free_ways_of_[state_.place.region]) {
-    const RegionId inner = std::max(state_.place.region, to);
-    if (!turn(partition.leavesOfRegion(inner)) || partition.regionOf(turned_) != to) continue;
+    if (!turnTo(to, hip)) continue;
     scene_->passages().arrive(state_.place.passed, state_.place.region, to, scene_->keepsMemory());
     enter({.from = state_.place.region,
            .to = to,

@@ -206,6 +206,35 @@ layers: [{name: body, inside: {sphere: {center: [0, 0, 0], radius: 40}}, wall: s
 ports: [{name: cut, between: [outside, body], opens_at: 2 N, back: 0.5 N}]
 )";
 
+/// Into a box through the absent wall at x = 0 and out through a port at x = 10 mm, in steps that end beside both.
+TEST_P(BothRenderers, APassingHasItsPlaceOnTheWallAndNotAtTheHand) {
+  Drive drive(sceneOf(R"(
+palpate: 1
+length: mm
+fields:
+  front: {half_space: {point: [0, 0, 0], normal: [-1, 0, 0]}}
+  back: {half_space: {point: [10, 0, 0], normal: [1, 0, 0]}}
+materials: {glass: {stiffness: 1000 N/m}}
+layers:
+  - {name: first, inside: {intersection: [front, back]}, wall: absent}
+  - {name: second, inside: {half_space: {point: [10, 0, 0], normal: [-1, 0, 0]}}, wall: glass}
+ports:
+  - {name: door, between: [first, second]}
+)"),
+              GetParam());
+  const auto passes = [&](double from, double to) {
+    (void)drive.to(mm(from, 0, 0));
+    (void)drive.to(mm(to, 0, 0));
+    const std::span<const RegionEntry> entries = drive.renderer().entries();
+    return entries.size() == 1 ? entries[0].point.x * 1e3 : std::nan("");
+  };
+  // Halvings of 0.4 mm, and the proxy's rest on a wall, both end within 1e-9 m.
+  EXPECT_NEAR(passes(-0.3, 0.1), 0.0, 1e-6);
+  EXPECT_NEAR(passes(9.9, 10.3), 10.0, 1e-6);
+  EXPECT_NEAR(passes(10.1, 9.7), 10.0, 1e-6) << "on the way back";
+  EXPECT_NEAR(passes(0.3, -0.1), 0.0, 1e-6);
+}
+
 TEST(OpeningForce, OpensAtKTimesDepthAndNotBefore) {
   for (const bool enough : {false, true}) {
     Drive drive(sceneOf(kSkin));

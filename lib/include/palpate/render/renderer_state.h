@@ -77,6 +77,15 @@ struct FeltLeaves {
   }
 };
 
+/// What the walls stored against the hand at the last tick, where walls may differ in what they push with.
+struct StoredState {
+  FeltLeaves leaves;           ///< of the walls that held the proxy; none: nothing was stored
+  double energy = 0.0;         ///< [J]
+  Vec3 push{0.0, 0.0, 0.0};    ///< [N] of the springs
+  bool has_friction = false;   ///< some of these walls have friction
+  RegionId region = kOutside;  ///< from which they were felt
+};
+
 /// Counts of energy that does not come from the hand.
 struct SourceState {
   Vec3 flow_push{0.0, 0.0, 0.0};  ///< [N] of flows at the last tick
@@ -85,6 +94,7 @@ struct SourceState {
   RegionId lattice_region = kOutside;
   std::uint32_t lattice_version = 0;
   FeltLeaves felt;
+  StoredState stored;
   double work = 0.0;  ///< [J] done on the hand since the first tick
 };
 
