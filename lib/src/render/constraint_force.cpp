@@ -193,8 +193,9 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   const Vec3 apart = x - hip.position;
   state_.friction.lean = Vec3(0.0);
   if (apart == Vec3(0.0) || c.count == 0) {
-    state_.source.felt = {};
-    state_.source.stored = {};
+    state_.source.felt.count = 0;
+    state_.source.felt.is_full = false;
+    state_.source.stored.leaves.count = 0;
   }
   if (apart == Vec3(0.0)) {
     state_.pressed = -1;
