@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "palpate/vdb/image.h"
+#include "support/scan_folder.h"
 #include "tools/helpers.h"
 #include "vdb/python_oracle.h"
 
@@ -10,9 +11,8 @@ namespace palpate::testing {
 namespace {
 
 TEST(QueryScan, TenPointsOfAnObliqueScanAreAsScipyHasThem) {
-  const std::string data = PALPATE_SOURCE_DIR "/../shared/data";
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no " << data;
-  const std::string scan = data + "/orientation_pair/FLAIR.nii.gz";
+  const std::string scan = scanPath("orientation_pair/FLAIR.nii.gz");
+  PALPATE_NEEDS_SCAN(scan);
   const vdb::Image image = vdb::readNifti(scan);
   const Vec3 last(image.size[0] - 1, image.size[1] - 1, image.size[2] - 1);
 

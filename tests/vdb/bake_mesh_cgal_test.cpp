@@ -11,6 +11,7 @@
 #include "cgal/cgal_distance.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "support/scan_folder.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {
@@ -84,11 +85,11 @@ struct Known {
   double overlaps;     ///< share of the band that is near to walls within the solid, at most
 };
 
-class BakeMeshCgalReal : public testing::TestWithParam<Known> {};
+class BakeMeshCgalReal : public ::testing::TestWithParam<Known> {};
 
 TEST_P(BakeMeshCgalReal, IsExactAndAsLargeAsItsMesh) {
-  const std::string folder = PALPATE_SOURCE_DIR "/../shared/data/meshes/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared/data is not there";
+  const std::string folder = palpate::testing::scanPath("meshes/");
+  PALPATE_NEEDS_SCAN(folder);
   const Known& known = GetParam();
   const Mesh mesh = readMesh(folder + known.name, known.unit);
   const LevelSet set = bakeMesh(mesh, voxels(known.voxel, 3.0));
@@ -108,12 +109,12 @@ TEST_P(BakeMeshCgalReal, IsExactAndAsLargeAsItsMesh) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BakeMeshCgalReal,
-                         testing::Values(Known{"brain_region.stl", 1e-3, 0.25e-3, 0.0},
-                                         Known{"brain_region2.stl", 1e-3, 0.25e-3, 0.0},
-                                         Known{"footbones.ply", 10e-3, 0.3e-3, 0.1},
-                                         Known{"liver-smooth.obj", 1e-3, 0.04e-3, 0.05},
-                                         Known{"malleus.obj", 1e-3, 0.04e-3, 0.05},
-                                         Known{"tooth.obj", 1e-4, 0.3e-3, 0.5}),
+                         ::testing::Values(Known{"brain_region.stl", 1e-3, 0.25e-3, 0.0},
+                                           Known{"brain_region2.stl", 1e-3, 0.25e-3, 0.0},
+                                           Known{"footbones.ply", 10e-3, 0.3e-3, 0.1},
+                                           Known{"liver-smooth.obj", 1e-3, 0.04e-3, 0.05},
+                                           Known{"malleus.obj", 1e-3, 0.04e-3, 0.05},
+                                           Known{"tooth.obj", 1e-4, 0.3e-3, 0.5}),
                          [](const auto& known) {
                            std::string name = known.param.name;
                            std::replace_if(

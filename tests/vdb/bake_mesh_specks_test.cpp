@@ -13,6 +13,7 @@
 #include "palpate/core/error.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "support/scan_folder.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {
@@ -199,8 +200,8 @@ TEST(MeshSpecks, AVoxelTooSmallForOpenVdbIsNamed) {
 class RealSurface : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(RealSurface, WithSpecksSliversShellsAndGapsIsTheSameSurface) {
-  const std::string path = std::string(PALPATE_SOURCE_DIR) + "/../shared/data/meshes/" + GetParam();
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  const std::string path = palpate::testing::scanPath("meshes/") + GetParam();
+  PALPATE_NEEDS_SCAN(path);
   const Mesh clean = readMesh(path, 1e-3);
   const MeshReport report = checkMesh(clean);
   const Vec3 size = report.bounds.size();

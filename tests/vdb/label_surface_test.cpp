@@ -12,6 +12,7 @@
 
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/scan_surface.h"
+#include "support/scan_folder.h"
 
 namespace palpate::vdb {
 namespace {
@@ -301,7 +302,7 @@ double volumeOf(const LevelSet& grid) {
 /// Every label of an image as a layer: its volume, and that no two leave a gap or overlap between two
 /// voxels that belong to them.
 void checkScan(const std::string& file) {
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+  PALPATE_NEEDS_SCAN(file);
   const Image image = readNifti(file);
   std::map<int, std::size_t> counts;
   for (const float value : image.values) ++counts[static_cast<int>(value)];
@@ -479,11 +480,11 @@ TEST(LabelSurface, ThinPartsAreKeptOrTold) {
 }
 
 TEST(LabelSurface, VertebraKeepsVolumesAndWalls) {
-  checkScan(PALPATE_SOURCE_DIR "/../shared/data/vertebra/subregions.nii.gz");
+  checkScan(palpate::testing::scanPath("vertebra/subregions.nii.gz"));
 }
 
 TEST(LabelSurface, AbdomenKeepsVolumesAndWalls) {
-  checkScan(PALPATE_SOURCE_DIR "/../shared/data/abdomen/example_seg.nii.gz");
+  checkScan(palpate::testing::scanPath("abdomen/example_seg.nii.gz"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "palpate/core/error.h"
+#include "support/scan_folder.h"
 
 namespace palpate::vdb {
 namespace {
@@ -340,8 +341,8 @@ TEST(ScanSurface, ReportsProgressThatOnlyGrowsAndStopsWhenTold) {
 }
 
 TEST(ScanSurface, FiveOrgansByNameKeepTheirVolume) {
-  const std::string folder = PALPATE_SOURCE_DIR "/../shared/data/abdomen";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const std::string folder = palpate::testing::scanPath("abdomen");
+  PALPATE_NEEDS_SCAN(folder);
   const Image image = readNifti(folder + "/example_seg.nii.gz");
   const NameTable names = readLabelTable(folder + "/labels.csv").names;
   for (const char* name : {"liver", "spleen", "kidney_right", "stomach", "aorta"}) {
