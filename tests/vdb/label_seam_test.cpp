@@ -14,6 +14,7 @@
 #include "palpate/scene/scene.h"
 #include "palpate/vdb/scan_surface.h"
 #include "support/scan_folder.h"
+#include "vdb/debian_scans.h"
 
 namespace palpate::vdb {
 namespace {
@@ -207,6 +208,8 @@ void checkScan(const char* name, const std::string& file, bool by_themselves) {
   PALPATE_NEEDS_SCAN(file);
   checkSeams(name, readNifti(file), by_themselves);
 }
+
+TEST(LabelSeam, EveryPointOfABrainsNucleiIsInOnePart) { checkSeams("nuclei", test::deepBrain()); }
 
 TEST(LabelSeam, EveryPointOfTheVertebraIsInOnePart) {
   checkScan("vertebra", palpate::testing::scanPath("vertebra/subregions.nii.gz"), true);
