@@ -87,12 +87,17 @@ HeadCt readHeadCt() {
   return ct;
 }
 
-std::string writeSlices(const HeadCt& ct, int first, int count,
-                        const palpate::testing::TempFolder& folder) {
-  const std::size_t from = ct.index(0, 0, first);
-  const std::size_t to = ct.index(0, 0, first + count);
-  (void)folder.file("head.raw", std::string_view(reinterpret_cast<const char*>(&ct.values[from]),
-                                                 2 * (to - from)));
+std::string writePart(const HeadCt& ct, const std::array<int, 3>& lo, const std::array<int, 3>& hi,
+                      const palpate::testing::TempFolder& folder) {
+  std::string raw;
+  const std::array<int, 3> size = {hi[0] - lo[0] + 1, hi[1] - lo[1] + 1, hi[2] - lo[2] + 1};
+  for (int k = lo[2]; k <= hi[2]; ++k) {
+    for (int j = lo[1]; j <= hi[1]; ++j) {
+      raw.append(reinterpret_cast<const char*>(&ct.values[ct.index(lo[0], j, k)]),
+                 2 * static_cast<std::size_t>(size[0]));
+    }
+  }
+  (void)folder.file("head.raw", raw);
   const auto three = [](const auto& numbers) {
     std::string text;
     for (const auto number : numbers) text += " " + std::to_string(number);
@@ -103,7 +108,7 @@ std::string writeSlices(const HeadCt& ct, int first, int count,
       "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
       "CompressedData = False\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\n"
       "ElementSpacing =" +
-          three(ct.spacing) + "\nDimSize =" + three(std::array{ct.size[0], ct.size[1], count}) +
+          three(ct.spacing) + "\nDimSize =" + three(size) +
           "\nElementType = MET_SHORT\nElementDataFile = head.raw\n");
 }
 

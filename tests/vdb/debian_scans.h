@@ -32,9 +32,9 @@ struct HeadCt {
 /// @throws std::runtime_error if the package is not installed, or holds something else.
 [[nodiscard]] HeadCt readHeadCt();
 
-/// The slices from `first` on as MetaImage, voxel (0, 0, first) at the origin, axes along L, P, S; the path of the .mhd.
-std::string writeSlices(const HeadCt& ct, int first, int count,
-                        const palpate::testing::TempFolder& folder);
+/// The voxels from `lo` to `hi` as MetaImage, that of `lo` at the origin, axes along L, P, S; the path of the .mhd.
+std::string writePart(const HeadCt& ct, const std::array<int, 3>& lo, const std::array<int, 3>& hi,
+                      const palpate::testing::TempFolder& folder);
 
 /// The voxels from `lo` to `hi`, where they are.
 [[nodiscard]] Image cropped(const Image& image, const std::array<int, 3>& lo,
