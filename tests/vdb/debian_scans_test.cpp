@@ -47,7 +47,6 @@ double farthestOff(const Image& image, const Twelve& affine) {
 // Bytes and floats, from the left to the right and the other way round. nibabel takes the sform where both are set.
 TEST(DebianScans, TemplatesAreAsNibabelHasThem) {
   const std::vector<std::string> files = {test::mricron("AICHAmc.nii.gz"),
-
                                           test::mricron("inia19-t1-brain.nii.gz")};
   ImageOptions options;
   options.affine = AffineChoice::kSform;
