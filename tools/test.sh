@@ -107,7 +107,7 @@ tell_left_out() { # what the lanes skipped, each test once, by the file that it 
   awk -F '\t' '{
       why = $2 == "" ? " without a reason" : ": " $2
       if (sub(/^: absent: /, "", why)) { sub(/ in [^;]*; .*/, "", why); why = " for want of " why }
-      else sub(/^: /, " by themselves: ", why)
+      else sub(/^: /, " for another reason: ", why)
       count[why]++
     } END { for (why in count) printf "  %4d%s\n", count[why], why }' <<< "$tests" | sort --key=2
   [ "$scans" = 0 ] || cat << EOF

@@ -7,6 +7,9 @@
 #include <map>
 #include <stdexcept>
 
+#include "palpate/vdb/scan_surface.h"
+#include "palpate/vdb/surface_mesh.h"
+
 namespace palpate::vdb::test {
 namespace {
 
@@ -133,6 +136,10 @@ Image deepBrain() {
   for (const float label : part.values) ++voxels[label];
   for (float& label : part.values) label = voxels[label] < 100 ? 0.0F : label;
   return part;
+}
+
+Mesh nucleusMesh(int label) {
+  return surfaceMesh(surfaceFromLabels(deepBrain(), {.values = {label}}, {}));
 }
 
 }  // namespace palpate::vdb::test

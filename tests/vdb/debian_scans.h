@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "palpate/vdb/image.h"
+#include "palpate/vdb/mesh.h"
 #include "support/temp_file.h"
 
 namespace palpate::vdb::test {
@@ -43,5 +44,8 @@ std::string writePart(const HeadCt& ct, const std::array<int, 3>& lo, const std:
 /// Of mricron's aal, the voxels around the nuclei of the left half of the brain: thalamus, putamen, pallidum, and the
 /// parts of their neighbors that are larger than 100 voxels there.
 [[nodiscard]] Image deepBrain();
+
+/// Triangles around one of its labels: 73 putamen, 75 pallidum, 77 thalamus.
+[[nodiscard]] Mesh nucleusMesh(int label);
 
 }  // namespace palpate::vdb::test
