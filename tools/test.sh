@@ -21,6 +21,8 @@
 #   --all           every lane; tidy and asan on everything, and the slow sweeps (PALPATE_SLOW_TESTS=1)
 #   --changed REF   what counts as changed for tidy: since REF, origin/main for one. Default: by the newest
 #                   commit and since
+# Tests of scans that are not part of the repository read them in the folder that PALPATE_SCANS names (default:
+# ../shared/data); those whose scans are not there are left out, and named at the end.
 # The last line says 'N passed, N failed' over all lanes; the exit status is 0 if none failed.
 set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -49,12 +51,18 @@ if [ ${#lanes[@]} = 0 ]; then
   lanes=("${default_lanes[@]}")
 fi
 
+# Tests run elsewhere; and a folder that is asked for has to be there.
+if [ -n "${PALPATE_SCANS:-}" ]; then
+  [ -d "$PALPATE_SCANS" ] || usage "PALPATE_SCANS names $PALPATE_SCANS, which is not a folder"
+  PALPATE_SCANS=$(cd "$PALPATE_SCANS" && pwd) && export PALPATE_SCANS
+fi
+
 asan_options=(-DPALPATE_VDB=OFF)
 [ $tidy_all = 0 ] || asan_options=(-DPALPATE_VDB=ON)
 
 results=$root/build/test-results
 mkdir -p "$results"
-passed=0 failed=0 skipped=0 failed_lanes=() report=()
+passed=0 failed=0 skipped=0 failed_lanes=() report=() left_out=()
 
 # Every C++ file of ours.
 sources() { find lib vdb devices tools tests -name '*.h' -o -name '*.cpp' | sort; }
@@ -72,9 +80,41 @@ count_tests() { # JUNIT_FILE: adds up what ctest ran; false if it ran nothing or
   skips=$((${skips:-0} + ${disabled:-0}))
   [ "${tests:-0}" -gt 0 ] && [ -n "$fails" ] || { lane_note="no test ran"; return 1; }
   passed=$((passed + tests - fails - skips)) failed=$((failed + fails)) skipped=$((skipped + skips))
+  mapfile -t -O ${#left_out[@]} left_out < <(skipped_tests "$1")
   lane_note="$((tests - fails - skips)) passed, $fails failed"
   [ "$skips" = 0 ] || lane_note+=", $skips skipped"
   [ "$fails" = 0 ]
+}
+
+skipped_tests() { # JUNIT_FILE: a line for each test that was skipped: its name, and after a tab why
+  awk '
+    /<testcase / { name = $0; sub(/.* name="/, "", name); sub(/".*/, "", name); skipped = 0; why = "" }
+    /<skipped/ { skipped = 1 }
+    # GoogleTest: where, and on the next line why
+    said { why = why == "" ? $0 : why; said = 0 }
+    / *: Skipped$/ { said = 1 }
+    /<\/testcase>/ && skipped { print name "\t" why }' "$1" |
+    sed 's/&lt;/</g;s/&gt;/>/g;s/&quot;/"/g;s/&apos;/\x27/g;s/&amp;/\&/g'
+}
+
+tell_left_out() { # what the lanes skipped, each test once, by the file that it wants
+  local tests scans
+  [ ${#left_out[@]} -gt 0 ] || return 0
+  tests=$(printf '%s\n' "${left_out[@]}" | sort --unique --field-separator=$'\t' --key=1,1)
+  scans=$(grep --count $'\tabsent: ' <<< "$tests")
+  echo "Left out: $(wc -l <<< "$tests") tests"
+  # 'absent: FILE in FOLDER; ...'; a test may also give another reason, or none
+  awk -F '\t' '{
+      why = $2 == "" ? " without a reason" : ": " $2
+      if (sub(/^: absent: /, "", why)) { sub(/ in [^;]*; .*/, "", why); why = " for want of " why }
+      else sub(/^: /, " for another reason: ", why)
+      count[why]++
+    } END { for (why in count) printf "  %4d%s\n", count[why], why }' <<< "$tests" | sort --key=2
+  [ "$scans" = 0 ] || cat << EOF
+These scans and meshes are not part of the repository; what they show is shown by other tests as well, on scans that
+Debian packages carry or that the tests make. To run these too: PALPATE_SCANS=FOLDER tools/test.sh --lane release, where
+FOLDER holds the files above (now ${PALPATE_SCANS:-$(dirname "$root")/shared/data}).
+EOF
 }
 
 build_and_test() { # PRESET [CONFIGURE_OPTION...]
@@ -187,6 +227,7 @@ done
 
 say "Summary after $(elapsed)"
 printf '%s\n' "${report[@]}"
+tell_left_out
 [ ${#failed_lanes[@]} = 0 ] || echo "Failed: ${failed_lanes[*]}"
 echo "$passed passed, $failed failed$([ $skipped = 0 ] || echo ", $skipped skipped")"
 [ ${#failed_lanes[@]} = 0 ]

@@ -13,6 +13,7 @@
 #include "fuzz/seeds.h"
 #include "grid/vdb_archive.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "support/scan_folder.h"
 #include "support/temp_file.h"
 
 namespace palpate::vdb {
@@ -66,8 +67,8 @@ TEST(VdbWalk, EveryShortenedFileIsRefusedBeforeOpenVdbReadsIt) {
 }
 
 TEST(VdbWalk, AFileOfAnotherProgramPasses) {
-  const std::string path = PALPATE_SOURCE_DIR "/../shared/data/vdb/sphere.vdb";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const std::string path = palpate::testing::scanPath("vdb/sphere.vdb");
+  PALPATE_NEEDS_SCAN(path);
   std::ostringstream bytes;
   bytes << std::ifstream(path, std::ios::binary).rdbuf();
   expectPasses(bytes.str(), path);

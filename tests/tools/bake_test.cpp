@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "support/scan_folder.h"
 #include "tools/helpers.h"
 #include "vdb/nifti_writer.h"
 
@@ -342,8 +343,9 @@ layers:
 }
 
 TEST(BakeSharedData, RealOrgansAndMeshes) {
-  const std::string data = PALPATE_SOURCE_DIR "/../shared/data/";
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no folder " << data;
+  const std::string data = scanPath("");
+  PALPATE_NEEDS_SCAN(data + "abdomen");
+  PALPATE_NEEDS_SCAN(data + "meshes");
   const TempFolder folder;
   const CommandResult organs =
       runPalpate({"bake", data + "abdomen/example_seg.nii.gz", "-o", folder.path("o.vdb"),

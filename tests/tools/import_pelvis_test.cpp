@@ -8,13 +8,14 @@
 #include <numbers>
 
 #include "palpate/core/math.h"
+#include "support/scan_folder.h"
 #include "tools/helpers.h"
 #include "vdb/python_oracle.h"
 
 namespace palpate::testing {
 namespace {
 
-const std::string kData = PALPATE_SOURCE_DIR "/../shared/data/pelvis";
+const std::string kData = scanPath("pelvis");
 const char* const kOracle = "tools/scan_oracle.py";
 const std::string kMuscles = "5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28";
 const std::string kSets = kMuscles + ";1,2,3,4";
@@ -125,7 +126,7 @@ std::vector<Row> touched(const Pelvis& pelvis, std::vector<std::string> motion) 
 }
 
 TEST(ImportPelvis, LayersAreFeltAsDeepAsTheLabelsHaveThem) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  PALPATE_NEEDS_SCAN(kData);
   const Pelvis pelvis;
   const std::vector<Ray> rays = raysOf(pelvis);
   ASSERT_GE(rays.size(), 10U);
@@ -221,7 +222,7 @@ tissues:
 }
 
 TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  PALPATE_NEEDS_SCAN(kData);
   const Pelvis pelvis;
   const std::vector<Ray> rays = raysOf(pelvis);
   // The one that meets skin and muscle most squarely: there no wall is slid along before it gives way.

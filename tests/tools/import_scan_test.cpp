@@ -4,13 +4,14 @@
 #include <cstdio>
 
 #include "palpate/core/math.h"
+#include "support/scan_folder.h"
 #include "tools/helpers.h"
 #include "vdb/python_oracle.h"
 
 namespace palpate::testing {
 namespace {
 
-const std::string kData = PALPATE_SOURCE_DIR "/../shared/data";
+const std::string kData = scansFolder();
 const char* const kOracle = "tools/scan_oracle.py";
 
 Json run(const TempFolder& folder, const std::vector<std::string>& arguments) {
@@ -93,8 +94,8 @@ std::string raysFile(const TempFolder& folder, const std::vector<Ray>& rays) {
 }
 
 TEST(ImportScan, RegionsOfAnAbdomenAreThoseOfScipy) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
   const std::string labels = kData + "/abdomen/example_seg.nii.gz";
+  PALPATE_NEEDS_SCAN(labels);
   const std::string ct = kData + "/abdomen/example_ct.nii.gz";
   const TempFolder folder;
   const Json json = run(folder, {"import", labels, "--names", kData + "/abdomen/labels.csv",
@@ -119,8 +120,8 @@ TEST(ImportScan, RegionsOfAnAbdomenAreThoseOfScipy) {
 }
 
 TEST(ImportScan, MuscleAndBoneOfAnAbdomenAreWhereTheLabelsAre) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
   const std::string labels = kData + "/abdomen/example_seg.nii.gz";
+  PALPATE_NEEDS_SCAN(labels);
   const std::string ct = kData + "/abdomen/example_ct.nii.gz";
   const TempFolder folder;
   const Json json = run(
@@ -153,7 +154,7 @@ TEST(ImportScan, MuscleAndBoneOfAnAbdomenAreWhereTheLabelsAre) {
 }
 
 TEST(ImportScan, AShellIsFeltOnBothFacesAndItsCoreReachedThroughItAlone) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  PALPATE_NEEDS_SCAN(kData + "/vertebra/subregions.nii.gz");
   const TempFolder folder;
   (void)folder.file("names.csv", "value,name\n49,vertebra shell\n50,vertebra core\n");
   (void)folder.file("table.yaml", R"(palpate_tissues: 1
@@ -237,8 +238,8 @@ tissues:
 }
 
 TEST(ImportScan, OfSegmentsThatOverlapTheLaterHasTheVoxels) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
   const std::string file = kData + "/chest_segnrrd/SegmentationOverlapping.seg.nrrd";
+  PALPATE_NEEDS_SCAN(file);
   const TempFolder folder;
   const CommandResult result =
       runPalpate({"import", file, "-o", "chest.yaml", "--json"}, folder.path());

@@ -3,16 +3,15 @@
 #include <cmath>
 
 #include "palpate/vdb/image.h"
+#include "support/scan_folder.h"
 #include "tools/helpers.h"
+#include "vdb/made_scans.h"
 #include "vdb/python_oracle.h"
 
 namespace palpate::testing {
 namespace {
 
-TEST(QueryScan, TenPointsOfAnObliqueScanAreAsScipyHasThem) {
-  const std::string data = PALPATE_SOURCE_DIR "/../shared/data";
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no " << data;
-  const std::string scan = data + "/orientation_pair/FLAIR.nii.gz";
+void expectTenPointsAsScipyHasThem(const std::string& scan) {
   const vdb::Image image = vdb::readNifti(scan);
   const Vec3 last(image.size[0] - 1, image.size[1] - 1, image.size[2] - 1);
 
@@ -45,6 +44,18 @@ TEST(QueryScan, TenPointsOfAnObliqueScanAreAsScipyHasThem) {
     brightest = std::max(brightest, expected[i][0]);
   }
   EXPECT_GT(brightest, 50.0);  // not a comparison of background with background
+}
+
+TEST(QueryScan, TenPointsOfAMadeLimbAreAsScipyHasThem) {
+  const TempFolder folder;
+  expectTenPointsAsScipyHasThem(vdb::test::writeNifti(
+      vdb::test::Limb().scan(vdb::test::obliqueAxes(Vec3(-1, 1.3, 2))), folder, "limb.nii.gz"));
+}
+
+TEST(QueryScan, TenPointsOfAnObliqueScanAreAsScipyHasThem) {
+  const std::string scan = scanPath("orientation_pair/FLAIR.nii.gz");
+  PALPATE_NEEDS_SCAN(scan);
+  expectTenPointsAsScipyHasThem(scan);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "support/scan_folder.h"
 #include "tools/helpers.h"
 #include "tools/png_pixels.h"
 
@@ -68,8 +69,8 @@ TEST(Scan, InfoTellsPlaceUnitAndLabelsWithTheirVoxels) {
 }
 
 TEST(Scan, AFolderOfSlicesIsAnImageAndAnyOtherIsNone) {
-  const std::string data = PALPATE_SOURCE_DIR "/../shared/data/dicom_cthead";
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no " << data;
+  const std::string data = scanPath("dicom_cthead");
+  PALPATE_NEEDS_SCAN(data);
   const Json one = infoOf({data});
   EXPECT_EQ(one["size"], Json::array({64, 64, 93}));
   EXPECT_NEAR(one["spacing_m"][2], 0.0015, 1e-9);

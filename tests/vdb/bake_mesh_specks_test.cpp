@@ -13,6 +13,8 @@
 #include "palpate/core/error.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "support/scan_folder.h"
+#include "vdb/debian_scans.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {
@@ -195,13 +197,8 @@ TEST(MeshSpecks, AVoxelTooSmallForOpenVdbIsNamed) {
   EXPECT_NE(problem.message.find("5e-08 mm"), std::string::npos) << problem.message;
 }
 
-/// Real surfaces, dirtied.
-class RealSurface : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(RealSurface, WithSpecksSliversShellsAndGapsIsTheSameSurface) {
-  const std::string path = std::string(PALPATE_SOURCE_DIR) + "/../shared/data/meshes/" + GetParam();
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
-  const Mesh clean = readMesh(path, 1e-3);
+/// A surface of a scan, dirtied.
+void expectSameWithDirt(const Mesh& clean) {
   const MeshReport report = checkMesh(clean);
   const Vec3 size = report.bounds.size();
   const double voxel = std::max({size.x, size.y, size.z}) / 96.0;
@@ -229,6 +226,18 @@ TEST_P(RealSurface, WithSpecksSliversShellsAndGapsIsTheSameSurface) {
   EXPECT_NEAR(static_cast<double>(soup.info().active_voxels),
               static_cast<double>(wanted.info().active_voxels),
               1e-3 * static_cast<double>(wanted.info().active_voxels));
+}
+
+TEST(MeshSpecks, ANucleusOfABrainWithSpecksSliversShellsAndGapsIsTheSameSurface) {
+  expectSameWithDirt(nucleusMesh(75));
+}
+
+class RealSurface : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(RealSurface, WithSpecksSliversShellsAndGapsIsTheSameSurface) {
+  const std::string path = palpate::testing::scanPath("meshes/") + GetParam();
+  PALPATE_NEEDS_SCAN(path);
+  expectSameWithDirt(readMesh(path, 1e-3));
 }
 
 INSTANTIATE_TEST_SUITE_P(Surfaces, RealSurface,

@@ -20,6 +20,7 @@
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "support/scan_folder.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {
@@ -338,8 +339,8 @@ TEST(BakeMesh, CanBeStopped) {
 }
 
 TEST(BakeMesh, RealMeshesBake) {
-  const std::string folder = PALPATE_SOURCE_DIR "/../shared/data/meshes/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared/data is not there";
+  const std::string folder = palpate::testing::scanPath("meshes/");
+  PALPATE_NEEDS_SCAN(folder);
   struct Known {
     const char* name;
     double unit, voxel;  // [m]

@@ -13,6 +13,8 @@
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene.h"
 #include "palpate/vdb/scan_surface.h"
+#include "support/scan_folder.h"
+#include "vdb/debian_scans.h"
 
 namespace palpate::vdb {
 namespace {
@@ -203,17 +205,19 @@ TEST(LabelSeam, EveryPointOfADividedBallIsInOnePart) {
 }
 
 void checkScan(const char* name, const std::string& file, bool by_themselves) {
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+  PALPATE_NEEDS_SCAN(file);
   checkSeams(name, readNifti(file), by_themselves);
 }
 
+TEST(LabelSeam, EveryPointOfABrainsNucleiIsInOnePart) { checkSeams("nuclei", test::deepBrain()); }
+
 TEST(LabelSeam, EveryPointOfTheVertebraIsInOnePart) {
-  checkScan("vertebra", PALPATE_SOURCE_DIR "/../shared/data/vertebra/subregions.nii.gz", true);
+  checkScan("vertebra", palpate::testing::scanPath("vertebra/subregions.nii.gz"), true);
 }
 
 TEST(LabelSeam, EveryPointOfTheAbdomenIsInOnePart) {
   // Its grids by themselves: LabelSurface.AbdomenKeepsVolumesAndWalls.
-  checkScan("abdomen", PALPATE_SOURCE_DIR "/../shared/data/abdomen/example_seg.nii.gz", false);
+  checkScan("abdomen", palpate::testing::scanPath("abdomen/example_seg.nii.gz"), false);
 }
 
 TEST(LabelSeam, NothingIsUnitedWhereNoLabelsMeet) {

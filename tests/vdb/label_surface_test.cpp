@@ -12,6 +12,8 @@
 
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/scan_surface.h"
+#include "support/scan_folder.h"
+#include "vdb/debian_scans.h"
 
 namespace palpate::vdb {
 namespace {
@@ -300,9 +302,7 @@ double volumeOf(const LevelSet& grid) {
 
 /// Every label of an image as a layer: its volume, and that no two leave a gap or overlap between two
 /// voxels that belong to them.
-void checkScan(const std::string& file) {
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
-  const Image image = readNifti(file);
+void checkScan(const Image& image) {
   std::map<int, std::size_t> counts;
   for (const float value : image.values) ++counts[static_cast<int>(value)];
   counts.erase(0);
@@ -478,12 +478,18 @@ TEST(LabelSurface, ThinPartsAreKeptOrTold) {
   EXPECT_NE(note.find(" 12) mm"), std::string::npos) << note;
 }
 
+TEST(LabelSurface, NucleiOfABrainKeepVolumesAndWalls) { checkScan(test::deepBrain()); }
+
 TEST(LabelSurface, VertebraKeepsVolumesAndWalls) {
-  checkScan(PALPATE_SOURCE_DIR "/../shared/data/vertebra/subregions.nii.gz");
+  const std::string file = palpate::testing::scanPath("vertebra/subregions.nii.gz");
+  PALPATE_NEEDS_SCAN(file);
+  checkScan(readNifti(file));
 }
 
 TEST(LabelSurface, AbdomenKeepsVolumesAndWalls) {
-  checkScan(PALPATE_SOURCE_DIR "/../shared/data/abdomen/example_seg.nii.gz");
+  const std::string file = palpate::testing::scanPath("abdomen/example_seg.nii.gz");
+  PALPATE_NEEDS_SCAN(file);
+  checkScan(readNifti(file));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "palpate/core/error.h"
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/scan_surface.h"
+#include "support/scan_folder.h"
 #include "vdb/nifti_writer.h"
 
 namespace palpate::vdb {
@@ -13,7 +14,7 @@ namespace {
 
 using test::writeTemporary;
 
-const std::string kData = PALPATE_SOURCE_DIR "/../shared/data";
+const std::string kData = palpate::testing::scansFolder();
 
 NameTable tableOf(const std::string& text) {
   return readLabelTable(writeTemporary("t.txt", text)).names;
@@ -40,8 +41,8 @@ TEST(NameTable, ReadsMricronsAal) {
 }
 
 TEST(NameTable, ReadsTheAbdomensCsv) {
-  const std::string path = PALPATE_SOURCE_DIR "/../shared/data/abdomen/labels.csv";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  const std::string path = palpate::testing::scanPath("abdomen/labels.csv");
+  PALPATE_NEEDS_SCAN(path);
   const NameTable names = readLabelTable(path).names;
   EXPECT_EQ(names.at(0), "background");
   EXPECT_EQ(names.at(5), "liver");
@@ -103,7 +104,7 @@ TEST(LabelTable, ColorsOfEveryKindOfTableAreKept) {
 
 TEST(LabelTable, TheHeadsColorsAreSlicers) {
   const std::string path = kData + "/head_neck/colors.ctbl";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  PALPATE_NEEDS_SCAN(path);
   const LabelTable table = readLabelTable(path);
   EXPECT_EQ(table.names.at(25), "mandible");
   EXPECT_EQ(table.colors.at(25), (LabelColor{220 / 255.0F, 225 / 255.0F, 105 / 255.0F}));
@@ -111,7 +112,8 @@ TEST(LabelTable, TheHeadsColorsAreSlicers) {
 }
 
 TEST(NameTable, TellsOfMissingFiles) {
-  for (const std::string& path : {testing::TempDir() + "/no_such_table.csv", testing::TempDir()}) {
+  for (const std::string& path :
+       {::testing::TempDir() + "/no_such_table.csv", ::testing::TempDir()}) {
     try {
       (void)readLabelTable(path).names;
       ADD_FAILURE();

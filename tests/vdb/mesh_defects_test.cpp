@@ -15,6 +15,7 @@
 #include "mesh/exact_side.h"
 #include "mesh/triangles_meet.h"
 #include "support/error_of.h"
+#include "support/scan_folder.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {
@@ -277,8 +278,8 @@ TEST(ExactSide, OfPointsAlmostInAPlaneAndInALine) {
 }
 
 TEST(FindDefects, RealMeshes) {
-  const std::string folder = PALPATE_SOURCE_DIR "/../shared/data/meshes/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared/data is not there";
+  const std::string folder = palpate::testing::scanPath("meshes/");
+  PALPATE_NEEDS_SCAN(folder);
   // Parts as the folder's list has them.
   const std::pair<const char*, std::size_t> meshes[] = {
       {"liver-smooth.obj", 1}, {"malleus.obj", 1},       {"tooth.obj", 2},

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "palpate/core/error.h"
+#include "support/scan_folder.h"
 #include "support/temp_file.h"
 #include "vdb/shapes.h"
 
@@ -365,8 +366,8 @@ TEST(CheckMesh, VolumeOfABallConverges) {
 }
 
 TEST(ReadMesh, RealMeshesAreClosedOnceWelded) {
-  const std::string folder = PALPATE_SOURCE_DIR "/../shared/data/meshes";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared/data is not there";
+  const std::string folder = palpate::testing::scanPath("meshes");
+  PALPATE_NEEDS_SCAN(folder);
   struct Known {
     const char* name;
     std::size_t triangles, components;

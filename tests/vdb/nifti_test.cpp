@@ -8,6 +8,8 @@
 
 #include "palpate/core/error.h"
 #include "palpate/vdb/image.h"
+#include "support/scan_folder.h"
+#include "vdb/made_scans.h"
 #include "vdb/nifti_writer.h"
 #include "vdb/python_oracle.h"
 
@@ -19,7 +21,7 @@ using test::gzipped;
 using test::NiftiFile;
 using test::writeTemporary;
 
-const std::string kData = PALPATE_SOURCE_DIR "/../shared/data";
+const std::string kData = palpate::testing::scansFolder();
 const std::string kMricron = "/usr/share/mricron/templates";
 
 std::vector<std::string> niftiFilesBelow(const std::string& folder) {
@@ -61,7 +63,7 @@ void expectAffinesAsNibabel(const std::vector<std::string>& files) {
 }
 
 TEST(Nifti, AffinesOfTheSharedScansAreNibabels) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  PALPATE_NEEDS_SCAN(kData);
   expectAffinesAsNibabel(niftiFilesBelow(kData));
 }
 
@@ -107,9 +109,7 @@ TEST(Nifti, AffinesFromQuaternionsAreNibabels) {
   expectAffinesAsNibabel(files);
 }
 
-TEST(Nifti, InterpolatesAnObliqueScanAsScipyDoes) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
-  const std::string path = kData + "/orientation_pair/FLAIR.nii.gz";
+void expectInterpolatedAsScipyDoes(const std::string& path) {
   const Image image = readNifti(path);
   std::mt19937 random(11);
   std::vector<Vec3> points;
@@ -131,11 +131,23 @@ TEST(Nifti, InterpolatesAnObliqueScanAsScipyDoes) {
   ASSERT_EQ(expected.size(), points.size());
   double brightest = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    // Same formula, grey values up to 255: round-off of the index (1e-13) times the steepest step.
+    // Same formula, grey values up to some thousand: round-off of the index (1e-13) times the steepest step.
     EXPECT_NEAR(image.interpolate(points[i]), expected[i].at(0), 1e-8) << i;
     brightest = std::max(brightest, expected[i][0]);
   }
   EXPECT_GT(brightest, 50.0);  // not a comparison of background with background
+}
+
+TEST(Nifti, InterpolatesAMadeLimbAsScipyDoes) {
+  const palpate::testing::TempFolder folder;
+  expectInterpolatedAsScipyDoes(test::writeNifti(
+      test::Limb().scan(test::obliqueAxes(Vec3(-1.1, 0.9, 1.7))), folder, "limb.nii.gz"));
+}
+
+TEST(Nifti, InterpolatesAnObliqueScanAsScipyDoes) {
+  const std::string path = kData + "/orientation_pair/FLAIR.nii.gz";
+  PALPATE_NEEDS_SCAN(path);
+  expectInterpolatedAsScipyDoes(path);
 }
 
 TEST(Nifti, InterpolatesUpToTheOutermostCentresAndNotBeyond) {
@@ -165,7 +177,7 @@ struct TypeCase {
   double highest;
 };
 
-class NiftiTypes : public testing::TestWithParam<TypeCase> {};
+class NiftiTypes : public ::testing::TestWithParam<TypeCase> {};
 
 TEST_P(NiftiTypes, EveryNumberTypeVersionAndByteOrderIsRead) {
   const TypeCase& type = GetParam();
@@ -206,12 +218,12 @@ TEST_P(NiftiTypes, EveryNumberTypeVersionAndByteOrderIsRead) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, NiftiTypes,
-    testing::Values(TypeCase{"uint8", 2, 0, 255}, TypeCase{"int8", 256, -128, 127},
-                    TypeCase{"int16", 4, -32768, 32767}, TypeCase{"uint16", 512, 0, 65535},
-                    TypeCase{"int32", 8, -2147483648.0, 2147483647.0},
-                    TypeCase{"uint32", 768, 0, 4294967295.0}, TypeCase{"int64", 1024, -1e12, 1e12},
-                    TypeCase{"uint64", 1280, 0, 1e12}, TypeCase{"float32", 16, -3e7, 3e7},
-                    TypeCase{"float64", 64, -1e9, 1e9}),
+    ::testing::Values(TypeCase{"uint8", 2, 0, 255}, TypeCase{"int8", 256, -128, 127},
+                      TypeCase{"int16", 4, -32768, 32767}, TypeCase{"uint16", 512, 0, 65535},
+                      TypeCase{"int32", 8, -2147483648.0, 2147483647.0},
+                      TypeCase{"uint32", 768, 0, 4294967295.0},
+                      TypeCase{"int64", 1024, -1e12, 1e12}, TypeCase{"uint64", 1280, 0, 1e12},
+                      TypeCase{"float32", 16, -3e7, 3e7}, TypeCase{"float64", 64, -1e9, 1e9}),
     [](const auto& c) { return std::string(c.param.name); });
 
 TEST(Nifti, ScalesSpacingAndOriginByTheUnit) {

@@ -9,12 +9,13 @@
 
 #include "itk/itk_image.h"
 #include "palpate/vdb/image.h"
+#include "support/scan_folder.h"
 #include "vdb/python_oracle.h"
 
 namespace palpate::vdb {
 namespace {
 
-const std::string kData = PALPATE_SOURCE_DIR "/../shared/data";
+const std::string kData = palpate::testing::scansFolder();
 
 std::vector<std::string> scansBelow(const std::string& folder, const std::string& extension) {
   std::vector<std::string> files;
@@ -50,7 +51,7 @@ std::map<double, std::size_t> histogramOf(const Image& image) {
 constexpr double kMm = 1e-5;
 
 TEST(Scans, NiftiIsAsNibabelHasIt) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  PALPATE_NEEDS_SCAN(kData);
   const auto files = scansBelow(kData, ".nii.gz");
   ASSERT_GE(files.size(), 7U);
   const auto affines = test::askPython("affine", files);
@@ -68,7 +69,7 @@ TEST(Scans, NiftiIsAsNibabelHasIt) {
 }
 
 TEST(Scans, NrrdAndMetaImageAreAsItkHasThem) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+  PALPATE_NEEDS_SCAN(kData);
   std::vector<std::string> files = scansBelow(kData, ".nrrd");
   const auto meta = scansBelow(kData, ".mhd");
   files.insert(files.end(), meta.begin(), meta.end());
@@ -91,9 +92,9 @@ TEST(Scans, NrrdAndMetaImageAreAsItkHasThem) {
 }
 
 TEST(Scans, DicomIsAsItkHasIt) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
   for (const std::string folder : {"/dicom_cthead", "/abdomen_dicom/series"}) {
     SCOPED_TRACE(folder);
+    PALPATE_NEEDS_SCAN(kData + folder);
     const Image image = readImage(kData + folder);
     const test::ItkImage itk = test::readSeriesWithItk(kData + folder);
     EXPECT_EQ(image.size, itk.size);
@@ -104,7 +105,7 @@ TEST(Scans, DicomIsAsItkHasIt) {
 
 TEST(Scans, LabelsOfADicomSeriesLieOnItsRibs) {
   const std::string folder = kData + "/abdomen_dicom";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  PALPATE_NEEDS_SCAN(folder);
   const Image ct = readImage(folder + "/series");
   const Image labels = readImage(folder + "/seg_LAS.nii.gz");
   double sum = 0.0;
@@ -133,7 +134,7 @@ TEST(Scans, LabelsOfADicomSeriesLieOnItsRibs) {
 
 TEST(Scans, TheTwoFilesOfAPairAreOneGeometry) {
   const std::string folder = kData + "/orientation_pair/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  PALPATE_NEEDS_SCAN(folder);
   const Image a = readImage(folder + "FLAIR.nii.gz");
   const Image b = readImage(folder + "FLAIR.nrrd");
   EXPECT_EQ(a.size, b.size);
@@ -148,7 +149,7 @@ TEST(Scans, TheTwoFilesOfAPairAreOneGeometry) {
 
 TEST(Scans, OverlappingSegmentsShareVoxelsByTheRule) {
   const std::string folder = kData + "/chest_segnrrd/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  PALPATE_NEEDS_SCAN(folder);
   const Image plain = readImage(folder + "Segmentation.seg.nrrd");
   const Image image = readImage(folder + "SegmentationOverlapping.seg.nrrd");
   // The layers as they are, each alone.
@@ -176,7 +177,7 @@ TEST(Scans, OverlappingSegmentsShareVoxelsByTheRule) {
 
 TEST(Scans, NamesInsideTotalSegmentatorsFileAreThoseOfItsTable) {
   const std::string folder = kData + "/abdomen/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  PALPATE_NEEDS_SCAN(folder);
   const ImageInfo info = readImageInfo(folder + "example_seg.nii.gz");
   EXPECT_TRUE(info.is_labels);
   NameTable table = readLabelTable(folder + "labels.csv").names;

@@ -23,6 +23,7 @@
 #include "palpate/vdb/openvdb_access.h"
 #include "palpate/vdb/register.h"
 #include "support/error_of.h"
+#include "support/scan_folder.h"
 #include "support/temp_file.h"
 
 namespace palpate::vdb {
@@ -289,8 +290,8 @@ TEST(VdbOfOpenVdb, AnActiveInsideIsNoBand) {
 }
 
 TEST(VdbOfOpenVdb, SharedFolderHolds) {
-  const std::string path = PALPATE_SOURCE_DIR "/../shared/data/vdb/sphere.vdb";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "../shared/data is not there";
+  const std::string path = palpate::testing::scanPath("vdb/sphere.vdb");
+  PALPATE_NEEDS_SCAN(path);
   const auto checks = checkVdb(path, "", "mm");
   ASSERT_EQ(checks.size(), 1U);
   const GridCheck& check = checks[0];

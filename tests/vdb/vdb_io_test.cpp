@@ -24,6 +24,7 @@
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/openvdb_access.h"
 #include "support/error_of.h"
+#include "support/scan_folder.h"
 #include "support/temp_file.h"
 #include "vdb/shapes.h"
 
@@ -405,8 +406,8 @@ TEST(VdbIo, DamagedFilesAreErrorsNotCrashes) {
 }
 
 TEST(VdbIo, SampleOfOpenVdbReads) {
-  const std::string path = PALPATE_SOURCE_DIR "/../shared/data/vdb/sphere.vdb";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "../shared/data is not there";
+  const std::string path = palpate::testing::scanPath("vdb/sphere.vdb");
+  PALPATE_NEEDS_SCAN(path);
   const LevelSet set = readVdb(path, "ls_sphere", "mm");
   EXPECT_NEAR(set.info().voxel_size, 0.05e-3, 1e-9);
   EXPECT_NEAR(set.info().half_width, 3.0, 0.01);

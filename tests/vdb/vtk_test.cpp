@@ -11,6 +11,7 @@
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/mesh.h"
 #include "support/error_of.h"
+#include "support/scan_folder.h"
 #include "support/temp_file.h"
 
 namespace palpate::vdb {
@@ -160,8 +161,8 @@ TEST(Vtk, SpaceIsAsAskedElseAsTheFileSaysElseRas) {
 // Slicer smoothed and decimated its models, which drew a few vertices in at tips and rims: of these four 1 to 11 of some
 // 7000 are more than a voxel off, as they are when read by other means; nothing is by half a voxel more.
 TEST(Vtk, ModelsOfTheHeadLieOnTheirLabels) {
-  const std::string folder = PALPATE_SOURCE_DIR "/../shared/data/head_neck/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+  const std::string folder = palpate::testing::scanPath("head_neck/");
+  PALPATE_NEEDS_SCAN(folder);
   const Image labels = readImage(folder + "HN-Atlas-labels.nrrd");
   const NameTable names = readLabelTable(folder + "colors.ctbl").names;
   std::size_t models = 0;

@@ -1,0 +1,68 @@
+#pragma once
+/// Scans of shapes whose numbers are known, made voxel by voxel; and files of them by the tests' own writers, so that
+/// the readers are not tested against the library that they are part of.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "palpate/vdb/image.h"
+#include "support/temp_file.h"
+
+namespace palpate::vdb::test {
+
+/// Voxels of `axes` [mm] around `center` [mm], as many as a cube of `side` [mm] takes however it is turned, each with the
+/// value at its own center [mm].
+[[nodiscard]] Image imageAround(const Vec3& center, const Mat3& axes, double side,
+                                const std::function<double(const Vec3&)>& value);
+
+/// Cubic, anisotropic or mirrored voxels [mm], turned about an axis that is none of the image's.
+[[nodiscard]] Mat3 obliqueAxes(const Vec3& spacing, double angle = 0.6);
+
+/// Three cylinders around one axis that is no axis of any image either, with flat ends: bone within muscle within fat. [mm]
+struct Limb {
+  static constexpr double kBone = 8.0;
+  static constexpr double kMuscle = 16.0;
+  static constexpr double kBody = 22.0;
+  static constexpr double kHalf = 19.0;  ///< half of the length
+  static constexpr double kBoneHu = 1000.0;
+  static constexpr double kMuscleHu = 50.0;
+  static constexpr double kFatHu = -100.0;
+  static constexpr double kAirHu = -1000.0;
+
+  Vec3 center{12.0, -7.0, 30.0};
+  Vec3 axis = glm::normalize(Vec3(0.3, -0.4, 0.9));
+  Vec3 across = glm::normalize(glm::cross(axis, Vec3(1, 0, 0)));
+
+  /// A way out of the axis, square to it.
+  [[nodiscard]] Vec3 outwards(double angle) const;
+  [[nodiscard]] double radius(const Vec3& mm) const;
+  /// 1 bone, 2 muscle, 3 fat, 0 what is around.
+  [[nodiscard]] double label(const Vec3& mm) const;
+  /// Hounsfield units: half-way between two materials at their wall, and all of the way 1.5 mm from it.
+  [[nodiscard]] double ct(const Vec3& mm) const;
+
+  [[nodiscard]] Image labels(const Mat3& axes) const;
+  [[nodiscard]] Image scan(const Mat3& axes) const;
+};
+
+/// Labels or whole numbers as NIfTI (sform, bytes or shorts); the path.
+std::string writeNifti(const Image& image, const palpate::testing::TempFolder& folder,
+                       const std::string& name);
+/// The same as NRRD, LPS.
+std::string writeNrrd(const Image& image, const palpate::testing::TempFolder& folder,
+                      const std::string& name);
+/// The same as a DICOM series of as many slices; the folder.
+std::string writeDicom(const Image& image, const palpate::testing::TempFolder& folder,
+                       const std::string& name);
+
+/// A segment of a .seg.nrrd, of all voxels whose value is not 0.
+struct Segment {
+  std::string name;
+  Image voxels;
+};
+/// Segments that may overlap: each has a layer of its own, with the value 1.
+std::string writeSegments(const std::vector<Segment>& segments,
+                          const palpate::testing::TempFolder& folder, const std::string& name);
+
+}  // namespace palpate::vdb::test
