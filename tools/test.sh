@@ -111,7 +111,7 @@ tell_left_out() { # what the lanes skipped, each test once, by the file that it 
       count[why]++
     } END { for (why in count) printf "  %4d%s\n", count[why], why }' <<< "$tests" | sort --key=2
   [ "$scans" = 0 ] || cat << EOF
-These scans and meshes are not part of the repository; what they show is shown by other tests as well, on scans that
+These scans and meshes are not part of the repository; nearly all that they show is shown by other tests, on scans that
 Debian packages carry or that the tests make. To run these too: PALPATE_SCANS=FOLDER tools/test.sh --lane release, where
 FOLDER holds the files above (now ${PALPATE_SCANS:-$(dirname "$root")/shared/data}).
 EOF

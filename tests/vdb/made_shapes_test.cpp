@@ -62,9 +62,7 @@ TEST(MadeShell, OfOneToTwoVoxelsHasTwoWallsAndNoHole) {
     const Image image = readImage(test::writeNifti(
         test::imageAround(center, test::obliqueAxes(Vec3(1, 1, 1)), 40.0,
                           [&](const Vec3& mm) {
-                            return std::abs(glm::length(mm - center) - kRadius) < 0.5 * thickness
-                                       ? 1
-                                       : 0;
+                            return std::abs(glm::length(mm - center) - kRadius) < half ? 1 : 0;
                           }),
         folder, "shell.nii.gz"));
     const LevelSet set = surfaceFromLabels(image, {.values = {1}, .voxel_size = voxel * kMm}, {});
