@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <random>
 
 #include "lib/render/drive.h"
@@ -312,6 +313,21 @@ TEST(Insertion, WalkingRoundTheFarSideLetsGo) {
   }
   EXPECT_EQ(hand.last().force, Vec3(0.0));
   EXPECT_EQ(hand.region(), "outside");
+}
+
+// What a file of states holds may be anything. Each of its words is set beyond what any count or region is: that of the
+// layers, those of the cuts and of the next one, and the region's, which alone tell whether it is of the scene.
+TEST(Insertion, AStateIsRefusedForEachCountThatIsBeyondItsRoom) {
+  static_assert(std::is_trivially_copyable_v<Insertion>);
+  constexpr std::uint64_t kMuch = 0x0101010101010101;
+  int refused = 0;
+  for (std::size_t at = 0; at + sizeof kMuch <= sizeof(Insertion); at += sizeof kMuch) {
+    Insertion needle;
+    ASSERT_TRUE(needle.isOf(1));
+    std::memcpy(reinterpret_cast<std::byte*>(&needle) + at, &kMuch, sizeof kMuch);
+    refused += needle.isOf(1) ? 0 : 1;
+  }
+  EXPECT_EQ(refused, 4);
 }
 
 }  // namespace

@@ -102,6 +102,14 @@ TEST(MixedWalls, CurvedWallsOfTwoStiffnessesGiveNoEnergy) {
                      mm(0, 0, 0), circle(mm(0, 0, 8.3), 1.2e-3));
 }
 
+/// One of the two walls is before the outside, the other one before a layer.
+TEST(MixedWalls, TheOutsideIsBeyondAWallLikeAnyLayer) {
+  expectNothingGiven("hollow ball and one that cuts it",
+                     sceneOf(ballsText("stiffness: 700 N/m", "stiffness: 2500 N/m", false) +
+                             "start: {region: a}\n"),
+                     mm(-6, 0, 0), circle(mm(-0.3, 0, 8.0), 1.2e-3));
+}
+
 /// What a wall pushes with differs from place to place. While the other wall alone holds the proxy, this one is felt at
 /// its foot there, which goes along it as the proxy goes.
 TEST(MixedWalls, AValleyOfWallsThatVaryGivesNoEnergy) {

@@ -60,5 +60,20 @@ TEST(StartPoint, ABallIsFoundFromAllSides) {
   }
 }
 
+TEST(StartPoint, ABallThatNoLookAroundWouldHitIsFoundByItsField) {
+  // From 300 radii off it is 0.2 degrees wide: what looks about in 48 directions passes it by.
+  constexpr double kRadius = 0.2e-3;
+  Random random(3);
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 hip = 300.0 * kRadius * random.direction();
+    Drive hand(sceneOfSolid(sphere(Vec3(0.0), kRadius), true));
+    const TickResult out = hand.to(hip);
+    EXPECT_EQ(hand.region(), "solid");
+    // The nearest point of the ball.
+    EXPECT_LE(glm::length(out.proxy - kRadius * glm::normalize(hip)), 1e-3 * kRadius)
+        << Judge::text(hip);
+  }
+}
+
 }  // namespace
 }  // namespace palpate::test
