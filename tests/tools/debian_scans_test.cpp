@@ -7,8 +7,7 @@
 #include <cstdio>
 #include <map>
 
-#include "palpate/core/math.h"
-#include "tools/helpers.h"
+#include "tools/imported.h"
 
 namespace palpate::testing {
 namespace {
@@ -17,50 +16,14 @@ using vdb::Image;
 using vdb::test::HeadCt;
 using vdb::test::mricron;
 
-Json run(const TempFolder& folder, const std::vector<std::string>& arguments) {
-  const CommandResult result = runPalpate(arguments, folder.path());
-  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
-  return parseOnly(result);
-}
-
-/// A tick of a trace, lengths in mm.
-struct Tick {
-  Vec3 hand{0.0};
-  Vec3 proxy{0.0};
-  Vec3 force{0.0};  ///< [N]
-};
-
-/// Straight from point to point [mm], 0.05 mm a tick.
-std::vector<Tick> touched(const TempFolder& folder, const std::string& scene,
-                          const std::vector<Vec3>& points) {
-  std::vector<std::string> arguments = {"touch",   scene,   "--speed", "50mm/s",
-                                        "--trace", "t.csv", "--json",  "--insert"};
-  for (const Vec3& p : points) {
-    char text[96];
-    std::snprintf(text, sizeof text, "%.6f,%.6f,%.6f", p.x, p.y, p.z);
-    arguments.emplace_back(text);
-  }
-  (void)run(folder, arguments);
-  std::vector<Tick> ticks;
-  for (const std::string& line : linesOf(textOf(folder.path("t.csv")))) {
-    const std::vector<std::string> cells = cellsOf(line);
-    if (cells[0] == "t") continue;
-    const auto three = [&](std::size_t first) {
-      return Vec3(std::stod(cells[first]), std::stod(cells[first + 1]),
-                  std::stod(cells[first + 2]));
-    };
-    ticks.push_back({three(1) * 1e3, three(4) * 1e3, three(7)});
-  }
-  return ticks;
-}
-
 /// Of the way straight in from `from`: where something is felt first, and where it ends.
-std::pair<Tick, Tick> wayIn(const std::vector<Tick>& ticks, const Vec3& from, const Vec3& to) {
+std::pair<TracedTick, TracedTick> wayIn(const std::vector<TracedTick>& ticks, const Vec3& from,
+                                        const Vec3& to) {
   const Vec3 way = glm::normalize(to - from);
-  std::pair<Tick, Tick> result;
+  std::pair<TracedTick, TracedTick> result;
   bool is_felt = false;
   double deepest = 0.0;
-  for (const Tick& tick : ticks) {
+  for (const TracedTick& tick : ticks) {
     const Vec3 along = tick.hand - from;
     const double s = glm::dot(along, way);
     if (s < deepest || glm::length(along - s * way) > 1e-3 || s > glm::length(to - from) + 1e-3)
@@ -147,7 +110,7 @@ tissues:
     if (side == 5) points.push_back(middle + Vec3(60, 0, 0));
     points.insert(points.end(), {ray.from, ray.to, ray.from});
   }
-  const std::vector<Tick> ticks = touched(folder, "putamen.yaml", points);
+  const std::vector<TracedTick> ticks = touched(folder, "putamen.yaml", points, "50mm/s");
   for (const Ray& ray : rays) {
     const Vec3 way = glm::normalize(ray.to - ray.from);
     const auto [first, last] = wayIn(ticks, ray.from, ray.to);
@@ -249,7 +212,7 @@ layers:
     const Vec3 above = outside + Vec3(0, 0, 30);
     points.insert(points.end(), {above, outside, walls.back() + 1.5 * ways.back(), outside, above});
   }
-  const std::vector<Tick> ticks = touched(folder, "skull.yaml", points);
+  const std::vector<TracedTick> ticks = touched(folder, "skull.yaml", points, "50mm/s");
   const double size = ct.spacing[0];
   for (std::size_t n = 0; n < walls.size(); ++n) {
     const auto [first, last] = wayIn(ticks, walls[n] - 8.0 * ways[n], walls[n] + 1.5 * ways[n]);

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <map>
 
-#include "tools/helpers.h"
+#include "tools/imported.h"
 #include "vdb/made_scans.h"
 
 namespace palpate::testing {
@@ -13,51 +13,12 @@ namespace {
 using vdb::Image;
 using vdb::test::Limb;
 
-Json run(const TempFolder& folder, const std::vector<std::string>& arguments) {
-  const CommandResult result = runPalpate(arguments, folder.path());
-  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
-  return parseOnly(result);
-}
-
-std::string pointText(const Vec3& mm) {
-  char text[96];
-  std::snprintf(text, sizeof text, "%.6f,%.6f,%.6f", mm.x, mm.y, mm.z);
-  return text;
-}
-
 const Json& regionOf(const Json& json, const std::string& name) {
   for (const Json& region : json["regions"]) {
     if (region["name"] == name) return region;
   }
   ADD_FAILURE() << "no region " << name;
   return json;
-}
-
-struct Tick {
-  Vec3 hand{0.0};   ///< [mm]
-  Vec3 proxy{0.0};  ///< [mm]
-  Vec3 force{0.0};  ///< [N]
-  std::string region;
-};
-
-/// Straight from point to point [mm], 0.02 mm a tick.
-std::vector<Tick> touched(const TempFolder& folder, const std::string& scene,
-                          const std::vector<Vec3>& points) {
-  std::vector<std::string> arguments = {"touch", scene,     "--speed", "20mm/s",  "--trace",
-                                        "t.csv", "--force", "--json",  "--insert"};
-  for (const Vec3& p : points) arguments.push_back(pointText(p));
-  (void)run(folder, arguments);
-  std::vector<Tick> ticks;
-  for (const std::string& line : linesOf(textOf(folder.path("t.csv")))) {
-    const std::vector<std::string> cells = cellsOf(line);
-    if (cells[0] == "t") continue;
-    const auto three = [&](std::size_t first) {
-      return Vec3(std::stod(cells[first]), std::stod(cells[first + 1]),
-                  std::stod(cells[first + 2]));
-    };
-    ticks.push_back({three(1) * 1e3, three(4) * 1e3, three(7), cells[10]});
-  }
-  return ticks;
 }
 
 // Labels for bone and muscle, grey values for the skin, both oblique; walls that the lightest touch opens but that of bone.
@@ -106,7 +67,7 @@ tissues:
     points.insert(points.end(), {middle + 35.0 * way, middle + (Limb::kBone - kDepth) * way,
                                  middle + 35.0 * way});
   }
-  const std::vector<Tick> ticks = touched(folder, "limb.yaml", points);
+  const std::vector<TracedTick> ticks = touched(folder, "limb.yaml", points, "20mm/s");
   std::size_t tick = 0;
   for (std::size_t n = 0; n < ways.size(); ++n) {
     const Vec3 end = points[3 * n + 1];
@@ -123,7 +84,7 @@ tissues:
       ++tick;
     }
     ASSERT_EQ(order, (std::vector<std::string>{"soft_tissue", "vastus muscle"})) << n;
-    const Tick& last = ticks[tick];
+    const TracedTick& last = ticks[tick];
     const double force = glm::length(last.force);
     std::printf("  skin at %.2f mm, muscle at %.2f mm, bone at %.2f mm, %.3f N\n", radii[0],
                 radii[1], limb.radius(last.proxy), force);
@@ -149,16 +110,7 @@ void writeBall(const TempFolder& folder) {
                              }),
       folder, "ball.nii.gz");
   (void)folder.file("names.csv", "value,name\n49,shell\n50,core\n");
-  (void)folder.file("table.yaml", R"(palpate_tissues: 1
-tip_radius: {value: 1 mm, basis: assumed, source: a needle}
-stiffest: {value: 2000 N/m, basis: assumed, source: a device}
-tissues:
-  bone:
-    labels: ["*"]
-    stiffness: {value: 1000 N/m, basis: assumed, source: round}
-    opens_at: {value: 3 N, basis: assumed, source: round}
-    back: {value: 2 N, basis: assumed, source: round}
-)");
+  (void)folder.file("table.yaml", kBoneThatOpens);
 }
 
 TEST(ImportMade, AShellIsFeltOnBothFacesAndItsCoreReachedThroughItAlone) {
@@ -229,8 +181,8 @@ tissues:
   };
   for (const Press& press :
        {Press{{-18, 0, 0}, {1, 0, 0}, 300.0}, Press{{18, 0, 0}, {-1, 0, 0}, 900.0}}) {
-    const std::vector<Tick> ticks =
-        touched(folder, "two.yaml", {press.wall - 4.0 * press.way, press.wall + press.way});
+    const std::vector<TracedTick> ticks = touched(
+        folder, "two.yaml", {press.wall - 4.0 * press.way, press.wall + press.way}, "20mm/s");
     // To a quarter of a voxel of 1 mm.
     EXPECT_NEAR(glm::length(ticks.back().force), press.stiffness * 1e-3, press.stiffness * 0.25e-3);
   }

@@ -3,9 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "palpate/core/math.h"
 #include "support/scan_folder.h"
-#include "tools/helpers.h"
+#include "tools/imported.h"
 #include "vdb/python_oracle.h"
 
 namespace palpate::testing {
@@ -13,12 +12,6 @@ namespace {
 
 const std::string kData = scansFolder();
 const char* const kOracle = "tools/scan_oracle.py";
-
-Json run(const TempFolder& folder, const std::vector<std::string>& arguments) {
-  const CommandResult result = runPalpate(arguments, folder.path());
-  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
-  return parseOnly(result);
-}
 
 struct Ray {
   Vec3 from{0.0};  ///< [mm]
@@ -157,16 +150,7 @@ TEST(ImportScan, AShellIsFeltOnBothFacesAndItsCoreReachedThroughItAlone) {
   PALPATE_NEEDS_SCAN(kData + "/vertebra/subregions.nii.gz");
   const TempFolder folder;
   (void)folder.file("names.csv", "value,name\n49,vertebra shell\n50,vertebra core\n");
-  (void)folder.file("table.yaml", R"(palpate_tissues: 1
-tip_radius: {value: 1 mm, basis: assumed, source: a needle}
-stiffest: {value: 2000 N/m, basis: assumed, source: a device}
-tissues:
-  bone:
-    labels: ["*"]
-    stiffness: {value: 1000 N/m, basis: assumed, source: round}
-    opens_at: {value: 3 N, basis: assumed, source: round}
-    back: {value: 2 N, basis: assumed, source: round}
-)");
+  (void)folder.file("table.yaml", kBoneThatOpens);
   const Json json =
       run(folder, {"import", kData + "/vertebra/subregions.nii.gz", "--names", "names.csv",
                    "--labels", "49,50", "--materials", "table.yaml", "-o", "v.yaml", "--json"});

@@ -38,6 +38,11 @@ std::string sizesOf(const Image& image) {
 
 }  // namespace
 
+Vec3 direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return unitOr(Vec3(normal(random), normal(random), normal(random)), Vec3(1, 0, 0));
+}
+
 Image imageAround(const Vec3& center, const Mat3& axes, double side,
                   const std::function<double(const Vec3&)>& value) {
   Image image;

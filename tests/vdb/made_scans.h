@@ -3,6 +3,7 @@
 /// the readers are not tested against the library that they are part of.
 
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "support/temp_file.h"
 
 namespace palpate::vdb::test {
+
+/// Any direction is as likely.
+[[nodiscard]] Vec3 direction(std::mt19937& random);
 
 /// Voxels of `axes` [mm] around `center` [mm], as many as a cube of `side` [mm] takes however it is turned, each with the
 /// value at its own center [mm].
@@ -19,7 +23,7 @@ namespace palpate::vdb::test {
 /// Cubic, anisotropic or mirrored voxels [mm], turned about an axis that is none of the image's.
 [[nodiscard]] Mat3 obliqueAxes(const Vec3& spacing, double angle = 0.6);
 
-/// Three cylinders around one axis that is no axis of any image either, with flat ends: bone within muscle within fat. [mm]
+/// Three cylinders with flat ends: bone within muscle within fat. Their common axis is oblique to every image. [mm]
 struct Limb {
   static constexpr double kBone = 8.0;
   static constexpr double kMuscle = 16.0;

@@ -19,11 +19,6 @@ using palpate::testing::TempFolder;
 
 constexpr double kMm = 1e-3;
 
-Vec3 direction(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return unitOr(Vec3(normal(random), normal(random), normal(random)), Vec3(1, 0, 0));
-}
-
 /// A scene of one layer with a wall of `stiffness` [N/m].
 ScenePtr sceneOf(const FieldPtr& field, double stiffness) {
   SceneDescription description;
@@ -73,7 +68,7 @@ TEST(MadeShell, OfOneToTwoVoxelsHasTwoWallsAndNoHole) {
     double inner = 0.0, outer = 0.0, worst = 0.0;
     constexpr int kRays = 1000;
     for (int n = 0; n < kRays; ++n) {
-      const Vec3 way = direction(random);
+      const Vec3 way = test::direction(random);
       // Both walls, in steps of 0.01 mm.
       double in = 0.0, out = 0.0;
       for (double r = kRadius - 4.0; r < kRadius + 4.0; r += 0.01) {

@@ -10,7 +10,7 @@
 #include "itk/itk_image.h"
 #include "palpate/vdb/image.h"
 #include "support/scan_folder.h"
-#include "vdb/python_oracle.h"
+#include "vdb/image_checks.h"
 
 namespace palpate::vdb {
 namespace {
@@ -26,46 +26,11 @@ std::vector<std::string> scansBelow(const std::string& folder, const std::string
   return files;
 }
 
-template <typename Twelve>
-double worstEntry(const Image& image, const Twelve& affine) {
-  double worst = 0.0;
-  for (std::size_t row = 0; row < 3; ++row) {
-    const int r = static_cast<int>(row);
-    for (std::size_t column = 0; column < 3; ++column) {
-      const double ours = image.axes[static_cast<int>(column)][r] * 1e3;
-      // Times the image's length: how far the last voxel is off.
-      worst = std::max(worst, std::abs(ours - affine[4 * row + column]) * image.size[column]);
-    }
-    worst = std::max(worst, std::abs(image.origin[r] * 1e3 - affine[4 * row + 3]));
-  }
-  return worst;
-}
-
-std::map<double, std::size_t> histogramOf(const Image& image) {
-  std::map<double, std::size_t> counts;
-  for (const float value : image.values) ++counts[static_cast<double>(value)];
-  return counts;
-}
-
-// Numbers of files are decimal or single precision, and both sides compute in double: far below 1e-5 mm.
-constexpr double kMm = 1e-5;
-
 TEST(Scans, NiftiIsAsNibabelHasIt) {
   PALPATE_NEEDS_SCAN(kData);
   const auto files = scansBelow(kData, ".nii.gz");
   ASSERT_GE(files.size(), 7U);
-  const auto affines = test::askPython("affine", files);
-  const auto histograms = test::askPython("histogram", files);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    SCOPED_TRACE(files[i]);
-    const Image image = readImage(files[i]);
-    EXPECT_LT(worstEntry(image, affines.at(i)), kMm);
-    std::map<double, std::size_t> expected;
-    for (std::size_t n = 0; n + 1 < histograms.at(i).size(); n += 2) {
-      expected[histograms[i][n]] = static_cast<std::size_t>(histograms[i][n + 1]);
-    }
-    EXPECT_EQ(histogramOf(image), expected);
-  }
+  test::expectAsNibabelHas(files);
 }
 
 TEST(Scans, NrrdAndMetaImageAreAsItkHasThem) {
@@ -83,10 +48,10 @@ TEST(Scans, NrrdAndMetaImageAreAsItkHasThem) {
     const Image image = readImage(file, options);
     const test::ItkImage itk = test::readWithItk(file);
     EXPECT_EQ(image.size, itk.size);
-    EXPECT_EQ(histogramOf(image), itk.histogram);
+    EXPECT_EQ(test::histogramOf(image), itk.histogram);
     // Of an image without a place ITK assumes L, P, S; so it is asked for instead.
     if (!without_place) {
-      EXPECT_LT(worstEntry(image, itk.affine), kMm);
+      EXPECT_LT(test::farthestOff(image, itk.affine), test::kSamePlace);
     }
   }
 }
@@ -98,8 +63,8 @@ TEST(Scans, DicomIsAsItkHasIt) {
     const Image image = readImage(kData + folder);
     const test::ItkImage itk = test::readSeriesWithItk(kData + folder);
     EXPECT_EQ(image.size, itk.size);
-    EXPECT_LT(worstEntry(image, itk.affine), kMm);
-    EXPECT_EQ(histogramOf(image), itk.histogram);
+    EXPECT_LT(test::farthestOff(image, itk.affine), test::kSamePlace);
+    EXPECT_EQ(test::histogramOf(image), itk.histogram);
   }
 }
 
