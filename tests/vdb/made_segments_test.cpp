@@ -19,11 +19,6 @@ using palpate::testing::TempFolder;
 
 constexpr double kMm = 1e-3;
 
-Vec3 direction(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return unitOr(Vec3(normal(random), normal(random), normal(random)), Vec3(1, 0, 0));
-}
-
 std::size_t countOf(const Image& image, float label) {
   return static_cast<std::size_t>(std::count(image.values.begin(), image.values.end(), label));
 }
@@ -54,18 +49,23 @@ TEST(MadeSegments, WhereTheyOverlapTheLaterHasTheVoxelsAndTheWall) {
   const auto label_of = [&](const test::Segment& segment) {
     return static_cast<float>(labels.at(segment.name));
   };
+  const auto count_in = [](const std::vector<std::string>& notes) {
+    return notes.back().substr(0, notes.back().find(' '));
+  };
   std::size_t both = 0;
+  std::size_t several = 0;
   for (std::size_t v = 0; v < image.values.size(); ++v) {
     const bool in_first = first.voxels.values[v] != 0.0F;
     const bool in_second = second.voxels.values[v] != 0.0F;
     const bool in_third = third.voxels.values[v] != 0.0F;
     both += in_first && in_second ? 1U : 0U;
+    several += int{in_first} + int{in_second} + int{in_third} > 1 ? 1U : 0U;
     ASSERT_EQ(image.values[v], in_third    ? label_of(third)
                                : in_second ? label_of(second)
                                : in_first  ? label_of(first)
                                            : 0.0F);
   }
-  // Voxels are 1 mm^3 each: those of the slab, of a ball, and of the lens that two balls share, which is told.
+  // Voxels are 1 mm^3 each: those of the slab, of a ball, and of the lens that two balls share, which the reader reports.
   const auto voxels_of = [&](const test::Segment& segment) {
     return static_cast<double>(countOf(image, label_of(segment)));
   };
@@ -75,7 +75,8 @@ TEST(MadeSegments, WhereTheyOverlapTheLaterHasTheVoxelsAndTheWall) {
   const double lens = 2.0 * std::numbers::pi * cap * cap * (3.0 * kRadius - cap) / 3.0;
   const double ball = 4.0 / 3.0 * std::numbers::pi * kRadius * kRadius * kRadius;
   const Image pair = readImage(test::writeSegments({first, second}, folder, "pair.seg.nrrd"));
-  EXPECT_EQ(pair.notes.back().substr(0, pair.notes.back().find(' ')), std::to_string(both));
+  EXPECT_EQ(count_in(pair.notes), std::to_string(both));
+  EXPECT_EQ(count_in(image.notes), std::to_string(several));
   EXPECT_NEAR(static_cast<double>(both) / lens, 1.0, 0.02);
   EXPECT_NEAR(static_cast<double>(countOf(first.voxels, 1.0F)) / ball, 1.0, 0.02);
 
@@ -89,14 +90,14 @@ TEST(MadeSegments, WhereTheyOverlapTheLaterHasTheVoxelsAndTheWall) {
   double sphere = 0.0, flat = 0.0;
   int spheres = 0, flats = 0;
   for (int n = 0; n < 20'000; ++n) {
-    const Vec3 p = right + kRadius * direction(random);
+    const Vec3 p = right + kRadius * test::direction(random);
     // Away from the slab and from where three meet.
     if (std::abs(p.z) > 0.5 * kSlab + 2.0 && glm::length(p - left) < kRadius - 2.0) {
       sphere = std::max(sphere, std::abs(fields[1]->value(p * kMm)) / kMm);
       sphere = std::max(sphere, std::abs(fields[0]->value(p * kMm)) / kMm);
       ++spheres;
     }
-    const Vec3 q(10.0 * direction(random).x, 10.0 * direction(random).y, 0.5 * kSlab);
+    const Vec3 q(10.0 * test::direction(random).x, 10.0 * test::direction(random).y, 0.5 * kSlab);
     if (std::hypot(q.x, q.y) < 13.0) {
       flat = std::max(flat, std::abs(fields[2]->value(q * kMm)) / kMm);
       ++flats;

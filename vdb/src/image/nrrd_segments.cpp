@@ -134,6 +134,7 @@ std::vector<float> Segments::merged(const std::vector<std::vector<float>>& layer
     for (int j = 0; j < size[1]; ++j) {
       for (int i = 0; i < size[0]; ++i, ++at) {
         const Segment* last = nullptr;
+        bool is_shared = false;
         for (std::size_t layer = 0; layer < layers.size(); ++layer) {
           const float value = layers[layer][at];
           if (value == 0.0F) continue;
@@ -163,9 +164,10 @@ std::vector<float> Segments::merged(const std::vector<std::vector<float>>& layer
                          "save the segmentation again");
             }
           }
-          if (last != nullptr) ++shared;
+          is_shared = is_shared || last != nullptr;
           if (last == nullptr || last->number < s.number) last = &s;
         }
+        shared += is_shared ? 1 : 0;
         if (last != nullptr) out[at] = static_cast<float>(last->label);
       }
     }
