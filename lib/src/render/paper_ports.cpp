@@ -51,14 +51,12 @@ bool PaperRenderer::turnTo(RegionId to, const Vec3& hip) noexcept {
   if (!turn(partition.leavesOfRegion(inner))) return false;
   if (partition.regionOf(turned_) == to) return true;
   if (outer == kOutside) return false;
-  const Vec3 at = crossingPoint(hip);
-  const LeafId through = turned_leaf_;
+  const Vec3 at = crossingPoint(turned_leaf_, hip);
+  const double together = layers_[inner - 1].beneath;
   for (const LeafId leaf : partition.leavesOfRegion(outer)) {
     if (turned_.inside(leaf) == now_.inside(leaf)) continue;
-    turned_leaf_ = leaf;
-    if (glm::distance(crossingPoint(hip), at) <= layers_[inner - 1].beneath) turned_.flip(leaf);
+    if (glm::distance(crossingPoint(leaf, hip), at) <= together) turned_.flip(leaf);
   }
-  turned_leaf_ = through;
   return partition.regionOf(turned_) == to;
 }
 
@@ -81,7 +79,7 @@ bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcep
         }
         if (!partition.layerHolds(inner, scratch_)) continue;
       }
-      const Vec3 point = crossingPoint(hip);
+      const Vec3 point = crossingPoint(turned_leaf_, hip);
       if (port.mask >= 0) {
         partition.signsAt(point, scratch_);
         if (!partition.maskHolds(static_cast<std::size_t>(port.mask), scratch_)) continue;
@@ -106,17 +104,17 @@ bool PaperRenderer::tryAbsentWalls(const Vec3& hip) noexcept {
     scene_->passages().arrive(state_.place.passed, state_.place.region, to, scene_->keepsMemory());
     enter({.from = state_.place.region,
            .to = to,
-           .point = crossingPoint(hip),
+           .point = crossingPoint(turned_leaf_, hip),
            .normal = unitOr(state_.hip - hip, Vec3(0.0))});
     return true;
   }
   return false;
 }
 
-/// Where the way of this tick comes through the face that was crossed.
-Vec3 PaperRenderer::crossingPoint(const Vec3& hip) const noexcept {
-  const Field& face = *scene_->partition().leaves()[turned_leaf_].field;
-  const bool began_inside = cell_.inside(turned_leaf_);
+/// Where the way of this tick comes through the face `leaf`, which it crosses.
+Vec3 PaperRenderer::crossingPoint(LeafId leaf, const Vec3& hip) const noexcept {
+  const Field& face = *scene_->partition().leaves()[leaf].field;
+  const bool began_inside = cell_.inside(leaf);
   Vec3 before = state_.hip;
   Vec3 behind = hip;
   for (int k = 0; k < kHalvings; ++k) {

@@ -54,7 +54,7 @@ class PaperRenderer final : public HapticRenderer {
   [[nodiscard]] bool turn(std::span<const LeafId> leaves) noexcept;
   /// The same for the faces between the present region and `to`. False if they do not lead there.
   [[nodiscard]] bool turnTo(RegionId to, const Vec3& hip) noexcept;
-  [[nodiscard]] Vec3 crossingPoint(const Vec3& hip) const noexcept;
+  [[nodiscard]] Vec3 crossingPoint(LeafId leaf, const Vec3& hip) const noexcept;
   void enter(const RegionEntry& entry) noexcept;
   void openFaces() noexcept;
 
