@@ -6,13 +6,13 @@
 namespace palpate {
 namespace {
 
-constexpr int kMostSteps = 24;
+constexpr int kMostSteps = 32;
 /// Of the force: what may be left of the sum of all forces on the point.
 constexpr double kSettled = 1e-12;
 /// Of it: what is left where rounding of the walls' own points ends the steps.
 constexpr double kSettledAtLast = 1e-7;
 /// Over the stop's stiffness: what is added to the derivative, one after the other, until a step leads on.
-constexpr double kAdded[] = {0.0, 1.0, 4.0, 16.0, 64.0, 256.0};
+constexpr double kAdded[] = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, 256.0};
 /// Of the energy: what of it is rounding.
 constexpr double kEnergyRounding = 1e-13;
 /// The way from the proxy to the hand, over that to the first place: the stop is not much stiffer than the stiffest wall.
@@ -21,15 +21,15 @@ constexpr double kFirst = 0.05;
 constexpr double kRounding = 1e-15;
 
 struct Look {
-  std::array<Vec3, SoftKinds::kMost> at{};       ///< [m] by kind: the point of its walls
-  std::array<double, SoftKinds::kMost> depth{};  ///< [m] by kind: how deep its law is pressed
-  Vec3 sum{0.0, 0.0, 0.0};                       ///< [N] the energy's gradient
-  Mat3 rate{0.0};                                ///< [N/m] its derivative
-  double energy = 0.0;                           ///< [J]
+  std::array<LocalProjection, SoftKinds::kMost> on{};  ///< by kind: the point of its walls
+  std::array<double, SoftKinds::kMost> depth{};        ///< [m] by kind: how deep its law is pressed
+  Vec3 sum{0.0, 0.0, 0.0};                             ///< [N] the energy's gradient
+  Mat3 rate{0.0};                                      ///< [N/m] its derivative
+  double energy = 0.0;                                 ///< [J]
 };
 
 Look lookFrom(const Vec3& place, const Vec3& hand, double stop, SoftKinds& kinds,
-              std::span<const Vec3> from) noexcept {
+              std::span<const LocalProjection> from) noexcept {
   Look out;
   const Vec3 off = place - hand;
   out.sum = stop * off;
@@ -37,8 +37,8 @@ Look lookFrom(const Vec3& place, const Vec3& hand, double stop, SoftKinds& kinds
   out.energy = 0.5 * stop * glm::dot(off, off);
   const double size = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
   for (std::size_t m = 0; m < from.size(); ++m) {
-    const LocalProjection on = kinds.nearest(m, from[m], place);
-    out.at[m] = on.at;
+    out.on[m] = kinds.nearest(m, from[m].at, place);
+    const LocalProjection& on = out.on[m];
     const Vec3 way = place - on.at;
     const double give = glm::length(way);
     if (on.count == 0 || !(give > kRounding * size)) continue;
@@ -66,8 +66,8 @@ Look lookFrom(const Vec3& place, const Vec3& hand, double stop, SoftKinds& kinds
 SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
                         SoftKinds& kinds) noexcept {
   const std::size_t count = std::min(kinds.count(), SoftKinds::kMost);
-  std::array<Vec3, SoftKinds::kMost> from;
-  from.fill(proxy);
+  std::array<LocalProjection, SoftKinds::kMost> from;
+  for (LocalProjection& each : from) each.at = proxy;
   SeriesForce out;
   // From beside the walls, where their bends count little: from the hand on the steps may lead anywhere.
   out.place = glm::mix(proxy, hand, kFirst);
@@ -87,7 +87,7 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
       // Where a wall bulges towards the point the plain derivative may lead uphill, or far away.
       if (!(glm::dot(step, here.sum) < 0.0) || glm::length(step) > farthest) continue;
       const Vec3 next = out.place + step;
-      const Look there = lookFrom(next, hand, stop, kinds, {here.at.data(), count});
+      const Look there = lookFrom(next, hand, stop, kinds, {here.on.data(), count});
       const double rounding = kEnergyRounding * here.energy;
       const bool is_lower = there.energy < here.energy + 1e-4 * glm::dot(step, here.sum);
       const bool is_flatter =
@@ -107,7 +107,15 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
   out.force = stop * (out.place - hand);
   for (std::size_t m = 0; m < count; ++m) {
     const SharedWalls& law = kinds.law(m);
-    if (!(here.depth[m] > 0.0) || law.isEven()) continue;
+    if (!(here.depth[m] > 0.0)) continue;
+    const SoftKinds::Change change = kinds.change(m, here.on[m]);
+    const double push = law.force(here.depth[m]);
+    out.turn += push * change.by_proxy;
+    if (change.by_press != Vec3(0.0)) {
+      out.varies = true;
+      out.by_press += push * change.by_press;
+    }
+    if (law.isEven()) continue;
     out.varies = true;
     out.rise += law.rise(here.depth[m]);
     out.by_press += law.byPress(here.depth[m]);

@@ -12,6 +12,9 @@ namespace {
 
 /// Of the hand's way: where the proxy goes farther in a tick, it does not follow the hand but leaves the place that held it.
 constexpr double kLeap = 4.0;
+/// Where the proxy is about to leave a bulge it runs ahead of the hand, and the planes of its walls turn with it. By that
+/// they push the hand by at most this share [-] of what they push anyway. What is left out of it is counted as a source.
+constexpr double kMostTurn = 0.5;
 
 /// What relaxes alike is handed on from wall to wall: the tissue goes on behind them.
 bool relaxAlike(const Maxwell& a, const Maxwell& b) noexcept {
@@ -105,6 +108,7 @@ Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
     out.force = series.force + series.by_press;
     out.rise = series.rise + series.by_press;
     out.varies = series.varies;
+    out.turn = series.turn;
     return out;
   }
   const Vec3 u = outward / across;
@@ -117,6 +121,7 @@ Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
   const double lag = glm::dot(c.left, c.left);
   out.stiffness = straight / length;
   out.rise = series.rise + series.by_press - along;
+  out.turn = series.turn;
   out.force = (length / across) * (pressed - along) - (straight * lag / (across * length)) * u -
               out.stiffness * c.left + series.by_press;
   return out;
@@ -157,15 +162,19 @@ bool Feel::countSudden(const ContactSet& c, const Vec3& hip) noexcept {
 
 /// Where friction lets go, or the place that held the proxy is one no longer, the proxy leaps: maybe to stiffer walls, in
 /// which the hand is as deep as it is by then. What these store beyond what was stored, and what the hand did in this tick,
-/// does not come from the hand. Between walls of one stiffness a leap only loses, since it brings the proxy closer.
-void Feel::countLeap(const ContactSet& c, const HipState& hip,
-                     const SpringForce& springs) noexcept {
-  if (!walls_.mayDiffer()) return;
+/// does not come from the hand, and is counted but for the `counted` [J] of it that already is. Between walls of one
+/// stiffness a leap only loses, since it brings the proxy closer.
+void Feel::countLeap(const ContactSet& c, const HipState& hip, const Elastic& elastic,
+                     double counted) noexcept {
   StoredState& last = state_.source.stored;
+  if (!walls_.mayDiffer()) {
+    last.leaves.clear();
+    return;
+  }
   StoredState now;
   for (const WallContact& each : c.walls()) now.leaves.add(each.leaf);
-  now.energy = springs.energy;
-  now.push = springs.force - springs.held;
+  now.energy = elastic.energy;
+  now.push = elastic.push;
   now.has_friction = state_.friction.is_felt;
   now.region = walker_.region();
   const Vec3 way = hip.position - state_.hip;
@@ -174,12 +183,13 @@ void Feel::countLeap(const ContactSet& c, const HipState& hip,
       held.count == last.leaves.count &&
       std::all_of(held.leaf.begin(), held.leaf.begin() + static_cast<std::ptrdiff_t>(held.count),
                   [&](LeafId id) { return last.leaves.has(id); });
-  if (!is_same && last.leaves.count > 0 && last.region == now.region) {
+  if (last.leaves.count > 0 && last.region == now.region) {
     const Vec3 leap = walker_.position() + c.snug - state_.last.proxy;
     const bool leaps = glm::dot(leap, leap) > kLeap * kLeap * glm::dot(way, way);
-    if (last.has_friction || now.has_friction || leaps) {
+    const bool lets_go = !is_same && (last.has_friction || now.has_friction || leaps);
+    if (lets_go || elastic.is_held_back) {
       const double done = -0.5 * glm::dot(last.push + now.push, way);
-      state_.source.work += std::max(0.0, now.energy - last.energy - done);
+      state_.source.work += std::max(0.0, now.energy - last.energy - done - counted);
     }
   }
   last = now;
@@ -193,9 +203,8 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   const Vec3 apart = x - hip.position;
   state_.friction.lean = Vec3(0.0);
   if (apart == Vec3(0.0) || c.count == 0) {
-    state_.source.felt.count = 0;
-    state_.source.felt.is_full = false;
-    state_.source.stored.leaves.count = 0;
+    state_.source.felt.clear();
+    state_.source.stored.leaves.clear();
   }
   if (apart == Vec3(0.0)) {
     state_.pressed = -1;
@@ -218,15 +227,17 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   const Vec3 press = apart + c.snug;
   walls_.press(press);
   bool differ = walls_.differ(c, glm::length(press));
+  const double sources = state_.source.work;
   if (countSudden(c, hip.position)) differ = walls_.differ(c, glm::length(press));
   const SpringForce springs = differ ? mixedForce(c, press, outward) : evenForce(c, press);
-  countLeap(c, hip, springs);
+  const double counted = state_.source.work - sources;
   double damping = 0.0;
   for (const WallContact& each : c.walls()) {
     damping += wallMaterial(each.facet).damping.at(x) * each.held.multiplier;
   }
   damping /= total;
-  Vec3 force = springs.force - (springs.held + damping * hip.velocity);
+  Vec3 elastic = springs.force - springs.held;
+  Vec3 relaxing(0.0);
   // What parameters that vary add: the energy of the springs as they are, by the place of the proxy, is handed
   // on to the hand.
   Vec3 rise = springs.rise;  // [N]
@@ -236,15 +247,27 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
         scene_.materials()[static_cast<std::size_t>(state_.relaxation.material)].maxwell;
     const MaterialMap::Sample own = branch.stiffness.sample(x);
     const double stretch = state_.relaxation.branch.stretch();
-    force += own.value * stretch * n;
+    relaxing = own.value * stretch * n;
     rise += 0.5 * stretch * stretch * own.gradient;
     varies = varies || !branch.stiffness.isConstant();
   }
+  const HeldWalls held = c.held();
+  bool is_held_back = false;
   if (state_.friction.is_felt) {
+    rise += springs.turn;
     state_.friction.lean = springs.stiffness > 0.0 ? rise / springs.stiffness : Vec3(0.0);
-  } else if (varies) {
-    force -= gradientByHand(rise, c.held().walls());
+  } else {
+    if (varies) elastic -= gradientByHand(rise, held.walls());
+    if (springs.turn != Vec3(0.0)) {
+      const Vec3 all = gradientByHand(springs.turn, held.walls());
+      const double most = kMostTurn * glm::length(springs.force);
+      const double length = glm::length(all);
+      is_held_back = length > most;
+      elastic -= is_held_back ? (most / length) * all : all;
+    }
   }
+  countLeap(c, hip, {springs.energy, elastic, is_held_back}, counted);
+  Vec3 force = elastic + relaxing - damping * hip.velocity;
   // A wall never pulls the hand towards itself.
   const double along = glm::dot(force, n);
   if (along < 0.0) force -= along * n;

@@ -26,7 +26,7 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   out.settled = solver_.track(hip.position, state_.friction, *this);
   const double in_walls = has_given_way_ ? feel_.stored(solver_.contact(), hip.position) : 0.0;
   const double in_tissue = state_.needle.stored();
-  if (has_given_way_) state_.source.stored = {};  // counted below
+  if (has_given_way_) state_.source.stored.leaves.clear();  // counted below
   feel_.fadeContent(hip.position);
 
   out.proxy = walker_.position() + solver_.contact().snug;

@@ -38,12 +38,20 @@ class Feel {
     double stiffness = 0.0;     ///< [N/m] against what friction holds
     Vec3 rise{0.0, 0.0, 0.0};   ///< [N] by the place of the proxy, what is stored changes by
     bool varies = false;        ///< the rise may be other than zero, and is not in the force
+    Vec3 turn{0.0, 0.0, 0.0};   ///< [N] of it, by the planes that turn with the proxy
+  };
+
+  /// What the springs store and push with, all in all.
+  struct Elastic {
+    double energy = 0.0;        ///< [J]
+    Vec3 push{0.0, 0.0, 0.0};   ///< [N]
+    bool is_held_back = false;  ///< the push is less than what the energy falls by
   };
 
   void relax(const ContactSet& contact, const HipState& hip) noexcept;
   [[nodiscard]] bool countSudden(const ContactSet& contact, const Vec3& hip) noexcept;
-  void countLeap(const ContactSet& contact, const HipState& hip,
-                 const SpringForce& springs) noexcept;
+  void countLeap(const ContactSet& contact, const HipState& hip, const Elastic& now,
+                 double counted) noexcept;
   [[nodiscard]] SpringForce evenForce(const ContactSet& contact, const Vec3& apart) noexcept;
   [[nodiscard]] SpringForce mixedForce(const ContactSet& contact, const Vec3& apart,
                                        const Vec3& outward) noexcept;

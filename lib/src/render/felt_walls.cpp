@@ -14,6 +14,9 @@ constexpr int kMeetingSteps = 12;
 /// Of the farthest: so near to both walls is where they meet. And the least square of the sine of their angle.
 constexpr double kMet = 1e-6;
 constexpr double kFlattest = 1e-3;
+/// How deep a press is, over a wall's feature size: up to here the wall is felt as it bends, and from there on as a plane.
+constexpr double kBentBelow = 0.25;
+constexpr double kFlatAbove = 1.0;
 
 bool holds(const ContactSet& contact, LeafId leaf) noexcept {
   const auto walls = contact.walls();
@@ -114,7 +117,10 @@ FeltLeaves FeltWalls::leaves() const noexcept {
 bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
   findGroups(contact, reach);
   if (count_ < 2) return false;
-  for (std::size_t i = 0; i < count_; ++i) setLaw(group_[i], smoothed_[i]);
+  for (std::size_t i = 0; i < count_; ++i) {
+    setLaw(group_[i], smoothed_[i]);
+    flatten(group_[i]);
+  }
   return true;
 }
 
@@ -174,6 +180,47 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
     }
     break;
   }
+}
+
+/// Deep beside its radius, a bulge would draw the hand's point round it to its other side, and let go of it there.
+void FeltWalls::flatten(Group& group) const noexcept {
+  const double length = glm::length(press_);
+  for (std::size_t i = 0; i < group.count; ++i) {
+    const Leaf& leaf = walker_.leaf(group.wall[i].leaf);
+    if (leaf.is_flat) continue;
+    const double way = leaf.feature * (kFlatAbove - kBentBelow);  // [m]
+    const double q = std::min((length - kBentBelow * leaf.feature) / way, 1.0);
+    if (!(q > 0.0)) continue;
+    const double rise = 6.0 * q * (1.0 - q) / way;
+    HeldWall& held = group.held[i];
+    group.flat[i] = FlattenedWall(*held.field, held.jet, walker_.position(),
+                                  q * q * (3.0 - 2.0 * q), (rise / length) * press_);
+    held.field = &group.flat[i];
+  }
+}
+
+/// The nearest point follows a wall that changes under it by its multipliers.
+SoftKinds::Change FeltWalls::change(std::size_t index, const LocalProjection& on) const noexcept {
+  const Group& group = group_[index];
+  Change out;
+  Vec3 back(0.0);
+  for (const HeldWall& held : on.walls()) {
+    back += held.multiplier * held.normal;
+    const double slope = glm::length(held.jet.gradient);
+    const auto* const flat = std::find_if(
+        group.flat.begin(), group.flat.begin() + static_cast<std::ptrdiff_t>(group.count),
+        [&](const FlattenedWall& each) { return &each == held.field; });
+    if (flat == group.flat.begin() + static_cast<std::ptrdiff_t>(group.count) || !(slope > 0.0))
+      continue;
+    const double by = held.multiplier * held.side / slope;
+    out.by_proxy -= by * flat->byProxy(on.at);
+    out.by_press -= by * flat->byPress(on.at);
+  }
+  const double length = glm::length(back);
+  if (!(length > 0.0)) return {};
+  out.by_proxy /= length;
+  out.by_press /= length;
+  return out;
 }
 
 /// The walls as planes, as they are at the proxy: where they fold, or their fields end.

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "flattened_wall.h"
 #include "layers_beneath.h"
 #include "near_walls.h"
 #include "palpate/contact/felt_height.h"
@@ -60,6 +61,7 @@ class FeltWalls final : public SoftKinds {
   [[nodiscard]] const SharedWalls& law(std::size_t index) const noexcept override {
     return group_[index].law;
   }
+  [[nodiscard]] Change change(std::size_t index, const LocalProjection& on) const noexcept override;
 
  private:
   /// Share of the depth to which a height may bring a wall down, or up.
@@ -77,7 +79,8 @@ class FeltWalls final : public SoftKinds {
     int own = 0;          ///< what it is that feels so, where it does by what lies behind it
     bool shares = false;  ///< one surface, on which other walls bear part of the press
     std::array<Near, kMaxProjectionWalls> wall{};
-    std::array<HeldWall, kMaxProjectionWalls> held{};
+    std::array<HeldWall, kMaxProjectionWalls> held{};     ///< the same, as deep as they are pressed
+    std::array<FlattenedWall, kMaxProjectionWalls> flat;  ///< fields of some of them
     std::size_t count = 0;
     SharedWalls law;  ///< where the proxy is
   };
@@ -98,6 +101,7 @@ class FeltWalls final : public SoftKinds {
   void sortSeams();
   void add(const Near& wall) noexcept;
   void setLaw(Group& group, SmoothedField& smoothed) noexcept;
+  void flatten(Group& group) const noexcept;
   [[nodiscard]] LocalProjection ontoPlanes(const Group& group, const Vec3& place) const noexcept;
 
   const Scene& scene_;

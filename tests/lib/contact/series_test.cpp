@@ -53,6 +53,10 @@ class Kinds final : public SoftKinds {
   [[nodiscard]] const SharedWalls& law(std::size_t index) const noexcept override {
     return walls_[index];
   }
+  [[nodiscard]] Change change(std::size_t /*index*/,
+                              const LocalProjection& /*on*/) const noexcept override {
+    return {};
+  }
 
  private:
   std::vector<FieldPtr> fields_;

@@ -21,6 +21,15 @@ class SoftKinds {
                                                 const Vec3& place) noexcept = 0;
   /// What that kind pushes with: one law, where the proxy is.
   [[nodiscard]] virtual const SharedWalls& law(std::size_t index) const noexcept = 0;
+
+  /// How its walls themselves change with the proxy and the press: gradients [-] of how far a place is off `on`, the
+  /// nearest point to it.
+  struct Change {
+    Vec3 by_proxy{0.0, 0.0, 0.0};
+    Vec3 by_press{0.0, 0.0, 0.0};
+  };
+  [[nodiscard]] virtual Change change(std::size_t index,
+                                      const LocalProjection& on) const noexcept = 0;
 };
 
 struct SeriesForce {
@@ -30,7 +39,10 @@ struct SeriesForce {
       0.0, 0.0,
       0.0};  ///< [N] gradient of the energy by the proxy's place, where the laws change with it, ...
   Vec3 by_press{0.0, 0.0,
-                0.0};    ///< [N] ... and by the press (see overPatch()); neither is in the force
+                0.0};  ///< [N] ... and by the press (see overPatch()); neither is in the force
+  Vec3 turn{
+      0.0, 0.0,
+      0.0};  ///< [N] gradient of the energy by the proxy's place, where the walls change with it: not in the force
   double energy = 0.0;   ///< [J] stored
   bool varies = false;   ///< one of the two may be other than zero
   bool settled = false;  ///< false: Newton's steps ran out; the force is that of the last one

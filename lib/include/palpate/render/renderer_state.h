@@ -71,6 +71,10 @@ struct FeltLeaves {
     is_full = count == kMost;
     if (!is_full) leaf[count++] = id;
   }
+  void clear() noexcept {
+    count = 0;
+    is_full = false;
+  }
   [[nodiscard]] bool has(LeafId id) const noexcept {
     const auto* const end = leaf.begin() + static_cast<std::ptrdiff_t>(count);
     return is_full || std::find(leaf.begin(), end, id) != end;
