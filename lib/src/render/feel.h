@@ -50,7 +50,7 @@ class Feel {
 
   void relax(const ContactSet& contact, const HipState& hip) noexcept;
   [[nodiscard]] bool countSudden(const ContactSet& contact, const Vec3& hip) noexcept;
-  void countLeap(const ContactSet& contact, const HipState& hip, const Elastic& now,
+  void countLeap(const ContactSet& contact, const HipState& hip, const Elastic& elastic,
                  double counted) noexcept;
   [[nodiscard]] SpringForce evenForce(const ContactSet& contact, const Vec3& apart) noexcept;
   [[nodiscard]] SpringForce mixedForce(const ContactSet& contact, const Vec3& apart,

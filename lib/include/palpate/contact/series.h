@@ -52,10 +52,10 @@ struct SeriesForce {
 /// y_m that its walls allow, whatever else is there:
 ///   E(hand) = min over z of stop |z - hand|^2 / 2 + sum over m of W_m(|z - y_m(z)|),  force = stop (z - hand) = -grad E.
 /// W_m is such that one kind alone pushes by its own law. So the force has a potential whatever the shapes of the walls,
-/// and is nowhere stiffer than the stop, which has to be stiffer than each law.
+/// and is nowhere stiffer than the stop, which has to be stiffer than each law, as long as the walls do not change.
 /// The laws are those at `proxy` [m], a point that all walls allow, near the hand: the walls' nearest points are looked for
-/// from there. Where laws differ from place to place, E changes with the proxy too: by `rise`, which is to be handed on to
-/// the hand as the proxy follows it.
+/// from there. Where laws differ from place to place, E changes with the proxy too: by `rise`; and where the walls change
+/// with it, by `turn`. Both are to be handed on to the hand as the proxy follows it.
 [[nodiscard]] SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
                                       SoftKinds& kinds) noexcept;
 
