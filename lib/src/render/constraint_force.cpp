@@ -176,14 +176,13 @@ void Feel::countLeap(const ContactSet& c, const HipState& hip, const Elastic& el
   now.energy = elastic.energy;
   now.push = elastic.push;
   now.has_friction = state_.friction.is_felt;
-  now.region = walker_.region();
   const Vec3 way = hip.position - state_.hip;
   const auto& held = now.leaves;
   const bool is_same =
       held.count == last.leaves.count &&
       std::all_of(held.leaf.begin(), held.leaf.begin() + static_cast<std::ptrdiff_t>(held.count),
                   [&](LeafId id) { return last.leaves.has(id); });
-  if (last.leaves.count > 0 && last.region == now.region) {
+  if (last.leaves.count > 0) {
     const Vec3 leap = walker_.position() + c.snug - state_.last.proxy;
     const bool leaps = glm::dot(leap, leap) > kLeap * kLeap * glm::dot(way, way);
     const bool lets_go = !is_same && (last.has_friction || now.has_friction || leaps);

@@ -174,6 +174,27 @@ layers:
   EXPECT_LE(lap.work - lap.sources, 1e-8);
 }
 
+/// The same where the pad ends at a face without a wall: the proxy leaps into another region.
+TEST(MixedWalls, WhatALeapIntoAnotherRegionStoresIsCounted) {
+  const ScenePtr scene = sceneOf(R"(
+palpate: 1
+length: mm
+materials: {soft: {stiffness: 100 N/m}, hard: {stiffness: 5000 N/m}}
+layers:
+  - {name: beyond, inside: {half_space: {point: [0, 0, 0], normal: [-1, 0, 0]}}}
+  - {name: ground, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: hard}
+  - {name: pad, inside: {box: {center: [-10, 0, 0.1], size: [20, 40, 0.2]}}, wall: soft}
+walls:
+  - {between: [outside, beyond], wall: absent}
+)");
+  const Lap lap =
+      lapAlong(scene, {mm(-2, 0, 1), mm(-2, 0, -0.8), mm(1, 0, -0.8), mm(1, 0, 1)}, 4000);
+  const double in_ground = 0.5 * 5000.0 * 0.8e-3 * 0.8e-3;
+  const double in_pad = 0.5 * 100.0 * 1e-3 * 1e-3;
+  EXPECT_NEAR(lap.sources, in_ground - in_pad, 4e-6);
+  EXPECT_LE(lap.work - lap.sources, 1e-8);
+}
+
 /// Friction holds the proxy a few micrometers beside a crease, until the hand is far within the other wall. A loop that a
 /// search found: 69 uJ a lap, not counted.
 TEST(MixedWalls, WhatFrictionLetsGoOntoAnotherWallIsCounted) {

@@ -83,11 +83,10 @@ struct FeltLeaves {
 
 /// What the walls stored against the hand at the last tick, where walls may differ in what they push with.
 struct StoredState {
-  FeltLeaves leaves;           ///< of the walls that held the proxy; none: nothing was stored
-  double energy = 0.0;         ///< [J]
-  Vec3 push{0.0, 0.0, 0.0};    ///< [N] of the springs
-  bool has_friction = false;   ///< some of these walls have friction
-  RegionId region = kOutside;  ///< from which they were felt
+  FeltLeaves leaves;          ///< of the walls that held the proxy; none: nothing was stored
+  double energy = 0.0;        ///< [J]
+  Vec3 push{0.0, 0.0, 0.0};   ///< [N] of the springs
+  bool has_friction = false;  ///< some of these walls have friction
 };
 
 /// Counts of energy that does not come from the hand.
