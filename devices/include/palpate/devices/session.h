@@ -75,7 +75,7 @@ class Session {
   /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a button or changes that cannot be.
   explicit Session(ScenePtr scene, SessionSettings settings = {});
 
-  /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld), clutch, velocity, renderer, and
+  /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld), velocity, clutch, renderer, and
   /// the force back. A reading that is not finite gives zero force.
   [[nodiscard]] SessionTick step(const DeviceState& reading, DeviceFrame frame) noexcept;
 

@@ -60,7 +60,8 @@ struct TickResult {
   RegionId region = kOutside;
   bool contact = false;  ///< a closed wall is pressed
   /// The proxy rests where it is closest to the hand, within the stated tolerances; false: it is on its way
-  /// there, at a point that is allowed and no further from the hand than the last one, out of budget for this tick.
+  /// there, at a point that is allowed and no further from the hand than the last one, out of budget for this tick. The
+  /// paper's renderer looks for no such place: always true.
   bool settled = true;
   std::uint8_t event_count = 0;  ///< crossings of this tick that passed a port, in path order
   std::array<PortId, kMaxEvents> events{};
