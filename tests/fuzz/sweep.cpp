@@ -1,8 +1,9 @@
 // palpate_damage_sweep [MUTANTS] [SEED] [COMMAND]: damages files of every format in every way, MUTANTS
 // times each, and gives each to the command with 4 GB of address space and 20 s more than the sound file
-// takes (a scene may be one of a whole head). Told are signals, hangs,
-// exit codes that are not documented, and runs that took more than 1 GB for an input of less than
-// 10 MB; such inputs are kept beside. Exit 1 if there are any. COMMAND: another build of palpate.
+// takes (a scene may be one of a whole head). It reports signals, hangs, exit codes that are not documented, and runs that
+// took more than 1 GB for an input of less than 10 MB, and keeps such inputs beside. Exit 1 if there are any. The command runs
+// in forks of this process, which have loaded its libraries already, as many formats at a time as there are processors;
+// with COMMAND, another build of palpate, it is started anew each time.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -10,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -17,11 +19,13 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "fuzz/damage.h"
 #include "fuzz/readers.h"
 #include "fuzz/seeds.h"
+#include "run_command.h"
 
 namespace {
 
@@ -41,10 +45,21 @@ struct Run {
   double seconds = 0.0;  ///< by the clock
 };
 
-Run run(const std::string& program, const std::vector<std::string>& arguments, double seconds) {
+/// Does not return. `program` empty: the command that is part of this one.
+[[noreturn]] void become(const std::string& program, const std::vector<std::string>& arguments) {
+  if (program.empty()) {
+    const int code = palpate::tools::runCommand(arguments);
+    std::fflush(nullptr);
+    _exit(code);
+  }
   std::vector<char*> argv = {const_cast<char*>(program.c_str())};
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
+  execv(program.c_str(), argv.data());
+  _exit(127);
+}
+
+Run run(const std::string& program, const std::vector<std::string>& arguments, double seconds) {
   const pid_t process = fork();
   if (process == 0) {
     const int nowhere = open("/dev/null", O_RDWR);
@@ -53,8 +68,7 @@ Run run(const std::string& program, const std::vector<std::string>& arguments, d
     setrlimit(RLIMIT_AS, &memory);
     const rlimit none{0, 0};
     setrlimit(RLIMIT_CORE, &none);
-    execv(program.c_str(), argv.data());
-    _exit(127);
+    become(program, arguments);
   }
   Run result;
   rusage usage{};
@@ -67,7 +81,7 @@ Run run(const std::string& program, const std::vector<std::string>& arguments, d
       result.timed_out = true;
       kill(process, SIGKILL);
     }
-    poll(nullptr, 0, 2);
+    poll(nullptr, 0, 1);
   }
   result.resident = usage.ru_maxrss;
   result.seconds = took();
@@ -101,68 +115,118 @@ std::string faultOf(const Run& run, std::size_t input) {
   return {};
 }
 
+struct Totals {
+  int runs = 0;
+  int faults = 0;
+};
+
+struct Sweep {
+  int mutants = 20;
+  std::uint64_t seed = 1;
+  std::string program;
+  fs::path folder;
+  std::string image;
+};
+
+/// Damages the files of one format, and prints its line.
+Totals sweepFormat(const Sweep& sweep, const Reader& reader) {
+  const std::vector<std::string> seeds = palpate::fuzz::seedsOf(reader.name);
+  std::map<int, int> codes;
+  long most = 0;
+  Totals totals;
+  // A folder of its own: DICOM series are all that is in one.
+  const fs::path own = sweep.folder / reader.name;
+  fs::create_directories(own);
+  if (std::string(reader.name) == "dicom") {
+    std::string second = seeds.front();
+    second.replace(second.find("0\\0\\0"), 5, "0\\0\\1");
+    std::ofstream(own / "second.dcm", std::ios::binary) << second;
+  }
+  const std::string file = own / (std::string("mutant") + reader.extension);
+  const std::vector<std::string> command = commandFor(reader, file, sweep.image);
+  // [s] Twice what each seed takes, as the machine may be busier next time.
+  std::vector<double> sound;
+  for (const std::string& whole : seeds) {
+    std::ofstream(file, std::ios::binary) << whole;
+    sound.push_back(2.0 * run(sweep.program, command, kMostSound).seconds);
+  }
+  for (const Damage& damage : palpate::fuzz::damages()) {
+    palpate::fuzz::Random random(sweep.seed);
+    for (int i = 0; i < sweep.mutants; ++i) {
+      const std::size_t from = static_cast<std::size_t>(i) % seeds.size();
+      std::string bytes = seeds[from];
+      damage.apply(bytes, random);
+      std::ofstream(file, std::ios::binary) << bytes;
+      const Run result = run(sweep.program, command, sound[from] + kSeconds);
+      ++totals.runs;
+      most = std::max(most, result.resident);
+      if (WIFEXITED(result.status)) ++codes[WEXITSTATUS(result.status)];
+      const std::string fault = faultOf(result, bytes.size());
+      if (fault.empty()) continue;
+      ++totals.faults;
+      const std::string kept = sweep.folder / (std::string(reader.name) + "_" + damage.name + "_" +
+                                               std::to_string(i) + reader.extension);
+      fs::copy_file(file, kept, fs::copy_options::overwrite_existing);
+      std::printf("  %s: %s\n", kept.c_str(), fault.c_str());
+    }
+  }
+  std::printf("%-10s %8d %8d %8d %8d %10ld %8d\n", reader.name, totals.runs, codes[0], codes[1],
+              codes[3], most / 1024, totals.faults);
+  std::fflush(stdout);
+  return totals;
+}
+
+/// Waits for one of the processes that sweep a format each; what it found comes through `from`.
+void await(int from, Totals& all) {
+  Totals totals;
+  int status = 0;
+  (void)wait(&status);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0 &&
+      read(from, &totals, sizeof totals) == static_cast<ssize_t>(sizeof totals)) {
+    all.runs += totals.runs;
+    all.faults += totals.faults;
+  } else {
+    std::printf("  the sweep of a format ended before its time\n");
+    ++all.faults;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int mutants = argc > 1 ? std::atoi(argv[1]) : 20;
-  const auto seed = static_cast<std::uint64_t>(argc > 2 ? std::atoll(argv[2]) : 1);
-  const std::string program = argc > 3 ? argv[3] : PALPATE_BINARY_DIR "/bin/palpate";
-  const fs::path folder = fs::current_path() / "damage_sweep";
-  fs::create_directories(folder);
-  const std::string image = folder / "image.nii";
-  std::ofstream(image, std::ios::binary) << palpate::fuzz::seedsOf("nifti").front();
-  int runs = 0;
-  int faults = 0;
+  Sweep sweep;
+  sweep.mutants = argc > 1 ? std::atoi(argv[1]) : sweep.mutants;
+  if (argc > 2) sweep.seed = static_cast<std::uint64_t>(std::atoll(argv[2]));
+  if (argc > 3) sweep.program = argv[3];
+  if (sweep.mutants <= 0) {
+    std::fprintf(stderr, "usage: palpate_damage_sweep [MUTANTS, 1 or more] [SEED] [COMMAND]\n");
+    return 2;
+  }
+  sweep.folder = fs::current_path() / "damage_sweep";
+  fs::create_directories(sweep.folder);
+  sweep.image = sweep.folder / "image.nii";
+  std::ofstream(sweep.image, std::ios::binary) << palpate::fuzz::seedsOf("nifti").front();
   std::printf("%-10s %8s %8s %8s %8s %10s %8s\n", "format", "runs", "exit 0", "exit 1", "exit 3",
               "most MB", "faults");
+  std::fflush(stdout);
+  int ends[2] = {};
+  if (pipe(ends) != 0) return 2;
+  Totals all;
+  unsigned running = 0;
   for (const Reader& reader : palpate::fuzz::readers()) {
-    const std::vector<std::string> seeds = palpate::fuzz::seedsOf(reader.name);
-    std::map<int, int> codes;
-    long most = 0;
-    int own_runs = 0;
-    int own_faults = 0;
-    // A folder of its own: DICOM series are all that is in one.
-    const fs::path own = folder / reader.name;
-    fs::create_directories(own);
-    if (std::string(reader.name) == "dicom") {
-      std::string second = seeds.front();
-      second.replace(second.find("0\\0\\0"), 5, "0\\0\\1");
-      std::ofstream(own / "second.dcm", std::ios::binary) << second;
+    if (running == std::max(1U, std::thread::hardware_concurrency())) {
+      await(ends[0], all);
+      --running;
     }
-    const std::string file = own / (std::string("mutant") + reader.extension);
-    std::vector<double>
-        sound;  // [s] twice what each seed takes, as the machine may be busier next time
-    for (const std::string& whole : seeds) {
-      std::ofstream(file, std::ios::binary) << whole;
-      sound.push_back(2.0 * run(program, commandFor(reader, file, image), kMostSound).seconds);
+    const pid_t process = fork();
+    if (process == 0) {
+      const Totals totals = sweepFormat(sweep, reader);
+      _exit(write(ends[1], &totals, sizeof totals) == static_cast<ssize_t>(sizeof totals) ? 0 : 1);
     }
-    for (const Damage& damage : palpate::fuzz::damages()) {
-      palpate::fuzz::Random random(seed);
-      for (int i = 0; i < mutants; ++i) {
-        const std::size_t from = static_cast<std::size_t>(i) % seeds.size();
-        std::string bytes = seeds[from];
-        damage.apply(bytes, random);
-        std::ofstream(file, std::ios::binary) << bytes;
-        const Run result = run(program, commandFor(reader, file, image), sound[from] + kSeconds);
-        ++own_runs;
-        most = std::max(most, result.resident);
-        if (WIFEXITED(result.status)) ++codes[WEXITSTATUS(result.status)];
-        const std::string fault = faultOf(result, bytes.size());
-        if (fault.empty()) continue;
-        ++own_faults;
-        const std::string kept = folder / (std::string(reader.name) + "_" + damage.name + "_" +
-                                           std::to_string(i) + reader.extension);
-        fs::copy_file(file, kept, fs::copy_options::overwrite_existing);
-        std::printf("  %s: %s\n", kept.c_str(), fault.c_str());
-      }
-    }
-    std::printf("%-10s %8d %8d %8d %8d %10ld %8d\n", reader.name, own_runs, codes[0], codes[1],
-                codes[3], most / 1024, own_faults);
-    std::fflush(stdout);
-    runs += own_runs;
-    faults += own_faults;
+    ++running;
   }
-  std::printf("%d runs, %zu kinds of damage, %zu formats: %d faults\n", runs,
-              palpate::fuzz::damages().size(), palpate::fuzz::readers().size(), faults);
-  return faults == 0 ? 0 : 1;
+  for (; running > 0; --running) await(ends[0], all);
+  std::printf("%d runs, %zu kinds of damage, %zu formats: %d faults\n", all.runs,
+              palpate::fuzz::damages().size(), palpate::fuzz::readers().size(), all.faults);
+  return all.faults == 0 ? 0 : 1;
 }
