@@ -59,9 +59,8 @@ struct TickResult {
   Vec3 proxy{0.0, 0.0, 0.0};  ///< [m, world] the tip held in its region
   RegionId region = kOutside;
   bool contact = false;  ///< a closed wall is pressed
-  /// The proxy rests where it is closest to the hand, within the stated tolerances; false: it is on its way
-  /// there, at a point that is allowed and no further from the hand than the last one, out of budget for this tick. The
-  /// paper's renderer looks for no such place: always true.
+  /// The proxy rests where it is closest to the hand, within the stated tolerances (the paper's renderer: always true);
+  /// false: on its way there, at a point that is allowed and no further from the hand than the last one, out of budget.
   bool settled = true;
   std::uint8_t event_count = 0;  ///< crossings of this tick that passed a port, in path order
   std::array<PortId, kMaxEvents> events{};
