@@ -57,6 +57,22 @@ TEST(MixedCorner, AHertzianWallDoesToo) {
   }
 }
 
+TEST(MixedCorner, EachOfThreeIsItselfWhereTheProxyCameAlongOneInATick) {
+  // From each of the walls, in one tick to the corner of all three.
+  const std::string text = cornerText("stiffness: 3000 N/m", "stiffness: 500 N/m") +
+                           "  - {name: back, inside: {half_space: {point: [0, 0, 0], normal: "
+                           "[0, 1, 0]}}, wall: wall}\n";
+  for (const Vec3& start : {mm(-1, 5, 5), mm(5, -1, 5), mm(5, 5, -1)}) {
+    Drive hand(sceneOf(text));
+    (void)hand.to(mm(5, 5, 5));
+    (void)hand.walk(start);
+    const TickResult out = hand.to(mm(-1, -1, -1));
+    ASSERT_TRUE(out.settled);
+    // The proxy counts as on a wall within a billionth of its size.
+    EXPECT_TRUE(isNear(out.force, Vec3(0.5, 0.5, 3.0), 1e-6));
+  }
+}
+
 /// Within a cone, whose wall meets that of a cylinder in a shallow valley; `third` is a layer more.
 ScenePtr valley(const char* third) {
   return sceneOf(std::string(R"(

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "lib/render/drive.h"
+#include "palpate/fields/csg.h"
+#include "palpate/fields/primitives.h"
+#include "render/paper_faces.h"
 
 namespace palpate::test {
 namespace {
@@ -30,6 +33,19 @@ TEST(PaperPartFace, APortOnOneBallLeavesTheOtherAWall) {
   // The contact point is on the ball to a micrometer, and 2 mm above the hand.
   EXPECT_TRUE(isNear(out.proxy, mm(30, 0, 20), 2e-6));
   EXPECT_TRUE(isNear(out.force, Vec3(0, 0, 2.0), 2e-6 * 1000.0));
+}
+
+TEST(PaperPartFace, TheLargestOfSeveralDistancesIsABoundAndOneFaceIsAsItWas) {
+  const FieldPtr ball = sphere(Vec3(0.0), 0.02);
+  const FieldPtr cut = intersect({ball, halfSpace(Vec3(0.0), Vec3(0, 0, 1))});
+  const std::vector<FieldPtr> layers{ball, cut};
+  const Partition partition(layers);
+  EXPECT_EQ(PaperWall(ball, partition).metric(), Metric::kExact);
+  PaperWall wall(cut, partition);
+  ASSERT_EQ(wall.faces().size(), 2U);
+  EXPECT_EQ(wall.metric(), Metric::kBound);
+  // The closest point is on the rim, farther away (22 mm) than either face.
+  EXPECT_NEAR(wall.value(mm(30, 0, 20)), 0.02, 1e-12);
 }
 
 }  // namespace

@@ -51,6 +51,24 @@ TEST_P(Robust, BrokenTicksGiveNoForceAndChangeNothing) {
   }
 }
 
+TEST_P(Robust, TheUnlimitedForceIsThatOfTheLastTickAndOfNoOther) {
+  RendererSettings settings;
+  settings.limits.max_force = 1.0;
+  Drive drive(sceneOf(containerText()), GetParam(), settings);
+  const auto press = [&] {
+    (void)drive.walk(mm(60, 0, 0));
+    EXPECT_NEAR(glm::length(drive.walk(mm(38, 0, 0)).force), 1.0, 1e-9);
+    // Twice 1.5 N; the paper's contact point is on the ball to a micrometer.
+    EXPECT_NEAR(drive.renderer().unlimitedForce().x, 3.0, 2e-3);
+  };
+  press();
+  (void)drive.renderer().update(kBroken[0]);
+  EXPECT_EQ(drive.renderer().unlimitedForce(), Vec3(0.0)) << "nothing was computed";
+  press();
+  drive.renderer().reset();
+  EXPECT_EQ(drive.renderer().unlimitedForce(), Vec3(0.0)) << "there was no tick yet";
+}
+
 TEST_P(Robust, ABrokenFirstTickDoesNotStart) {
   for (const std::string start : {"outside", "liquid"}) {
     Drive drive(sceneOf(containerText("start: {region: " + start + "}\n")), GetParam());

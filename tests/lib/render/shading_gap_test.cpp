@@ -35,7 +35,7 @@ class BandedBall final : public Field {
   double band_;
 };
 
-ScenePtr bandedScene(double band, double shading) {
+SceneDescription bandedDescription(double band, double shading) {
   SceneDescription description;
   Material wall;
   wall.name = "wall";
@@ -48,7 +48,11 @@ ScenePtr bandedScene(double band, double shading) {
   layer.wall.material = "wall";
   description.layers = {layer};
   description.metres_per_unit = 1e-3;
-  return compile(description);
+  return description;
+}
+
+ScenePtr bandedScene(double band, double shading) {
+  return compile(bandedDescription(band, shading));
 }
 
 TEST(ShadingGaps, AreToldWhereTheBandIsTooNarrow) {
@@ -61,6 +65,17 @@ TEST(ShadingGaps, AreToldWhereTheBandIsTooNarrow) {
   EXPECT_NEAR(gaps[0].needed, 4.5e-3, 1e-12);
   EXPECT_NEAR(gaps[0].known, 2e-3, 4.5e-3 / 16 / 256);
   EXPECT_NEAR(glm::length(gaps[0].at), 0.02, 1e-9);
+}
+
+TEST(ShadingGaps, NameTheMaterialAmongOthersThatAreNotShaded) {
+  SceneDescription description = bandedDescription(2e-3, 3e-3);
+  Material plain;
+  plain.name = "plain";
+  plain.stiffness = 500.0;
+  description.materials.insert(description.materials.begin(), plain);
+  const std::vector<ShadingGap> gaps = shadingGaps(*compile(description));
+  ASSERT_EQ(gaps.size(), 1U);
+  EXPECT_EQ(gaps[0].material, 1);
 }
 
 TEST(ShadingGaps, ShadingIsFeltAllTheSame) {
