@@ -243,7 +243,7 @@ Vec3 tangentialStep(const Vec3& wish, const std::array<Plane, 3>& planes,
 /// off by half a tolerance.
 void ProxySolver::takeContact(const CellProblem& problem) noexcept {
   const PlaneSolution& s = problem.solution;
-  const int material = contact_.count > 0 ? contact_.wall[0].facet.material : 0;
+  const int last = contact_.count > 0 ? contact_.wall[0].facet.material : -1;
   contact_.count = 0;
   contact_.lag = Vec3(0.0);
   contact_.snug = Vec3(0.0);
@@ -275,8 +275,7 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
     WallContact& out = contact_.wall[contact_.count++];
     out.leaf = wall.leaf;
     out.facet = walker_.facetAt(wall.leaf);
-    // On the rim of a union the facet of one part leads into the other: the wall is the same.
-    if (out.facet.material < 0) out.facet.material = material;
+    if (out.facet.material < 0) out.facet.material = materialAside(problem, from.near);
     out.held.field = walker_.leaf(wall.leaf).field.get();
     out.held.side = from.inside ? -1.0 : 1.0;
     out.held.jet = walker_.jetHere(wall.leaf);
@@ -287,7 +286,56 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
     }
     out.held.multiplier = exact.multiplier[e];
   }
+  nameMaterials(last);
   contact_.left = tangentialPart(wish_, contact_.held().walls());
+}
+
+/// On the rim of a union the facet of one part leads into the other, and the walker may be on either side of the leaves that
+/// meet there. Seen from the cell the facet is a wall on one side or the other of the leaves that the cell leaves open: the
+/// material of that wall; -1 if none was found.
+int ProxySolver::materialAside(const CellProblem& problem, std::size_t near) noexcept {
+  const std::span<const NearWall> walls = near_.walls();
+  const LeafId surface = walls[near].leaf;
+  // First those that the cell has on the other side than the walker, then those that it leaves open.
+  std::array<LeafId, kMaxNear> turned{};
+  std::array<LeafId, kMaxNear> open{};
+  std::size_t asked = 0;
+  std::size_t opens = 0;
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const LeafId leaf = walls[i].leaf;
+    const bool inside = ((problem.cell.inside >> i) & 1U) != 0;
+    if (inside || ((problem.cell.outside >> i) & 1U) != 0) {
+      if (inside != (walker_.side(leaf) < 0.0)) turned[asked++] = leaf;
+    } else if (std::fabs(walls[i].distance) <= limits::kOnWall * walls[i].tolerance + rest_) {
+      open[opens++] = leaf;
+    }
+  }
+  const auto materialBeyond = [&](std::span<const LeafId> others) {
+    std::copy(others.begin(), others.end(), turned.begin() + static_cast<std::ptrdiff_t>(asked));
+    return walker_
+        .facetAside({turned.data(), asked + others.size()}, {&surface, 1}, walker_.position())
+        .material;
+  };
+  int material = -1;
+  for (std::size_t i = 0; i < opens && material < 0; ++i) material = materialBeyond({&open[i], 1});
+  return material < 0 ? materialBeyond({open.data(), opens}) : material;
+}
+
+/// A wall of which that is not known is of the material of another that holds the proxy; else as in this tick's `last`
+/// contact; else as some wall that its region has.
+void ProxySolver::nameMaterials(int last) noexcept {
+  const auto end = contact_.wall.begin() + static_cast<std::ptrdiff_t>(contact_.count);
+  const auto known = std::find_if(contact_.wall.begin(), end,
+                                  [](const WallContact& each) { return each.facet.material >= 0; });
+  int material = known != end ? known->facet.material : last;
+  const std::size_t regions = scene_.regions().size();
+  for (std::size_t to = 0; material < 0 && to < regions; ++to) {
+    if (to == walker_.region()) continue;
+    material = scene_.passages().wall(walker_.region(), static_cast<RegionId>(to)).material;
+  }
+  for (auto each = contact_.wall.begin(); each != end; ++each) {
+    if (each->facet.material < 0) each->facet.material = std::max(material, 0);
+  }
 }
 
 /// Of several walls the roughest counts, for the load of all.

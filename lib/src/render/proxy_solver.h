@@ -164,6 +164,8 @@ class ProxySolver {
   [[nodiscard]] bool kick() noexcept;
   void takeLastContact(const Vec3& hip) noexcept;
   void takeContact(const CellProblem& problem) noexcept;
+  [[nodiscard]] int materialAside(const CellProblem& problem, std::size_t near) noexcept;
+  void nameMaterials(int last) noexcept;
   /// The roughest of some walls, [-].
   struct FrictionRatios {
     double at_rest = 0.0;

@@ -71,6 +71,25 @@ TEST_P(RandomCsg, TheProxyIsWhereTheOracleIs) {
   expectRight(counts, scenes < 1'000'000 ? 0 : wanted);
 }
 
+TEST(RandomCsgMaterials, OneThatNoWallHasIsNeverFelt) {
+  CsgCounts counts;
+  for (std::uint64_t number = 1; counts.contacts < 32'000; ++number) {
+    const RandomScene scene = randomScene(number);
+    SceneDescription description = scene.description();
+    Material other;
+    other.name = "other";
+    other.stiffness = 1e5;
+    Material wall;
+    wall.name = "wall";
+    wall.stiffness = 1000.0;  // [N/m] as those that the scene does not name
+    description.materials = {other, wall};
+    for (LayerDescription& layer : description.layers) layer.wall.material = "wall";
+    CsgRun(counts, 150, 1200).run(scene, compile(description));
+  }
+  tell(counts);
+  expectRight(counts, 32'000);
+}
+
 /// Scenes that runs of millions of ticks found.
 struct FoundScene {
   const char* name;
