@@ -96,30 +96,30 @@ int ProxySolver::materialAside(const CellProblem& problem, std::size_t near) noe
       open[opens++] = leaf;
     }
   }
-  const auto materialBeyond = [&](std::span<const LeafId> others) {
+  const auto material_beyond = [&](std::span<const LeafId> others) {
     std::copy(others.begin(), others.end(), turned.begin() + static_cast<std::ptrdiff_t>(asked));
     return walker_
         .facetAside({turned.data(), asked + others.size()}, {&surface, 1}, walker_.position())
         .material;
   };
   int material = -1;
-  for (std::size_t i = 0; i < opens && material < 0; ++i) material = materialBeyond({&open[i], 1});
-  return material < 0 ? materialBeyond({open.data(), opens}) : material;
+  for (std::size_t i = 0; i < opens && material < 0; ++i) material = material_beyond({&open[i], 1});
+  return material < 0 ? material_beyond({open.data(), opens}) : material;
 }
 
 /// A wall of which that is not known is of the material of another that holds the proxy; else as in this tick's `last`
 /// contact; else as some wall that its region has.
 void ProxySolver::nameMaterials(int last) noexcept {
-  const auto end = contact_.wall.begin() + static_cast<std::ptrdiff_t>(contact_.count);
-  const auto known = std::find_if(contact_.wall.begin(), end,
-                                  [](const WallContact& each) { return each.facet.material >= 0; });
+  auto* const end = contact_.wall.begin() + static_cast<std::ptrdiff_t>(contact_.count);
+  const auto* const known = std::find_if(
+      contact_.wall.begin(), end, [](const WallContact& each) { return each.facet.material >= 0; });
   int material = known != end ? known->facet.material : last;
   const std::size_t regions = scene_.regions().size();
   for (std::size_t to = 0; material < 0 && to < regions; ++to) {
     if (to == walker_.region()) continue;
     material = scene_.passages().wall(walker_.region(), static_cast<RegionId>(to)).material;
   }
-  for (auto each = contact_.wall.begin(); each != end; ++each) {
+  for (auto* each = contact_.wall.begin(); each != end; ++each) {
     if (each->facet.material < 0) each->facet.material = std::max(material, 0);
   }
 }
