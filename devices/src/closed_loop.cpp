@@ -103,7 +103,8 @@ double ClosedLoop::growth(const WallModel& wall) const {
 }
 
 bool ClosedLoop::isStable(const WallModel& wall) const {
-  // Without a spring the place itself neither grows nor dies, and a mass without damping is a double root.
+  // Without a spring the place itself neither grows nor dies, and a mass without damping is a
+  // double root.
   const double rounding = wall.stiffness > 0.0 ? 1e-12 : 1e-9;
   return growth(wall) <= 1.0 + rounding;
 }

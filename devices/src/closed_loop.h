@@ -8,7 +8,8 @@
 
 namespace palpate::devices {
 
-/// In units of the moving mass and the period, so that all entries are of the same size whatever the device.
+/// In units of the moving mass and the period, so that all entries are of the same size whatever
+/// the device.
 class ClosedLoop {
  public:
   /// @throws Error as the functions of stability.h.

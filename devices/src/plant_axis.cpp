@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kSize = plant::kSize;
 
-/// What is slower stands still: 1e-12 m/s is 1e-15 m in a millisecond. Without it a device that rounding takes for sliding
-/// back and forth would never get on.
+/// What is slower stands still: 1e-12 m/s is 1e-15 m in a millisecond. Without it a device that
+/// rounding takes for sliding back and forth would never get on.
 constexpr double kStill = 1e-12;
 /// The same of a force, as a share of the friction.
 constexpr double kLetsGo = 1e-12;
@@ -46,8 +46,8 @@ PlantState after(const PlantStep& step, const PlantState& state, double length) 
   return next;
 }
 
-/// Whether a function with these values and slopes at the ends of `length` comes below zero: at the end, or, where it turns,
-/// maybe before. It is taken to turn no more than once.
+/// Whether a function with these values and slopes at the ends of `length` comes below zero: at the
+/// end, or, where it turns, maybe before. It is taken to turn no more than once.
 bool mayCross(double after, double before, double slope_before, double slope_after,
               double length) noexcept {
   if (after < 0.0) return true;

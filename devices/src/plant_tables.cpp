@@ -13,14 +13,15 @@ namespace {
 using plant::kSize;
 using plant::Matrix;
 
-/// With friction, events are looked for between the ends of a step. There a speed or a force must not turn twice:
-/// the fastest mode goes through at most this [rad].
+/// With friction, events are looked for between the ends of a step. There a speed or a force must
+/// not turn twice: the fastest mode goes through at most this [rad].
 constexpr double kMostTurn = 0.25;
 
 using Form = Eigen::Matrix<double, kSize, kSize>;
 using Twice = Eigen::Matrix<double, 2 * kSize, 2 * kSize>;
 
-/// The integral of e^(M't) Q e^(Mt) over `length` (Van Loan, IEEE Transactions on Automatic Control 23(3), 1978).
+/// The integral of e^(M't) Q e^(Mt) over `length` (Van Loan, IEEE Transactions on Automatic Control
+/// 23(3), 1978).
 Form gramian(const Matrix& m, const Form& q, double length) {
   Twice block = Twice::Zero();
   block.topLeftCorner<kSize, kSize>() = -m.transpose() * length;
@@ -36,7 +37,7 @@ void store(const Form& form, std::array<double, 81>& out) {
   }
 }
 
-PlantStep stepOf(const Matrix& m, double length) {
+PlantStep stepOf(const Matrix& m, double length, bool has_lag) {
   PlantStep step;
   const Matrix e = (m * length).exp();
   for (int i = 0; i < plant::kPath; ++i) {
@@ -45,6 +46,7 @@ PlantStep stepOf(const Matrix& m, double length) {
   Form q = Form::Zero();
   q(plant::kV, plant::kV) = 1.0;
   store(gramian(m, q, length), step.speed);
+  if (!has_lag) return step;
   q.setZero();
   q(plant::kV, plant::kForce) = 0.5;
   q(plant::kForce, plant::kV) = 0.5;
@@ -77,8 +79,8 @@ PlantTables::PlantTables(const DeviceModel& device, const std::optional<HandMode
   double length = period / steps;
   quantum = std::ldexp(length, -kDepth);
   for (std::size_t level = 0; level < moving.size(); ++level, length *= 0.5) {
-    moving[level] = stepOf(moves, length);
-    if (friction > 0.0) sticking[level] = stepOf(sticks, length);
+    moving[level] = stepOf(moves, length, has_lag);
+    if (friction > 0.0) sticking[level] = stepOf(sticks, length, has_lag);
   }
   acceleration = rowOf(moves.row(plant::kV));
   jerk = rowOf(moves.row(plant::kV) * sticks);

@@ -17,8 +17,8 @@ using PlantState = std::array<double, 9>;
 struct PlantStep {
   std::array<double, 45> next{};   ///< the first five entries of the state after it, by rows
   std::array<double, 81> speed{};  ///< quadratic form: the integral of v^2 [m^2/s]
-  std::array<double, 81>
-      power{};  ///< quadratic form: the integral of the motor's force times v [J]; symmetric
+  /// Quadratic form: the integral of the motor's force times v [J]; with a lag only.
+  std::array<double, 81> power{};
 };
 
 /// Made at set-up, then constant. Times are counted in `quanta` of `quantum` seconds.
@@ -28,13 +28,15 @@ struct PlantTables {
   /// [quanta]
   static constexpr std::int64_t kLongest = std::int64_t{1} << kDepth;
 
-  /// Exact: by the matrix exponential. `period` [s] is a whole number of longest steps. Without friction it is one.
+  /// Exact: by the matrix exponential. `period` [s] is a whole number of longest steps. Without
+  /// friction it is one.
   PlantTables(const DeviceModel& device, const std::optional<HandModel>& hand, double period);
 
   std::array<PlantStep, kDepth + 1> moving;    ///< [level]: as long as the longest / 2^level
   std::array<PlantStep, kDepth + 1> sticking;  ///< without friction not made
   PlantState
-      acceleration{};  ///< [m/s^2] row: of the device while it moves; by it and the mass the net force
+      /// [m/s^2] row: of the device while it moves; by it and the mass the net force
+      acceleration{};
   PlantState jerk{};      ///< row: the rate of that while it sticks
   double mass = 0.0;      ///< [kg] that moves with the device
   double friction = 0.0;  ///< [N]

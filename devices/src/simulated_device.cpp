@@ -14,7 +14,8 @@
 namespace palpate::devices {
 namespace {
 
-/// [s] A machine that slept longer than this between two readings did not simulate: what was held is not held on for hours.
+/// [s] A machine that slept longer than this between two readings did not simulate: what was held
+/// is not held on for hours.
 constexpr double kLongestGap = 1.0;
 
 Error usageError(const char* code, std::string message) {

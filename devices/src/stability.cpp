@@ -10,8 +10,8 @@
 namespace palpate::devices {
 namespace {
 
-/// The first value of a row of even ratios from `least` on at which `is_good` fails, made exact by halving; infinite if it holds all
-/// the way to `most`, 0 if it never does.
+/// The first value of a row of even ratios from `least` on at which `is_good` fails, made exact by
+/// halving; infinite if it holds all the way to `most`, 0 if it never does.
 template <typename Test>
 double firstFailure(double least, double most, const Test& is_good) {
   constexpr int kSteps = 400;  // 5 % each, over the nine decades of a stiffness

@@ -1,5 +1,6 @@
 #pragma once
-/// What a device and the hand that holds it are to the loop: masses, springs and friction at the tip.
+/// What a device and the hand that holds it are to the loop: masses, springs and friction at the
+/// tip.
 
 #include <string>
 
@@ -9,7 +10,7 @@ namespace palpate::devices {
 
 /// A device as it is at its tip, alike along its three axes, which do not act on each other.
 struct DeviceModel {
-  std::string name;
+  std::string name = {};
   double mass = 0.1;             ///< [kg] more than 0
   double damping = 0.0;          ///< [N s/m] viscous, 0 or more
   double friction = 0.0;         ///< [N] Coulomb, sticking and sliding alike; 0 or more
@@ -19,10 +20,10 @@ struct DeviceModel {
   Box3 workspace{Vec3(-kInfinity), Vec3(kInfinity)};  ///< [m, device] what the tip can get to
 };
 
-/// A hand: a mass on a spring and a damper, whose other end goes along the path that the hand is told to
-/// go. It holds the device by a grip, another spring and damper, or is one with it.
+/// A hand: a mass on a spring and a damper, whose other end goes along the path that the hand is
+/// told to go. It holds the device by a grip, another spring and damper, or is one with it.
 struct HandModel {
-  std::string name;
+  std::string name = {};
   double mass = 0.0;            ///< [kg] 0 or more; with a grip more than 0
   double damping = 0.0;         ///< [N s/m] to the path, 0 or more
   double stiffness = 0.0;       ///< [N/m] to the path, 0 or more

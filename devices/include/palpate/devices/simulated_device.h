@@ -1,5 +1,6 @@
 #pragma once
-/// SimulatedDevice: a device with a mass, friction, encoders and motors, in a hand that feels the force.
+/// SimulatedDevice: a device with a mass, friction, encoders and motors, in a hand that feels the
+/// force.
 
 #include <memory>
 #include <optional>
@@ -14,8 +15,8 @@ struct SimulationSettings {
   DeviceModel device;
   std::optional<HandModel> hand = {};  ///< none: nobody holds the device
   double rate = 1000.0;                ///< [Hz] of readings; 1 to 1e5
-  /// [samples] from when a force is written to when the motors give it; 0 to SimulatedDevice::kMostDelay. With 0 they give it
-  /// from the reading on that it answers.
+  /// [samples] from when a force is written to when the motors give it; 0 to
+  /// SimulatedDevice::kMostDelay. With 0 they give it from the reading on that it answers.
   int delay = 0;
   bool realtime = false;     ///< a reading is of when it is asked for, not of 1 / rate later
   Vec3 push{0.0, 0.0, 0.0};  ///< [N] constant on the tip: a weight, or what preloads a contact
@@ -35,21 +36,23 @@ struct DeviceWork {
   }
 };
 
-/// Each reading is one tick of: sample, encoder; then, when the force is written, delay, saturation (the vector is
-/// shortened, its direction kept) and hold until the next reading. In between device, hand and amplifier move by their
-/// equations, exactly: the linear part by the matrix exponential, stick and slip by events within the tick. Between two readings the
-/// hand's path is a straight line at even speed. Coulomb friction and encoder act along each axis by itself.
+/// Each reading is one tick of: sample, encoder; then, when the force is written, delay, saturation
+/// (the vector is shortened, its direction kept) and hold until the next reading. In between
+/// device, hand and amplifier move by their equations, exactly: the linear part by the matrix
+/// exponential, stick and slip by events within the tick. Between two readings the hand's path is a
+/// straight line at even speed. Coulomb friction and encoder act along each axis by itself.
 ///
-/// The device starts at rest where the path begins, and the hand with it. Without a hand the path only says where that is, and
-/// how long it lasts. A write() that is left out leaves the force as it is: a dropped sample.
-/// Set-up allocates and takes some 10 ms; read() and write() never allocate, lock, throw or block.
+/// The device starts at rest where the path begins, and the hand with it. Without a hand the path
+/// only says where that is, and how long it lasts. A write() that is left out leaves the force as
+/// it is: a dropped sample. Set-up allocates and takes some 10 ms; read() and write() never
+/// allocate, lock, throw or block.
 class SimulatedDevice final : public Device {
  public:
   static constexpr int kMostDelay = 64;
 
   /// `path`: where the hand is told to go, in `frame`, at times that rise.
-  /// @throws Error (kUsage, device.model, device.rate, device.delay, device.push) for settings out of range; (kInput,
-  /// path.empty, path.time, path.not_finite) for the path.
+  /// @throws Error (kUsage, device.model, device.rate, device.delay, device.push) for settings out
+  /// of range; (kInput, path.empty, path.time, path.not_finite) for the path.
   SimulatedDevice(const SimulationSettings& settings, Path path,
                   DeviceFrame frame = DeviceFrame::kDevice);
   SimulatedDevice(const SimulationSettings& settings, PathFormula path,
