@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -44,37 +45,57 @@ LoopModel linearLoop(const std::string& name, const std::string& hand, double pe
   return loop;
 }
 
+constexpr double kDepth = 2e-3;  // [m] how deep the device rests in the wall
+
+/// Where a hand goes that presses the device so deep: there within a second, so slowly that nothing
+/// is set going, but for the last percent, which it goes at once.
+Path pressPath(const LoopModel& loop, const WallModel& wall, double kick, double end) {
+  const HandModel& hand = *loop.hand;
+  const double springs =
+      hand.hasGrip() ? hand.stiffness * hand.grip_stiffness / (hand.stiffness + hand.grip_stiffness)
+                     : hand.stiffness;
+  const double goal = -kDepth * (1.0 + wall.stiffness / springs);
+  Path path;
+  constexpr int kRows = 500;
+  for (int n = 0; n <= kRows; ++n) {
+    const double share = 0.5 - 0.5 * std::cos(std::numbers::pi * n / kRows);
+    path.push_back({kick * n / kRows, Vec3(0.0, 0.0, 0.99 * share * goal)});
+  }
+  path.push_back({kick + 0.5 * loop.period, Vec3(0.0, 0.0, goal)});
+  path.push_back({end, Vec3(0.0, 0.0, goal)});
+  return path;
+}
+
 /// [-] By how much an oscillation about rest grows in a tick, in a run of the whole program: the
 /// least-squares fit of x[k+1] = a1 x[k] + a2 x[k-1] to its last half; of two conjugate roots -a2
 /// is the square of their size.
 double growthInARun(const LoopModel& loop, const WallModel& wall) {
-  // Preloaded, and 1 % off where it would rest: contact is not lost while it grows by less than 100
-  // times.
-  constexpr double kDepth = 2e-3;  // [m]
   SimulationSettings settings{
       .device = loop.device, .hand = loop.hand, .rate = 1.0 / loop.period, .delay = loop.delay};
-  settings.push = Vec3(0.0, 0.0, -wall.stiffness * kDepth);
-  const double start = -kDepth * 0.99;
-  // Of a hand the path is where it rests: its springs are loose there.
-  const Vec3 rest(0.0, 0.0, -kDepth);
   // A hand's own modes have to die out first: the slowest, 14 / s of a relaxed hand, has done so to
   // 1e-6 within a second. What grows faster than that need not be waited for.
   const double tenfold = std::log(10.0) / std::fabs(std::log(growthOf(loop, wall)));
   const double longest = loop.hand ? std::max(1000.0, 2.0 / loop.period) : 1000.0;
   const int ticks = static_cast<int>(std::clamp(tenfold, 1000.0, longest));
-  const double end = (ticks - 0.5) * loop.period;
-  Path path = {{0.0, Vec3(0.0, 0.0, start)}, {0.5 * loop.period, rest}, {end, rest}};
-  if (!loop.hand) path = {{0.0, Vec3(0.0, 0.0, start)}, {end, rest}};
+  const int before = loop.hand ? static_cast<int>(std::lround(1.0 / loop.period)) : 0;
+  const double end = (before + ticks - 0.5) * loop.period;
+  // 1 % off where it would rest: contact is not lost while that grows by less than 100 times.
+  Path path = {{0.0, Vec3(0.0, 0.0, -0.99 * kDepth)}, {end, Vec3(0.0, 0.0, -kDepth)}};
+  if (loop.hand) {
+    path = pressPath(loop, wall, before * loop.period, end);
+  } else {
+    settings.push = Vec3(0.0, 0.0, -wall.stiffness * kDepth);
+  }
   SimulatedDevice device(settings, path, DeviceFrame::kWorld);
 
   Session session(flatWall(wall.stiffness, wall.damping));
   const std::atomic<bool> stop{false};
   std::vector<double> x;
-  x.reserve(static_cast<std::size_t>(ticks));
+  x.reserve(static_cast<std::size_t>(before + ticks));
+  const auto half = static_cast<std::size_t>(before + ticks / 2);
   bool is_lost = false;
   const ServoReport report = session.run(device, stop, [&](const SessionTick& tick, const auto&) {
-    // The delay line begins empty: until it is full nothing holds against the push.
-    if (tick.number > 10 && !tick.result.contact) is_lost = true;
+    if (tick.number >= half && !tick.result.contact) is_lost = true;
     x.push_back(tick.hip.position.z + kDepth);
   });
   EXPECT_EQ(report.exit, ServoExit::kEnd);
@@ -84,7 +105,7 @@ double growthInARun(const LoopModel& loop, const WallModel& wall) {
   double s22 = 0.0;
   double r1 = 0.0;
   double r2 = 0.0;
-  for (std::size_t k = x.size() / 2; k + 1 < x.size(); ++k) {
+  for (std::size_t k = half + 1; k + 1 < x.size(); ++k) {
     s11 += x[k] * x[k];
     s12 += x[k] * x[k - 1];
     s22 += x[k - 1] * x[k - 1];
