@@ -157,16 +157,24 @@ class Items {
 std::vector<FeltItem> feltItems(const Scene& scene, const DeviceModel& device) {
   Items items(scene, device);
   const auto regions = scene.regions();
-  for (std::size_t i = 0; i < regions.size(); ++i) {
-    if (!regions[i].reachable) continue;
-    for (std::size_t j = 0; j < regions.size(); ++j) {
+  for (std::size_t j = 0; j < regions.size(); ++j) {
+    const auto into = static_cast<RegionId>(j);
+    bool is_met = false;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
       const auto from = static_cast<RegionId>(i);
-      const auto into = static_cast<RegionId>(j);
-      if (!scene.touches(from, into)) continue;
+      if (!regions[i].reachable || !scene.touches(from, into)) continue;
+      is_met = true;
       const Wall& wall = scene.passages().wall(from, into);
       const Material* material = wall.absent ? nullptr : materialOf(scene, wall.material);
       if (material == nullptr) continue;
       items.addWall(FeltAs::kWall, *material, regions[i].name + " | " + regions[j].name);
+    }
+    // What touches what was looked for near the layers that have an end. One that has none may be
+    // met elsewhere.
+    const bool has_end = !regions[j].field || regions[j].field->bounds().isBounded();
+    const Material* own = materialOf(scene, regions[j].wall);
+    if (!is_met && !has_end && own != nullptr) {
+      items.addWall(FeltAs::kWall, *own, regions[j].name);
     }
   }
   for (const Sheet& sheet : scene.passages().sheets()) {

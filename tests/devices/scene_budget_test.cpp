@@ -76,7 +76,7 @@ TEST(SceneBudget, FindsAllThatIsFeltAsStiffAsItGets) {
   // From inside the safe nothing is felt: no port leads there.
   EXPECT_EQ(find(items, "syrup", "viscosity")->places, std::vector<std::string>{"pot"});
   EXPECT_EQ(find(items, "hard", "stiffness")->places,
-            (std::vector<std::string>{"outside | box", "box | outside"}));
+            (std::vector<std::string>{"box | outside", "outside | box"}));
   EXPECT_EQ(find(items, "soft", "stiffness")->places,
             (std::vector<std::string>{"outside | ball", "outside | safe"}));
 }
@@ -91,6 +91,26 @@ TEST(SceneBudget, IsOfTheStiffnessAtTheHand) {
   // The motors' 12 N are 48 N in the world.
   EXPECT_GT(find(mapped, "curved", "curve")->most.stiffness / 0.5,
             find(plain, "curved", "curve")->most.stiffness);
+}
+
+TEST(SceneBudget, AWallWithoutEndFarFromTheOtherLayersIsFoundToo) {
+  const ScenePtr felt = compile(parseScene(R"(
+palpate: 1
+length: mm
+materials:
+  skin: {stiffness: 400 N/m, composite: {radius: 5, depth: 120}}
+  knot: {stiffness: 4000 N/m}
+layers:
+  - {name: tissue, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: skin}
+  - {name: lump, inside: {sphere: {center: [0, 0, -30], radius: 5}}, wall: knot}
+)",
+                                           "lump.yaml"));
+  const std::vector<FeltItem> items = feltItems(*felt, devicePreset("touch").model());
+  ASSERT_EQ(items.size(), 1U);
+  EXPECT_EQ(items[0].material, "skin");
+  EXPECT_EQ(items[0].parameter, "composite");
+  // Through the skin the stiffest wall of all may be felt.
+  EXPECT_EQ(items[0].most.stiffness, 4000.0);
 }
 
 LoopModel touchLoop() {

@@ -25,10 +25,11 @@ struct FeltItem {
 };
 
 /// All that the probe can feel in the `constraint` renderer: walls and sheets that it can reach,
-/// contents that it can be in. Of curved springs the steepest slope that the device's greatest
-/// force gets to; with relaxation the spring and its Maxwell branch together; of textured walls the
-/// steepest of pressing and sliding; of a needle the shaft over the whole extent of its region, or
-/// of the device's workspace where that has no end. Stiffness and damping are times
+/// contents that it can be in, and the own walls of layers without end of which none was found to
+/// be in reach. Of curved springs the steepest slope that the device's greatest force gets to; with
+/// relaxation the spring and its Maxwell branch together; of textured walls the steepest of
+/// pressing and sliding; of a needle the shaft over the whole extent of its region, or of the
+/// device's workspace where that has no end. Stiffness and damping are times
 /// DeviceMapping::stiffnessAtHand(). Allocates.
 [[nodiscard]] std::vector<FeltItem> feltItems(const Scene& scene, const DeviceModel& device);
 
