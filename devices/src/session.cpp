@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "palpate/core/error.h"
-#include "palpate/devices/recorder.h"
+#include "palpate/devices/record.h"
 
 namespace palpate::devices {
 namespace {

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "palpate/vdb/mesh.h"
-#include "palpate/vdb/surface_mesh.h"
 #include "vdb/dicom_writer.h"
 #include "vdb/nifti_writer.h"
 

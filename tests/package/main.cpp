@@ -6,7 +6,6 @@
 #include <iostream>
 #ifdef WITH_devices
 #include <palpate/devices/path.h>
-#include <palpate/devices/virtual_device.h>
 #endif
 #ifdef WITH_vdb
 #include <palpate/vdb/bake.h>

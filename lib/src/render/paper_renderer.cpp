@@ -44,7 +44,7 @@ bool isOn(const Port& port, const PaperFace& face) {
 }  // namespace
 
 PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
-    : HapticRenderer(std::move(scene), settings.limits),
+    : RendererBase(std::move(scene), settings.limits),
       parameters_(settings.paper.over(scene_->paper())),
       now_(scene_->partition().leaves().size()),
       cell_(now_),
