@@ -7,6 +7,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/fields/primitives.h"
+#include "palpate/interior/partition.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene.h"
 #include "palpate/vdb/bake.h"

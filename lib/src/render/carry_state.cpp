@@ -4,7 +4,9 @@
 #include <span>
 #include <string_view>
 
+#include "palpate/interior/partition.h"
 #include "palpate/render/haptic_renderer.h"
+#include "palpate/render/tick_state.h"
 
 namespace palpate {
 namespace {

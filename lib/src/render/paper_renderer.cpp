@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "palpate/core/error.h"
+#include "palpate/interior/partition.h"
+#include "palpate/interior/port_machine.h"
 
 namespace palpate {
 namespace {

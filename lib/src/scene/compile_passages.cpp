@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "palpate/interior/partition.h"
 #include "scene_compiler.h"
 
 namespace palpate {

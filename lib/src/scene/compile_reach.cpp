@@ -4,6 +4,7 @@
 #include <random>
 #include <span>
 
+#include "palpate/interior/partition.h"
 #include "palpate/scene/transitions.h"
 #include "reach.h"
 #include "scene_compiler.h"

@@ -9,6 +9,7 @@
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene_file.h"
 
