@@ -98,6 +98,11 @@ struct ContentChange {
   std::optional<double> cutting = {};  ///< [N] 0 or more; needs a material with stiffness
 };
 
+/// Whether a renderer of `scene` takes `change` for the content of `region`: what HapticRenderer::setContent() would answer. For
+/// set-up: it allocates.
+[[nodiscard]] PALPATE_EXPORT bool canChangeContent(const Scene& scene, RegionId region,
+                                                   const ContentChange& change);
+
 struct RendererSettings {
   std::optional<RendererKind> kind = {};  ///< not given: as the scene says
   PaperParameters paper = {};             ///< paper's renderer only; goes before the scene's own
