@@ -9,6 +9,8 @@
 namespace palpate {
 namespace {
 
+static_assert(PaperSurface{}.max_halvings == PaperParameters::kMaxHalvings);
+
 /// [m] So near to the surface the contact point counts as on it, unless told otherwise.
 double epsilonOf(const Field& field) { return std::min(1e-6, 1e-4 * field.featureSize()); }
 
