@@ -2,8 +2,9 @@
 # Fails on an include against the arrows of the design:
 #   tools -> devices, vdb, lib;  devices -> lib;  vdb -> lib;  lib -> nobody
 #   inside lib: render -> scene -> {contact, interior} -> materials -> fields -> core
-# Target visibility does not see to it: /usr/include is always on the path, and so are a static library's
-# own headers. Tests may include everything.
+# Of each other, vdb and devices include public headers only (<module>/include), tools also those that are private but
+# no part of one source folder (<module>/private). Target visibility does not see to it: /usr/include is always on the
+# path, and so are a static library's own headers. Tests may include everything.
 cmake_minimum_required(VERSION 3.25)
 
 # What each module may include of ours, itself apart.
@@ -20,6 +21,9 @@ set(layers_contact materials ${layers_materials})
 set(layers_interior materials ${layers_materials})
 set(layers_scene contact interior ${layers_contact})
 set(layers_render scene ${layers_scene})
+
+# Made when the build is configured, and of the layer core.
+set(generated palpate/export.h palpate/version.h)
 
 # Libraries that live in one place only: regular expression of the include, then where it may stand.
 set(confined_names openvdb tbb imath assimp nifti gdcm boost yaml)
@@ -42,7 +46,7 @@ endmacro()
 function(place file module_out layer_out)
   string(REGEX MATCH "^[^/]+" module "${file}")
   set(layer "")
-  if(module STREQUAL "lib" AND file MATCHES "^lib/(include/palpate|src)/([^/]+)/")
+  if(module STREQUAL "lib" AND file MATCHES "^lib/(include/palpate|private/palpate|src)/([^/]+)/")
     set(layer "${CMAKE_MATCH_2}")
   endif()
   set(${module_out} "${module}" PARENT_SCOPE)
@@ -53,7 +57,7 @@ endfunction()
 function(resolve file included out)
   cmake_path(GET file PARENT_PATH folder)
   string(REGEX MATCH "^[^/]+" module "${file}")
-  foreach(base "${folder}" "${module}/src" lib/include vdb/include devices/include)
+  foreach(base "${folder}" "${module}/src" lib/include vdb/include devices/include lib/private vdb/private)
     set(candidate "${base}/${included}")
     cmake_path(NORMAL_PATH candidate)
     if(EXISTS "${ROOT}/${candidate}")
@@ -99,7 +103,7 @@ foreach(file IN LISTS files)
       if(NOT target_module STREQUAL module)
         if(NOT target_module IN_LIST modules_${module})
           complain("${file}" "includes ${included}: ${module} must not know ${target_module}")
-        elseif(NOT target MATCHES "/include/")
+        elseif(NOT (target MATCHES "/include/" OR (module STREQUAL "tools" AND target MATCHES "^[^/]+/private/")))
           complain("${file}" "includes ${included}: it is private to ${target_module}")
         endif()
       elseif(module STREQUAL "lib" AND NOT target_layer STREQUAL layer
@@ -108,6 +112,8 @@ foreach(file IN LISTS files)
       elseif(file MATCHES "^[^/]+/include/" AND NOT target MATCHES "^[^/]+/include/")
         complain("${file}" "includes ${included}: a public header must not need a private one")
       endif()
+    elseif(included IN_LIST generated)
+      continue()
     elseif(included MATCHES "^palpate/")
       complain("${file}" "includes ${included}: there is no such header")
     elseif(module STREQUAL "lib" AND NOT included MATCHES "^(glm|yaml-cpp)/" AND included MATCHES "[./]")

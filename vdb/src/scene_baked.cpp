@@ -6,9 +6,9 @@
 
 #include "named_progress.h"
 #include "palpate/core/error.h"
+#include "palpate/vdb/bake.h"
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_memory.h"
-#include "palpate/vdb/hybrid.h"
 #include "scene_grid.h"
 
 namespace palpate::vdb {

@@ -1,6 +1,8 @@
 #include <algorithm>
 
 #include "felt_walls.h"
+#include "palpate/interior/partition.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/render/contrast.h"
 
 // Which walls of a scene feel the same, found when a renderer is made.

@@ -1,7 +1,7 @@
 #pragma once
 /// The scene's `device`: how a device's space lies in the world.
 
-#include "palpate/scene/device_mapping.h"
+#include "palpate/scene/description.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate {

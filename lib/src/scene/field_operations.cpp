@@ -4,10 +4,7 @@
 #include <functional>
 #include <utility>
 
-#include "palpate/fields/blend.h"
 #include "palpate/fields/csg.h"
-#include "palpate/fields/modify.h"
-#include "palpate/fields/transform.h"
 #include "scene/field_at_place.h"
 #include "scene/field_reader.h"
 #include "scene/messages.h"

@@ -1,7 +1,7 @@
 #pragma once
 /// `paper` of a scene: the parameters of the paper's renderer.
 
-#include "palpate/contact/paper_parameters.h"
+#include "palpate/scene/description.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate {

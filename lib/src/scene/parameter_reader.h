@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "palpate/materials/parameter.h"
+#include "palpate/materials/material.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate {

@@ -1,6 +1,10 @@
 #pragma once
-/// Scene files: YAML -> SceneDescription, strictly. What reads other files (meshes,
+/// Scene files: YAML -> Document -> SceneDescription, strictly. What reads other files (meshes,
 /// grids, scans) is not known here; it comes through a SceneRegistry that the vdb module fills.
+///
+/// A Document is a strict YAML subset as an immutable tree with places. No yaml-cpp type is visible here.
+/// Refused with file:line:column: duplicate keys, aliases and anchors, tags, more than one document,
+/// keys that are not plain text, nesting deeper than 64. JSON is a subset and is read too.
 
 #include <functional>
 #include <map>
@@ -11,17 +15,58 @@
 #include <string_view>
 #include <vector>
 
-#include "palpate/materials/parameter.h"
-#include "palpate/scene/document.h"
+#include "palpate/export.h"
+#include "palpate/materials/material.h"
+#include "palpate/scene/description.h"
 #include "palpate/scene/units.h"
 
 namespace palpate {
+
+struct Mark {
+  int line = 0;    ///< from 1
+  int column = 0;  ///< from 1
+};
+
+struct PALPATE_EXPORT Node {
+  enum class Kind { kNull, kScalar, kSequence, kMap };
+  struct Entry;
+
+  Kind kind = Kind::kNull;
+  Mark mark = {};
+  std::string text = {};  ///< scalar: as written
+  bool quoted = false;    ///< scalar: "..." or '...': text, never a number
+  std::vector<Node> items = {};
+  std::vector<Entry> entries;  ///< map: in the order of the file (no "= {}": Entry is incomplete)
+
+  [[nodiscard]] const Node* find(std::string_view key) const noexcept;
+};
+
+struct Node::Entry {
+  std::string key;
+  Mark key_mark;
+  Node value;
+};
+
+struct PALPATE_EXPORT Document {
+  std::string file;                ///< as the user named it, for messages
+  std::vector<std::string> lines;  ///< of the source, for excerpts
+  Node root;
+
+  [[nodiscard]] SourcePlace place(Mark mark) const;
+  [[nodiscard]] Error error(Mark mark, std::string code, std::string message,
+                            std::string hint = {}) const;
+};
+
+/// @throws Error (kInput).
+[[nodiscard]] PALPATE_EXPORT std::shared_ptr<const Document> parseDocument(std::string_view text,
+                                                                           std::string file);
+[[nodiscard]] PALPATE_EXPORT std::shared_ptr<const Document> readDocument(const std::string& path);
 
 class SceneLoader;
 
 /// A map node being read: every key must be asked for, and what is left over is an error with a
 /// suggestion (finish()). All getters throw Error (kInput) at the offending place.
-class MapReader {
+class PALPATE_EXPORT MapReader {
  public:
   MapReader(const SceneLoader& loader, const Node& map, std::string what);
 
@@ -66,7 +111,7 @@ struct ParameterKind {
 };
 
 /// What a loader extension needs to know of the file that is being read.
-class SceneLoader {
+class PALPATE_EXPORT SceneLoader {
  public:
   virtual ~SceneLoader() = default;
   [[nodiscard]] virtual const Document& document() const noexcept = 0;
@@ -121,16 +166,18 @@ struct SceneRegistry {
 };
 
 /// @throws Error (kInput) for the first problem found, with file:line:column, the line and a remedy.
-[[nodiscard]] SceneDescription parseScene(std::string_view text, const std::string& file,
-                                          const SceneRegistry& registry = {});
-[[nodiscard]] SceneDescription readScene(const std::string& path,
-                                         const SceneRegistry& registry = {});
+[[nodiscard]] PALPATE_EXPORT SceneDescription parseScene(std::string_view text,
+                                                         const std::string& file,
+                                                         const SceneRegistry& registry = {});
+[[nodiscard]] PALPATE_EXPORT SceneDescription readScene(const std::string& path,
+                                                        const SceneRegistry& registry = {});
 
 /// The closest of `candidates` to `word` if it is close enough to be a slip; else empty.
-[[nodiscard]] std::string suggest(std::string_view word,
-                                  std::span<const std::string_view> candidates);
+[[nodiscard]] PALPATE_EXPORT std::string suggest(std::string_view word,
+                                                 std::span<const std::string_view> candidates);
 
 /// True if `name` matches `glob` ('*' any run, '?' any one; everything else literal).
-[[nodiscard]] bool matchesGlob(std::string_view glob, std::string_view name) noexcept;
+[[nodiscard]] PALPATE_EXPORT bool matchesGlob(std::string_view glob,
+                                              std::string_view name) noexcept;
 
 }  // namespace palpate

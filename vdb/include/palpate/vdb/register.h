@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "palpate/export.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/level_set.h"
@@ -41,11 +42,10 @@ struct RegisterOptions {
 
 /// Adds to a scene's vocabulary (paths are relative to the scene file, lengths in its unit):
 ///   fields  mesh: {file, units, space, voxel, half_width, edges: sharp | rounded, sharp, sampler}  units: the
-///                  scene's, of glTF metres; voxel: longest side / 128; edges: see polyhedron.h; sharp: [degrees] see
-///                  sharp_edges.h
+///                  scene's, of glTF metres; voxel: longest side / 128; edges: see mesh.h; sharp: [degrees] see mesh.h
 ///           grid: {file, name, units, sampler}               units: only if the file does not say
 ///           baked: {field, voxel, half_width, sampler, parts, tolerance}   parts: auto | operands | whole,
-///                  see hybrid.h
+///                  see bake.h
 ///   images  NAME: {file, names, affine, space, frame, series}
 ///   layers  labels: {image, match: [..], voxel, sampler}      its label group is the image's name
 ///           threshold: {image, above, keep: largest | all, fill, voxel, sampler}
@@ -58,6 +58,6 @@ struct RegisterOptions {
 /// name tables. Grids are made when their field is first asked for; an image is then read once for
 /// all its layers. Errors of either point at the scene's file, line and column. The functions in
 /// `options` must stay callable as long as the registry and the fields it made are used.
-void registerKinds(SceneRegistry& registry, const RegisterOptions& options = {});
+PALPATE_EXPORT void registerKinds(SceneRegistry& registry, const RegisterOptions& options = {});
 
 }  // namespace palpate::vdb
