@@ -7,6 +7,6 @@
 namespace palpate {
 
 /// @throws Error (kInput) at the offending place.
-[[nodiscard]] DeviceMapping readDevice(const SceneLoader& loader, const Node& node);
+[[nodiscard]] DeviceMapping readDevice(const MapReader& reader);
 
 }  // namespace palpate

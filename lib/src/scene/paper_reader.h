@@ -6,6 +6,6 @@
 
 namespace palpate {
 
-[[nodiscard]] PaperParameters readPaper(const SceneLoader& loader, const Node& node);
+[[nodiscard]] PaperParameters readPaper(const MapReader& reader);
 
 }  // namespace palpate

@@ -64,13 +64,40 @@ struct PALPATE_EXPORT Document {
 
 class SceneLoader;
 
-/// A map node being read: every key must be asked for, and what is left over is an error with a
-/// suggestion (finish()). All getters throw Error (kInput) at the offending place.
+class Vocabulary;  // vocabulary.h: maps, keys, and what may stand at them, as data
+struct MapWords;
+struct KeyWords;
+using VocabularyPtr = std::shared_ptr<const Vocabulary>;
+
+/// What lib itself reads. The top level is the map "scene"; the kinds of fields are the keys of "field_kind".
+[[nodiscard]] PALPATE_EXPORT const VocabularyPtr& sceneVocabulary();
+
+/// A map node being read. A map that the vocabulary declares is checked whole when it is opened: unknown
+/// and missing keys, types and bounds; value(), text() and their like then only fetch what is there, or the
+/// declared default. In any other map every key must be asked for, by require(), optional() or one of the
+/// getters with a fallback, and what is left over is an error with a suggestion (finish()).
+/// All throw Error (kInput) at the offending place.
 class PALPATE_EXPORT MapReader {
  public:
   MapReader(const SceneLoader& loader, const Node& map, std::string what);
+  /// `declared`: the vocabulary's name of the map; read as one that it does not declare if it has no keys for it.
+  MapReader(const SceneLoader& loader, const Node& map, std::string what,
+            std::string_view declared);
 
   [[nodiscard]] bool has(std::string_view key) const noexcept;
+  /// What is written at a declared key; null if it is not there.
+  [[nodiscard]] const Node* find(std::string_view key) const noexcept { return map_->find(key); }
+  /// A number, or a quantity in SI; not given: the declared default, or 0 where that is in words.
+  [[nodiscard]] double value(std::string_view key) const;
+  [[nodiscard]] std::string text(std::string_view key) const;  ///< "" without a default
+  [[nodiscard]] int choice(std::string_view key) const;        ///< -1 without a default
+  [[nodiscard]] bool flag(std::string_view key) const;
+  [[nodiscard]] Vec3 point(std::string_view key) const;  ///< [m], or a direction
+  /// The map at `key`, opened; `key` must be there.
+  [[nodiscard]] MapReader map(std::string_view key) const;
+  /// The maps of a list of them.
+  [[nodiscard]] std::vector<MapReader> maps(std::string_view key) const;
+
   [[nodiscard]] const Node& require(std::string_view key);
   [[nodiscard]] const Node* optional(std::string_view key);
   [[nodiscard]] std::string requireText(std::string_view key);
@@ -81,9 +108,7 @@ class PALPATE_EXPORT MapReader {
   /// A bare number in the file's length unit, or a text with a unit; in [m].
   [[nodiscard]] double requireLength(std::string_view key);
   [[nodiscard]] double lengthOr(std::string_view key, double fallback_metres);
-  [[nodiscard]] Vec3 requirePoint(std::string_view key);      ///< lengths, in [m]
-  [[nodiscard]] Vec3 requireDirection(std::string_view key);  ///< unitless, not zero
-  [[nodiscard]] double quantityOr(std::string_view key, Dimension dimension, double fallback);
+  [[nodiscard]] Vec3 requirePoint(std::string_view key);  ///< lengths, in [m]
   /// Error at the key's value (or at the map if the key is not there).
   [[nodiscard]] Error errorAt(std::string_view key, std::string code, std::string message,
                               std::string hint = {}) const;
@@ -92,6 +117,8 @@ class PALPATE_EXPORT MapReader {
 
   [[nodiscard]] const SceneLoader& loader() const noexcept { return *loader_; }
   [[nodiscard]] const Node& node() const noexcept { return *map_; }
+  /// What the vocabulary says of a key of this map, which it must declare.
+  [[nodiscard]] const KeyWords& words(std::string_view key) const;
 
  private:
   [[nodiscard]] Error unknown(const Node::Entry& entry,
@@ -100,6 +127,7 @@ class PALPATE_EXPORT MapReader {
   const SceneLoader* loader_;
   const Node* map_;
   std::string what_;
+  const MapWords* words_ = nullptr;
   std::vector<std::string> known_;
 };
 
@@ -115,6 +143,7 @@ class PALPATE_EXPORT SceneLoader {
  public:
   virtual ~SceneLoader() = default;
   [[nodiscard]] virtual const Document& document() const noexcept = 0;
+  [[nodiscard]] virtual const Vocabulary& vocabulary() const { return *sceneVocabulary(); }
   [[nodiscard]] virtual double metresPerUnit() const noexcept = 0;
   [[nodiscard]] virtual std::string lengthUnit() const = 0;
   /// A path written in the scene, made relative to the scene file's folder.
@@ -127,7 +156,8 @@ class PALPATE_EXPORT SceneLoader {
   [[nodiscard]] virtual MaterialMapPtr map(const Node& node, const ParameterKind& of) const = 0;
 };
 
-/// Kinds that other modules add. Names are the YAML keys.
+/// Kinds that other modules add: what makes them, by their YAML keys, and what may be written of them. A kind that
+/// the vocabulary does not declare asks for its keys itself.
 struct SceneRegistry {
   /// `fields: {x: {mesh: {...}}}`: makes the source of a field; must not do heavy work itself.
   using FieldKind = std::function<FieldSourcePtr(MapReader&)>;
@@ -158,6 +188,7 @@ struct SceneRegistry {
   /// it is asked for.
   using GridChooser = std::function<FieldSourcePtr(const FieldSourcePtr&, const GridChoice&)>;
 
+  VocabularyPtr vocabulary = sceneVocabulary();
   std::map<std::string, FieldKind> fields = {};
   std::map<std::string, LayerKind> layers = {};
   std::map<std::string, ParameterMapKind> maps = {};
