@@ -11,6 +11,7 @@
 #include "named_progress.h"
 #include "own_vocabulary.h"
 #include "palpate/scene/units.h"
+#include "palpate/scene/vocabulary.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_image.h"

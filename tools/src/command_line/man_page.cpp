@@ -1,5 +1,6 @@
 #include "command_line/manual.h"
 #include "command_line/option_list.h"
+#include "palpate/version.h"
 
 namespace palpate::tools {
 namespace {
@@ -65,7 +66,7 @@ std::string verbText(const Verb& verb) {
 std::string manPage(const std::vector<Verb>& all) {
   std::string text =
       ".\\\" Made by `palpate help --man`.\n"
-      ".TH PALPATE 1 \"\" \"palpate " PALPATE_VERSION
+      ".TH PALPATE 1 \"\" \"palpate " PALPATE_VERSION_STRING
       "\" \"User Commands\"\n"
       ".SH NAME\npalpate \\- feel what is inside a scanned or modelled object\n"
       ".SH SYNOPSIS\n.B palpate\n.I VERB\n[\\fIOPTIONS\\fR]\n"
