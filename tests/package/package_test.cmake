@@ -1,4 +1,4 @@
-# cmake -D SOURCE=... -D SCRATCH=... -D COMPONENTS=... [-D BINARY=... -D CONFIG=...] [-D LAUNCHER=...] -P package_test.cmake
+# cmake -D SOURCE=... -D SCRATCH=... -D COMPONENTS=... -D CONFIG=... [-D BINARY=...] [-D LAUNCHER=...] -P package_test.cmake
 # Installs the build BINARY below SCRATCH, moves what was installed (a package must not know where it was
 # put), and builds and runs an outside project against it. Without BINARY, builds shared libraries of core and devices first.
 cmake_minimum_required(VERSION 3.25)
@@ -13,9 +13,8 @@ else()
   # What was built before is kept.
   file(REMOVE_RECURSE "${SCRATCH}/first" "${SCRATCH}/installed" "${SCRATCH}/build")
   set(BINARY "${SCRATCH}/library")
-  set(CONFIG Debug)
   run(${CMAKE_COMMAND} -G Ninja -S "${SOURCE}" -B "${BINARY}"
-    -D CMAKE_BUILD_TYPE=${CONFIG} "-D CMAKE_CXX_FLAGS_DEBUG=-O0" -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
+    -D CMAKE_BUILD_TYPE=${CONFIG} -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
     -D BUILD_SHARED_LIBS=ON -D PALPATE_VDB=OFF -D PALPATE_TESTS=OFF)
   run(${CMAKE_COMMAND} --build "${BINARY}" --parallel 2)
 endif()
