@@ -1,21 +1,17 @@
-# cmake -D SOURCE=... -D SCRATCH=... -D COMPONENTS=... [-D BINARY=... -D CONFIG=...] [-D LAUNCHER=...] -P package_test.cmake
+# cmake -D SOURCE=... -D BINARY=... -D CONFIG=... -D SCRATCH=... -D COMPONENTS=... [-D SHARED=ON -D LAUNCHER=...] -P package_test.cmake
 # Installs the build BINARY below SCRATCH, moves what was installed (a package must not know where it was
-# put), and builds and runs an outside project against it. Without BINARY, builds shared libraries of core and devices first.
+# put), and builds and runs an outside project against it. With SHARED, core and devices are built as shared
+# libraries in BINARY first.
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-if(DEFINED BINARY)
-  file(REMOVE_RECURSE "${SCRATCH}")
-else()
-  # What was built before is kept.
-  file(REMOVE_RECURSE "${SCRATCH}/first" "${SCRATCH}/installed" "${SCRATCH}/build")
-  set(BINARY "${SCRATCH}/library")
-  set(CONFIG Debug)
+file(REMOVE_RECURSE "${SCRATCH}")
+if(SHARED)
   run(${CMAKE_COMMAND} -G Ninja -S "${SOURCE}" -B "${BINARY}"
-    -D CMAKE_BUILD_TYPE=${CONFIG} "-D CMAKE_CXX_FLAGS_DEBUG=-O0" -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
+    -D CMAKE_BUILD_TYPE=${CONFIG} -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
     -D BUILD_SHARED_LIBS=ON -D PALPATE_VDB=OFF -D PALPATE_TESTS=OFF)
   run(${CMAKE_COMMAND} --build "${BINARY}" --parallel 2)
 endif()
