@@ -9,7 +9,6 @@
 
 #include "bake/solid.h"
 #include "named_progress.h"
-#include "own_vocabulary.h"
 #include "palpate/scene/units.h"
 #include "palpate/scene/vocabulary.h"
 #include "palpate/vdb/bake.h"
@@ -391,12 +390,6 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, const MapRea
 }
 
 }  // namespace
-
-VocabularyPtr vocabulary(const Vocabulary& of) {
-  auto all = std::make_shared<Vocabulary>(of);
-  all->add(kOwnVocabulary, "vocabulary.yaml");
-  return all;
-}
 
 void registerKinds(SceneRegistry& registry, const RegisterOptions& options) {
   registry.vocabulary = vocabulary(*registry.vocabulary);

@@ -1,5 +1,4 @@
-#include "command_line/manual.h"
-#include "command_line/option_list.h"
+#include "command_line/verb_words.h"
 
 namespace palpate::tools {
 namespace {
@@ -10,16 +9,19 @@ std::string joined(const std::vector<std::string>& words, const char* between = 
   return text;
 }
 
-std::vector<std::string> namesOf(const std::vector<Verb>& all) {
+std::vector<std::string> namesOf(const std::vector<VerbWords>& verbs) {
   std::vector<std::string> names;
-  for (const Verb& verb : all) names.emplace_back(verb.name);
+  for (const VerbWords& verb : verbs) names.push_back(verb.name);
   return names;
 }
 
 /// Behind `help` stand a verb or `scene`.
-std::string helpTopics(const std::vector<Verb>& all) { return joined(namesOf(all)) + " scene"; }
+std::string helpTopics(const std::vector<VerbWords>& verbs) {
+  return joined(namesOf(verbs)) + " scene";
+}
 
-std::string forBash(const std::vector<Verb>& all, const std::vector<std::string>& scene_words) {
+std::string forBash(const std::vector<VerbWords>& verbs,
+                    const std::vector<std::string>& scene_words) {
   std::string text =
       "# Made by `palpate help --completion bash`.\n"
       "_palpate() {\n"
@@ -30,11 +32,11 @@ std::string forBash(const std::vector<Verb>& all, const std::vector<std::string>
       "  local options= words=\n"
       "  case $verb in\n"
       "    '') words='" +
-      joined(namesOf(all)) + "'; options='--help --version --json --quiet --force' ;;\n";
-  for (const Verb& verb : all) {
+      joined(namesOf(verbs)) + "'; options='--help --version --json --quiet --force' ;;\n";
+  for (const VerbWords& verb : verbs) {
     std::vector<std::string> names;
     std::string values;
-    for (const OptionWords& option : optionsOf(verb)) {
+    for (const OptionWords& option : verb.options) {
       names.insert(names.end(), option.names.begin(), option.names.end());
       if (option.value.empty()) continue;
       values += "        " + joined(option.names, "|") + ") ";
@@ -46,8 +48,8 @@ std::string forBash(const std::vector<Verb>& all, const std::vector<std::string>
       values += " ;;\n";
     }
     text += std::string("    ") + verb.name + ")\n      options='" + joined(names) + "'\n";
-    if (verb.name == std::string_view("help")) {
-      text += "      if ((COMP_CWORD == i + 1)); then words='" + helpTopics(all) +
+    if (verb.name == "help") {
+      text += "      if ((COMP_CWORD == i + 1)); then words='" + helpTopics(verbs) +
               "'\n      elif [[ ${COMP_WORDS[i+1]} == scene ]]; then words='" +
               joined(scene_words) + "'; else words=NONE; fi\n";
     } else {
@@ -75,16 +77,17 @@ std::string shellWord(const std::string& text) {
   return out + "'";
 }
 
-std::string forFish(const std::vector<Verb>& all, const std::vector<std::string>& scene_words) {
+std::string forFish(const std::vector<VerbWords>& verbs,
+                    const std::vector<std::string>& scene_words) {
   std::string text = "# Made by `palpate help --completion fish`.\n";
-  const std::string none = "not __fish_seen_subcommand_from " + joined(namesOf(all));
-  for (const Verb& verb : all) {
+  const std::string none = "not __fish_seen_subcommand_from " + joined(namesOf(verbs));
+  for (const VerbWords& verb : verbs) {
     text += "complete -c palpate -f -n " + shellWord(none) + " -a " + verb.name + " -d " +
             shellWord(verb.line) + "\n";
   }
-  for (const Verb& verb : all) {
-    for (const OptionWords& option : optionsOf(verb)) {
-      text += "complete -c palpate -n '__fish_seen_subcommand_from " + std::string(verb.name) + "'";
+  for (const VerbWords& verb : verbs) {
+    for (const OptionWords& option : verb.options) {
+      text += "complete -c palpate -n '__fish_seen_subcommand_from " + verb.name + "'";
       for (const std::string& name : option.names) {
         text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
       }
@@ -99,12 +102,13 @@ std::string forFish(const std::vector<Verb>& all, const std::vector<std::string>
   const std::string seen = "__fish_seen_subcommand_from help";
   return text + "complete -c palpate -f -n " +
          shellWord(seen + "; and not __fish_seen_subcommand_from scene") + " -a " +
-         shellWord(helpTopics(all)) + "\ncomplete -c palpate -f -n " +
+         shellWord(helpTopics(verbs)) + "\ncomplete -c palpate -f -n " +
          shellWord(seen + "; and __fish_seen_subcommand_from scene") + " -a " +
          shellWord(joined(scene_words)) + "\n";
 }
 
-std::string forZsh(const std::vector<Verb>& all, const std::vector<std::string>& scene_words) {
+std::string forZsh(const std::vector<VerbWords>& verbs,
+                   const std::vector<std::string>& scene_words) {
   const auto described = [](std::string name, const std::string& help) {
     std::string text;
     for (const char c : help)
@@ -114,19 +118,18 @@ std::string forZsh(const std::vector<Verb>& all, const std::vector<std::string>&
   std::string text =
       "#compdef palpate\n# Made by `palpate help --completion zsh`.\n_palpate() {\n"
       "  local -a verbs=(\n";
-  for (const Verb& verb : all)
-    text += "    " + described(std::string(verb.name) + ":", verb.line) + "\n";
+  for (const VerbWords& verb : verbs) text += "    " + described(verb.name + ":", verb.line) + "\n";
   text +=
       "  )\n  if ((CURRENT == 2)); then _describe verb verbs; return; fi\n  case $words[2] in\n";
-  for (const Verb& verb : all) {
+  for (const VerbWords& verb : verbs) {
     text += std::string("    ") + verb.name + ")\n";
-    if (verb.name == std::string_view("help")) {
-      text += "      if ((CURRENT == 3)); then compadd " + helpTopics(all) +
+    if (verb.name == "help") {
+      text += "      if ((CURRENT == 3)); then compadd " + helpTopics(verbs) +
               "; fi\n      if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd " +
               joined(scene_words) + "; fi\n";
     }
     text += "      _arguments";
-    for (const OptionWords& option : optionsOf(verb)) {
+    for (const OptionWords& option : verb.options) {
       for (const std::string& name : option.names) {
         std::string help;
         for (const char c : option.help) {
@@ -141,18 +144,17 @@ std::string forZsh(const std::vector<Verb>& all, const std::vector<std::string>&
         text += " \\\n        " + shellWord(spec);
       }
     }
-    text += verb.name == std::string_view("help") ? "\n      ;;\n"
-                                                  : " \\\n        '*:file:_files'\n      ;;\n";
+    text += verb.name == "help" ? "\n      ;;\n" : " \\\n        '*:file:_files'\n      ;;\n";
   }
   return text + "  esac\n}\n_palpate \"$@\"\n";
 }
 
 }  // namespace
 
-std::string completion(const std::string& shell, const std::vector<Verb>& all,
+std::string completion(const std::string& shell, const std::vector<VerbWords>& verbs,
                        const std::vector<std::string>& scene_words) {
-  if (shell == "bash") return forBash(all, scene_words);
-  return shell == "zsh" ? forZsh(all, scene_words) : forFish(all, scene_words);
+  if (shell == "bash") return forBash(verbs, scene_words);
+  return shell == "zsh" ? forZsh(verbs, scene_words) : forFish(verbs, scene_words);
 }
 
 }  // namespace palpate::tools

@@ -1,7 +1,7 @@
 #include <memory>
 
-#include "command_line/manual.h"
 #include "command_line/verb.h"
+#include "command_line/verb_words.h"
 #include "palpate/vdb/register.h"
 #include "vocabulary/documents.h"
 
@@ -85,9 +85,9 @@ std::string helpText(const HelpOptions& options) {
     return options.markdown ? keyTable(*vocabulary, options.key)
                             : sceneHelp(*vocabulary, options.key);
   }
-  if (options.man) return manPage(verbs());
+  if (options.man) return manPage(verbWords());
   if (!options.completion.empty()) {
-    return completion(options.completion, verbs(), sceneWords(*vdb::vocabulary()));
+    return completion(options.completion, verbWords(), sceneWords(*vdb::vocabulary()));
   }
   if (options.markdown) return markdown();
   if (options.verb.empty()) return overview();

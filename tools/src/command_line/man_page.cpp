@@ -1,5 +1,4 @@
-#include "command_line/manual.h"
-#include "command_line/option_list.h"
+#include "command_line/verb_words.h"
 #include "palpate/version.h"
 
 namespace palpate::tools {
@@ -38,17 +37,17 @@ std::string optionText(const OptionWords& option) {
   return ".TP\n" + names + "\n" + plain(option.help) + "\n";
 }
 
-std::string verbText(const Verb& verb) {
-  std::string text = request("SS", "palpate " + std::string(verb.name)) + plain(verb.line) +
-                     ".\n.PP\n" + ".nf\n" + plain(verb.usage) + "\n.fi\n";
+std::string verbText(const VerbWords& verb) {
+  std::string text = request("SS", "palpate " + verb.name) + plain(verb.line) + ".\n.PP\n" +
+                     ".nf\n" + plain(verb.usage) + "\n.fi\n";
   std::string group;
-  for (const OptionWords& option : optionsOf(verb)) {
+  for (const OptionWords& option : verb.options) {
     if (option.group != group) text += ".PP\n" + plain(option.group) + ":\n";
     group = option.group;
     text += optionText(option);
   }
-  if (verb.details[0] != '\0') {
-    std::string details(verb.details);
+  if (!verb.details.empty()) {
+    std::string details = verb.details;
     for (std::size_t at = 0; (at = details.find("\n\n", at)) != std::string::npos;) {
       details.replace(at, 2, "\n\v\n");
     }
@@ -63,7 +62,7 @@ std::string verbText(const Verb& verb) {
 
 }  // namespace
 
-std::string manPage(const std::vector<Verb>& all) {
+std::string manPage(const std::vector<VerbWords>& verbs) {
   std::string text =
       ".\\\" Made by `palpate help --man`.\n"
       ".TH PALPATE 1 \"\" \"palpate " PALPATE_VERSION_STRING
@@ -74,7 +73,7 @@ std::string manPage(const std::vector<Verb>& all) {
       "Results go to stdout, everything else to stderr; \\fB\\-\\-json\\fR gives one JSON object.\n"
       "\\fBpalpate help scene\\fR tells the keys of scene files.\n"
       ".SH VERBS\n";
-  for (const Verb& verb : all) text += verbText(verb);
+  for (const VerbWords& verb : verbs) text += verbText(verb);
   text += ".SH EXIT STATUS\n";
   for (const auto& [code, meaning] : {std::pair{"0", "done"},
                                       {"1", "the answer is no, or the operation failed"},

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <set>
 
-#include "command_line/verb.h"
+#include "palpate/core/error.h"
 #include "palpate/scene/scene_file.h"
 #include "vocabulary/documents.h"
 
@@ -94,9 +94,9 @@ std::string sceneHelp(const Vocabulary& vocabulary, const std::string& word) {
   const std::vector<std::string> words = sceneWords(vocabulary);
   const std::string close =
       suggest(name, std::vector<std::string_view>(words.begin(), words.end()));
-  throw usageError(
-      "no key or map of a scene is called '" + word + "'",
-      close.empty() ? "palpate help scene lists them" : "did you mean '" + close + "'?");
+  throw Error(ErrorKind::kUsage,
+              {"usage.command_line", "no key or map of a scene is called '" + word + "'",
+               close.empty() ? "palpate help scene lists them" : "did you mean '" + close + "'?"});
 }
 
 }  // namespace palpate::tools

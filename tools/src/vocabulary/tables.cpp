@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <set>
 
-#include "command_line/verb.h"
+#include "palpate/core/error.h"
 #include "vocabulary/documents.h"
 
 namespace palpate::tools {
@@ -53,8 +53,8 @@ std::string oneText(const Vocabulary& vocabulary, const KeyWords& key) {
 }
 
 /// What is said of a key, and of the keys of the map that it holds, those of each map once.
-std::string meaning(const Vocabulary& vocabulary, const KeyWords& key,
-                    std::set<std::string>& told) {
+std::string meaning(const Vocabulary& vocabulary, const KeyWords& key, std::set<std::string>& told,
+                    bool is_inner = false) {
   std::string text = key.help;
   if (!key.needs.empty()) text += (text.empty() ? "needs " : "; needs ") + key.needs;
   if (!key.more.empty()) text += ". " + key.more;
@@ -68,9 +68,10 @@ std::string meaning(const Vocabulary& vocabulary, const KeyWords& key,
                                                       : part.fallback);
     }
     inner += ")";
-    const std::string said = meaning(vocabulary, part, told);
+    const std::string said = meaning(vocabulary, part, told, true);
     if (!said.empty()) inner += " " + said;
   }
+  if (is_inner) return text + (text.empty() ? "[" : " [") + inner + "]";
   return text + (text.empty() ? "" : ". ") + inner;
 }
 
@@ -101,16 +102,18 @@ std::string valueText(const Vocabulary& vocabulary, const KeyWords& key) {
   if (key.varies) text += ", or a map";
   if (key.count == Count::kNames) return "map of names";
   if (key.count == Count::kOne) return text;
-  if (key.at_least == key.at_most)
-    return "list of " + std::to_string(key.at_least) + ", each: " + text;
-  return "list of at least " + std::to_string(key.at_least) +
-         (key.at_most > 0 ? ", at most " + std::to_string(key.at_most) : "") + ", each: " + text;
+  if (key.at_least == key.at_most) return "list of " + std::to_string(key.at_least) + ": " + text;
+  return "list" + (key.at_most > 0 ? ", at most " + std::to_string(key.at_most) + "," : "") +
+         " of: " + text;
 }
 
 std::string keyTable(const Vocabulary& vocabulary, std::string_view name) {
   if (name == "in_code") return tableInCode(vocabulary);
   const MapWords* map = vocabulary.find(name);
-  if (map == nullptr) throw usageError("there is no map '" + std::string(name) + "'", "");
+  if (map == nullptr)
+    throw Error(ErrorKind::kUsage,
+                {"usage.command_line", "there is no map '" + std::string(name) + "'",
+                 "palpate help scene lists them"});
   const bool are_kinds = name == "field_kind";
   std::string text = are_kinds ? "| kind | value | values | inside |\n|---|---|---|---|\n"
                                : "| key | value | default | meaning |\n|---|---|---|---|\n";

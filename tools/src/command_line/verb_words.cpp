@@ -1,6 +1,8 @@
-#include "command_line/option_list.h"
+#include "command_line/verb_words.h"
 
 #include <algorithm>
+
+#include "command_line/verb.h"
 
 namespace palpate::tools {
 namespace {
@@ -21,8 +23,6 @@ bool isFile(const std::string& value) {
   return value.starts_with("FILE") || value == "SCENE" || value == "IMAGE";
 }
 
-}  // namespace
-
 std::vector<OptionWords> optionsOf(const Verb& verb) {
   Invocation scratch;
   const auto app = makeApp(verb, scratch);
@@ -42,6 +42,16 @@ std::vector<OptionWords> optionsOf(const Verb& verb) {
     }
   }
   all.push_back({{"-h", "--help"}, "", "print this", "General", {}, false});
+  return all;
+}
+
+}  // namespace
+
+std::vector<VerbWords> verbWords() {
+  std::vector<VerbWords> all;
+  for (const Verb& verb : verbs()) {
+    all.push_back({verb.name, verb.line, verb.usage, verb.example, verb.details, optionsOf(verb)});
+  }
   return all;
 }
 
