@@ -1,0 +1,160 @@
+// Where walls of different stiffness are pressed about as deep as they are large, by brute force: the least of what their
+// springs and the stop can store, over all places of the point between them.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "lib/render/drive.h"
+#include "support/random_hand.h"
+
+namespace palpate::test {
+namespace {
+
+struct Ball {
+  Vec3 center;       // [m]
+  double radius;     // [m]
+  double stiffness;  // [N/m]
+};
+
+const std::array<Ball, 2> kBalls{Ball{mm(-1.4, 0, 0), 2.0e-3, 500.0},
+                                 Ball{mm(1.1, 0, 0), 1.6e-3, 3000.0}};
+constexpr double kStop = 1.05 * 3000.0;  // [N/m]
+
+ScenePtr balls() {
+  return sceneOf(R"(
+palpate: 1
+length: mm
+materials: {soft: {stiffness: 500 N/m}, hard: {stiffness: 3000 N/m}}
+layers:
+  - {name: a, inside: {sphere: {center: [-1.4, 0, 0], radius: 2}}, wall: soft}
+  - {name: b, inside: {sphere: {center: [1.1, 0, 0], radius: 1.6}}, wall: hard}
+)");
+}
+
+/// A ball as it is felt with the proxy at `proxy`, the hand `deep` [m] from there: by a share it lies in its plane there. So
+/// its surface is a conic about its center, R / ((1 - share) + share cos(angle to the normal)) away.
+class FeltBall {
+ public:
+  FeltBall(const Ball& ball, const Vec3& proxy, double deep)
+      : ball_(ball), up_(glm::normalize(proxy - ball.center)) {
+    const double q = std::clamp((deep - 0.25 * ball.radius) / (0.75 * ball.radius), 0.0, 1.0);
+    share_ = q * q * (3.0 - 2.0 * q);
+  }
+
+  /// [J] What its spring, in series with the stop, stores at `p` [m].
+  [[nodiscard]] double stored(const Vec3& p) const {
+    const double way = depth(p);
+    return 0.5 * ball_.stiffness * kStop / (kStop - ball_.stiffness) * way * way;
+  }
+
+ private:
+  /// [m] From `p` to the nearest place outside: looked for all round, and then closely.
+  [[nodiscard]] double depth(const Vec3& p) const {
+    const Vec3 off = p - ball_.center;
+    const double y = glm::dot(off, up_);
+    const double x = std::sqrt(std::max(0.0, glm::dot(off, off) - y * y));
+    const auto radiusAt = [&](double angle) {
+      const double by = (1.0 - share_) + share_ * std::cos(angle);
+      return by > 1e-9 ? ball_.radius / by : kInfinity;
+    };
+    const double own = std::hypot(x, y);
+    if (own >= radiusAt(std::atan2(x, y))) return 0.0;
+    const auto away = [&](double angle) {
+      const double r = radiusAt(angle);
+      return r < kInfinity ? std::hypot(r * std::sin(angle) - x, r * std::cos(angle) - y)
+                           : kInfinity;
+    };
+    constexpr int kLooks = 48;
+    const double step = 2.0 * std::numbers::pi / kLooks;
+    double best = 0.0;
+    for (int i = 1; i < kLooks; ++i) {
+      if (away(i * step) < away(best)) best = i * step;
+    }
+    double low = best - step;
+    double high = best + step;
+    for (int i = 0; i < 40; ++i) {
+      const double a = low + (high - low) / 3.0;
+      const double b = high - (high - low) / 3.0;
+      (away(a) < away(b) ? high : low) = away(a) < away(b) ? b : a;
+    }
+    return away(0.5 * (low + high));
+  }
+
+  Ball ball_;
+  Vec3 up_;
+  double share_ = 0.0;
+};
+
+struct Rest {
+  Vec3 place;     // [m]
+  double energy;  // [J]
+};
+
+/// All places about `proxy` where what is stored is least around, found by going downhill from 27 of them.
+std::vector<Rest> restsOf(const Vec3& proxy, const Vec3& hand) {
+  const double deep = glm::length(hand - proxy);
+  const std::array<FeltBall, 2> felt{FeltBall(kBalls[0], proxy, deep),
+                                     FeltBall(kBalls[1], proxy, deep)};
+  const auto energy = [&](const Vec3& p) {
+    return 0.5 * kStop * glm::dot(p - hand, p - hand) + felt[0].stored(p) + felt[1].stored(p);
+  };
+  std::vector<Rest> out;
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 grid(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    Rest rest{0.5 * (proxy + hand) + 0.7 * deep * grid, 0.0};
+    rest.energy = energy(rest.place);
+    for (double step = 0.2 * deep; step > 1e-9;) {
+      bool is_lower = false;
+      for (int axis = 0; axis < 6; ++axis) {
+        Vec3 next = rest.place;
+        next[axis / 2] += axis % 2 == 0 ? step : -step;
+        const double there = energy(next);
+        if (!(there < rest.energy)) continue;
+        is_lower = true;
+        rest = {next, there};
+      }
+      step *= is_lower ? 1.5 : 0.5;
+    }
+    // Along a valley a walk by the axes ends a little short.
+    const bool is_known = std::any_of(out.begin(), out.end(), [&](const Rest& each) {
+      return glm::length(each.place - rest.place) < 1e-2 * deep;
+    });
+    if (!is_known) out.push_back(rest);
+  }
+  std::sort(out.begin(), out.end(),
+            [](const Rest& a, const Rest& b) { return a.energy < b.energy; });
+  return out;
+}
+
+TEST(MixedOracle, WhatIsStoredIsTheLeastThatCanBeHoweverDeepThePressIs) {
+  Drive drive(balls());
+  Random random(7);
+  int several = 0;
+  int deep = 0;
+  constexpr int kHands = 16;
+  for (int i = 0; i < kHands; ++i) {
+    (void)drive.walk(mm(-0.1, 0, 6), 1e-3);
+    (void)drive.walk(mm(-0.1, 0, 1.4), 0.2e-3);
+    const Vec3 hand =
+        mm(-0.1, 0, 1.4) + random.uniform(0.2e-3, 2.4e-3) *
+                               glm::normalize(random.in({mm(-0.5, -0.3, -1), mm(0.5, 0.3, -0.6)}));
+    const TickResult out = drive.walk(hand, 20e-6);
+    if (!out.contact || glm::length(drive.renderer().state().source.stored.push) == 0.0) continue;
+    const std::vector<Rest> rests = restsOf(out.proxy, hand);
+    const double stored = drive.renderer().state().source.stored.energy;
+    several += rests.size() > 1 ? 1 : 0;
+    deep += glm::length(hand - out.proxy) > kBalls[1].radius ? 1 : 0;
+    EXPECT_NEAR(stored, rests[0].energy, 1e-5 * rests[0].energy) << i << ", " << rests.size();
+  }
+  std::printf("  %d of %d hands deeper than a ball's radius, %d with several places of rest\n",
+              deep, kHands, several);
+  EXPECT_GT(deep, 3);
+}
+
+}  // namespace
+}  // namespace palpate::test
