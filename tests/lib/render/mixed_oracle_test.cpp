@@ -15,52 +15,52 @@
 namespace palpate::test {
 namespace {
 
-struct Ball {
+struct Bar {
   Vec3 center;       // [m]
   double radius;     // [m]
   double stiffness;  // [N/m]
 };
 
-const std::array<Ball, 2> kBalls{Ball{mm(-1.4, 0, 0), 2.0e-3, 500.0},
-                                 Ball{mm(1.1, 0, 0), 1.6e-3, 3000.0}};
+const std::array<Bar, 2> kBars{Bar{mm(-1.4, 0, 0), 2.0e-3, 500.0},
+                               Bar{mm(1.1, 0, 0), 1.6e-3, 3000.0}};
 constexpr double kStop = 1.05 * 3000.0;  // [N/m]
 
-ScenePtr balls() {
+ScenePtr bars() {
   return sceneOf(R"(
 palpate: 1
 length: mm
 materials: {soft: {stiffness: 500 N/m}, hard: {stiffness: 3000 N/m}}
 layers:
-  - {name: a, inside: {sphere: {center: [-1.4, 0, 0], radius: 2}}, wall: soft}
-  - {name: b, inside: {sphere: {center: [1.1, 0, 0], radius: 1.6}}, wall: hard}
+  - {name: a, inside: {cylinder: {center: [-1.4, 0, 0], axis: [0, 1, 0], radius: 2, height: 60}}, wall: soft}
+  - {name: b, inside: {cylinder: {center: [1.1, 0, 0], axis: [0, 1, 0], radius: 1.6, height: 60}}, wall: hard}
 )");
 }
 
-/// A ball as it is felt with the proxy at `proxy`, the hand `deep` [m] from there: by a share it lies in its plane there. So
-/// its surface is a conic about its center, R / ((1 - share) + share cos(angle to the normal)) away.
-class FeltBall {
+/// A bar along y as it is felt with the proxy at `proxy`, the hand `deep` [m] from there: by a share it lies in its plane there. So
+/// its section is a conic about its center, R / ((1 - share) + share cos(angle to the normal)) away.
+class FeltBar {
  public:
-  FeltBall(const Ball& ball, const Vec3& proxy, double deep)
-      : ball_(ball), up_(glm::normalize(proxy - ball.center)) {
-    const double q = std::clamp((deep - 0.25 * ball.radius) / (0.75 * ball.radius), 0.0, 1.0);
+  FeltBar(const Bar& bar, const Vec3& proxy, double deep)
+      : bar_(bar), up_(glm::normalize(Vec3(proxy.x - bar.center.x, 0.0, proxy.z - bar.center.z))) {
+    const double q = std::clamp((deep - 0.25 * bar.radius) / (0.75 * bar.radius), 0.0, 1.0);
     share_ = q * q * (3.0 - 2.0 * q);
   }
 
   /// [J] What its spring, in series with the stop, stores at `p` [m].
   [[nodiscard]] double stored(const Vec3& p) const {
     const double way = depth(p);
-    return 0.5 * ball_.stiffness * kStop / (kStop - ball_.stiffness) * way * way;
+    return 0.5 * bar_.stiffness * kStop / (kStop - bar_.stiffness) * way * way;
   }
 
  private:
   /// [m] From `p` to the nearest place outside: looked for all round, and then closely.
   [[nodiscard]] double depth(const Vec3& p) const {
-    const Vec3 off = p - ball_.center;
+    const Vec3 off(p.x - bar_.center.x, 0.0, p.z - bar_.center.z);
     const double y = glm::dot(off, up_);
     const double x = std::sqrt(std::max(0.0, glm::dot(off, off) - y * y));
     const auto radiusAt = [&](double angle) {
       const double by = (1.0 - share_) + share_ * std::cos(angle);
-      return by > 1e-9 ? ball_.radius / by : kInfinity;
+      return by > 1e-9 ? bar_.radius / by : kInfinity;
     };
     const double own = std::hypot(x, y);
     if (own >= radiusAt(std::atan2(x, y))) return 0.0;
@@ -85,7 +85,7 @@ class FeltBall {
     return away(0.5 * (low + high));
   }
 
-  Ball ball_;
+  Bar bar_;
   Vec3 up_;
   double share_ = 0.0;
 };
@@ -95,24 +95,23 @@ struct Rest {
   double energy;  // [J]
 };
 
-/// All places about `proxy` where what is stored is least around, found by going downhill from 27 of them.
+/// All places about `proxy` where what is stored is least around, found by going downhill from 25 of them.
 std::vector<Rest> restsOf(const Vec3& proxy, const Vec3& hand) {
   const double deep = glm::length(hand - proxy);
-  const std::array<FeltBall, 2> felt{FeltBall(kBalls[0], proxy, deep),
-                                     FeltBall(kBalls[1], proxy, deep)};
+  const std::array<FeltBar, 2> felt{FeltBar(kBars[0], proxy, deep), FeltBar(kBars[1], proxy, deep)};
   const auto energy = [&](const Vec3& p) {
     return 0.5 * kStop * glm::dot(p - hand, p - hand) + felt[0].stored(p) + felt[1].stored(p);
   };
   std::vector<Rest> out;
-  for (int i = 0; i < 27; ++i) {
-    const Vec3 grid(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-    Rest rest{0.5 * (proxy + hand) + 0.7 * deep * grid, 0.0};
+  for (int i = 0; i < 25; ++i) {
+    const Vec3 grid(i % 5 - 2, 0, i / 5 - 2);
+    Rest rest{0.5 * (proxy + hand) + 0.35 * deep * grid, 0.0};
     rest.energy = energy(rest.place);
     for (double step = 0.2 * deep; step > 1e-9;) {
       bool is_lower = false;
-      for (int axis = 0; axis < 6; ++axis) {
+      for (int axis = 0; axis < 4; ++axis) {
         Vec3 next = rest.place;
-        next[axis / 2] += axis % 2 == 0 ? step : -step;
+        next[axis / 2 * 2] += axis % 2 == 0 ? step : -step;
         const double there = energy(next);
         if (!(there < rest.energy)) continue;
         is_lower = true;
@@ -132,27 +131,27 @@ std::vector<Rest> restsOf(const Vec3& proxy, const Vec3& hand) {
 }
 
 TEST(MixedOracle, WhatIsStoredIsTheLeastThatCanBeHoweverDeepThePressIs) {
-  Drive drive(balls());
+  Drive drive(bars());
   Random random(7);
   int several = 0;
   int deep = 0;
-  constexpr int kHands = 16;
+  constexpr int kHands = 24;
   for (int i = 0; i < kHands; ++i) {
     (void)drive.walk(mm(-0.1, 0, 6), 1e-3);
     (void)drive.walk(mm(-0.1, 0, 1.4), 0.2e-3);
     const Vec3 hand =
         mm(-0.1, 0, 1.4) + random.uniform(0.2e-3, 2.4e-3) *
-                               glm::normalize(random.in({mm(-0.5, -0.3, -1), mm(0.5, 0.3, -0.6)}));
+                               glm::normalize(random.in({mm(-0.5, 0, -1), mm(0.5, 0, -0.6)}));
     const TickResult out = drive.walk(hand, 20e-6);
-    if (!out.contact || glm::length(drive.renderer().state().source.stored.push) == 0.0) continue;
+    ASSERT_TRUE(out.contact) << i;
     const std::vector<Rest> rests = restsOf(out.proxy, hand);
     const double stored = drive.renderer().state().source.stored.energy;
     several += rests.size() > 1 ? 1 : 0;
-    deep += glm::length(hand - out.proxy) > kBalls[1].radius ? 1 : 0;
+    deep += glm::length(hand - out.proxy) > kBars[1].radius ? 1 : 0;
     EXPECT_NEAR(stored, rests[0].energy, 1e-5 * rests[0].energy) << i << ", " << rests.size();
   }
-  std::printf("  %d of %d hands deeper than a ball's radius, %d with several places of rest\n",
-              deep, kHands, several);
+  std::printf("  %d of %d hands deeper than a bar's radius, %d with several places of rest\n", deep,
+              kHands, several);
   EXPECT_GT(deep, 3);
 }
 
