@@ -265,13 +265,12 @@ LocalProjection FeltWalls::nearest(std::size_t index, const Vec3& from,
   const Group& group = group_[index];
   const std::span<const HeldWall> held(group.held.data(), group.count);
   LocalProjection on = projectLocally(from, place, held);
-  if (!on.settled) on = projectLocally(walker_.position(), place, held);
   if (on.settled && isNearest(on, place)) return on;
   // At a tip, or beside one where the wall bends more than Newton's steps can follow.
   const LocalProjection cut = projectByCuts(walker_.position(), place, held);
-  if (!cut.settled) return on.settled ? on : ontoPlanes(group, place);
-  on = projectLocally(cut.at, place, held);
-  return on.settled && isNearest(on, place) ? on : cut;
+  if (cut.settled || on.settled) return cut.settled ? cut : on;
+  on = projectLocally(walker_.position(), place, held);
+  return on.settled ? on : ontoPlanes(group, place);
 }
 
 }  // namespace palpate

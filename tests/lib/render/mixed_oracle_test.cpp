@@ -155,5 +155,45 @@ TEST(MixedOracle, WhatIsStoredIsTheLeastThatCanBeHoweverDeepThePressIs) {
   EXPECT_GT(deep, 3);
 }
 
+/// Along the soft bar the planes turn with the proxy, and at the crease it stops: deep in a bar neither the force nor what is
+/// stored steps there.
+TEST(MixedOracle, WhereACreaseIsReachedDeepNothingStepsAndNothingIsGiven) {
+  Drive drive(bars());
+  (void)drive.walk(mm(-1.4, 0, 4), 1e-3);
+  (void)drive.walk(mm(-1.4, 0, 1), 20e-6);
+  // Where the two circles cut each other.
+  const double x = 0.138e-3;
+  const Vec3 edge(x, 0.0, std::sqrt(4e-6 - (x + 1.4e-3) * (x + 1.4e-3)));
+  constexpr double kStep = 0.25e-6;
+  double step = 0.0;
+  double jump = 0.0;
+  double slope = 0.0;
+  TickResult last = drive.last();
+  double stored = drive.renderer().state().source.stored.energy;
+  double work = 0.0;
+  const auto go = [&](const Vec3& to) {
+    const Vec3 from = drive.hip();
+    const TickResult now = drive.to(to);
+    const double done = 0.5 * glm::dot(now.force + last.force, to - from);
+    work += done;
+    const double there = drive.renderer().state().source.stored.energy;
+    jump = std::max(jump, std::fabs(there - stored + done));
+    const double change = glm::length(now.force - last.force);
+    if (glm::length(now.proxy - edge) < 1e-8 && glm::length(last.proxy - edge) > 1e-8)
+      step = change;
+    slope = std::max(slope, glm::length(now.force));
+    last = now;
+    stored = there;
+  };
+  for (double at = -1.4e-3; at < 0.8e-3; at += kStep) go({at, 0.0, 1e-3});
+  for (double at = 0.8e-3; at > -1.4e-3; at -= kStep) go({at, 0.0, 1e-3});
+  std::printf("  %.3g of %.3g N; what is stored steps by %.3g J at most, %.3g J there and back\n",
+              step, slope, jump, work);
+  EXPECT_GT(step, 0.0) << "the crease was not reached";
+  EXPECT_LE(step, 4.0 * 3000.0 * kStep);
+  EXPECT_LE(jump, 1e-10);
+  EXPECT_LE(work, 1e-9);
+}
+
 }  // namespace
 }  // namespace palpate::test
