@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "folders/folders.h"
 #include "lib/scene/stand_in_readers.h"
 #include "support/scene_vocabulary.h"
 
@@ -214,7 +215,7 @@ TEST(Vocabulary, TheSchemasNamesAreTheReaders) {
 }
 
 std::string referencePage() {
-  std::ifstream file(PALPATE_SOURCE_DIR "/tools/docs/scene.md");
+  std::ifstream file(test::sourceFolder() + "/tools/docs/scene.md");
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
