@@ -1,4 +1,5 @@
 #include "own_vocabulary.h"
+#include "palpate/scene/vocabulary.h"
 #include "palpate/vdb/register.h"
 
 namespace palpate::vdb {
