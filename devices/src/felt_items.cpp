@@ -3,8 +3,8 @@
 #include <numbers>
 #include <utility>
 
-#include "palpate/contact/wall_spring.h"
 #include "palpate/devices/scene_budget.h"
+#include "palpate/scene/felt_walls.h"
 
 namespace palpate::devices {
 namespace {
@@ -15,23 +15,27 @@ const Material* materialOf(const Scene& scene, int index) {
 
 double mostOf(const Parameter& parameter) { return parameter.range().most; }
 
-/// [N/m] The steepest that a wall's spring gets up to `force` [N].
+/// [N/m] The steepest that a wall's spring gets up to `force` [N] (SpringCurve in material.h): an
+/// exponent is 1 or more.
 double steepest(const Material& wall, double force) {
-  const WallSpring spring{mostOf(wall.stiffness), mostOf(wall.curve.stiffening),
-                          wall.curve.exponent, wall.curve.reference};
-  if (spring.isStraight()) return spring.stiffness;
-  double depth = wall.curve.reference;
-  while (spring.force(depth) < force && depth < 1.0) depth *= 2.0;
+  const double stiffness = mostOf(wall.stiffness);
+  const double stiffening = mostOf(wall.curve.stiffening);
+  const double exponent = wall.curve.exponent;
+  const double reference = wall.curve.reference;
+  if (exponent == 1.0 && stiffening == 0.0) return stiffness;
+  const auto pushes = [&](double depth) {
+    return stiffness * reference * std::pow(depth / reference, exponent) +
+           stiffening * depth * depth;
+  };
+  double depth = reference;
+  while (pushes(depth) < force && depth < 1.0) depth *= 2.0;
   double less = 0.0;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (less + depth);
-    (spring.force(middle) < force ? less : depth) = middle;
+    (pushes(middle) < force ? less : depth) = middle;
   }
-  // The slope of stiffness * reference * (d / reference)^exponent + stiffening * d^2; an exponent
-  // is 1 or more.
-  return spring.stiffness * spring.exponent *
-             std::pow(depth / spring.reference, spring.exponent - 1.0) +
-         2.0 * spring.stiffening * depth;
+  return stiffness * exponent * std::pow(depth / reference, exponent - 1.0) +
+         2.0 * stiffening * depth;
 }
 
 /// Collects items: the same parameter of the same material once, with all of its places.
@@ -156,33 +160,11 @@ class Items {
 
 std::vector<FeltItem> feltItems(const Scene& scene, const DeviceModel& device) {
   Items items(scene, device);
-  const auto regions = scene.regions();
-  for (std::size_t j = 0; j < regions.size(); ++j) {
-    const auto into = static_cast<RegionId>(j);
-    bool is_met = false;
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-      const auto from = static_cast<RegionId>(i);
-      if (!regions[i].reachable || !scene.touches(from, into)) continue;
-      is_met = true;
-      const Wall& wall = scene.passages().wall(from, into);
-      const Material* material = wall.absent ? nullptr : materialOf(scene, wall.material);
-      if (material == nullptr) continue;
-      items.addWall(FeltAs::kWall, *material, regions[i].name + " | " + regions[j].name);
-    }
-    // What touches what was looked for near the layers that have an end. One that has none may be
-    // met elsewhere.
-    const bool has_end = !regions[j].field || regions[j].field->bounds().isBounded();
-    const Material* own = materialOf(scene, regions[j].wall);
-    if (!is_met && !has_end && own != nullptr) {
-      items.addWall(FeltAs::kWall, *own, regions[j].name);
-    }
+  for (const FeltWall& wall : feltWalls(scene)) {
+    items.addWall(wall.is_sheet ? FeltAs::kSheet : FeltAs::kWall, *materialOf(scene, wall.material),
+                  wall.place);
   }
-  for (const Sheet& sheet : scene.passages().sheets()) {
-    if (const Material* material = materialOf(scene, sheet.material)) {
-      items.addWall(FeltAs::kSheet, *material, sheet.name);
-    }
-  }
-  for (const Region& region : regions) {
+  for (const Region& region : scene.regions()) {
     const Material* content = region.reachable ? materialOf(scene, region.content) : nullptr;
     if (content != nullptr) items.addContent(region, *content);
   }

@@ -11,8 +11,8 @@
 #include <random>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/device.h"
 #include "palpate/devices/device_presets.h"
-#include "palpate/devices/servo_loop.h"
 #include "support/alloc_guard.h"
 
 namespace palpate::devices {

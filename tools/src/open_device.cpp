@@ -6,7 +6,6 @@
 
 #include "palpate/core/error.h"
 #include "palpate/devices/device_presets.h"
-#include "palpate/devices/virtual_device.h"
 #include "text.h"
 
 namespace palpate::tools {

@@ -11,7 +11,7 @@
 #include "palpate/devices/device.h"
 #include "palpate/devices/simulated_device.h"
 #include "palpate/devices/stability.h"
-#include "palpate/scene/device_mapping.h"
+#include "palpate/scene/description.h"
 #include "report.h"
 
 namespace palpate::tools {

@@ -8,6 +8,7 @@
 #include "output_files.h"
 #include "palpate/core/error.h"
 #include "palpate/devices/scene_budget.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/scene/transitions.h"
 #include "saving.h"
 #include "scene_parameters.h"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "palpate/core/math.h"
+#include "palpate/export.h"
 
 namespace palpate::devices {
 
@@ -34,7 +35,7 @@ struct HandModel {
 };
 
 /// @throws Error (kUsage, device.model) for a value out of its range.
-void check(const DeviceModel& device);
-void check(const HandModel& hand);
+PALPATE_EXPORT void check(const DeviceModel& device);
+PALPATE_EXPORT void check(const HandModel& hand);
 
 }  // namespace palpate::devices

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "palpate/devices/device_model.h"
+#include "palpate/export.h"
 
 namespace palpate::devices {
 
@@ -37,7 +38,7 @@ struct DevicePreset {
   Quantity height;         ///< [m] along y
   Quantity depth;          ///< [m] and along z
   /// With no lag of the amplifier: no source gives one, and it is assumed to be none.
-  [[nodiscard]] DeviceModel model() const;
+  [[nodiscard]] PALPATE_EXPORT DeviceModel model() const;
 };
 
 struct HandPreset {
@@ -46,15 +47,15 @@ struct HandPreset {
   std::string_view why;
 };
 
-[[nodiscard]] std::span<const DevicePreset> devicePresets() noexcept;
-[[nodiscard]] std::span<const HandPreset> handPresets() noexcept;
+[[nodiscard]] PALPATE_EXPORT std::span<const DevicePreset> devicePresets() noexcept;
+[[nodiscard]] PALPATE_EXPORT std::span<const HandPreset> handPresets() noexcept;
 
 /// @throws Error (kUsage, device.unknown) that lists the names, for one that there is not.
-[[nodiscard]] const DevicePreset& devicePreset(std::string_view name);
+[[nodiscard]] PALPATE_EXPORT const DevicePreset& devicePreset(std::string_view name);
 /// None for "none": nobody holds the device. @throws Error (kUsage, hand.unknown) as above.
-[[nodiscard]] std::optional<HandModel> handPreset(std::string_view name);
+[[nodiscard]] PALPATE_EXPORT std::optional<HandModel> handPreset(std::string_view name);
 
 /// "", " (not verified)" or " (assumed)": for behind the number.
-[[nodiscard]] std::string_view markOf(Known known) noexcept;
+[[nodiscard]] PALPATE_EXPORT std::string_view markOf(Known known) noexcept;
 
 }  // namespace palpate::devices

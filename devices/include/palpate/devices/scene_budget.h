@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "palpate/devices/stability.h"
+#include "palpate/export.h"
 #include "palpate/scene/scene.h"
 
 namespace palpate::devices {
@@ -31,7 +32,8 @@ struct FeltItem {
 /// pressing and sliding; of a needle the shaft over the whole extent of its region, or of the
 /// device's workspace where that has no end. Stiffness and damping are times
 /// DeviceMapping::stiffnessAtHand(). Allocates.
-[[nodiscard]] std::vector<FeltItem> feltItems(const Scene& scene, const DeviceModel& device);
+[[nodiscard]] PALPATE_EXPORT std::vector<FeltItem> feltItems(const Scene& scene,
+                                                             const DeviceModel& device);
 
 /// An item beside what the loop can hold.
 struct BudgetItem {
@@ -58,6 +60,7 @@ struct BudgetItem {
 
 /// In the order of feltItems(). Set-up only: allocates, and takes some ms for each item.
 /// @throws Error as largestStiffness().
-[[nodiscard]] std::vector<BudgetItem> sceneBudget(const Scene& scene, const LoopModel& loop);
+[[nodiscard]] PALPATE_EXPORT std::vector<BudgetItem> sceneBudget(const Scene& scene,
+                                                                 const LoopModel& loop);
 
 }  // namespace palpate::devices

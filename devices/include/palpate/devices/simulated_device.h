@@ -8,6 +8,7 @@
 #include "palpate/devices/device.h"
 #include "palpate/devices/device_model.h"
 #include "palpate/devices/path.h"
+#include "palpate/export.h"
 
 namespace palpate::devices {
 
@@ -46,7 +47,7 @@ struct DeviceWork {
 /// only says where that is, and how long it lasts. A write() that is left out leaves the force as
 /// it is: a dropped sample. Set-up allocates and takes some 10 ms; read() and write() never
 /// allocate, lock, throw or block.
-class SimulatedDevice final : public Device {
+class PALPATE_EXPORT SimulatedDevice final : public Device {
  public:
   static constexpr int kMostDelay = 64;
 
