@@ -1,0 +1,134 @@
+#include "palpate/devices/passivity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "palpate/core/error.h"
+
+namespace palpate::devices {
+namespace {
+
+/// Between the ends of a diagonal step in space both of which are off by half an encoder step along each axis.
+const double kEncoderDiagonal = std::sqrt(3.0);
+
+Error usageError(const char* name, const std::string& message) {
+  return Error(ErrorKind::kUsage, {std::string("passivity.") + name, message});
+}
+
+void check(const PassivitySettings& s) {
+  const auto above = [](const char* name, const char* what, double value) {
+    if (value > 0.0 && std::isfinite(value)) return;
+    throw usageError(name, std::string(what) + " must be above 0, not " + std::to_string(value));
+  };
+  const auto at_least = [](const char* name, const char* what, double value) {
+    if (value >= 0.0 && std::isfinite(value)) return;
+    throw usageError(name, std::string(what) + " must be 0 or more, not " + std::to_string(value));
+  };
+  above("mass", "the device's mass [kg]", s.mass);
+  above("period", "the period of the loop [s]", s.period);
+  at_least("damping", "the device's damping [N s/m]", s.damping);
+  at_least("friction", "the device's friction [N]", s.friction);
+  at_least("encoder", "the encoder's step [m]", s.encoder);
+  if (!(s.max_force > 0.0)) throw usageError("max_force", "the largest force must be above 0 N");
+  if (s.delay < 0 || s.delay > PassivityObserver::kMostDelay) {
+    throw usageError("delay", "the delay must be 0 to " +
+                                  std::to_string(PassivityObserver::kMostDelay) + " ticks, not " +
+                                  std::to_string(s.delay));
+  }
+  if (!s.hand_force) return;
+  at_least("hand_force", "the hand's largest force [N]", *s.hand_force);
+  if (s.delay > 0) {
+    throw usageError("hand_force",
+                     "with a delay of the force no bound on its energy holds: leave out the "
+                     "hand's force, or have a device without delay");
+  }
+}
+
+}  // namespace
+
+PassivityObserver::PassivityObserver(const PassivitySettings& settings)
+    : damping_(settings.damping),
+      friction_(settings.friction),
+      encoder_(settings.encoder),
+      max_force_(settings.max_force),
+      delay_(settings.delay) {
+  check(settings);
+}
+
+void PassivityObserver::add(const Vec3& position, double dt, double source) noexcept {
+  constexpr std::size_t kRing = kMostDelay + 1;
+  const Vec3 before = held_;
+  held_ = written_[(next_ + 2 * kRing - 1 - static_cast<std::size_t>(delay_)) % kRing];
+  moved_ = has_position_ ? position - position_ : Vec3(0.0);
+  position_ = position;
+  has_position_ = true;
+  const double work = glm::dot(held_, moved_) - source;
+  const double way = std::max(0.0, glm::length(moved_) - kEncoderDiagonal * encoder_);
+  const double income = friction_ * way + (dt > 0.0 ? damping_ * way * way / dt : 0.0);
+  const Vec3 change = glm::abs(held_ - before);
+  doubt_ += 0.5 * encoder_ * (change.x + change.y + change.z);
+  given_ += work;
+  reserve_ += income - work;
+  lowest_ = std::min(lowest_, reserve_);
+  // What free motion has earned is not there for the next contact.
+  if (held_ == Vec3(0.0)) reserve_ = std::min(reserve_, kSeed);
+}
+
+void PassivityObserver::hold(const Vec3& force) noexcept {
+  const double size = glm::length(force);
+  written_[next_] = size > max_force_ ? force * (max_force_ / size) : force;
+  next_ = (next_ + 1) % written_.size();
+}
+
+PassivityController::PassivityController(const PassivitySettings& settings)
+    : observer_(settings),
+      period_(settings.period),
+      most_damping_(kDampingShare * settings.mass / settings.period),
+      travel_(0.5 * settings.period * settings.period / settings.mass),
+      hand_force_(settings.hand_force.value_or(0.0)),
+      encoder_(settings.encoder),
+      controls_(settings.controls),
+      bounds_(settings.controls && settings.hand_force.has_value()) {}
+
+PassivityTick PassivityController::step(const Vec3& position, double dt, const Vec3& force,
+                                        double source) noexcept {
+  PassivityTick out;
+  if (!isFinite(position) || !isFinite(force)) {
+    observer_.hold(Vec3(0.0));
+    return out;
+  }
+  observer_.add(position, dt, source);
+  out.force = force;
+  if (controls_ && observer_.reserve() < 0.0) out.force = damped(force);
+  if (bounds_) out.force = bounded(out.force);
+  out.added = out.force - force;
+  observer_.hold(out.force);
+  return out;
+}
+
+Vec3 PassivityController::damped(const Vec3& force) const noexcept {
+  const Vec3 velocity = observer_.moved() / period_;
+  const double speed = glm::length(velocity);
+  constexpr double kAtRest = 1e-6;  // [m/s]
+  if (speed < std::max(kAtRest, encoder_ / period_)) return force;
+  const double alpha = std::min(-observer_.reserve() / (period_ * speed * speed), most_damping_);
+  return force - alpha * velocity;
+}
+
+Vec3 PassivityController::bounded(const Vec3& force) const noexcept {
+  const double size = glm::length(force);
+  if (!(size > 0.0)) return force;
+  const Vec3 n = force / size;
+  const double ahead = glm::dot(n, observer_.moved()) + travel_ * glm::dot(n, observer_.held()) +
+                       2.0 * travel_ * hand_force_ + encoder_;
+  if (ahead + travel_ * size <= 0.0) return force;
+  const double reserve = std::max(0.0, observer_.reserve());
+  const double root = std::sqrt(ahead * ahead + 4.0 * travel_ * reserve);
+  // The same root in the form that does not subtract what is nearly equal.
+  const double most =
+      ahead > 0.0 ? 2.0 * reserve / (ahead + root) : (root - ahead) / (2.0 * travel_);
+  return size > most ? most * n : force;
+}
+
+}  // namespace palpate::devices

@@ -1,0 +1,63 @@
+#include "support/rivals/voxel_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "palpate/fields/primitives.h"
+
+namespace palpate::rivals {
+namespace {
+
+struct Spread {
+  double rms = 0.0;   ///< [degree]
+  double most = 0.0;  ///< [degree]
+};
+
+/// Angles between the gradient and the normal of flat surfaces of random directions, at random places on them.
+Spread anglesOf(double ramp, Voxels::Gradient gradient) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> any(0.0, 1.0);
+  std::uniform_real_distribution<double> place(-3.0, 3.0);
+  const Voxels voxels{.size = 1.0, .ramp = ramp, .gradient = gradient};
+  Spread out;
+  constexpr int kPlanes = 2000;
+  constexpr int kPlaces = 20;
+  for (int i = 0; i < kPlanes; ++i) {
+    const Vec3 n = unitOr(Vec3(any(random), any(random), any(random)), Vec3(1.0, 0.0, 0.0));
+    const Vec3 p(place(random), place(random), place(random));
+    const VoxelGrid grid(*halfSpace(p, n), {Vec3(-8.0), Vec3(8.0)}, voxels);
+    for (int k = 0; k < kPlaces; ++k) {
+      const Vec3 q(place(random), place(random), place(random));
+      const Vec3 on = q - glm::dot(n, q - p) * n;
+      const Vec3 g = -grid.gradient(on);
+      const double angle =
+          std::atan2(glm::length(glm::cross(g, n)), glm::dot(g, n)) * 180.0 / std::numbers::pi;
+      out.rms += angle * angle / (kPlanes * kPlaces);
+      out.most = std::max(out.most, angle);
+    }
+  }
+  out.rms = std::sqrt(out.rms);
+  std::printf("ramp %g, gradient %d: %.2f rms, %.1f max\n", ramp, static_cast<int>(gradient),
+              out.rms, out.most);
+  return out;
+}
+
+TEST(VoxelGrid, DirectionsAreOffAsMuchAsTheGradientSees) {
+  const Spread central = anglesOf(0.0, Voxels::Gradient::kCentral);
+  const Spread interpolated = anglesOf(0.0, Voxels::Gradient::kInterpolated);
+  const Spread sobel = anglesOf(0.0, Voxels::Gradient::kSobel);
+  const Spread ramp = anglesOf(2.0, Voxels::Gradient::kInterpolated);
+  const Spread wide = anglesOf(4.0, Voxels::Gradient::kCentral);
+  EXPECT_NEAR(central.rms, 22.0, 1.0);
+  EXPECT_NEAR(interpolated.rms, 14.0, 1.0);
+  EXPECT_NEAR(sobel.rms, 8.3, 0.5);
+  EXPECT_NEAR(ramp.rms, 2.3, 0.2);
+  // All that central differences see is within the ramp; values are 32-bit floats.
+  EXPECT_LT(wide.most, 1e-4);
+}
+
+}  // namespace
+}  // namespace palpate::rivals
