@@ -104,7 +104,8 @@ TEST(MadeShell, OfOneToTwoVoxelsHasTwoWallsAndNoHole) {
   }
 }
 
-/// How many of `rays` from the middle out meet no wall within 2 mm of `radius` [mm], and the place of one [mm].
+/// How many of `rays` from the middle out meet no wall within 2 mm of `radius` [mm], and the place
+/// of one [mm].
 struct Holes {
   int count = 0;
   Vec3 place{0.0};
@@ -129,8 +130,8 @@ Image shellOf(const Vec3& center, const Mat3& axes, double radius, double thickn
   });
 }
 
-// Where three of its voxels are one behind the other in no direction, but two in some and one in others, smoothing left a
-// wall of 0.06 mm, and a grid of the scan's voxels a hole in 1 of 4000 directions.
+// Where its wall is a single voxel between places of two, smoothing left 0.06 mm of it, and a grid
+// of the scan's voxels had a hole there, in 1 of 4000 directions.
 TEST(MadeShell, OfOneAndAHalfVoxelsHasNoHoleInAGridOfTheScansVoxels) {
   const Vec3 center(4, -9, 21);
   const Image image = shellOf(center, test::obliqueAxes(Vec3(1, 1, 1)), 16.0, 1.5);

@@ -25,7 +25,7 @@ Mask maskWhere(const std::function<bool(const std::array<int, 3>&)>& inside) {
   return mask;
 }
 
-TEST(ThinParts, OneVoxelBetweenWallsOfTwoIsThinOnEitherSide) {
+TEST(ThinParts, OneVoxelBetweenWallsOfTwoIsAloneOnEitherSide) {
   // Two voxels thick, a step up of one voxel, and there a single one.
   const auto wall = [](const std::array<int, 3>& at) {
     const int low = at[0] < 10 ? 8 : 9;
@@ -35,12 +35,8 @@ TEST(ThinParts, OneVoxelBetweenWallsOfTwoIsThinOnEitherSide) {
   for (const bool is_gap : {false, true}) {
     const Mask mask = maskWhere([&](const std::array<int, 3>& at) { return wall(at) != is_gap; });
     for (int y = 4; y < 16; ++y) {
-      EXPECT_TRUE(isAtThinPart(mask, {10, y, 9}));
-      // Held off both ways.
-      EXPECT_TRUE(isAtThinPart(mask, {10, y, 8}));
-      EXPECT_TRUE(isAtThinPart(mask, {10, y, 10}));
-      EXPECT_FALSE(isAtThinPart(mask, {5, y, 9}));
-      EXPECT_FALSE(isAtThinPart(mask, {15, y, 9}));
+      EXPECT_TRUE(isAloneBetween(mask, {10, y, 9}));
+      for (const int x : {5, 9, 11, 15}) EXPECT_FALSE(isAloneBetween(mask, {x, y, 9})) << x;
     }
   }
 }
@@ -53,6 +49,7 @@ TEST(ThinParts, ALoneVoxelOnABodyAndAPitInItAreNot) {
   });
   for (const auto& at : {std::array{5, 5, 10}, {5, 5, 9}, {4, 5, 10}, {14, 14, 9}, {13, 14, 9}}) {
     EXPECT_FALSE(isAtThinPart(mask, at)) << at[0] << " " << at[1] << " " << at[2];
+    EXPECT_FALSE(isAloneBetween(mask, at)) << at[0] << " " << at[1] << " " << at[2];
   }
 }
 
@@ -70,7 +67,8 @@ TEST(ThinParts, NoVoxelOfABallIs) {
     });
     int thin = 0;
     for (int i = 0; i < 8000; ++i) {
-      thin += isAtThinPart(mask, {i % 20, i / 20 % 20, i / 400}) ? 1 : 0;
+      const std::array<int, 3> at = {i % 20, i / 20 % 20, i / 400};
+      thin += isAtThinPart(mask, at) || isAloneBetween(mask, at) ? 1 : 0;
     }
     EXPECT_EQ(thin, 0) << r << ": " << c[0] << " " << c[1] << " " << c[2];
   }
