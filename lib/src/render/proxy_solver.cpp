@@ -13,6 +13,12 @@ double ContactSet::load() const noexcept {
   return glm::length(sum);
 }
 
+Vec3 ContactSet::along(const Vec3& v) const noexcept {
+  std::array<Vec3, 3> normals;
+  for (std::size_t i = 0; i < count; ++i) normals[i] = wall[i].held.normal;
+  return tangentialPart(v, std::span<const Vec3>(normals.data(), count));
+}
+
 HeldWalls ContactSet::held() const noexcept {
   HeldWalls out;
   for (const WallContact& each : walls()) out.wall[out.count++] = each.held;

@@ -44,6 +44,7 @@ struct ContactSet {
     lag = snug = left = Vec3(0.0);
   }
   [[nodiscard]] HeldWalls held() const noexcept;
+  [[nodiscard]] Vec3 along(const Vec3& v) const noexcept;  ///< the part of `v` along all walls
   [[nodiscard]] double load() const noexcept;  ///< [m] length of the sum of multiplier * normal
 };
 
