@@ -8,8 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "folders/folders.h"
 #include "palpate/vdb/mesh.h"
-#include "palpate/vdb/surface_mesh.h"
 #include "vdb/dicom_writer.h"
 #include "vdb/nifti_writer.h"
 
@@ -28,7 +28,8 @@ std::string contentOf(const std::filesystem::path& path) {
 
 std::vector<std::string> scenes() {
   std::vector<std::string> out;
-  for (const auto& entry : std::filesystem::directory_iterator(PALPATE_SOURCE_DIR "/data/scenes")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::sourceFolder() + "/data/scenes")) {
     if (entry.path().extension() == ".yaml") out.push_back(contentOf(entry.path()));
   }
   out.emplace_back(

@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <stdexcept>
 
+#include "folders/folders.h"
+
 namespace palpate::testing {
 namespace {
 
@@ -51,7 +53,7 @@ bool drain(int from, std::string& into) {
 
 CommandResult runPalpate(const std::vector<std::string>& arguments, const std::string& folder,
                          const OnTalk& on_talk) {
-  const std::string program = PALPATE_BINARY_DIR "/bin/palpate";
+  const std::string program = test::buildFolder() + "/bin/palpate";
   std::vector<char*> argv = {const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);

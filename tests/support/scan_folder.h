@@ -8,11 +8,13 @@
 #include <filesystem>
 #include <string>
 
+#include "folders/folders.h"
+
 namespace palpate::testing {
 
 inline std::string scansFolder() {
   const char* const named = std::getenv("PALPATE_SCANS");
-  return named != nullptr && *named != '\0' ? named : PALPATE_SOURCE_DIR "/../shared/data";
+  return named != nullptr && *named != '\0' ? named : test::sourceFolder() + "/../shared/data";
 }
 
 inline std::string scanPath(const std::string& name) { return scansFolder() + "/" + name; }

@@ -4,11 +4,13 @@
 
 #include <sstream>
 
+#include "folders/folders.h"
+
 namespace palpate::testing {
 
 const Document& sceneSchema() {
   // JSON is a subset of what the scene reader reads.
-  static const auto schema = readDocument(PALPATE_SOURCE_DIR "/data/schema/scene-1.json");
+  static const auto schema = readDocument(test::sourceFolder() + "/data/schema/scene-1.json");
   return *schema;
 }
 

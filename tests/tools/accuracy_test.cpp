@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "folders/folders.h"
 #include "tools/helpers.h"
 
 namespace palpate::testing {
@@ -106,7 +107,7 @@ TEST(Accuracy, TheTorusHasTheErrorsAndOrdersOfItsSamplers) {
   // The README's table (tools/bench.sh makes it, with more points) says the same: to its two digits, and
   // to what an RMS over 1500 points strays.
   int rows = 0;
-  for (std::string line : linesOf(textOf(PALPATE_SOURCE_DIR "/README.md"))) {
+  for (std::string line : linesOf(textOf(test::sourceFolder() + "/README.md"))) {
     std::replace(line.begin(), line.end(), '|', ',');
     const auto cells =
         cellsOf(line);  // "", voxel, sampler, distance RMS and max, normal RMS and max, ...

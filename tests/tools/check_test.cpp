@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "folders/folders.h"
 #include "tools/helpers.h"
 
 namespace palpate::testing {
@@ -181,8 +182,8 @@ TEST(Check, PlacesAreInRasWhicheverWayTheAxesOfTheMeshRun) {
 
 TEST(Check, GridsOfOthers) {
   const TempFolder folder;
-  const std::string command =
-      "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/vdb/vdb_interop.py' '" + folder.path() + "'";
+  const std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
+                              "/tests/vdb/vdb_interop.py' '" + folder.path() + "'";
   ASSERT_EQ(std::system(command.c_str()), 0);
   const struct {
     std::vector<std::string> arguments;
@@ -226,8 +227,8 @@ TEST(Check, GridsOfOthers) {
 
 TEST(Check, WhatItRefusesIsNotTouchedAndWhatItTakesIs) {
   const TempFolder folder;
-  const std::string command =
-      "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/vdb/vdb_interop.py' '" + folder.path() + "'";
+  const std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
+                              "/tests/vdb/vdb_interop.py' '" + folder.path() + "'";
   ASSERT_EQ(std::system(command.c_str()), 0);
   (void)folder.file("path.csv", "t,x,y,z\n0,0.02,0,0\n0.001,0.0195,0,0\n");
   for (const std::string name : {"ball", "half", "hollow", "in_voxels", "torn"}) {

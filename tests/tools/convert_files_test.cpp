@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "folders/folders.h"
 #include "tools/helpers.h"
 #include "vdb/nifti_writer.h"
 
@@ -17,8 +18,8 @@ double ballVolume(double radius) { return 4.0 / 3.0 * std::numbers::pi * std::po
 
 /// Numbers that file_oracle.py prints.
 std::vector<double> told(const std::string& command, const std::string& path) {
-  const std::string line = "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/tools/file_oracle.py' " +
-                           command + " '" + path + "'";
+  const std::string line = "/usr/bin/python3 '" + test::sourceFolder() +
+                           "/tests/tools/file_oracle.py' " + command + " '" + path + "'";
   FILE* pipe = popen(line.c_str(), "r");
   std::vector<double> numbers;
   double number = 0.0;
@@ -177,9 +178,8 @@ class ConvertGrids : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     home = new TempFolder;
-    const std::string command = "/usr/bin/python3 '" PALPATE_SOURCE_DIR
-                                "/tests/vdb/vdb_interop.py' '" +
-                                folder().path() + "'";
+    const std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
+                                "/tests/vdb/vdb_interop.py' '" + folder().path() + "'";
     ASSERT_EQ(std::system(command.c_str()), 0);
   }
   static void TearDownTestSuite() {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "folders/folders.h"
 #include "support/run_command.h"
 #include "support/temp_file.h"
 
@@ -103,7 +104,7 @@ inline bool isWellFormed(const std::string& xml) {
 }
 
 inline std::string scenePath(const std::string& name) {
-  return PALPATE_SOURCE_DIR "/data/scenes/" + name;
+  return test::sourceFolder() + "/data/scenes/" + name;
 }
 
 /// The paper's container, all its numbers known.

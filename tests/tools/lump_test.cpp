@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "folders/folders.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene_file.h"
 #include "tools/helpers.h"
@@ -12,8 +13,8 @@ namespace {
 /// [N/m] What a rigid punch of 5 mm feels on these layers (lump_oracle.py).
 double punch(const std::string& layers) {
   // Soft tissue keeps its volume; just below 0.5 the oracle's equations are those of the limit to 1e-3.
-  const std::string command =
-      "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/tools/lump_oracle.py' 0.005 0.4999 " + layers;
+  const std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
+                              "/tests/tools/lump_oracle.py' 0.005 0.4999 " + layers;
   FILE* pipe = popen(command.c_str(), "r");
   double stiffness = 0.0;
   EXPECT_EQ(pipe == nullptr ? 0 : std::fscanf(pipe, "%lf", &stiffness), 1) << command;
@@ -29,7 +30,7 @@ double felt(const ScenePtr& scene, double x, double depth) {
 }
 
 TEST(Lump, TheForceRisesOverItAsLayeredElasticityHasIt) {
-  const ScenePtr scene = compile(readScene(PALPATE_SOURCE_DIR "/data/scenes/lump.yaml"));
+  const ScenePtr scene = compile(readScene(test::sourceFolder() + "/data/scenes/lump.yaml"));
   const double beside = punch("400,0.04 8000");
   const double over = punch("400,0.008 4000,0.01 400,0.022 8000");
   EXPECT_GT(over / beside, 1.3) << "there is something to be felt";

@@ -1,5 +1,6 @@
 // The command line: help, suggestions, exit codes, and the one object that --json promises.
 
+#include "folders/folders.h"
 #include "tools/helpers.h"
 
 namespace palpate::testing {
@@ -147,7 +148,7 @@ TEST(Usage, PointsMayBeNegativeAndNeverSwallowWhatFollows) {
 TEST(Usage, TheReferenceInTheReadmeIsWhatTheCommandPrints) {
   const CommandResult result = runPalpate({"help", "--markdown"});
   EXPECT_EQ(result.exit_code, 0);
-  const std::string readme = textOf(PALPATE_SOURCE_DIR "/tools/README.md");
+  const std::string readme = textOf(test::sourceFolder() + "/tools/README.md");
   EXPECT_NE(readme.find(result.out), std::string::npos)
       << "tools/README.md is out of date: put what `palpate help --markdown` prints between the "
          "marks";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "folders/folders.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene.h"
 #include "palpate/vdb/image.h"
@@ -21,7 +22,8 @@ TEST(HeadScene, ANeedlePassesSkinBrainAndThalamusInThatOrder) {
   SceneRegistry registry;
   registerKinds(registry, {[&](const GridRecord& record) { grids.push_back(record); },
                            [&](const std::string& note) { notes.push_back(note); }});
-  const ScenePtr scene = compile(readScene(PALPATE_SOURCE_DIR "/data/scenes/head.yaml", registry));
+  const ScenePtr scene =
+      compile(readScene(test::sourceFolder() + "/data/scenes/head.yaml", registry));
   const auto naming = [&](const char* text) {
     return std::count_if(notes.begin(), notes.end(), [&](const std::string& note) {
       return note.find(text) != std::string::npos;

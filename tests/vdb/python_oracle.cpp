@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "folders/folders.h"
+
 namespace palpate::vdb::test {
 
 std::vector<std::vector<double>> askPython(const std::string& command,
@@ -14,7 +16,8 @@ std::vector<std::vector<double>> askPython(const std::string& command,
 
 std::vector<std::vector<double>> askScript(const std::string& script, const std::string& command,
                                            const std::vector<std::string>& arguments) {
-  std::string line = "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/" + script + "' " + command;
+  std::string line =
+      "/usr/bin/python3 '" + test::sourceFolder() + "/tests/" + script + "' " + command;
   for (const std::string& argument : arguments) line += " '" + argument + "'";
   FILE* pipe = popen(line.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot start: " + line);

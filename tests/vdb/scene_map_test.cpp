@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "folders/folders.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/io.h"
@@ -23,9 +24,8 @@ namespace {
 using palpate::testing::TempFolder;
 
 std::string oracle(const std::string& arguments) {
-  const std::string command = "/usr/bin/python3 '" PALPATE_SOURCE_DIR
-                              "/tests/vdb/material_grid_oracle.py' " +
-                              arguments + " 2>&1";
+  const std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
+                              "/tests/vdb/material_grid_oracle.py' " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   std::string out;
   char line[256];

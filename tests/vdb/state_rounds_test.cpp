@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "folders/folders.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/register.h"
 
@@ -16,8 +17,8 @@ class StateRoundsOfImages : public ::testing::TestWithParam<const char*> {};
 TEST_P(StateRoundsOfImages, GoOnToTheLastBit) {
   SceneRegistry registry;
   vdb::registerKinds(registry, {});
-  const ScenePtr scene = compile(
-      readScene(PALPATE_SOURCE_DIR "/data/scenes/" + std::string(GetParam()) + ".yaml", registry));
+  const ScenePtr scene = compile(readScene(
+      test::sourceFolder() + "/data/scenes/" + std::string(GetParam()) + ".yaml", registry));
   for (const RendererKind kind : {RendererKind::kConstraint, RendererKind::kPaper}) {
     SCOPED_TRACE(kind == RendererKind::kPaper ? "paper" : "constraint");
     EXPECT_TRUE(goesOnFromItsStates(scene, kind, runsSlowTests() ? 200 : 12));

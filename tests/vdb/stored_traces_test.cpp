@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "folders/folders.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/register.h"
 #include "support/stored_trace.h"
@@ -16,9 +17,9 @@ TEST_P(StoredTracesOfScans, AreFeltStill) {
   const std::string name = GetParam();
   SceneRegistry registry;
   vdb::registerKinds(registry, {});
-  const ScenePtr scene = compile(
-      readScene(std::string(PALPATE_SOURCE_DIR "/data/scenes/") + name + ".yaml", registry));
-  const std::string golden = PALPATE_SOURCE_DIR "/tests/vdb/golden/" + name;
+  const ScenePtr scene =
+      compile(readScene(test::sourceFolder() + "/data/scenes/" + name + ".yaml", registry));
+  const std::string golden = test::sourceFolder() + "/tests/vdb/golden/" + name;
   EXPECT_TRUE(compareWithStored(scene, RendererKind::kConstraint, golden + ".constraint.txt"));
   EXPECT_TRUE(compareWithStored(scene, RendererKind::kPaper, golden + ".paper.txt"));
 }

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "folders/folders.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/grid_check.h"
@@ -40,8 +41,8 @@ class VdbOfOthers : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     home = new TempFolder;
-    const std::string command =
-        "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/vdb/vdb_interop.py' '" + home->path() + "'";
+    const std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
+                                "/tests/vdb/vdb_interop.py' '" + home->path() + "'";
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
   }
   static void TearDownTestSuite() {

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "folders/folders.h"
 #include "palpate/core/error.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
@@ -159,8 +160,8 @@ TEST(VdbIo, PythonReadsIt) {
   // In the band, outside, far outside, and deep inside.
   const std::vector<Coord> voxels_asked{
       {12, 0, 0}, {-3, 11, 2}, {20, 0, 0}, {300, 0, 0}, {0, 0, 0}};
-  std::string command = "/usr/bin/python3 '" PALPATE_SOURCE_DIR "/tests/vdb/vdb_oracle.py' '" +
-                        path + "' skin/surface";
+  std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
+                        "/tests/vdb/vdb_oracle.py' '" + path + "' skin/surface";
   for (const Coord& at : voxels_asked) {
     command += " ' " + std::to_string(at.x()) + "," + std::to_string(at.y()) + "," +
                std::to_string(at.z()) + "'";

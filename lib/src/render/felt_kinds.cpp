@@ -1,6 +1,9 @@
 #include <algorithm>
 
+#include "convex_leaf.h"
 #include "felt_walls.h"
+#include "palpate/interior/partition.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/render/contrast.h"
 
 // Which walls of a scene feel the same, found when a renderer is made.
@@ -33,6 +36,26 @@ bool feelAlike(const Material& a, const Material& b) noexcept {
 FeltWalls::FeltWalls(const Scene& scene, CellWalker& walker)
     : scene_(scene), walker_(walker), near_(scene, walker), beneath_(scene), seams_(scene, walker) {
   sortKinds();
+  if (std::find(may_differ_.begin(), may_differ_.end(), true) != may_differ_.end()) {
+    findConvexLeaves();
+  }
+}
+
+void FeltWalls::findConvexLeaves() {
+  const std::span<const Leaf> leaves = scene_.partition().leaves();
+  Box3 scene;
+  for (const Region& region : scene_.regions()) {
+    if (region.field == nullptr) continue;
+    const Box3 own = region.field->bounds();
+    if (own.isBounded()) scene = scene.unitedWith(own);
+  }
+  is_convex_.assign(leaves.size(), false);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (leaves[i].is_flat) continue;
+    const Box3 own = leaves[i].field->bounds();
+    const Box3& box = own.isBounded() ? own : scene;
+    if (box.isBounded()) is_convex_[i] = isConvex(*leaves[i].field, box);
+  }
 }
 
 /// Whether the region's walls may be of several kinds.
@@ -133,10 +156,6 @@ void FeltWalls::sortKinds() {
     if (own.shading > 0.0) bumps = 1.0 + kHeldShading;
     stiffest = std::max(stiffest, bumps * tangentOf(spring, deepest));
     straight = std::max(straight, spring.stiffness);
-  }
-  is_sheet_.assign(scene_.partition().leaves().size(), false);
-  for (const Sheet& sheet : scene_.passages().sheets()) {
-    for (const LeafId leaf : sheet.leaves) is_sheet_[leaf] = true;
   }
   contrast_.assign(materials.size(), kInfinity);
   for (const Contrast& each : contrastsOf(scene_)) {

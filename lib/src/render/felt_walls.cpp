@@ -14,6 +14,8 @@ constexpr int kMeetingSteps = 12;
 /// Of the farthest: so near to both walls is where they meet. And the least square of the sine of their angle.
 constexpr double kMet = 1e-6;
 constexpr double kFlattest = 1e-3;
+/// Of a way to a wall, and of coordinates: what of it is rounding.
+constexpr double kNearest = 1e-12;
 /// How deep a press is, over a wall's feature size: up to here the wall is felt as it bends, and from there on as a plane.
 constexpr double kBentBelow = 0.25;
 constexpr double kFlatAbove = 1.0;
@@ -48,6 +50,17 @@ bool meet(const Vec3& x, const HeldWall& a, const HeldWall& b, double farthest) 
     at_b = b.field->sample(p);
   }
   return false;
+}
+
+/// At a tip any normal may be found, the one to `place` [m] too: then the point is not the nearest one. Within a wall whose
+/// field is the distance the field says so.
+bool isNearest(const LocalProjection& on, const Vec3& place) noexcept {
+  if (on.count != 1) return true;
+  const HeldWall& held = on.held[0];
+  if (held.side > 0.0 || held.field->metric() != Metric::kExact) return true;
+  const FieldSample there = held.field->sample(place);
+  const double way = glm::length(place - on.at);
+  return !there.in_band || way <= (1.0 + kNearest) * there.value + kNearest * glm::length(on.at);
 }
 
 }  // namespace
@@ -182,12 +195,13 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
   }
 }
 
-/// Deep beside its radius, a bulge would draw the hand's point round it to its other side, and let go of it there.
+/// Deep beside its radius, a bulge would draw the hand's point round it to its other side, and let go of it there. Within a
+/// ball or a cone each place has one nearest point, and at a cone's tip there is no plane to lie in.
 void FeltWalls::flatten(Group& group) const noexcept {
   const double length = glm::length(press_);
   for (std::size_t i = 0; i < group.count; ++i) {
     const Leaf& leaf = walker_.leaf(group.wall[i].leaf);
-    if (leaf.is_flat) continue;
+    if (leaf.is_flat || (is_convex_[group.wall[i].leaf] && group.held[i].side < 0.0)) continue;
     const double way = leaf.feature * (kFlatAbove - kBentBelow);  // [m]
     const double q = std::min((length - kBentBelow * leaf.feature) / way, 1.0);
     if (!(q > 0.0)) continue;
@@ -251,9 +265,12 @@ LocalProjection FeltWalls::nearest(std::size_t index, const Vec3& from,
   const Group& group = group_[index];
   const std::span<const HeldWall> held(group.held.data(), group.count);
   LocalProjection on = projectLocally(from, place, held);
-  if (!on.settled) on = projectLocally(walker_.position(), place, held);
-  if (!on.settled) on = ontoPlanes(group, place);
-  return on;
+  if (on.settled && isNearest(on, place)) return on;
+  // At a tip, or beside one where the wall bends more than Newton's steps can follow.
+  const LocalProjection cut = projectByCuts(walker_.position(), place, held);
+  if (cut.settled || on.settled) return cut.settled ? cut : on;
+  on = projectLocally(walker_.position(), place, held);
+  return on.settled ? on : ontoPlanes(group, place);
 }
 
 }  // namespace palpate

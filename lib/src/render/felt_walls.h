@@ -9,7 +9,7 @@
 #include "near_walls.h"
 #include "palpate/contact/felt_height.h"
 #include "palpate/contact/series.h"
-#include "palpate/render/renderer_state.h"
+#include "palpate/render/tick_state.h"
 #include "proxy_solver.h"
 #include "seams.h"
 
@@ -99,6 +99,7 @@ class FeltWalls final : public SoftKinds {
   [[nodiscard]] bool isFeltAlready() const noexcept;
   [[nodiscard]] bool isShared(const Near& wall) noexcept;
   void sortSeams();
+  void findConvexLeaves();
   void add(const Near& wall) noexcept;
   void setLaw(Group& group, SmoothedField& smoothed) noexcept;
   void flatten(Group& group) const noexcept;
@@ -113,7 +114,7 @@ class FeltWalls final : public SoftKinds {
   std::vector<double>
       contrast_;  ///< [m] by material: infinite where its stiffness is felt at a point
   std::vector<bool> is_plain_;  ///< by material
-  std::vector<bool> is_sheet_;  ///< by leaf
+  std::vector<bool> is_convex_;  ///< by leaf: hollow all over, seen from within
   std::vector<bool>
       may_differ_;  ///< by region: its walls, or those of regions that it leads to freely
   Seams seams_;

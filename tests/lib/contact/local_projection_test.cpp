@@ -120,5 +120,43 @@ TEST(LocalProjection, SettlesFarFromTheOriginDownToRounding) {
   }
 }
 
+/// Within a cone that stands on its tip: the nearest place is the tip from all that is in the cone of its normals, else the
+/// foot on the side.
+TEST(LocalProjection, ByCutsFindsTheTipAndTheSideOfAHollowCone) {
+  const double height = 4e-3;
+  const FieldPtr field = cone(Vec3(0.0, 0.0, height), Vec3(0.0, 0.0, -1.0), height, height);
+  std::vector<HeldWall> walls{outsideOf(field)};
+  walls[0].side = -1.0;
+  const Vec3 from(0.0, 0.0, 1e-3);
+  Random random(36);
+  int at_tip = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 target = random.in({Vec3(-1e-3, -1e-3, -2e-3), Vec3(1e-3, 1e-3, 0.8e-3)});
+    const double out = std::hypot(target.x, target.y);
+    const LocalProjection on = projectByCuts(from, target, walls);
+    ASSERT_TRUE(on.settled) << i;
+    if (out <= target.z) {
+      EXPECT_EQ(on.count, 0U) << i;
+      EXPECT_EQ(on.at, target) << i;
+      continue;
+    }
+    // The side goes up by as much as it goes out.
+    const double along = 0.5 * (out + target.z);
+    const bool is_tip = along <= 0.0;
+    const Vec3 expected =
+        is_tip ? Vec3(0.0) : Vec3(along * target.x / out, along * target.y / out, along);
+    EXPECT_LT(glm::length(on.at - expected), 1e-11) << i;
+    ASSERT_GT(on.count, 0U) << i;
+    at_tip += is_tip ? 1 : 0;
+  }
+  EXPECT_GT(at_tip, 100);
+}
+
+TEST(LocalProjection, ByCutsIsNotSettledOnABulge) {
+  const FieldPtr ball = sphere(Vec3(0.0, 0.0, -2e-3), 2e-3);
+  const std::vector<HeldWall> walls{outsideOf(ball)};
+  EXPECT_FALSE(projectByCuts(Vec3(0.0), Vec3(1.5e-3, 0.0, -2e-3), walls).settled);
+}
+
 }  // namespace
 }  // namespace palpate::test

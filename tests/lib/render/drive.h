@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "folders/folders.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene_file.h"
 
@@ -15,7 +16,7 @@ inline ScenePtr sceneOf(const std::string& yaml) { return compile(parseScene(yam
 
 /// A scene of data/scenes.
 inline ScenePtr sceneNamed(const std::string& name) {
-  return compile(readScene(std::string(PALPATE_SOURCE_DIR) + "/data/scenes/" + name + ".yaml"));
+  return compile(readScene(test::sourceFolder() + "/data/scenes/" + name + ".yaml"));
 }
 
 inline Vec3 mm(double x, double y, double z) { return {x * 1e-3, y * 1e-3, z * 1e-3}; }

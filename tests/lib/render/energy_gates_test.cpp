@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
+#include <tuple>
 
 #include "lib/render/energy_loop.h"
 #include "support/sanitized.h"
@@ -96,31 +99,44 @@ ScenePtr sceneOf(const Key& key, const Place& place) {
                        "}\n  other: {stiffness: 2500 N/m}\nlayers: " + place.layers + "\n");
 }
 
-TEST(EnergyGates, NoKeyOfAMaterialGivesEnergy) {
+class EnergyGates : public ::testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {};
+
+TEST_P(EnergyGates, TheKeyGivesNoEnergyThere) {
+  const Key& key = kKeys[std::get<0>(GetParam())];
+  const Place& place = kPlaces[std::get<1>(GetParam())];
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   const int loops = slow ? 20 : 1;
   const int tries = slow ? 100 : kSanitized ? 1 : 6;
-  for (const Key& key : kKeys) {
-    for (const Place& place : kPlaces) {
-      const ScenePtr scene = sceneOf(key, place);
-      Random random(17);
-      double most = -kInfinity;
-      EnergyGiven worst;
-      for (int i = 0; i < loops; ++i) {
-        EnergyLoop loop = randomLoop(random, place.center, 0.05e-3, 0.7e-3);
-        loop = worstLoop(scene, place.start, loop, 0.3e-3, tries, random);
-        EnergyGiven given = energyGiven(scene, place.start, loop);
-        // Two numbers of steps may be off by the same, and friction may not have found its loop by the second lap.
-        if (given.work > 1e-9 + given.change) given = energyGivenAtLast(scene, place.start, loop);
-        if (given.work - given.change > most) worst = given;
-        most = std::max(most, given.work - given.change);
-      }
-      std::printf("  %-22s %-32s %10.3g J (last halving %.1g J)\n", key.name, place.name,
-                  worst.work, worst.change);
-      EXPECT_LE(worst.work, 1e-9 + worst.change) << key.name << ", " << place.name;
-    }
+  const ScenePtr scene = sceneOf(key, place);
+  Random random(17);
+  double most = -kInfinity;
+  EnergyGiven worst;
+  for (int i = 0; i < loops; ++i) {
+    EnergyLoop loop = randomLoop(random, place.center, 0.05e-3, 0.7e-3);
+    loop = worstLoop(scene, place.start, loop, 0.3e-3, tries, random);
+    EnergyGiven given = energyGiven(scene, place.start, loop);
+    // Two numbers of steps may be off by the same, and friction may not have found its loop by the second lap.
+    if (given.work > 1e-9 + given.change) given = energyGivenAtLast(scene, place.start, loop);
+    if (given.work - given.change > most) worst = given;
+    most = std::max(most, given.work - given.change);
   }
+  std::printf("  %-22s %-32s %10.3g J (last halving %.1g J)\n", key.name, place.name, worst.work,
+              worst.change);
+  EXPECT_LE(worst.work, 1e-9 + worst.change) << key.name << ", " << place.name;
 }
+
+std::string nameOf(const ::testing::TestParamInfo<std::tuple<std::size_t, std::size_t>>& info) {
+  std::string out = std::string(kKeys[std::get<0>(info.param)].name) + "_" +
+                    kPlaces[std::get<1>(info.param)].name;
+  std::replace(out.begin(), out.end(), ' ', '_');
+  out.erase(std::remove(out.begin(), out.end(), ','), out.end());
+  return out;
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryKey, EnergyGates,
+                         ::testing::Combine(::testing::Range(std::size_t{0}, std::size(kKeys)),
+                                            ::testing::Range(std::size_t{0}, std::size(kPlaces))),
+                         nameOf);
 
 }  // namespace
 }  // namespace palpate::test

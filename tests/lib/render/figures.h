@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "folders/folders.h"
 #include "lib/render/drive.h"
 
 namespace palpate::test {
@@ -44,7 +45,7 @@ struct Figure {
   /// The same without friction, damping and contents, and all walls of 1000 N/m: forces are springs.
   [[nodiscard]] ScenePtr springs() const {
     SceneDescription description =
-        readScene(std::string(PALPATE_SOURCE_DIR) + "/data/scenes/" + name + ".yaml");
+        readScene(test::sourceFolder() + "/data/scenes/" + name + ".yaml");
     for (Material& material : description.materials) {
       Material bare;
       bare.name = material.name;

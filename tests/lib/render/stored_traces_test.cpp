@@ -6,13 +6,14 @@
 #include <filesystem>
 #include <set>
 
+#include "folders/folders.h"
 #include "lib/render/drive.h"
 #include "support/stored_trace.h"
 
 namespace palpate::test {
 namespace {
 
-const std::string kSource = PALPATE_SOURCE_DIR;
+const std::string kSource = test::sourceFolder();
 
 /// Those that need neither scans nor grids.
 const std::vector<std::string>& analyticScenes() {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "folders/folders.h"
 #include "lib/scene/problems.h"
 #include "lib/scene/stand_in_readers.h"
 #include "palpate/scene/scene.h"
@@ -343,7 +344,8 @@ TEST(SceneFile, ReadsTheFileItIsGiven) {
 // The analytic scenes of the project hold together: every port joins neighbours, every region is reached.
 TEST(SceneFile, TheProjectsScenesCompile) {
   for (const std::string name : {"container", "csg_part", "valve_tube", "sponge", "flag"}) {
-    const ScenePtr scene = compile(readScene(PALPATE_SOURCE_DIR "/data/scenes/" + name + ".yaml"));
+    const ScenePtr scene =
+        compile(readScene(test::sourceFolder() + "/data/scenes/" + name + ".yaml"));
     EXPECT_FALSE(scene->ports().empty()) << name;
     for (const Region& region : scene->regions()) {
       if (region.name != "part" && region.name != "sponge") {
@@ -357,7 +359,7 @@ TEST(SceneFile, TheProjectsScenesHoldWhatTheyShow) {
   std::map<std::string, ScenePtr> scenes;
   const auto region_in = [&](const std::string& file, double x, double y, double z) {
     ScenePtr& scene = scenes[file];
-    if (!scene) scene = compile(readScene(PALPATE_SOURCE_DIR "/data/scenes/" + file));
+    if (!scene) scene = compile(readScene(test::sourceFolder() + "/data/scenes/" + file));
     return scene->regions()[scene->regionAt(0.001 * Vec3(x, y, z))].name;
   };
   EXPECT_EQ(region_in("container.yaml", 0, 0, 14), "liquid");
@@ -386,7 +388,8 @@ TEST(SceneFile, TheProjectsScenesHoldWhatTheyShow) {
 
 TEST(SceneFile, EverySceneOfTheProjectIsRead) {
   int read = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(PALPATE_SOURCE_DIR "/data/scenes")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::sourceFolder() + "/data/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
     EXPECT_NO_THROW((void)readScene(entry.path().string(), standInReaders())) << entry.path();
     ++read;

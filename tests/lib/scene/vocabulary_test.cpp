@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "folders/folders.h"
 #include "lib/scene/stand_in_readers.h"
 #include "support/scene_vocabulary.h"
 
@@ -90,6 +91,7 @@ const std::vector<Probe>& probes() {
       {"sheet", "sheets:\n  - {name: s, on: " + ball + ", @}\n"},
       {"port", layers + "ports:\n  - {name: p, between: [a, outside], @}\n"},
       {"device", "device: {scale: 1, @}\n"},
+      {"start", "start: {region: outside, @}\n"},
       {"paper", "paper: {alpha: 1, @}\n"},
       {"passed_before", layers +
                             "ports:\n  - {name: q, between: [a, outside]}\n  - {name: p, between: "
@@ -214,7 +216,7 @@ TEST(Vocabulary, TheSchemasNamesAreTheReaders) {
 }
 
 std::string referencePage() {
-  std::ifstream file(PALPATE_SOURCE_DIR "/tools/docs/scene.md");
+  std::ifstream file(test::sourceFolder() + "/tools/docs/scene.md");
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
