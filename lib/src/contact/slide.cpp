@@ -52,10 +52,10 @@ Vec3 tangentialPart(const Vec3& v, std::span<const HeldWall> walls) noexcept {
   std::array<Vec3, 3> normals;
   const std::size_t count = std::min(walls.size(), normals.size());
   for (std::size_t i = 0; i < count; ++i) normals[i] = walls[i].normal;
-  return tangentialPart(v, std::span<const Vec3>(normals.data(), count));
+  return partAcross(v, {normals.data(), count});
 }
 
-Vec3 tangentialPart(const Vec3& v, std::span<const Vec3> normals) noexcept {
+Vec3 partAcross(const Vec3& v, std::span<const Vec3> normals) noexcept {
   switch (normals.size()) {
     case 0:
       return v;

@@ -21,7 +21,7 @@ Vec3 tangentialStep(const Vec3& wish, const std::array<Plane, 3>& planes,
   for (std::size_t k = 0; k < count; ++k) {
     normals[k] = planes[static_cast<std::size_t>(solution.plane[k])].normal;
   }
-  return tangentialPart(wish, std::span<const Vec3>(normals.data(), count));
+  return partAcross(wish, {normals.data(), count});
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ double ContactSet::load() const noexcept {
 Vec3 ContactSet::along(const Vec3& v) const noexcept {
   std::array<Vec3, 3> normals;
   for (std::size_t i = 0; i < count; ++i) normals[i] = wall[i].held.normal;
-  return tangentialPart(v, std::span<const Vec3>(normals.data(), count));
+  return partAcross(v, {normals.data(), count});
 }
 
 HeldWalls ContactSet::held() const noexcept {
