@@ -16,9 +16,6 @@ namespace {
 /// A voxel centre may lie on the surface; in a part one voxel thin, and beside it, it must not, lest the part
 /// vanish or swell.
 constexpr double kHold = 0.3;
-/// The same where a wall of one to two voxels is a single one: a grid of the scan's voxels keeps
-/// what this leaves of it. 0.03, as smoothing left it, was a hole.
-constexpr double kHoldAlone = 0.15;
 constexpr double kBeside = 1.8;  ///< voxels that share a corner
 /// Voxels by which the surface may be nearer than the nearest voxel of the other side: a smooth one by about
 /// one; and no less, or curved ones would be bent. Of voxels that are no cubes, those as long as their diagonal.
@@ -197,11 +194,7 @@ class Finder {
     }
     if (is_inside) size = std::min(size, borderDistance(at));
     if (!(size < kInfinity)) return false;
-    if (other.steps < kBeside && isAtThinPart(mask_, at)) {
-      lower = std::max(lower, kHold);
-    } else if (other.steps < kBeside && isAloneBetween(mask_, at)) {
-      lower = std::max(lower, kHoldAlone);
-    }
+    if (other.steps < kBeside && isAtThinPart(mask_, at)) lower = std::max(lower, kHold);
     size = std::clamp(size, lower, upper);
     const std::size_t place = Band::placeOf(at[0], at[1], at[2]);
     block.value[place] = static_cast<float>(is_inside ? -size : size);

@@ -15,10 +15,4 @@ namespace palpate::vdb {
 /// voxel on a body is not, nor is the tip of a ball. What lies beyond the image is of either side.
 [[nodiscard]] bool isAtThinPart(const Mask& mask, const std::array<int, 3>& at) noexcept;
 
-/// Whether a voxel of the box is all that parts two voxels of the other side, on opposite faces of
-/// it: no way leads from one to the other by faces through the other side's voxels around it. So
-/// are places of a wall of one to two voxels. Over a lone voxel on a body there is a way; what lies
-/// beyond the image is such a way.
-[[nodiscard]] bool isAloneBetween(const Mask& mask, const std::array<int, 3>& at) noexcept;
-
 }  // namespace palpate::vdb
