@@ -189,7 +189,7 @@ tidy_sources() {
         *.cpp) echo "$file" ;;
         *) # the source of the same name is the best witness of a header
           grep --recursive --files-with-matches --include='*.cpp' --fixed-strings \
-            "${file#*/include/}\"" lib vdb devices tools tests |
+            "$(sed -E 's,^.*/(include|private)/,,' <<< "$file")\"" lib vdb devices tools tests |
             awk -v stem="/$(basename "$file" .h).cpp" '{ if (index($0, stem)) { print; found = 1; exit } last = $0 }
               END { if (!found && last) print last }' ;;
       esac

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "palpate/devices/record_file.h"
+#include "palpate/devices/record.h"
 
 namespace palpate::devices {
 

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "palpate/devices/record_file.h"
+#include "palpate/devices/record.h"
 #include "row_format.h"
 
 namespace palpate::devices {

@@ -1,5 +1,3 @@
-#include "palpate/devices/recorder.h"
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -8,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "palpate/devices/record.h"
 #include "spsc_ring.h"
 
 namespace palpate::devices {

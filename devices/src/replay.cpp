@@ -1,9 +1,8 @@
-#include "palpate/devices/replay.h"
-
 #include <bit>
 #include <cmath>
 #include <limits>
 
+#include "palpate/devices/record.h"
 #include "row_format.h"
 
 namespace palpate::devices {

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "palpate/devices/record_file.h"
+#include "palpate/devices/record.h"
 #include "row_format.h"
 
 namespace palpate::devices {

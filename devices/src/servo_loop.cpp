@@ -1,10 +1,9 @@
-#include "palpate/devices/servo_loop.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/device.h"
 #include "reading_watch.h"
 #include "servo_clock.h"
 #include "servo_schedule.h"

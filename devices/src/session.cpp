@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "palpate/core/error.h"
-#include "palpate/devices/recorder.h"
+#include "palpate/devices/record.h"
 
 namespace palpate::devices {
 namespace {
@@ -27,9 +27,8 @@ void check(const Scene& scene, const SessionSettings& settings) {
     }
     last = event.time;
   }
-  Contents contents(scene);
   for (const ContentEvent& event : settings.changes) {
-    if (contents.change(event.region, event.change)) continue;
+    if (canChangeContent(scene, event.region, event.change)) continue;
     throw Error(ErrorKind::kUsage,
                 {"session.changes", "region " + std::to_string(event.region) +
                                         " cannot have the content that is asked for at " +

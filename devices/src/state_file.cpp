@@ -6,7 +6,8 @@
 #include <system_error>
 #include <utility>
 
-#include "palpate/devices/record_file.h"
+#include "palpate/devices/record.h"
+#include "palpate/version.h"
 
 namespace palpate::devices {
 namespace {
@@ -59,11 +60,9 @@ std::uint64_t checksum(std::string_view bytes, std::uint64_t begin) noexcept {
 
 std::string stateBuild() {
   // Where the parts lie tells most changes of the layout that leave the size as it was.
-  const std::array<std::size_t, 10> layout = {
-      sizeof(RendererState), sizeof(VelocityTracker), sizeof(Clutch),    sizeof(PlaceState),
-      sizeof(FrictionState), sizeof(RelaxationState), sizeof(Insertion), sizeof(PaperTouch),
-      sizeof(ForceGuard),    sizeof(SourceState)};
-  return std::string("palpate " PALPATE_VERSION ", " __VERSION__ ", ") +
+  const std::array<std::uint64_t, 4> layout = {RendererState::layout(), sizeof(RendererState),
+                                               sizeof(VelocityTracker), sizeof(Clutch)};
+  return std::string("palpate " PALPATE_VERSION_STRING ", " __VERSION__ ", ") +
          std::to_string(sizeof(SessionState)) + " bytes, layout " +
          std::to_string(checksum(bytesOf(layout.data(), sizeof layout)));
 }

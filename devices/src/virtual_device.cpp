@@ -1,10 +1,9 @@
-#include "palpate/devices/virtual_device.h"
-
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/path.h"
 
 namespace palpate::devices {
 

@@ -2,8 +2,9 @@
 # Fails on an include against the arrows of the design:
 #   tools -> devices, vdb, lib;  devices -> lib;  vdb -> lib;  lib -> nobody
 #   inside lib: render -> scene -> {contact, interior} -> materials -> fields -> core
-# Target visibility does not see to it: /usr/include is always on the path, and so are a static library's
-# own headers. Tests may include everything.
+# Of each other, vdb and devices include public headers only (<module>/include), tools also those that are private but
+# no part of one source folder (<module>/private). Target visibility does not see to it: /usr/include is always on the
+# path, and so are a static library's own headers. Tests may include everything.
 cmake_minimum_required(VERSION 3.25)
 
 # What each module may include of ours, itself apart.
@@ -20,6 +21,9 @@ set(layers_contact materials ${layers_materials})
 set(layers_interior materials ${layers_materials})
 set(layers_scene contact interior ${layers_contact})
 set(layers_render scene ${layers_scene})
+
+# What every file may include: beside the layers, or made when the build is configured.
+set(common palpate/export.h palpate/version.h)
 
 # Libraries that live in one place only: regular expression of the include, then where it may stand.
 set(confined_names openvdb tbb imath assimp nifti gdcm boost yaml)
@@ -42,7 +46,7 @@ endmacro()
 function(place file module_out layer_out)
   string(REGEX MATCH "^[^/]+" module "${file}")
   set(layer "")
-  if(module STREQUAL "lib" AND file MATCHES "^lib/(include/palpate|src)/([^/]+)/")
+  if(module STREQUAL "lib" AND file MATCHES "^lib/(include/palpate|private/palpate|src)/([^/]+)/")
     set(layer "${CMAKE_MATCH_2}")
   endif()
   set(${module_out} "${module}" PARENT_SCOPE)
@@ -53,7 +57,7 @@ endfunction()
 function(resolve file included out)
   cmake_path(GET file PARENT_PATH folder)
   string(REGEX MATCH "^[^/]+" module "${file}")
-  foreach(base "${folder}" "${module}/src" lib/include vdb/include devices/include)
+  foreach(base "${folder}" "${module}/src" lib/include vdb/include devices/include lib/private vdb/private)
     set(candidate "${base}/${included}")
     cmake_path(NORMAL_PATH candidate)
     if(EXISTS "${ROOT}/${candidate}")
@@ -74,7 +78,7 @@ endif()
 
 foreach(file IN LISTS files)
   place("${file}" module layer)
-  if(module STREQUAL "lib" AND NOT DEFINED "layers_${layer}")
+  if(module STREQUAL "lib" AND NOT file MATCHES "^lib/include/palpate/export.h$" AND NOT DEFINED "layers_${layer}")
     complain("${file}" "'${layer}' is no layer of lib that this check knows")
     continue()
   endif()
@@ -93,13 +97,16 @@ foreach(file IN LISTS files)
       endif()
     endforeach()
 
+    if(included IN_LIST common)
+      continue()
+    endif()
     resolve("${file}" "${included}" target)
     if(target)
       place("${target}" target_module target_layer)
       if(NOT target_module STREQUAL module)
         if(NOT target_module IN_LIST modules_${module})
           complain("${file}" "includes ${included}: ${module} must not know ${target_module}")
-        elseif(NOT target MATCHES "/include/")
+        elseif(NOT (target MATCHES "/include/" OR (module STREQUAL "tools" AND target MATCHES "^[^/]+/private/")))
           complain("${file}" "includes ${included}: it is private to ${target_module}")
         endif()
       elseif(module STREQUAL "lib" AND NOT target_layer STREQUAL layer

@@ -16,8 +16,6 @@
 #include "palpate/scene/scene.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/mesh.h"
-#include "palpate/vdb/polyhedron.h"
-#include "palpate/vdb/sharp_edges.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "palpate/core/error.h"
+#include "palpate/version.h"
 
 namespace palpate::bench {
 
@@ -26,7 +27,7 @@ std::string fileNameOf(const std::string& cpu) {
 nlohmann::ordered_json machineJson(const tools::Machine& machine) {
   return {{"cpu", machine.cpu},          {"threads", machine.threads},
           {"system", machine.system},    {"compiler", machine.compiler},
-          {"build", machine.build_type}, {"palpate", PALPATE_VERSION}};
+          {"build", machine.build_type}, {"palpate", PALPATE_VERSION_STRING}};
 }
 
 std::string takeOption(const std::string& name, int& count, char** arguments) {

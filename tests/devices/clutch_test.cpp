@@ -1,7 +1,5 @@
 // A hand that lets go of the world and takes hold of it elsewhere.
 
-#include "palpate/devices/clutch.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -6,7 +6,6 @@
 
 #include "palpate/core/error.h"
 #include "palpate/devices/path.h"
-#include "palpate/devices/virtual_device.h"
 #include "support/alloc_guard.h"
 
 namespace palpate::devices {

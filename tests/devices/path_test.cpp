@@ -9,7 +9,6 @@
 #include <random>
 
 #include "palpate/core/error.h"
-#include "palpate/devices/virtual_device.h"
 #include "support/temp_file.h"
 
 namespace palpate::devices {

@@ -1,7 +1,5 @@
 // Records in files: what is written is read back, full disks leave whole rows, and no damage makes more of a file than is in it.
 
-#include "palpate/devices/record_file.h"
-
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -16,6 +14,7 @@
 #include <vector>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/record.h"
 #include "support/temp_file.h"
 
 namespace palpate::devices {

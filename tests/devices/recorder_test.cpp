@@ -1,7 +1,5 @@
 // What goes into the recorder comes out of it, in order and without a wait of the loop, whatever its sinks do.
 
-#include "palpate/devices/recorder.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -11,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "palpate/devices/record.h"
 #include "support/alloc_guard.h"
 
 namespace palpate::devices {

@@ -1,8 +1,6 @@
 // A random session, whatever its device, clutch, estimator, limits, changes and faults: felt anew from its record, from the start and from each state,
 // it is the same bit for bit; and what is not the same is found.
 
-#include "palpate/devices/replay.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "palpate/devices/record.h"
 #include "palpate/scene/scene_file.h"
 #include "support/temp_file.h"
 

@@ -7,8 +7,8 @@
 
 #include <atomic>
 
-#include "palpate/devices/servo_loop.h"
-#include "palpate/devices/virtual_device.h"
+#include "palpate/devices/device.h"
+#include "palpate/devices/path.h"
 
 namespace palpate::devices {
 namespace {

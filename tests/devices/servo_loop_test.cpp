@@ -1,5 +1,3 @@
-#include "palpate/devices/servo_loop.h"
-
 #include <gtest/gtest.h>
 #include <pthread.h>
 #include <sched.h>
@@ -9,7 +7,8 @@
 
 #include "devices/scripted_device.h"
 #include "palpate/core/error.h"
-#include "palpate/devices/virtual_device.h"
+#include "palpate/devices/device.h"
+#include "palpate/devices/path.h"
 #include "support/alloc_guard.h"
 
 namespace palpate::devices {

@@ -9,7 +9,7 @@
 
 #include "../../devices/src/reading_watch.h"
 #include "devices/scripted_device.h"
-#include "palpate/devices/servo_loop.h"
+#include "palpate/devices/device.h"
 #include "support/alloc_guard.h"
 
 namespace palpate::devices {

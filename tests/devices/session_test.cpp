@@ -9,7 +9,7 @@
 #include <random>
 
 #include "palpate/core/error.h"
-#include "palpate/devices/virtual_device.h"
+#include "palpate/devices/path.h"
 #include "palpate/scene/scene_file.h"
 #include "support/alloc_guard.h"
 

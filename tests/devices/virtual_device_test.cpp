@@ -1,8 +1,7 @@
-#include "palpate/devices/virtual_device.h"
-
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/path.h"
 
 namespace palpate::devices {
 namespace {

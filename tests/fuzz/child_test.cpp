@@ -15,7 +15,6 @@
 #include "fuzz/seeds.h"
 #include "palpate/core/stop.h"
 #include "palpate/vdb/image.h"
-#include "palpate/vdb/library_limits.h"
 #include "palpate/vdb/mesh.h"
 #include "support/error_of.h"
 #include "support/temp_file.h"

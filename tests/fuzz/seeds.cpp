@@ -10,7 +10,6 @@
 
 #include "folders/folders.h"
 #include "palpate/vdb/mesh.h"
-#include "palpate/vdb/surface_mesh.h"
 #include "vdb/dicom_writer.h"
 #include "vdb/nifti_writer.h"
 

@@ -1,6 +1,7 @@
-# cmake -D SOURCE=... -D BINARY=... -D CONFIG=... -D SCRATCH=... -D COMPONENTS=... -P package_test.cmake
+# cmake -D SOURCE=... -D BINARY=... -D CONFIG=... -D SCRATCH=... -D COMPONENTS=... [-D SHARED=ON -D LAUNCHER=...] -P package_test.cmake
 # Installs the build BINARY below SCRATCH, moves what was installed (a package must not know where it was
-# put), and builds and runs an outside project against it.
+# put), and builds and runs an outside project against it. With SHARED, core and devices are built as shared
+# libraries in BINARY first.
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -8,8 +9,35 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE "${SCRATCH}")
+if(SHARED)
+  run(${CMAKE_COMMAND} -G Ninja -S "${SOURCE}" -B "${BINARY}"
+    -D CMAKE_BUILD_TYPE=${CONFIG} -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
+    -D BUILD_SHARED_LIBS=ON -D PALPATE_VDB=OFF -D PALPATE_TESTS=OFF)
+  run(${CMAKE_COMMAND} --build "${BINARY}" --parallel 2)
+endif()
 run(${CMAKE_COMMAND} --install "${BINARY}" --config "${CONFIG}" --prefix "${SCRATCH}/first")
 file(RENAME "${SCRATCH}/first" "${SCRATCH}/installed")
+
+# The face, and nothing else.
+file(GLOB_RECURSE installed RELATIVE "${SCRATCH}/installed/include" "${SCRATCH}/installed/include/*")
+list(LENGTH installed count)
+message(STATUS "${count} headers were installed")
+foreach(header IN LISTS installed)
+  file(GLOB public "${SOURCE}/*/include/${header}" "${BINARY}/include/${header}")
+  if(NOT public)
+    message(FATAL_ERROR "${header} is no public header, and was installed")
+  endif()
+endforeach()
+
+# A shared library shows its face only.
+file(GLOB_RECURSE shared "${SCRATCH}/installed/libpalpate_core.so")
+if(shared)
+  execute_process(COMMAND nm --dynamic --defined-only --demangle "${shared}"
+    OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT symbols MATCHES "palpate::makeRenderer" OR symbols MATCHES "palpate::(ProxySolver|NearCells|sweep)[:(]")
+    message(FATAL_ERROR "what ${shared} shows is not its face")
+  endif()
+endif()
 
 run(${CMAKE_COMMAND} -G Ninja -S "${SOURCE}/tests/package" -B "${SCRATCH}/build"
   -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${SCRATCH}/installed

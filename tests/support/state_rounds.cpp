@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "palpate/core/error.h"
+#include "palpate/render/tick_state.h"
 #include "support/field_contract.h"
 #include "support/stored_trace.h"
 
@@ -50,7 +51,7 @@ Felt feel(HapticRenderer& renderer, const HipState& hip) {
   Felt out;
   out.result = renderer.update(hip);
   out.source_work = renderer.sourceWork();
-  out.point = renderer.state().place.point;
+  out.point = TickState::of(renderer.state()).place.point;
   for (const PortCrossing& crossing : renderer.crossings()) out.crossings.push_back(crossing.point);
   return out;
 }

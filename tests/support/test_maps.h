@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "palpate/materials/parameter.h"
+#include "palpate/materials/material.h"
 
 namespace palpate::testing {
 

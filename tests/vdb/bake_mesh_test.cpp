@@ -16,7 +16,7 @@
 #include "bake/facet.h"
 #include "bake/leaf_distance.h"
 #include "palpate/core/error.h"
-#include "palpate/fields/modify.h"
+#include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/openvdb_access.h"

@@ -14,7 +14,6 @@
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
-#include "palpate/vdb/hybrid.h"
 #include "support/alloc_guard.h"
 #include "vdb/shapes.h"
 

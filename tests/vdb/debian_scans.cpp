@@ -7,8 +7,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
-#include "palpate/vdb/surface_mesh.h"
 
 namespace palpate::vdb::test {
 namespace {

@@ -8,12 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "palpate/fields/blend.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/implicit.h"
-#include "palpate/fields/modify.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "support/field_contract.h"
 
 namespace palpate::vdb {

@@ -7,7 +7,6 @@
 
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/vdb/bake.h"
 #include "support/error_of.h"

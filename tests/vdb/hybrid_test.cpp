@@ -1,6 +1,4 @@
 // Hybrid CSG: which parts become grids, and that edges and thin parts stay as exact as they were.
-#include "palpate/vdb/hybrid.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,12 +9,10 @@
 #include <random>
 
 #include "palpate/core/error.h"
-#include "palpate/fields/blend.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/implicit.h"
-#include "palpate/fields/modify.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
+#include "palpate/vdb/bake.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {

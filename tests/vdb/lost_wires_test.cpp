@@ -10,7 +10,6 @@
 
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "palpate/vdb/bake.h"
 #include "vdb/shapes.h"
 

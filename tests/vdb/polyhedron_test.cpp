@@ -1,6 +1,4 @@
 // Meshes of few flat faces: felt as the solid between their planes, with edges and corners as they are.
-#include "palpate/vdb/polyhedron.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,8 +9,8 @@
 #include "lib/render/hard_judge.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "palpate/vdb/bake.h"
+#include "palpate/vdb/mesh.h"
 #include "support/temp_file.h"
 #include "vdb/shapes.h"
 

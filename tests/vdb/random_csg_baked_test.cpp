@@ -10,7 +10,6 @@
 #include "lib/render/csg_run.h"
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
-#include "palpate/fields/transform.h"
 #include "palpate/vdb/bake.h"
 
 namespace palpate::vdb {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "palpate/vdb/mesh.h"
 #include "palpate/vdb/mesh_defects.h"
-#include "palpate/vdb/surface_mesh.h"
 #include "support/temp_file.h"
 #include "vdb/debian_scans.h"
 

@@ -7,10 +7,10 @@
 
 #include "palpate/core/error.h"
 #include "palpate/fields/primitives.h"
+#include "palpate/interior/partition.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene.h"
 #include "palpate/vdb/bake.h"
-#include "palpate/vdb/hybrid.h"
 #include "palpate/vdb/io.h"
 #include "palpate/vdb/openvdb_access.h"
 #include "palpate/vdb/register.h"

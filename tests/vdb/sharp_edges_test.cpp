@@ -1,6 +1,4 @@
 // Curved meshes with sharp edges: exact triangles by the edges, bricks elsewhere, no step between.
-#include "palpate/vdb/sharp_edges.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "palpate/core/error.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
+#include "palpate/vdb/mesh.h"
 #include "vdb/shapes.h"
 
 namespace palpate::vdb {

@@ -1,7 +1,5 @@
 // Level sets as meshes, and meshes as files that every reader reads back.
 
-#include "palpate/vdb/surface_mesh.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
+#include "palpate/vdb/mesh.h"
 #include "support/error_of.h"
 #include "support/temp_file.h"
 

@@ -5,6 +5,7 @@
 
 #include "json_parts.h"
 #include "palpate/core/error.h"
+#include "palpate/render/contents.h"
 #include "palpate/scene/scene_file.h"
 #include "text.h"
 

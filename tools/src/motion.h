@@ -5,7 +5,6 @@
 
 #include "options.h"
 #include "palpate/devices/path.h"
-#include "palpate/devices/virtual_device.h"
 #include "text.h"
 
 namespace palpate::tools {

@@ -193,10 +193,14 @@ struct AccuracyOptions {
   std::string svg;
 };
 
-/// `palpate help`: everything, or one verb.
+/// `palpate help`: everything, one verb, or the keys of scene files.
 struct HelpOptions {
-  std::string verb;
+  std::string verb;  ///< or "scene"
+  std::string key;   ///< of a scene; empty: all
   bool markdown = false;
+  bool schema = false;
+  bool man = false;
+  std::string completion;  ///< "bash", "zsh" or "fish"
 };
 
 using VerbOptions =

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "input_kind.h"
-#include "palpate/scene/document.h"
+#include "palpate/scene/scene_file.h"
 #include "scene_baking.h"
 #include "scene_text.h"
 

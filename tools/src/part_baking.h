@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "baking.h"
-#include "palpate/vdb/hybrid.h"
+#include "palpate/vdb/bake.h"
 
 namespace palpate::tools {
 

@@ -11,7 +11,7 @@
 #include "console.h"
 #include "output_files.h"
 #include "palpate/core/stop.h"
-#include "palpate/vdb/library_limits.h"
+#include "palpate/vdb/image.h"
 #include "stop_signal.h"
 #include "verbs.h"
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "palpate/interior/partition.h"
 #include "palpate/vdb/level_set.h"
 
 namespace palpate::tools {

@@ -10,8 +10,8 @@
 
 #include "console.h"
 #include "palpate/core/error.h"
-#include "palpate/devices/record_file.h"
-#include "palpate/scene/document.h"
+#include "palpate/devices/record.h"
+#include "palpate/scene/scene_file.h"
 
 namespace palpate::tools {
 namespace {

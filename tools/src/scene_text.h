@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "palpate/scene/document.h"
+#include "palpate/scene/scene_file.h"
 
 namespace palpate::tools {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "palpate/core/math.h"
-#include "palpate/materials/parameter.h"
+#include "palpate/materials/material.h"
 
 namespace palpate::tools {
 

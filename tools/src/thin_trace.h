@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "palpate/devices/recorder.h"
+#include "palpate/devices/record.h"
 #include "palpate/render/trace.h"
 
 namespace palpate::tools {

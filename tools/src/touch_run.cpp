@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "input_kind.h"
-#include "palpate/devices/record_file.h"
+#include "palpate/devices/record.h"
 #include "stop_signal.h"
 #include "thin_trace.h"
 #include "trace_file.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/devices/recorder.h"
+#include "palpate/devices/record.h"
 #include "report.h"
 #include "text.h"
 #include "tick_times.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "palpate/devices/record_file.h"
+#include "palpate/devices/record.h"
 #include "palpate/render/trace.h"
 
 namespace palpate::tools {

@@ -1,7 +1,7 @@
 #pragma once
 /// A recorded tick as a row of a trace.
 
-#include "palpate/devices/recorder.h"
+#include "palpate/devices/record.h"
 #include "palpate/render/trace.h"
 
 namespace palpate::tools {

@@ -8,7 +8,7 @@
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/image.h"
-#include "palpate/vdb/surface_mesh.h"
+#include "palpate/vdb/mesh.h"
 #include "scan_options.h"
 #include "text.h"
 #include "verbs.h"

@@ -4,6 +4,7 @@
 #include "loaded_scene.h"
 #include "map_coverage.h"
 #include "output_files.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/scene/transitions.h"
 #include "saving.h"
 #include "scene_parameters.h"

@@ -3,7 +3,7 @@
 #include "content_changes.h"
 #include "input_kind.h"
 #include "loaded_scene.h"
-#include "palpate/devices/replay.h"
+#include "palpate/devices/record.h"
 #include "record_about.h"
 #include "scene_hash.h"
 #include "shape_scene.h"

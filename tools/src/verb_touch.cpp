@@ -6,8 +6,9 @@
 #include "map_coverage.h"
 #include "motion.h"
 #include "output_files.h"
-#include "palpate/devices/record_file.h"
+#include "palpate/devices/record.h"
 #include "palpate/devices/session.h"
+#include "palpate/version.h"
 #include "picture/picture.h"
 #include "scene_hash.h"
 #include "shape_scene.h"
@@ -42,7 +43,7 @@ void pressOnSurface(const Scene& scene, TouchOptions& options, Console& console)
 /// What a record says that it was made with.
 void describe(RecordAbout& about, const TouchOptions& options, const devices::DeviceInfo& device,
               const Scene& scene, const std::string& scene_text) {
-  about.version = PALPATE_VERSION;
+  about.version = PALPATE_VERSION_STRING;
   about.build = devices::stateBuild();
   about.scene = std::filesystem::absolute(options.scene).string();
   about.scene_text = scene_text;

@@ -10,15 +10,14 @@
 #include "bake/solid.h"
 #include "named_progress.h"
 #include "palpate/scene/units.h"
+#include "palpate/scene/vocabulary.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/grid_memory.h"
 #include "palpate/vdb/image_distances.h"
 #include "palpate/vdb/mesh.h"
-#include "palpate/vdb/polyhedron.h"
 #include "palpate/vdb/scan_surface.h"
-#include "palpate/vdb/sharp_edges.h"
 #include "scene_baked.h"
 #include "scene_grid.h"
 #include "scene_image.h"
@@ -129,33 +128,12 @@ FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string 
   return std::make_shared<FieldSource>(std::move(summary), std::move(maker), std::move(measurer));
 }
 
-/// The length unit at `units`, or `fallback`.
-std::string lengthUnitOr(MapReader& reader, std::string fallback) {
-  std::string unit = reader.textOr("units", std::move(fallback));
-  if (!unit.empty() && !metresPer(unit)) {
-    throw reader.errorAt("units", "scene.unit", "'" + unit + "' is no length unit",
-                         "units: " + std::string(unitHelp(Dimension::kLength)));
-  }
-  return unit;
-}
-
 /// How a mesh becomes a solid.
-void readMeshKeys(MapReader& reader, BakeOptions& bake) {
-  const std::string sign = reader.textOr("sign", "vote");
-  if (sign == "winding") {
-    bake.mesh_sign = MeshSign::kWinding;
-  } else if (sign == "flood") {
-    bake.mesh_sign = MeshSign::kFlood;
-  } else if (sign != "vote") {
-    throw reader.errorAt("sign", "scene.kind", "'sign' is `" + sign + "`",
-                         "write sign: vote, sign: winding or sign: flood");
-  }
-  bake.shell_thickness = readPositiveOrNone(reader, "shell");
-  const double degrees = reader.numberOr("smooth", 0.0);
-  if (!(degrees >= 0.0 && degrees <= 180.0)) {
-    throw reader.errorAt("smooth", "scene.range", "'smooth' must be from 0 to 180 degrees");
-  }
-  bake.smooth_angle = degrees * std::numbers::pi / 180.0;
+void readMeshKeys(const MapReader& reader, BakeOptions& bake) {
+  constexpr MeshSign kSigns[] = {MeshSign::kVote, MeshSign::kWinding, MeshSign::kFlood};
+  bake.mesh_sign = kSigns[reader.choice("sign")];
+  bake.shell_thickness = reader.value("shell");
+  bake.smooth_angle = reader.value("smooth") * std::numbers::pi / 180.0;
 }
 
 Box3 boxOf(const Mesh& mesh) {
@@ -165,37 +143,24 @@ Box3 boxOf(const Mesh& mesh) {
 }
 
 /// Whether edges of a mesh of flat faces stay sharp: unless a grid is asked for.
-bool readEdges(MapReader& reader) {
-  const bool asks_for_grid =
-      reader.optional("voxel") != nullptr || reader.optional("half_width") != nullptr ||
-      reader.optional("sampler") != nullptr || reader.optional("shell") != nullptr ||
-      reader.optional("smooth") != nullptr;
-  const std::string edges = reader.textOr("edges", asks_for_grid ? "rounded" : "sharp");
-  if (edges != "sharp" && edges != "rounded") {
-    throw reader.errorAt("edges", "scene.kind", "'edges' is `" + edges + "`",
-                         "write edges: sharp or edges: rounded");
-  }
-  return edges == "sharp";
+bool readEdges(const MapReader& reader) {
+  if (reader.has("edges")) return reader.choice("edges") == 0;
+  constexpr const char* kOfGrids[] = {"voxel", "half_width", "sampler", "shell", "smooth"};
+  return std::none_of(std::begin(kOfGrids), std::end(kOfGrids),
+                      [&](const char* key) { return reader.has(key); });
 }
 
 /// [rad] The angle at `sharp`; 0 if it is not there.
-double readSharp(MapReader& reader) {
-  if (reader.optional("sharp") == nullptr) return 0.0;
-  const double degrees = reader.requireNumber("sharp");
-  if (!(degrees > 0.0 && degrees <= 180.0)) {
-    throw reader.errorAt("sharp", "scene.range",
-                         "'sharp' must be more than 0 and at most 180 degrees");
-  }
-  for (const char* key : {"shell", "smooth"}) {
-    if (reader.optional(key) == nullptr) continue;
-    throw reader.errorAt("sharp", "scene.kind",
-                         std::string("'sharp' and '") + key + "' exclude one another",
+double readSharp(const MapReader& reader) {
+  for (const std::string& key : reader.words("sharp").excludes) {
+    if (!reader.has("sharp") || !reader.has(key)) continue;
+    throw reader.errorAt("sharp", "scene.kind", "'sharp' and '" + key + "' exclude one another",
                          "sharp edges are those of the triangles as they are");
   }
-  return degrees * std::numbers::pi / 180.0;
+  return reader.value("sharp") * std::numbers::pi / 180.0;
 }
 
-FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
+FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
   const std::string path = readExistingFile(reader, "file");
   const bool is_sharp = readEdges(reader);
   const double sharp_angle = readSharp(reader);
@@ -203,10 +168,11 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
   bake.max_memory = common->options.max_memory;
   bake.length_unit = reader.loader().lengthUnit();
   const std::string prescribed = prescribedUnit(path);
-  const double metres =
-      *metresPer(lengthUnitOr(reader, prescribed.empty() ? bake.length_unit : prescribed));
-  bake.voxel_size = readPositiveOrNone(reader, "voxel");
-  bake.half_width = readHalfWidth(reader, bake.half_width);
+  const double metres = *metresPer(reader.has("units")  ? reader.text("units")
+                                   : prescribed.empty() ? bake.length_unit
+                                                        : prescribed);
+  bake.voxel_size = reader.value("voxel");
+  bake.half_width = reader.value("half_width");
   readMeshKeys(reader, bake);
   const Space space = readSpace(reader);
   bake.metadata["source"] = path;
@@ -261,17 +227,11 @@ FieldSourcePtr meshField(const CommonPtr& common, MapReader& reader) {
       std::move(ways));
 }
 
-FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
+FieldSourcePtr gridFileField(const CommonPtr& common, const MapReader& reader) {
   const std::string path = readExistingFile(reader, "file");
-  const std::string name = reader.textOr("name", "");
-  const std::string unit = lengthUnitOr(reader, "");
-  const std::string grid_class = reader.textOr("class", "");
-  if (!grid_class.empty() && grid_class != "level_set") {
-    throw reader.errorAt(
-        "class", "scene.kind", "'class' is `" + grid_class + "`",
-        "write class: level_set for a grid of signed distances that does not say so");
-  }
-  const auto unknown = grid_class.empty() ? UnknownClass::kRefuse : UnknownClass::kLevelSet;
+  const std::string name = reader.text("name");
+  const std::string unit = reader.text("units");
+  const auto unknown = reader.has("class") ? UnknownClass::kLevelSet : UnknownClass::kRefuse;
   const Sampler sampler = readSampler(reader);
   CertifyOptions foreign;
   foreign.path = path;
@@ -288,13 +248,13 @@ FieldSourcePtr gridFileField(const CommonPtr& common, MapReader& reader) {
       {}, foreign);
 }
 
-FieldSourcePtr maskField(const CommonPtr& common, MapReader& reader) {
+FieldSourcePtr maskField(const CommonPtr& common, const MapReader& reader) {
   MaskOptions mask;
   mask.file = readExistingFile(reader, "file");
-  mask.name = reader.textOr("name", "");
-  mask.unit_if_missing = lengthUnitOr(reader, "");
-  if (reader.optional("above") != nullptr) mask.above = reader.requireNumber("above");
-  mask.voxel_size = readPositiveOrNone(reader, "voxel");
+  mask.name = reader.text("name");
+  mask.unit_if_missing = reader.text("units");
+  if (reader.has("above")) mask.above = reader.value("above");
+  mask.voxel_size = reader.value("voxel");
   BakeOptions bake;
   bake.max_memory = common->options.max_memory;
   bake.length_unit = reader.loader().lengthUnit();
@@ -321,10 +281,10 @@ struct LayerImage {
   SourcePlace place;
   Sampler sampler;
 
-  LayerImage(MapReader& reader, const std::string& layer, std::uint64_t max_memory)
-      : name(reader.requireText("image")),
+  LayerImage(const MapReader& reader, const std::string& layer, std::uint64_t max_memory)
+      : name(reader.text("image")),
         image(std::static_pointer_cast<SceneImage>(
-            reader.loader().image(name, reader.require("image").mark))),
+            reader.loader().image(name, reader.find("image")->mark))),
         place(reader.loader().document().place(reader.node().mark)),
         sampler(readSampler(reader)) {
     bake.max_memory = max_memory;
@@ -334,8 +294,8 @@ struct LayerImage {
   }
 };
 
-std::vector<int> readMatch(MapReader& reader, const SceneImage& image) {
-  const Node& list = reader.require("match");
+std::vector<int> readMatch(const MapReader& reader, const SceneImage& image) {
+  const Node& list = *reader.find("match");
   const Document& document = reader.loader().document();
   if (list.kind != Node::Kind::kSequence || list.items.empty()) {
     throw reader.errorAt("match", "scene.kind", "'match' must be a list of label names or values",
@@ -362,7 +322,7 @@ std::vector<int> readMatch(MapReader& reader, const SceneImage& image) {
   return values;
 }
 
-SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& reader,
+SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, const MapReader& reader,
                                         const std::string& layer) {
   const LayerImage from(reader, layer, common->options.max_memory);
   const std::vector<int> values = readMatch(reader, *from.image);
@@ -373,7 +333,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
     if (common->options.on_color) common->options.on_color(layer, color->second);
     break;
   }
-  const double voxel_size = readPositiveOrNone(reader, "voxel");
+  const double voxel_size = reader.value("voxel");
   std::string summary = values.size() == 1 ? "label" : "labels";
   for (const int value : values) summary += " " + std::to_string(value);
   summary += " of " + fileName(from.image->file->path());
@@ -391,26 +351,24 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, MapReader& read
           from.name, values};
 }
 
-SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& reader,
+SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, const MapReader& reader,
                                            const std::string& layer) {
   const LayerImage from(reader, layer, common->options.max_memory);
   ThresholdOptions threshold;
-  const bool is_below = reader.optional("below") != nullptr;
-  if (is_below && reader.optional("above") != nullptr) {
+  const bool is_below = reader.has("below");
+  if (is_below && reader.has("above")) {
     throw reader.errorAt("below", "scene.kind", "'threshold' has both 'above' and 'below'",
                          "a surface lies around what is greater, or around what is less");
   }
   const char* key = is_below ? "below" : "above";
-  const Node& level = reader.require(key);
-  (is_below ? threshold.below.emplace() : threshold.above) = reader.requireNumber(key);
-  const std::string keep = reader.textOr("keep", "largest");
-  if (keep != "largest" && keep != "all") {
-    throw reader.errorAt("keep", "scene.kind", "'keep' is `" + keep + "`",
-                         "write keep: largest or keep: all");
+  if (!reader.has(key)) {
+    throw reader.errorAt("", "scene.missing_key", "'threshold' has no 'above'", "add above: ...");
   }
-  threshold.largest_component = keep == "largest";
-  threshold.fill = reader.boolOr("fill", false);
-  threshold.voxel_size = readPositiveOrNone(reader, "voxel");
+  const Node& level = *reader.find(key);
+  (is_below ? threshold.below.emplace() : threshold.above) = reader.value(key);
+  threshold.largest_component = reader.choice("keep") == 0;
+  threshold.fill = reader.flag("fill");
+  threshold.voxel_size = reader.value("voxel");
   std::string summary = fileName(from.image->file->path()) + " " + key + " " + level.text;
   return {
       lazyField(
@@ -434,6 +392,7 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, MapReader& r
 }  // namespace
 
 void registerKinds(SceneRegistry& registry, const RegisterOptions& options) {
+  registry.vocabulary = vocabulary(*registry.vocabulary);
   auto notes = std::make_shared<Notes>(options.on_note);
   const auto common =
       std::make_shared<Common>(Common{options, notes, SceneImages(notes, options.on_image)});

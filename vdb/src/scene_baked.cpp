@@ -6,9 +6,10 @@
 
 #include "named_progress.h"
 #include "palpate/core/error.h"
+#include "palpate/scene/vocabulary.h"
+#include "palpate/vdb/bake.h"
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_memory.h"
-#include "palpate/vdb/hybrid.h"
 #include "scene_grid.h"
 
 namespace palpate::vdb {
@@ -16,23 +17,15 @@ namespace {
 
 constexpr double kVoxelsAlong = 128.0;
 
-Parts readParts(MapReader& reader) {
-  const std::string parts = reader.textOr("parts", "auto");
-  if (parts == "auto") return Parts::kAuto;
-  if (parts == "operands") return Parts::kOperands;
-  if (parts == "whole") return Parts::kWhole;
-  throw reader.errorAt("parts", "scene.kind", "'parts' is `" + parts + "`",
-                       "write parts: auto, parts: operands or parts: whole");
-}
-
-HybridOptions readOptions(MapReader& reader) {
+HybridOptions readOptions(const MapReader& reader) {
+  constexpr Parts kParts[] = {Parts::kAuto, Parts::kOperands, Parts::kWhole};
   HybridOptions options;
   options.bake.length_unit = reader.loader().lengthUnit();
-  options.bake.name = reader.textOr("name", "baked");
-  options.bake.voxel_size = readPositiveOrNone(reader, "voxel");
-  options.bake.half_width = readHalfWidth(reader, options.bake.half_width);
-  options.tolerance = readPositiveOrNone(reader, "tolerance");
-  options.parts = readParts(reader);
+  options.bake.name = reader.text("name");
+  options.bake.voxel_size = reader.value("voxel");
+  options.bake.half_width = reader.value("half_width");
+  options.tolerance = reader.value("tolerance");
+  options.parts = kParts[reader.choice("parts")];
   options.sampler = readSampler(reader);
   if (options.parts == Parts::kWhole && options.tolerance > 0.0) {
     throw reader.errorAt("tolerance", "scene.range",
@@ -67,14 +60,14 @@ void tell(const RegisterOptions& options, const std::string& what, const Hybrid&
 }
 
 /// The file that the grids are in; empty: they are made.
-std::string readFile(MapReader& reader) {
-  if (reader.optional("file") == nullptr) return {};
-  for (const char* key : {"voxel", "half_width", "parts", "tolerance"}) {
+std::string readFile(const MapReader& reader) {
+  if (!reader.has("file")) return {};
+  for (const std::string& key : reader.words("file").excludes) {
     if (!reader.has(key)) continue;
     throw reader.errorAt(
         key, "scene.range",
-        "'" + std::string(key) + "' is for grids that are made; those of a file are as they are",
-        "leave out " + std::string(key) + ", or leave out file");
+        "'" + key + "' is for grids that are made; those of a file are as they are",
+        "leave out " + key + ", or leave out file");
   }
   return readExistingFile(reader, "file");
 }
@@ -115,8 +108,8 @@ FieldPtr withSaved(const FieldPtr& field, const std::string& path, const HybridO
 
 }  // namespace
 
-FieldSourcePtr readBaked(MapReader& reader, const RegisterOptions& options) {
-  const FieldSourcePtr field = reader.loader().field(reader.require("field"));
+FieldSourcePtr readBaked(const MapReader& reader, const RegisterOptions& options) {
+  const FieldSourcePtr field = reader.loader().field(*reader.find("field"));
   HybridOptions asked = readOptions(reader);
   asked.bake.max_memory = options.max_memory;
   const std::string file = readFile(reader);

@@ -6,7 +6,7 @@
 namespace palpate::vdb {
 
 /// Reads one; its grids are made when the field is first asked for.
-[[nodiscard]] FieldSourcePtr readBaked(MapReader& reader, const RegisterOptions& options);
+[[nodiscard]] FieldSourcePtr readBaked(const MapReader& reader, const RegisterOptions& options);
 
 /// The scene's `grids`, for one layer. A field without end stays as it is, with a note.
 [[nodiscard]] FieldSourcePtr chooseGrids(const FieldSourcePtr& field,

@@ -7,33 +7,13 @@
 
 namespace palpate::vdb {
 
-Sampler readSampler(MapReader& reader) {
-  const std::string name = reader.textOr("sampler", "cubic");
-  if (name == "cubic") return Sampler::kCubic;
-  if (name == "trilinear") return Sampler::kTrilinear;
-  if (name == "accessor") return Sampler::kAccessor;
-  throw reader.errorAt("sampler", "scene.kind", "'sampler' is `" + name + "`",
-                       "write sampler: cubic, sampler: trilinear or sampler: accessor");
+Sampler readSampler(const MapReader& reader) {
+  constexpr Sampler kSamplers[] = {Sampler::kCubic, Sampler::kTrilinear, Sampler::kAccessor};
+  return kSamplers[reader.choice("sampler")];
 }
 
-double readPositiveOrNone(MapReader& reader, const char* key) {
-  const double length = reader.lengthOr(key, 0.0);
-  if (reader.has(key) && !(length > 0.0)) {
-    throw reader.errorAt(key, "scene.range", "'" + std::string(key) + "' must be more than 0");
-  }
-  return length;
-}
-
-double readHalfWidth(MapReader& reader, double fallback) {
-  const double half_width = reader.numberOr("half_width", fallback);
-  if (!(half_width >= 2.0)) {
-    throw reader.errorAt("half_width", "scene.range", "'half_width' must be 2 voxels or more");
-  }
-  return half_width;
-}
-
-std::string readExistingFile(MapReader& reader, std::string_view key) {
-  std::string path = reader.loader().resolvePath(reader.requireText(key));
+std::string readExistingFile(const MapReader& reader, std::string_view key) {
+  std::string path = reader.loader().resolvePath(reader.text(key));
   std::error_code failure;
   if (!std::filesystem::exists(path, failure)) {
     throw reader.errorAt(key, "scene.no_file", "there is no file " + path,

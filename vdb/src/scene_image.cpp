@@ -1,8 +1,5 @@
 #include "scene_image.h"
 
-#include <cmath>
-#include <limits>
-
 #include "voxel_box.h"
 
 namespace palpate::vdb {
@@ -52,28 +49,14 @@ Error atKey(const MapReader& reader, std::string_view key, const Error& error) {
 
 namespace {
 
-ImageOptions readImageOptions(MapReader& reader) {
+ImageOptions readImageOptions(const MapReader& reader) {
+  constexpr AffineChoice kAffines[] = {AffineChoice::kSform, AffineChoice::kQform,
+                                       AffineChoice::kSpacing};
   ImageOptions options;
-  const std::string affine = reader.textOr("affine", "");
-  if (affine == "sform") {
-    options.affine = AffineChoice::kSform;
-  } else if (affine == "qform") {
-    options.affine = AffineChoice::kQform;
-  } else if (affine == "spacing") {
-    options.affine = AffineChoice::kSpacing;
-  } else if (!affine.empty()) {
-    throw reader.errorAt("affine", "scene.kind", "'affine' is `" + affine + "`",
-                         "write affine: sform, affine: qform or affine: spacing");
-  }
+  if (reader.has("affine")) options.affine = kAffines[reader.choice("affine")];
   options.space = readSpace(reader);
-  const double frame = reader.numberOr("frame", 0.0);
-  if (reader.has("frame")) {
-    if (!(frame >= 0.0 && frame <= std::numeric_limits<int>::max()) || frame != std::floor(frame)) {
-      throw reader.errorAt("frame", "scene.range", "'frame' must be a whole number from 0");
-    }
-    options.frame = static_cast<int>(frame);
-  }
-  options.series = reader.textOr("series", "");
+  if (reader.has("frame")) options.frame = static_cast<int>(reader.value("frame"));
+  options.series = reader.text("series");
   return options;
 }
 
@@ -86,18 +69,14 @@ std::string keyOf(const std::string& path, const ImageOptions& options) {
 
 }  // namespace
 
-Space readSpace(MapReader& reader) {
-  const std::string space = reader.textOr("space", "");
-  if (space.empty()) return Space::kStated;
-  if (space == "RAS") return Space::kRas;
-  if (space == "LPS") return Space::kLps;
-  throw reader.errorAt("space", "scene.kind", "'space' is `" + space + "`",
-                       "write space: RAS or space: LPS");
+Space readSpace(const MapReader& reader) {
+  if (!reader.has("space")) return Space::kStated;
+  return reader.choice("space") == 0 ? Space::kRas : Space::kLps;
 }
 
-std::shared_ptr<SceneImage> SceneImages::read(MapReader& reader) {
+std::shared_ptr<SceneImage> SceneImages::read(const MapReader& reader) {
   auto made = std::make_shared<SceneImage>();
-  const std::string path = reader.loader().resolvePath(reader.requireText("file"));
+  const std::string path = reader.loader().resolvePath(reader.text("file"));
   const ImageOptions options = readImageOptions(reader);
   ImageRecord record{path, options, reader.has("names")};
   try {
@@ -117,8 +96,8 @@ std::shared_ptr<SceneImage> SceneImages::read(MapReader& reader) {
     made->file = std::make_shared<ImageFile>(path, options, notes_);
     known = made->file;
   }
-  if (const std::string names = reader.textOr("names", ""); !names.empty()) {
-    made->names_path = reader.loader().resolvePath(names);
+  if (reader.has("names")) {
+    made->names_path = reader.loader().resolvePath(reader.text("names"));
     try {
       made->labels = readLabelTable(made->names_path);
     } catch (const Error& error) {

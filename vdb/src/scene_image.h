@@ -67,7 +67,7 @@ class SceneImages {
  public:
   SceneImages(std::shared_ptr<Notes> notes, std::function<void(const ImageRecord&)> tell)
       : notes_(std::move(notes)), tell_(std::move(tell)) {}
-  [[nodiscard]] std::shared_ptr<SceneImage> read(MapReader& reader);
+  [[nodiscard]] std::shared_ptr<SceneImage> read(const MapReader& reader);
 
  private:
   std::shared_ptr<Notes> notes_;
@@ -77,7 +77,7 @@ class SceneImages {
 };
 
 /// `space:` RAS or LPS; not given: as the file says.
-[[nodiscard]] Space readSpace(MapReader& reader);
+[[nodiscard]] Space readSpace(const MapReader& reader);
 
 /// `error`, met while the file named by `key` was looked at, told at that key of the scene.
 [[nodiscard]] Error atKey(const MapReader& reader, std::string_view key, const Error& error);

@@ -38,8 +38,8 @@ std::string unitsOf(std::optional<Dimension> dimension) {
 }
 
 /// [SI unit] -1 if it is not given.
-double readTolerance(MapReader& reader, const ParameterKind& of) {
-  const Node* node = reader.optional("tolerance");
+double readTolerance(const MapReader& reader, const ParameterKind& of) {
+  const Node* node = reader.find("tolerance");
   if (node == nullptr) return -1.0;
   const auto value = quantityOf(reader.loader(), *node, of.dimension);
   if (!value || !(*value > 0.0)) {
@@ -50,8 +50,8 @@ double readTolerance(MapReader& reader, const ParameterKind& of) {
   return *value;
 }
 
-Transfer readTransfer(MapReader& reader, const ParameterKind& of) {
-  const Node& list = reader.require("transfer");
+Transfer readTransfer(const MapReader& reader, const ParameterKind& of) {
+  const Node& list = *reader.find("transfer");
   const Document& document = reader.loader().document();
   const std::string form = of.dimension ? "transfer: [[-100, 200 " : "transfer: [[-100, 0.2";
   const std::string unit =
@@ -108,7 +108,7 @@ void tell(const RegisterOptions& options, const ParameterKind& of, const Materia
 }
 
 template <typename Make>
-MaterialGridPtr madeAt(MapReader& reader, std::string_view key, const Make& make) {
+MaterialGridPtr madeAt(const MapReader& reader, std::string_view key, const Make& make) {
   try {
     return make();
   } catch (const Error& error) {
@@ -119,29 +119,27 @@ MaterialGridPtr madeAt(MapReader& reader, std::string_view key, const Make& make
 
 }  // namespace
 
-MaterialMapPtr readGridMap(MapReader& reader, const ParameterKind& of,
+MaterialMapPtr readGridMap(const MapReader& reader, const ParameterKind& of,
                            const RegisterOptions& options) {
-  MapReader inner(reader.loader(), reader.require("grid"), "'grid'");
+  const MapReader inner = reader.map("grid");
   const std::string path = readExistingFile(inner, "file");
   MaterialGridRequest request;
-  request.name = inner.textOr("name", "");
+  request.name = inner.text("name");
   request.dimension = of.dimension;
-  request.unit_if_missing = inner.textOr("unit", "");
-  request.length_unit_if_missing = inner.textOr("units", "");
+  request.unit_if_missing = inner.text("unit");
+  request.length_unit_if_missing = inner.text("units");
   request.tolerance = std::max(0.0, readTolerance(inner, of));
   request.max_memory = options.max_memory;
-  inner.finish();
-  reader.finish();
   const MaterialGridPtr grid =
       madeAt(inner, "file", [&] { return readMaterialGrid(path, request); });
   tell(options, of, *grid);
   return grid;
 }
 
-MaterialMapPtr readImageMap(MapReader& reader, const ParameterKind& of,
+MaterialMapPtr readImageMap(const MapReader& reader, const ParameterKind& of,
                             const RegisterOptions& options) {
   const auto image = std::static_pointer_cast<SceneImage>(
-      reader.loader().image(reader.requireText("image"), reader.require("image").mark));
+      reader.loader().image(reader.text("image"), reader.find("image")->mark));
   const Transfer transfer = readTransfer(reader, of);
   double tolerance = readTolerance(reader, of);
   if (tolerance < 0.0) {
@@ -150,7 +148,6 @@ MaterialMapPtr readImageMap(MapReader& reader, const ParameterKind& of,
                             [](const auto& a, const auto& b) { return a.second < b.second; });
     tolerance = kDefaultTolerance * (high->second - low->second);
   }
-  reader.finish();
   const MaterialGridPtr grid = madeAt(reader, "image", [&] {
     return materialFromImage(image->file->image(), transfer, tolerance, options.max_memory);
   });

@@ -6,11 +6,11 @@
 namespace palpate::vdb {
 
 /// `{grid: {file, name, unit, units, tolerance}}`.
-[[nodiscard]] MaterialMapPtr readGridMap(MapReader& reader, const ParameterKind& of,
+[[nodiscard]] MaterialMapPtr readGridMap(const MapReader& reader, const ParameterKind& of,
                                          const RegisterOptions& options);
 
 /// `{image: NAME, transfer: [[value, quantity], ...], tolerance}`.
-[[nodiscard]] MaterialMapPtr readImageMap(MapReader& reader, const ParameterKind& of,
+[[nodiscard]] MaterialMapPtr readImageMap(const MapReader& reader, const ParameterKind& of,
                                           const RegisterOptions& options);
 
 }  // namespace palpate::vdb

@@ -1,10 +1,9 @@
-#include "palpate/fields/blend.h"
-
 #include <algorithm>
 #include <utility>
 
 #include "fields/checks.h"
 #include "fields/level_bounds.h"
+#include "palpate/fields/csg.h"
 
 namespace palpate {
 namespace {

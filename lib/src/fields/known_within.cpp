@@ -1,10 +1,9 @@
-#include "palpate/fields/known_within.h"
-
 #include <glm/common.hpp>
 #include <utility>
 
 #include "fields/checks.h"
 #include "palpate/core/error.h"
+#include "palpate/fields/csg.h"
 
 namespace palpate {
 namespace {

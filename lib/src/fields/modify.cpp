@@ -1,5 +1,3 @@
-#include "palpate/fields/modify.h"
-
 #include <algorithm>
 #include <functional>
 #include <unordered_map>
@@ -10,7 +8,6 @@
 #include "fields/level_bounds.h"
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
-#include "palpate/fields/transform.h"
 
 namespace palpate {
 namespace {

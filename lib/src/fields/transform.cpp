@@ -1,5 +1,3 @@
-#include "palpate/fields/transform.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,7 @@
 
 #include "fields/checks.h"
 #include "palpate/core/error.h"
+#include "palpate/fields/csg.h"
 
 namespace palpate {
 namespace {

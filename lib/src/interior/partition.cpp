@@ -7,7 +7,7 @@
 #include <string>
 
 #include "palpate/core/error.h"
-#include "palpate/fields/transform.h"
+#include "palpate/fields/csg.h"
 
 namespace palpate {
 namespace {

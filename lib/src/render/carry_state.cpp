@@ -1,10 +1,12 @@
-#include "palpate/render/carry_state.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
+
+#include "palpate/interior/partition.h"
+#include "palpate/render/haptic_renderer.h"
+#include "palpate/render/tick_state.h"
 
 namespace palpate {
 namespace {
@@ -67,9 +69,11 @@ Punctures carried(const Punctures& punctures, const Scene& from, const Scene& to
 
 }  // namespace
 
-CarriedState carryState(const RendererState& state, RendererKind kind, const Scene& from,
+CarriedState carryState(const RendererState& sealed, RendererKind kind, const Scene& from,
                         const Scene& to) {
+  const TickState state = TickState::of(sealed);
   CarriedState out;
+  TickState after;
   const std::string& name = from.regions()[state.place.region].name;
   const auto region = placeOf(to.regions(), name);
   const PassedPorts passed = carried(state.place.passed, from, to, out.lost);
@@ -77,40 +81,42 @@ CarriedState carryState(const RendererState& state, RendererKind kind, const Sce
   const bool is_there =
       region && (kind == RendererKind::kPaper || to.regionAt(state.place.point) == *region);
   out.goes_on = state.has_begun && is_there;
-  out.state.guard = state.guard;
-  out.state.source.work = state.source.work;
+  after.guard = state.guard;
+  after.source.work = state.source.work;
   if (!out.goes_on) {
     if (!region) out.lost.push_back("region " + inQuotes(name));
     if (state.has_begun && region && !is_there)
       out.lost.push_back("the probe's place in region " + inQuotes(name));
-    out.state.guard.reset();
-    out.state.last.region = to.startRegion();
+    after.guard.reset();
+    after.last.region = to.startRegion();
+    out.state = after.sealed();
     return out;
   }
   const auto there = static_cast<RegionId>(*region);
-  out.state.has_begun = true;
-  out.state.hip = state.hip;
-  out.state.last = state.last;
-  out.state.last.region = there;
-  out.state.last.event_count = 0;
-  PlaceState& place = out.state.place;
+  after.has_begun = true;
+  after.hip = state.hip;
+  after.last = state.last;
+  after.last.region = there;
+  after.last.event_count = 0;
+  PlaceState& place = after.place;
   place.point = state.place.point;
   place.region = there;
   place.sides = Signs(to.partition().leaves().size());
   to.partition().signsAt(place.point, place.sides);
   place.passed = passed;
   place.punctures = punctures;
-  out.state.friction = state.friction;
-  out.state.fade.region = there;
-  out.state.pressed = materialThere(state.pressed, from, to);
+  after.friction = state.friction;
+  after.fade.region = there;
+  after.pressed = materialThere(state.pressed, from, to);
   const RelaxationState& relaxed = state.relaxation;
   const auto pressed_from = placeOf(to.regions(), from.regions()[relaxed.region].name);
   const int wall = materialThere(relaxed.material, from, to);
   if (pressed_from && wall >= 0) {
-    out.state.relaxation = relaxed;
-    out.state.relaxation.region = static_cast<RegionId>(*pressed_from);
-    out.state.relaxation.material = wall;
+    after.relaxation = relaxed;
+    after.relaxation.region = static_cast<RegionId>(*pressed_from);
+    after.relaxation.material = wall;
   }
+  out.state = after.sealed();
   return out;
 }
 

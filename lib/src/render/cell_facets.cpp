@@ -5,6 +5,8 @@
 #include <functional>
 
 #include "cell_walker.h"
+#include "palpate/interior/partition.h"
+#include "palpate/interior/port_machine.h"
 
 namespace palpate {
 void CellWalker::gather(LeafId leaf) noexcept {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "palpate/contact/sweep.h"
+#include "palpate/interior/partition.h"
 #include "solver_limits.h"
 
 namespace palpate {

@@ -11,7 +11,7 @@
 #include "palpate/contact/sweep.h"
 #include "palpate/interior/near_cells.h"
 #include "palpate/interior/port_machine.h"
-#include "palpate/render/renderer_state.h"
+#include "palpate/render/tick_state.h"
 #include "palpate/scene/scene.h"
 #include "solver_limits.h"
 

@@ -4,12 +4,12 @@
 
 #include "cell_walker.h"
 #include "feel.h"
-#include "palpate/render/haptic_renderer.h"
 #include "proxy_solver.h"
+#include "renderer_base.h"
 
 namespace palpate {
 
-class ConstraintRenderer final : public HapticRenderer, private WallOpener {
+class ConstraintRenderer final : public RendererBase, private WallOpener {
  public:
   ConstraintRenderer(ScenePtr scene, const RendererSettings& settings);
 

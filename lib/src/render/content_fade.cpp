@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "palpate/interior/partition.h"
+
 namespace palpate {
 namespace {
 

@@ -39,6 +39,10 @@ bool Contents::change(RegionId region, const ContentChange& change) noexcept {
   return true;
 }
 
+bool canChangeContent(const Scene& scene, RegionId region, const ContentChange& change) {
+  return Contents(scene).change(region, change);
+}
+
 void Contents::look(Region& region) noexcept {
   const Material* material = region.material;
   const auto most = [](const std::optional<double>& changed, const Parameter& parameter) {

@@ -4,7 +4,7 @@
 #include "content_fade.h"
 #include "felt_walls.h"
 #include "palpate/render/contents.h"
-#include "palpate/render/renderer_state.h"
+#include "palpate/render/tick_state.h"
 #include "proxy_solver.h"
 
 namespace palpate {
@@ -12,7 +12,7 @@ namespace palpate {
 /// Belongs to one renderer, whose state and walker outlive it. Real-time safe but for the constructor.
 class Feel {
  public:
-  Feel(const Scene& scene, CellWalker& walker, RendererState& state)
+  Feel(const Scene& scene, CellWalker& walker, TickState& state)
       : scene_(scene), walker_(walker), state_(state), walls_(scene, walker), fade_(scene) {}
 
   /// The force [N] of the walls that hold the proxy.
@@ -62,7 +62,7 @@ class Feel {
 
   const Scene& scene_;
   CellWalker& walker_;
-  RendererState& state_;
+  TickState& state_;
   FeltWalls walls_;
   ContentFade fade_;
 };

@@ -2,6 +2,8 @@
 
 #include "convex_leaf.h"
 #include "felt_walls.h"
+#include "palpate/interior/partition.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/render/contrast.h"
 
 // Which walls of a scene feel the same, found when a renderer is made.

@@ -9,7 +9,7 @@
 #include "near_walls.h"
 #include "palpate/contact/felt_height.h"
 #include "palpate/contact/series.h"
-#include "palpate/render/renderer_state.h"
+#include "palpate/render/tick_state.h"
 #include "proxy_solver.h"
 #include "seams.h"
 

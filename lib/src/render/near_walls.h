@@ -9,6 +9,7 @@
 
 #include "cell_walker.h"
 #include "palpate/interior/near_cells.h"
+#include "palpate/interior/port_machine.h"
 #include "solver_limits.h"
 
 namespace palpate {

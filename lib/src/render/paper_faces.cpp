@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "palpate/fields/csg.h"
-#include "palpate/fields/transform.h"
 
 namespace palpate {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "palpate/interior/partition.h"
+#include "palpate/interior/port_machine.h"
 #include "paper_renderer.h"
 
 namespace palpate {

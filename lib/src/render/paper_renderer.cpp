@@ -3,9 +3,13 @@
 #include <algorithm>
 
 #include "palpate/core/error.h"
+#include "palpate/interior/partition.h"
+#include "palpate/interior/port_machine.h"
 
 namespace palpate {
 namespace {
+
+static_assert(PaperSurface{}.max_halvings == PaperParameters::kMaxHalvings);
 
 /// [m] So near to the surface the contact point counts as on it, unless told otherwise.
 double epsilonOf(const Field& field) { return std::min(1e-6, 1e-4 * field.featureSize()); }
@@ -44,7 +48,7 @@ bool isOn(const Port& port, const PaperFace& face) {
 }  // namespace
 
 PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
-    : HapticRenderer(std::move(scene), settings.limits),
+    : RendererBase(std::move(scene), settings.limits),
       parameters_(settings.paper.over(scene_->paper())),
       now_(scene_->partition().leaves().size()),
       cell_(now_),

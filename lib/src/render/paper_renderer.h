@@ -18,12 +18,12 @@
 #include <vector>
 
 #include "palpate/contact/paper_contact.h"
-#include "palpate/render/haptic_renderer.h"
 #include "paper_faces.h"
+#include "renderer_base.h"
 
 namespace palpate {
 
-class PaperRenderer final : public HapticRenderer {
+class PaperRenderer final : public RendererBase {
  public:
   /// @throws Error (kInput) for ports with an opening force and for sheets, which the paper does not have.
   PaperRenderer(ScenePtr scene, const RendererSettings& settings);

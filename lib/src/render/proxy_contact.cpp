@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "palpate/interior/port_machine.h"
 #include "proxy_solver.h"
 #include "solver_limits.h"
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <random>
 
+#include "palpate/interior/port_machine.h"
+
 namespace palpate {
 namespace {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "palpate/interior/partition.h"
+
 namespace palpate {
 namespace {
 

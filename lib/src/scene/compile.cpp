@@ -61,7 +61,9 @@ ScenePtr SceneCompiler::build() {
   lookAround();
   std::vector<Wall> walls = makeWalls();
   std::vector<Port> ports = makePorts();
-  scene_->passages_ = Passages(count(), std::move(walls), std::move(ports), makeSheets());
+  scene_->passages_ =
+      std::make_unique<const Passages>(count(), std::move(walls), std::move(ports), makeSheets());
+  scene_->ports_ = scene_->passages_->ports();
   scene_->start_ = start();
   scene_->touch_ = survey_.touch;
   scene_->keep_memory_ = description_.keep_memory;

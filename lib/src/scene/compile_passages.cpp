@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "palpate/interior/partition.h"
 #include "scene_compiler.h"
 
 namespace palpate {
@@ -36,10 +37,10 @@ int SceneCompiler::sheetNamed(const PortDescription& asker) {
 }
 
 std::vector<LeafId> SceneCompiler::facetLeaves(const PortDescription& given, const Port& port) {
-  std::vector<LeafId> leaves = scene_->partition_.leavesOf(made(given.on).get());
+  std::vector<LeafId> leaves = scene_->partition().leavesOf(made(given.on).get());
   const auto bounds = [&](const std::vector<RegionId>& sides) {
     return std::any_of(sides.begin(), sides.end(), [&](RegionId region) {
-      const auto own = scene_->partition_.leavesOfRegion(region);
+      const auto own = scene_->partition().leavesOfRegion(region);
       return std::any_of(leaves.begin(), leaves.end(), [&](LeafId leaf) {
         return std::find(own.begin(), own.end(), leaf) != own.end();
       });
@@ -123,7 +124,7 @@ std::vector<Sheet> SceneCompiler::makeSheets() {
     const SheetDescription& given = description_.sheets[i];
     Sheet sheet;
     sheet.name = given.name;
-    sheet.leaves = scene_->partition_.leavesOf(made(given.on).get());
+    sheet.leaves = scene_->partition().leavesOf(made(given.on).get());
     sheet.solid = sheet_solid_of_[i];
     sheet.mask = sheet_mask_of_[i];
     sheet.material = wall({false, given.material}, given.place).material;
@@ -148,7 +149,7 @@ void SceneCompiler::requireTouching(const PortDescription& given, const Port& po
   if (!patient_) {
     // Small contacts escape the quick look; before calling the author wrong, look hard, once.
     patient_ = true;
-    survey_ = survey(scene_->partition_, boxes_, kPatientSurveyLines);
+    survey_ = survey(scene_->partition(), boxes_, kPatientSurveyLines);
     if (touching()) return;
   }
   // They may touch where nothing of them was made.

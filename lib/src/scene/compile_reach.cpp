@@ -4,6 +4,7 @@
 #include <random>
 #include <span>
 
+#include "palpate/interior/partition.h"
 #include "palpate/scene/transitions.h"
 #include "reach.h"
 #include "scene_compiler.h"
@@ -64,7 +65,7 @@ class Shots {
 
 void SceneCompiler::lookAround() {
   boxes_ = surveyBoxes(layers_, needed_);
-  survey_ = survey(scene_->partition_, boxes_, kSurveyLines);
+  survey_ = survey(scene_->partition(), boxes_, kSurveyLines);
 }
 
 RegionId SceneCompiler::start() {
@@ -125,7 +126,7 @@ std::set<std::pair<RegionId, RegionId>> SceneCompiler::findPort(PortId id) const
   if (!box.isBounded()) box = box.intersectedWith(boxes_.front());
   std::set<std::pair<RegionId, RegionId>> found;
   if (box.isEmpty() || !box.isBounded()) return found;
-  const Partition& partition = scene_->partition_;
+  const Partition& partition = scene_->partition();
   Shots shots(box.grownBy(0.02 * glm::length(box.size())));
   Signs here(partition.leaves().size());
   Signs there = here;

@@ -1,12 +1,12 @@
 #pragma once
 /// The scene's `device`: how a device's space lies in the world.
 
-#include "palpate/scene/device_mapping.h"
+#include "palpate/scene/description.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate {
 
 /// @throws Error (kInput) at the offending place.
-[[nodiscard]] DeviceMapping readDevice(const SceneLoader& loader, const Node& node);
+[[nodiscard]] DeviceMapping readDevice(const MapReader& reader);
 
 }  // namespace palpate

@@ -1,10 +1,9 @@
-#include "palpate/scene/document.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 
+#include "palpate/scene/scene_file.h"
 #include "scene/source_text.h"
 
 namespace palpate {

@@ -4,14 +4,10 @@
 #include <functional>
 #include <utility>
 
-#include "palpate/fields/blend.h"
 #include "palpate/fields/csg.h"
-#include "palpate/fields/modify.h"
-#include "palpate/fields/transform.h"
 #include "scene/field_at_place.h"
 #include "scene/field_reader.h"
 #include "scene/messages.h"
-#include "scene/shape_reader.h"
 #include "scene/values.h"
 
 namespace palpate {
@@ -47,7 +43,8 @@ FieldSourcePtr deferred(std::vector<FieldSourcePtr> operands, Asks asks, SourceP
 
 }  // namespace
 
-FieldReader::Built FieldReader::buildOperation(const Node::Entry& kind) {
+FieldReader::Built FieldReader::buildOperation(const Node::Entry& kind,
+                                               const std::string& declared) {
   if (kind.key == "union") return combine(kind, kind.value, unite);
   if (kind.key == "intersection") return combine(kind, kind.value, intersect);
   if (kind.key == "difference") return combine(kind, kind.value, subtract);
@@ -59,15 +56,13 @@ FieldReader::Built FieldReader::buildOperation(const Node::Entry& kind) {
         deferred({built.source}, Asks::kThere, loader_.document().place(kind.key_mark), invert);
     return built;
   }
-  if (kind.key == "transform") return buildTransform(kind);
-
-  MapReader reader(loader_, kind.value, inQuotes(kind.key));
+  const MapReader reader(loader_, kind.value, inQuotes(kind.key), declared);
+  if (kind.key == "transform") return buildTransform(kind, reader);
   if (kind.key == "shell") {
-    const Node& field = reader.require("field");
-    const double thickness = positiveLength(reader, "thickness");
-    reader.finish();
+    const double thickness = reader.value("thickness");
     // Its outer faces are those of the field itself, so they keep their names.
-    Built built = modify(kind, field, [=](FieldPtr f) { return shell(std::move(f), thickness); });
+    Built built = modify(kind, *reader.find("field"),
+                         [=](FieldPtr f) { return shell(std::move(f), thickness); });
     built.leaves = std::min(2 * built.leaves, kMostLeaves + 1);
     return built;
   }
@@ -79,30 +74,22 @@ FieldReader::Built FieldReader::buildOperation(const Node::Entry& kind) {
   return built;
 }
 
-FieldReader::Built FieldReader::buildBlend(const Node::Entry& kind, MapReader& reader) {
+FieldReader::Built FieldReader::buildBlend(const Node::Entry& kind, const MapReader& reader) {
   if (kind.key == "scale") {
-    const Node& field = reader.require("field");
-    const double factor = reader.requireNumber("factor");
-    reader.finish();
-    if (!(factor > 0.0)) {
-      throw reader.errorAt("factor", "scene.range", "'factor' must be more than 0",
-                           "2 doubles the size; what mirrors is not a solid to feel");
-    }
-    return modify(kind, field, [=](FieldPtr f) { return scale(std::move(f), factor); });
+    const double factor = reader.value("factor");
+    return modify(kind, *reader.find("field"),
+                  [=](FieldPtr f) { return scale(std::move(f), factor); });
   }
   if (kind.key == "offset") {
-    const Node& field = reader.require("field");
-    const double distance = reader.requireLength("distance");
-    reader.finish();
-    return modify(kind, field, [=](FieldPtr f) { return offset(std::move(f), distance); });
+    const double distance = reader.value("distance");
+    return modify(kind, *reader.find("field"),
+                  [=](FieldPtr f) { return offset(std::move(f), distance); });
   }
-  const Node& fields = reader.require("fields");
-  const double radius = positiveLength(reader, "radius");
-  reader.finish();
   const auto blended = [&](FieldPtr (*blend)(std::vector<FieldPtr>, double)) {
-    return combine(kind, fields, [=](std::vector<FieldPtr> operands) {
-      return blend(std::move(operands), radius);
-    });
+    return combine(kind, *reader.find("fields"),
+                   [blend, radius = reader.value("radius")](std::vector<FieldPtr> operands) {
+                     return blend(std::move(operands), radius);
+                   });
   };
   if (kind.key == "smooth_union") return blended(smoothUnite);
   if (kind.key == "smooth_intersection") return blended(smoothIntersect);
@@ -136,20 +123,15 @@ FieldReader::Built FieldReader::modify(const Node::Entry& kind, const Node& oper
   return built;
 }
 
-FieldReader::Built FieldReader::buildTransform(const Node::Entry& kind) {
-  MapReader reader(loader_, kind.value, "'transform'");
-  const Node& field = reader.require("field");
-  Pose pose;
-  const Node* rotate = reader.optional("rotate");
-  if (rotate != nullptr) pose.rotation = readRotation(loader_, *rotate);
-  const bool translates = reader.optional("translate") != nullptr;
-  if (translates) pose.translation = reader.requirePoint("translate");
-  reader.finish();
-  if (rotate == nullptr && !translates) {
+FieldReader::Built FieldReader::buildTransform(const Node::Entry& kind, const MapReader& reader) {
+  if (!reader.has("rotate") && !reader.has("translate")) {
     throw loader_.document().error(kind.key_mark, "scene.missing_key", "'transform' moves nothing",
                                    "add translate, rotate or both");
   }
-  return modify(kind, field, [=](FieldPtr f) { return place(std::move(f), pose); });
+  Pose pose;
+  if (reader.has("rotate")) pose.rotation = readRotation(reader.map("rotate"));
+  pose.translation = reader.point("translate");
+  return modify(kind, *reader.find("field"), [=](FieldPtr f) { return place(std::move(f), pose); });
 }
 
 }  // namespace palpate

@@ -10,35 +10,25 @@
 #include "scene/values.h"
 
 namespace palpate {
-namespace {
-
-// Kinds that are made from other fields; the rest are shapeKinds().
-constexpr std::string_view kOperations[] = {
-    "union",        "intersection",        "difference",        "complement", "transform",
-    "smooth_union", "smooth_intersection", "smooth_difference", "scale",      "offset",
-    "shell"};
-// Kinds of palpate::vdb: a scene that asks for them is right, only this program cannot read it.
-constexpr std::string_view kKindsOfGrids[] = {"mesh", "grid", "mask", "baked"};
-
-std::vector<std::string_view> builtInKinds() {
-  const std::span<const std::string_view> shapes = shapeKinds();
-  std::vector<std::string_view> kinds(shapes.begin(), shapes.end());
-  kinds.insert(kinds.end(), std::begin(kOperations), std::end(kOperations));
-  return kinds;
-}
-
-template <typename Names>
-bool isOneOf(std::string_view name, const Names& names) {
-  return std::find(std::begin(names), std::end(names), name) != std::end(names);
-}
-
-}  // namespace
-
 std::vector<std::string_view> FieldReader::names() const { return {order_.begin(), order_.end()}; }
+
+std::vector<std::string_view> FieldReader::kinds() const {
+  std::vector<std::string_view> all;
+  for (const KeyWords& kind : loader_.vocabulary().find("field_kind")->keys) {
+    all.push_back(kind.name);
+  }
+  for (const auto& [name, reader] : registry_.fields) {
+    if (wordsOf(name) == nullptr) all.push_back(name);
+  }
+  return all;
+}
+
+const KeyWords* FieldReader::wordsOf(const std::string& kind) const {
+  return loader_.vocabulary().find("field_kind")->find(kind);
+}
 
 void FieldReader::define(const Node& fields) {
   const Document& document = loader_.document();
-  requireMap(document, fields, "'fields'");
   for (const Node::Entry& entry : fields.entries) {
     refuseEmpty(document, entry);
     named_[entry.key].entry = &entry;
@@ -131,7 +121,7 @@ FieldReader::Built FieldReader::build(const Node& node) {
   if (node.kind == Node::Kind::kMap) {
     if (node.entries.empty()) {
       throw document.error(node.mark, "scene.empty", "this field is empty",
-                           "write one kind: " + listed(builtInKinds()));
+                           "write one kind: " + listed(kinds()));
     }
     if (node.entries.size() > 1) {
       throw document.error(node.entries[1].key_mark, "scene.kind",
@@ -162,31 +152,35 @@ FieldReader::Built FieldReader::build(const Node& node) {
 }
 
 FieldReader::Built FieldReader::buildKind(const Node::Entry& kind) {
-  if (isOneOf(kind.key, kOperations)) return buildOperation(kind);
-  if (isOneOf(kind.key, shapeKinds())) {
-    MapReader reader(loader_, kind.value, inQuotes(kind.key));
-    const auto make = readShape(kind.key, reader);
-    return {std::make_shared<FieldSource>(madeAt(loader_.document().place(kind.key_mark), make))};
+  const KeyWords* words = wordsOf(kind.key);
+  const bool is_ours = words != nullptr && words->form != KeyWords::Form::kAny &&
+                       !registry_.fields.contains(kind.key);
+  if (!is_ours) return buildRegistered(kind);
+  if (words->form == KeyWords::Form::kMap) {
+    const MapReader reader(loader_, kind.value, inQuotes(kind.key), words->type);
+    if (const auto make = readShape(kind.key, reader)) {
+      return {std::make_shared<FieldSource>(madeAt(loader_.document().place(kind.key_mark), make))};
+    }
   }
-  return buildRegistered(kind);
+  return buildOperation(kind, words->type);
 }
 
 FieldReader::Built FieldReader::buildRegistered(const Node::Entry& kind) {
   const Document& document = loader_.document();
+  const KeyWords* words = wordsOf(kind.key);
   const auto found = registry_.fields.find(kind.key);
   if (found == registry_.fields.end()) {
-    if (isOneOf(kind.key, kKindsOfGrids)) {
+    if (words != nullptr) {
       throw document.error(kind.key_mark, "scene.no_reader",
                            "this program reads no " + inQuotes(kind.key) + " fields",
                            "palpate::vdb reads them, and is not part of this program");
     }
-    std::vector<std::string_view> kinds = builtInKinds();
-    for (const auto& [name, reader] : registry_.fields) kinds.push_back(name);
     throw document.error(kind.key_mark, "scene.unknown_kind",
                          "there is no kind of field " + inQuotes(kind.key),
-                         suggestOrList(kind.key, kinds, "kinds: "));
+                         suggestOrList(kind.key, kinds(), "kinds: "));
   }
-  MapReader reader(loader_, kind.value, inQuotes(kind.key));
+  MapReader reader(loader_, kind.value, inQuotes(kind.key),
+                   words == nullptr ? std::string_view() : words->type);
   // It may be made of fields, which come here through read(), and whose faces may be new ones then.
   const Node::Entry* const around = blend_;
   if (blend_ == nullptr) blend_ = &kind;

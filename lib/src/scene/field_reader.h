@@ -55,15 +55,17 @@ class FieldReader {
   [[nodiscard]] Built build(const Node& node);
   [[nodiscard]] const Built& buildNamed(const std::string& name, Mark mark);
   [[nodiscard]] Built buildKind(const Node::Entry& kind);
-  [[nodiscard]] Built buildOperation(const Node::Entry& kind);
-  [[nodiscard]] Built buildBlend(const Node::Entry& kind, MapReader& reader);
-  [[nodiscard]] Built buildTransform(const Node::Entry& kind);
+  [[nodiscard]] Built buildOperation(const Node::Entry& kind, const std::string& declared);
+  [[nodiscard]] Built buildBlend(const Node::Entry& kind, const MapReader& reader);
+  [[nodiscard]] Built buildTransform(const Node::Entry& kind, const MapReader& reader);
   [[nodiscard]] Built buildRegistered(const Node::Entry& kind);
+  [[nodiscard]] const KeyWords* wordsOf(const std::string& kind) const;
   [[nodiscard]] Built combine(const Node::Entry& kind, const Node& operands, Combine operation);
   [[nodiscard]] Built modify(const Node::Entry& kind, const Node& operand,
                              const std::function<FieldPtr(FieldPtr)>& operation);
   void hide(const std::string& name, const Node::Entry& blend);
   [[nodiscard]] std::vector<std::string_view> names() const;
+  [[nodiscard]] std::vector<std::string_view> kinds() const;
 
   const SceneLoader& loader_;
   const SceneRegistry& registry_;

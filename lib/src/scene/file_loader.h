@@ -17,6 +17,7 @@ class FileLoader final : public SceneLoader {
       : document_(document), registry_(registry), fields_(*this, registry) {}
 
   [[nodiscard]] const Document& document() const noexcept override { return document_; }
+  [[nodiscard]] const Vocabulary& vocabulary() const override { return *registry_.vocabulary; }
   [[nodiscard]] double metresPerUnit() const noexcept override { return metres_per_unit_; }
   [[nodiscard]] std::string lengthUnit() const override { return length_unit_; }
   [[nodiscard]] std::string resolvePath(const std::string& path) const override;

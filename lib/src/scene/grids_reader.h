@@ -7,7 +7,6 @@ namespace palpate {
 
 /// Puts what the registry chooses in the place of the layers' fields. Layers, ports and sheets are known already.
 /// @throws Error (kInput) at the offending place.
-void readGrids(const SceneLoader& loader, const SceneRegistry& registry, const Node& node,
-               SceneDescription& scene);
+void readGrids(const MapReader& reader, const SceneRegistry& registry, SceneDescription& scene);
 
 }  // namespace palpate

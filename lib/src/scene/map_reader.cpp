@@ -10,6 +10,69 @@ MapReader::MapReader(const SceneLoader& loader, const Node& map, std::string wha
   requireMap(loader.document(), map, what_);
 }
 
+MapReader::MapReader(const SceneLoader& loader, const Node& map, std::string what,
+                     std::string_view declared)
+    : MapReader(loader, map, std::move(what)) {
+  const MapWords* words = loader.vocabulary().find(declared);
+  if (words == nullptr || words->keys.empty()) return;
+  words_ = words;
+  for (const KeyWords& key : words->keys) known_.push_back(key.name);
+  for (const KeyWords& key : words->keys) {
+    const Node* value = key.is_required ? &require(key.name) : optional(key.name);
+    if (value != nullptr) checkValue(loader, *value, key);
+  }
+  finish();
+}
+
+const KeyWords& MapReader::words(std::string_view key) const {
+  const KeyWords* words = words_ == nullptr ? nullptr : words_->find(key);
+  if (words != nullptr) return *words;
+  throw Error(ErrorKind::kOperation, {"scene.undeclared", what_ + " declares no " + inQuotes(key)});
+}
+
+double MapReader::value(std::string_view key) const {
+  const KeyWords& words = this->words(key);
+  if (const Node* node = find(key)) return readValue(*loader_, *node, words);
+  if (!words.has_default) return 0.0;
+  return words.form == KeyWords::Form::kQuantity
+             ? parseQuantity(words.fallback, *words.dimension).si
+             : *parseNumber(words.fallback);
+}
+
+std::string MapReader::text(std::string_view key) const {
+  const KeyWords& words = this->words(key);
+  const Node* node = find(key);
+  return node != nullptr ? node->text : words.has_default ? words.fallback : std::string();
+}
+
+int MapReader::choice(std::string_view key) const {
+  const std::vector<std::string>& choices = words(key).choices;
+  const auto at = std::find(choices.begin(), choices.end(), text(key));
+  return at == choices.end() ? -1 : static_cast<int>(at - choices.begin());
+}
+
+bool MapReader::flag(std::string_view key) const { return text(key) == "true"; }
+
+Vec3 MapReader::point(std::string_view key) const {
+  const KeyWords& words = this->words(key);
+  const Node* node = find(key);
+  return node == nullptr ? Vec3(0.0) : readVector(*loader_, *node, words);
+}
+
+MapReader MapReader::map(std::string_view key) const {
+  const KeyWords& words = this->words(key);
+  return {*loader_, *find(key), words.called.empty() ? inQuotes(key) : words.called, words.type};
+}
+
+std::vector<MapReader> MapReader::maps(std::string_view key) const {
+  const std::string& type = words(key).type;
+  std::vector<MapReader> all;
+  for (const Node& item : find(key)->items) {
+    all.emplace_back(*loader_, item, loader_->vocabulary().find(type)->called, type);
+  }
+  return all;
+}
+
 bool MapReader::has(std::string_view key) const noexcept { return map_->find(key) != nullptr; }
 
 const Node* MapReader::optional(std::string_view key) {
@@ -89,36 +152,15 @@ double MapReader::requireLength(std::string_view key) {
   return readLength(*loader_, require(key), inQuotes(key));
 }
 
+Vec3 MapReader::requirePoint(std::string_view key) {
+  KeyWords point{std::string(key)};
+  point.form = KeyWords::Form::kPoint;
+  return readVector(*loader_, require(key), point);
+}
+
 double MapReader::lengthOr(std::string_view key, double fallback_metres) {
   const Node* node = optional(key);
   return node == nullptr ? fallback_metres : readLength(*loader_, *node, inQuotes(key));
-}
-
-Vec3 MapReader::requirePoint(std::string_view key) {
-  const auto& items = readList(loader_->document(), require(key), inQuotes(key), 3, 3);
-  const std::string what = "a coordinate of " + inQuotes(key);
-  return {readLength(*loader_, items[0], what), readLength(*loader_, items[1], what),
-          readLength(*loader_, items[2], what)};
-}
-
-Vec3 MapReader::requireDirection(std::string_view key) {
-  const Document& document = loader_->document();
-  const Node& node = require(key);
-  const auto& items = readList(document, node, inQuotes(key), 3, 3);
-  const std::string what = "a component of " + inQuotes(key);
-  const Vec3 direction(readNumber(document, items[0], what), readNumber(document, items[1], what),
-                       readNumber(document, items[2], what));
-  if (direction == Vec3(0.0)) {
-    throw document.error(node.mark, "scene.range", inQuotes(key) + " has no direction",
-                         "one of its numbers must differ from 0");
-  }
-  return direction;
-}
-
-double MapReader::quantityOr(std::string_view key, Dimension dimension, double fallback) {
-  const Node* node = optional(key);
-  return node == nullptr ? fallback
-                         : readQuantity(loader_->document(), *node, dimension, inQuotes(key));
 }
 
 }  // namespace palpate

@@ -11,10 +11,6 @@
 
 namespace palpate {
 
-/// Layers, walls, ports and sheets of a scene, of each: what is kept of pairs of regions grows with
-/// their square.
-inline constexpr std::size_t kMostItems = 4096;
-
 template <typename Items>
 std::vector<std::string_view> namesOf(const Items& items) {
   std::vector<std::string_view> names;

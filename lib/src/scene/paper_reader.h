@@ -1,11 +1,11 @@
 #pragma once
 /// `paper` of a scene: the parameters of the paper's renderer.
 
-#include "palpate/contact/paper_parameters.h"
+#include "palpate/scene/description.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate {
 
-[[nodiscard]] PaperParameters readPaper(const SceneLoader& loader, const Node& node);
+[[nodiscard]] PaperParameters readPaper(const MapReader& reader);
 
 }  // namespace palpate

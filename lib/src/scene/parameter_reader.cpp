@@ -18,55 +18,53 @@ std::string inUnit(double value, std::optional<Dimension> dimension) {
   return dimension ? text + (' ' + std::string(unitNames(*dimension)[0])) : text;
 }
 
-double readConstant(const SceneLoader& loader, const Node& node, const std::string& what,
-                    std::optional<Dimension> dimension) {
-  if (!dimension) return readNumber(loader.document(), node, what);
-  if (*dimension == Dimension::kLength) return readLength(loader, node, what);
-  return readQuantity(loader.document(), node, *dimension, what);
+/// Its range must be finite, and within the key's bounds.
+Parameter readMap(const SceneLoader& loader, const Node& node, const KeyWords& key) {
+  const std::string what = inQuotes(key.name);
+  const bool is_signed = key.least < 0.0;
+  Parameter map(loader.map(node, {key.name, key.dimension, is_signed}));
+  const MaterialMap::Range range = map.range();
+  const auto refuse = [&](const std::string& message, const char* hint) {
+    return loader.document().error(node.mark, "scene.range", message, hint);
+  };
+  constexpr const char* kMend = "mend the values that the map is made from";
+  if (is_signed && !(std::isfinite(range.least) && std::isfinite(range.most))) {
+    throw refuse("a component of " + what + " is not finite everywhere", kMend);
+  }
+  if (!is_signed && !(range.least >= 0.0 && std::isfinite(range.most))) {
+    throw refuse(what + " goes from " + inUnit(range.least, key.dimension) + " to " +
+                     inUnit(range.most, key.dimension) + ", and must be 0 or more everywhere",
+                 kMend);
+  }
+  if (key.is_above && !(range.most > key.least)) {
+    throw refuse(what + " must be " + boundsText(key), "");
+  }
+  return map;
+}
+
+Parameter readOne(const SceneLoader& loader, const Node& node, const KeyWords& key) {
+  return node.kind == Node::Kind::kMap ? readMap(loader, node, key)
+                                       : Parameter(readValue(loader, node, key));
 }
 
 }  // namespace
 
-Parameter readParameter(MapReader& reader, std::string_view key, std::optional<Dimension> dimension,
-                        Parameter fallback) {
-  const Node* node = reader.optional(key);
-  if (node == nullptr) return fallback;
-  const SceneLoader& loader = reader.loader();
-  const std::string what = inQuotes(key);
-  if (node->kind != Node::Kind::kMap) {
-    const double value = readConstant(loader, *node, what, dimension);
-    if (value < 0.0) throw reader.errorAt(key, "scene.range", what + " must be 0 or more");
-    return value;
-  }
-  Parameter map(loader.map(*node, {std::string(key), dimension}));
-  const MaterialMap::Range range = map.range();
-  if (!(range.least >= 0.0) || !std::isfinite(range.most)) {
-    throw reader.errorAt(key, "scene.range",
-                         what + " goes from " + inUnit(range.least, dimension) + " to " +
-                             inUnit(range.most, dimension) + ", and must be 0 or more everywhere",
-                         "mend the values that the map is made from");
-  }
-  return map;
+Parameter readParameter(const MapReader& reader, std::string_view key) {
+  return readParameter(reader, key, reader.has(key) ? 0.0 : reader.value(key));
 }
 
-Parameter readVelocity(const SceneLoader& loader, const Node& node, const std::string& key) {
-  const std::string what = "a component of " + inQuotes(key);
-  if (node.kind != Node::Kind::kMap) {
-    return readQuantity(loader.document(), node, Dimension::kVelocity, what);
-  }
-  Parameter map(loader.map(node, {key, Dimension::kVelocity, true}));
-  const MaterialMap::Range range = map.range();
-  if (!std::isfinite(range.least) || !std::isfinite(range.most)) {
-    throw loader.document().error(node.mark, "scene.range", what + " is not finite everywhere",
-                                  "mend the values that the map is made from");
-  }
-  return map;
+Parameter readParameter(const MapReader& reader, std::string_view key, Parameter fallback) {
+  const Node* node = reader.find(key);
+  return node == nullptr ? fallback : readOne(reader.loader(), *node, reader.words(key));
 }
 
-Parameter requireParameter(MapReader& reader, std::string_view key,
-                           std::optional<Dimension> dimension) {
-  (void)reader.require(key);
-  return readParameter(reader, key, dimension, {});
+Flow readFlow(const MapReader& reader, std::string_view key) {
+  const Node* node = reader.find(key);
+  if (node == nullptr) return {};
+  const auto component = [&](std::size_t i) {
+    return readOne(reader.loader(), node->items[i], reader.words(key));
+  };
+  return {component(0), component(1), component(2)};
 }
 
 }  // namespace palpate

@@ -1,27 +1,21 @@
 #pragma once
 /// Parameters of materials and opening forces: constants, or maps that other modules read.
 
-#include <optional>
-#include <string>
 #include <string_view>
 
-#include "palpate/materials/parameter.h"
+#include "palpate/materials/material.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate {
 
-/// The parameter at `key`, 0 or more everywhere; `fallback` if it is not there. A constant is a quantity of
-/// `dimension`, or a number where there is none; a map of keys is read by the registry. @throws Error (kInput)
-/// at the offending place.
-[[nodiscard]] Parameter readParameter(MapReader& reader, std::string_view key,
-                                      std::optional<Dimension> dimension, Parameter fallback);
+/// The parameter at a declared key, within the key's bounds everywhere; not given: the declared default, or 0. A
+/// map of keys is read by the registry. @throws Error (kInput) at the offending place.
+[[nodiscard]] Parameter readParameter(const MapReader& reader, std::string_view key);
+/// The same; not given: `fallback`.
+[[nodiscard]] Parameter readParameter(const MapReader& reader, std::string_view key,
+                                      Parameter fallback);
 
-/// The same where it must be given.
-[[nodiscard]] Parameter requireParameter(MapReader& reader, std::string_view key,
-                                         std::optional<Dimension> dimension);
-
-/// A component of a velocity: a quantity, or a map of keys, below 0 too. `key` is of the list it stands in.
-[[nodiscard]] Parameter readVelocity(const SceneLoader& loader, const Node& node,
-                                     const std::string& key);
+/// The three components of a declared list of velocities, each a quantity or a map; below 0 too.
+[[nodiscard]] Flow readFlow(const MapReader& reader, std::string_view key);
 
 }  // namespace palpate

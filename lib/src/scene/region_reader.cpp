@@ -12,8 +12,6 @@ namespace {
 constexpr std::string_view kOutsideName = "outside";
 constexpr std::string_view kAbsent = "absent";
 constexpr std::string_view kWallKey = "'wall'";
-// Layer kinds of palpate::vdb, as kKindsOfGrids of the fields.
-constexpr std::string_view kSurfacesOfImages[] = {"labels", "threshold"};
 
 std::vector<std::string_view> regionNames(const SceneDescription& scene) {
   std::vector<std::string_view> names = namesOf(scene.layers);
@@ -26,8 +24,8 @@ bool isGlob(std::string_view text) { return text.find_first_of("*?") != std::str
 }  // namespace
 
 // Names go into traces, grid names and globs, so they must not hold what separates there.
-std::string RegionReader::readName(MapReader& reader, std::string_view what) const {
-  std::string name = reader.requireText("name");
+std::string RegionReader::readName(const MapReader& reader, std::string_view what) {
+  std::string name = reader.text("name");
   const auto bad = std::find_if(name.begin(), name.end(), [](char c) {
     return std::string_view("*?;,/\"\\").find(c) != std::string_view::npos ||
            static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
@@ -43,6 +41,10 @@ std::string RegionReader::readName(MapReader& reader, std::string_view what) con
                          "the name of a " + std::string(what) + " begins or ends with a space");
   }
   return name;
+}
+
+SourcePlace RegionReader::placeOf(const MapReader& reader, std::string_view key) {
+  return reader.loader().document().place(reader.find(key)->mark);
 }
 
 const Material& RegionReader::material(const Node& node, const std::string& what) const {
@@ -78,16 +80,12 @@ WallDescription RegionReader::readWall(const Node& node) const {
   return {false, wall.name};
 }
 
-void RegionReader::readSurface(MapReader& reader, LayerDescription& layer) const {
+void RegionReader::readSurface(const MapReader& reader, LayerDescription& layer) const {
   const Document& document = loader_.document();
-  const Node* inside = reader.optional("inside");
+  const std::vector<std::string>& kinds = loader_.vocabulary().find("layer")->one_of;
   const Node::Entry* surface = nullptr;
-  std::vector<std::string_view> kinds(std::begin(kSurfacesOfImages), std::end(kSurfacesOfImages));
-  for (const auto& [kind, make] : registry_.layers) kinds.push_back(kind);
-  for (const std::string_view kind : kinds) (void)reader.optional(kind);
   for (const Node::Entry& entry : reader.node().entries) {
-    const bool is_kind = std::find(kinds.begin(), kinds.end(), entry.key) != kinds.end();
-    if (!is_kind && entry.key != "inside") continue;
+    if (std::find(kinds.begin(), kinds.end(), entry.key) == kinds.end()) continue;
     if (surface != nullptr) {
       throw document.error(
           entry.key_mark, "scene.kind",
@@ -97,13 +95,12 @@ void RegionReader::readSurface(MapReader& reader, LayerDescription& layer) const
     surface = &entry;
   }
   if (surface == nullptr) {
-    reader.finish();  // perhaps the key is there, with a slip in it
     throw document.error(reader.node().mark, "scene.missing_key",
                          "the layer " + inQuotes(layer.name) + " does not say where it is",
                          "add inside: FIELD, labels: {...} or threshold: {...}");
   }
-  if (inside != nullptr) {
-    layer.inside = loader_.field(*inside);
+  if (surface->key == "inside") {
+    layer.inside = loader_.field(surface->value);
     return;
   }
   const auto kind = registry_.layers.find(surface->key);
@@ -112,7 +109,8 @@ void RegionReader::readSurface(MapReader& reader, LayerDescription& layer) const
                          "this program reads no images, so no " + inQuotes(surface->key),
                          "palpate::vdb reads them, and is not part of this program");
   }
-  MapReader values(loader_, surface->value, inQuotes(surface->key));
+  MapReader values(loader_, surface->value, inQuotes(surface->key),
+                   reader.words(surface->key).type);
   SceneRegistry::LayerSurface made = kind->second(values, layer.name);
   values.finish();
   if (!made.inside) {
@@ -124,24 +122,21 @@ void RegionReader::readSurface(MapReader& reader, LayerDescription& layer) const
   layer.labels = std::move(made.labels);
 }
 
-void RegionReader::readLayers(const Node& layers) {
-  const Document& document = loader_.document();
-  for (const Node& node : readList(document, layers, "'layers'", 1, kMostItems)) {
-    MapReader reader(loader_, node, "a layer");
+void RegionReader::readLayers(const std::vector<MapReader>& layers) {
+  for (const MapReader& reader : layers) {
     LayerDescription layer;
     layer.name = readName(reader, "layer");
-    layer.place = document.place(node.find("name")->mark);
+    layer.place = placeOf(reader, "name");
     if (layer.name == kOutsideName) {
       throw errorAt(layer.place, "scene.name", "a layer cannot be called 'outside'",
                     "that is the region in no layer");
     }
     refuseSecond("layer", layer, scene_.layers);
-    const Node* content = reader.optional("content");
-    const Node* wall = reader.optional("wall");
     readSurface(reader, layer);
-    reader.finish();
-    if (content != nullptr) layer.content = material(*content, "'content'").name;
-    if (wall != nullptr) layer.wall = readWall(*wall);
+    if (const Node* content = reader.find("content")) {
+      layer.content = material(*content, "'content'").name;
+    }
+    if (const Node* wall = reader.find("wall")) layer.wall = readWall(*wall);
     scene_.layers.push_back(std::move(layer));
   }
 }
@@ -187,10 +182,9 @@ std::string RegionReader::readSide(const Node& node) const {
   return names;
 }
 
-RegionReader::Between RegionReader::readBetween(MapReader& reader) const {
+RegionReader::Between RegionReader::readBetween(const MapReader& reader) const {
   const Document& document = loader_.document();
-  const Node& node = reader.require("between");
-  const auto& items = readList(document, node, "'between'", 2, 2);
+  const auto& items = readList(document, *reader.find("between"), "'between'", 2, 2);
   const Between between{readSide(items[0]), readSide(items[1])};
   if (between.a == between.b && !isGlob(between.a)) {
     throw document.error(items[1].mark, "scene.kind",
@@ -199,17 +193,13 @@ RegionReader::Between RegionReader::readBetween(MapReader& reader) const {
   return between;
 }
 
-void RegionReader::readWalls(const Node& walls) {
+void RegionReader::readWalls(const std::vector<MapReader>& walls) {
   const Document& document = loader_.document();
-  for (const Node& node : readList(document, walls, "'walls'", 1, kMostItems)) {
-    MapReader reader(loader_, node, "a wall");
+  for (const MapReader& reader : walls) {
     const Between between = readBetween(reader);
-    WallOverride wall{between.a,
-                      between.b,
-                      readWall(reader.require("wall")),
-                      {},
-                      document.place(node.find("between")->mark)};
-    if (const Node* from = reader.optional("felt_from")) {
+    WallOverride wall{
+        between.a, between.b, readWall(*reader.find("wall")), {}, placeOf(reader, "between")};
+    if (const Node* from = reader.find("felt_from")) {
       const std::size_t side = readChoice(document, *from, "'felt_from'", {between.a, between.b});
       wall.felt_from = side == 0 ? between.a : between.b;
       if (wall.wall.absent) {
@@ -217,18 +207,14 @@ void RegionReader::readWalls(const Node& walls) {
                              "a port with a direction lets through one way");
       }
     }
-    reader.finish();
     scene_.walls.push_back(std::move(wall));
   }
 }
 
-void RegionReader::readStart(const Node& start) {
-  MapReader reader(loader_, start, "'start'");
-  scene_.start_region = reader.requireText("region");
-  const Node& region = *start.find("region");
-  reader.finish();
-  requireRegion(region, false);
-  scene_.start_place = loader_.document().place(region.mark);
+void RegionReader::readStart(const MapReader& start) {
+  scene_.start_region = start.text("region");
+  requireRegion(*start.find("region"), false);
+  scene_.start_place = placeOf(start, "region");
 }
 
 }  // namespace palpate

@@ -14,11 +14,11 @@ class RegionReader {
                SceneDescription& scene)
       : loader_(loader), registry_(registry), fields_(fields), scene_(scene) {}
 
-  void readLayers(const Node& layers);
-  void readWalls(const Node& walls);
-  void readPorts(const Node& ports);
-  void readSheets(const Node& sheets);
-  void readStart(const Node& start);
+  void readLayers(const std::vector<MapReader>& layers);
+  void readWalls(const std::vector<MapReader>& walls);
+  void readPorts(const std::vector<MapReader>& ports);
+  void readSheets(const std::vector<MapReader>& sheets);
+  void readStart(const MapReader& start);
 
  private:
   struct Between {
@@ -26,17 +26,18 @@ class RegionReader {
     std::string b;
   };
 
-  [[nodiscard]] std::string readName(MapReader& reader, std::string_view what) const;
-  void readSurface(MapReader& reader, LayerDescription& layer) const;
+  [[nodiscard]] static std::string readName(const MapReader& reader, std::string_view what);
+  [[nodiscard]] static SourcePlace placeOf(const MapReader& reader, std::string_view key);
+  void readSurface(const MapReader& reader, LayerDescription& layer) const;
   [[nodiscard]] const Material& material(const Node& node, const std::string& what) const;
   [[nodiscard]] WallDescription readWall(const Node& node) const;
   [[nodiscard]] std::string readSide(const Node& node) const;
-  [[nodiscard]] Between readBetween(MapReader& reader) const;
+  [[nodiscard]] Between readBetween(const MapReader& reader) const;
   void requireRegion(const Node& node, bool globs) const;
   static void requireOpeningForce(const MapReader& reader, std::string_view key,
                                   const PortDescription& port);
-  void readPuncture(MapReader& reader, PortDescription& port) const;
-  [[nodiscard]] std::string readSheetName(MapReader& reader, const Node& sheet) const;
+  static void readPuncture(const MapReader& reader, PortDescription& port);
+  [[nodiscard]] std::string readSheetName(const MapReader& reader) const;
   [[nodiscard]] AfterDescription readBefore(const Node& item) const;
   void readAfter(const Node& after, PortDescription& port) const;
 

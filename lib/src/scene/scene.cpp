@@ -1,13 +1,21 @@
 #include "palpate/scene/scene.h"
 
+#include "palpate/interior/partition.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate {
 
+Scene::Scene(Partition partition)
+    : partition_(std::make_unique<const Partition>(std::move(partition))),
+      passages_(std::make_unique<const Passages>()) {}
+
+Scene::~Scene() = default;
+
 RegionId Scene::regionAt(const Vec3& p) const {
-  Signs signs(partition_.leaves().size());
-  partition_.signsAt(p, signs);
-  return partition_.regionOf(signs);
+  Signs signs(partition_->leaves().size());
+  partition_->signsAt(p, signs);
+  return partition_->regionOf(signs);
 }
 
 RegionId Scene::regionNamed(const std::string& name) const {

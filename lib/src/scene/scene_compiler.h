@@ -8,6 +8,7 @@
 
 #include "globs.h"
 #include "label_share.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/scene/scene.h"
 #include "palpate/scene/scene_file.h"
 #include "survey.h"

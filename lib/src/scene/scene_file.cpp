@@ -1,6 +1,5 @@
 #include "palpate/scene/scene_file.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "scene/device_reader.h"
@@ -10,19 +9,9 @@
 #include "scene/messages.h"
 #include "scene/paper_reader.h"
 #include "scene/region_reader.h"
-#include "scene/unit_table.h"
 #include "scene/values.h"
 
 namespace palpate {
-namespace {
-
-// Every key of a scene's top level. The keys of what lies below are where they are read.
-constexpr std::string_view kSections[] = {
-    "palpate", "length", "renderer", "description", "fields", "images", "materials", "layers",
-    "walls",   "ports",  "sheets",   "start",       "memory", "device", "grids",     "paper"};
-
-}  // namespace
-
 std::string FileLoader::resolvePath(const std::string& path) const {
   const std::filesystem::path written(path);
   if (written.is_absolute()) return path;
@@ -42,9 +31,10 @@ std::shared_ptr<void> FileLoader::image(const std::string& name, Mark place) con
 
 MaterialMapPtr FileLoader::map(const Node& node, const ParameterKind& of) const {
   const std::string what = "the map of " + inQuotes(of.key);
-  MapReader reader(*this, node, what);
+  MapReader keys(*this, node, what);
   for (const auto& [kind, read] : registry_.maps) {
-    if (!reader.has(kind)) continue;
+    if (!keys.has(kind)) continue;
+    MapReader reader(*this, node, what, "map_of_" + kind);
     MaterialMapPtr map = read(reader, of);
     reader.finish();
     return map;
@@ -53,8 +43,8 @@ MaterialMapPtr FileLoader::map(const Node& node, const ParameterKind& of) const 
     throw document_.error(node.mark, "scene.no_reader", "this program reads no maps of parameters",
                           "palpate::vdb reads them, and is not part of this program");
   }
-  for (const auto& [kind, read] : registry_.maps) (void)reader.optional(kind);
-  reader.finish();
+  for (const auto& [kind, read] : registry_.maps) (void)keys.optional(kind);
+  keys.finish();
   throw document_.error(node.mark, "scene.missing_key", what + " is empty",
                         "write {grid: {file: NAME.vdb, name: LAYER/" + of.key + "}}");
 }
@@ -78,7 +68,7 @@ void FileLoader::readVersion(const Node& root) const {
     return;
   }
   for (const Node::Entry& entry : root.entries) {
-    if (suggest(entry.key, std::vector{kSections[0]}).empty()) continue;
+    if (suggest(entry.key, std::vector<std::string_view>{"palpate"}).empty()) continue;
     throw document_.error(entry.key_mark, "scene.unknown_key",
                           "unknown key " + inQuotes(entry.key) + " in a scene",
                           "did you mean 'palpate'?");
@@ -88,14 +78,13 @@ void FileLoader::readVersion(const Node& root) const {
 }
 
 void FileLoader::readImages(const Node& images) {
-  requireMap(document_, images, "'images'");
   for (const Node::Entry& entry : images.entries) {
     refuseEmpty(document_, entry);
     if (!registry_.image) {
       throw document_.error(entry.key_mark, "scene.no_reader", "this program reads no images",
                             "palpate::vdb reads them, and is not part of this program");
     }
-    MapReader reader(*this, entry.value, "the image " + inQuotes(entry.key));
+    MapReader reader(*this, entry.value, "the image " + inQuotes(entry.key), "image");
     images_[entry.key] = registry_.image(reader);
     reader.finish();
   }
@@ -106,41 +95,29 @@ SceneDescription FileLoader::read() {
   SceneDescription scene;
   scene.file = document_.file;
 
-  MapReader top(*this, document_.root, "a scene");
-  for (const std::string_view key : kSections) (void)top.optional(key);
-  top.finish();
-
-  const Node& length = top.require("length");
-  const std::vector<std::string_view> units = unitNames(Dimension::kLength);
-  length_unit_ = units[readChoice(document_, length, "'length'", units)];
+  const MapReader top(*this, document_.root, "a scene", "scene");
+  length_unit_ = top.text("length");
   metres_per_unit_ = *metresPer(length_unit_);
   scene.length_unit = length_unit_;
   scene.metres_per_unit = metres_per_unit_;
-
-  if (top.has("description")) (void)top.requireText("description");
-  if (const Node* renderer = top.optional("renderer")) {
-    scene.renderer = readChoice(document_, *renderer, "'renderer'", {"constraint", "paper"}) == 0
-                         ? RendererKind::kConstraint
-                         : RendererKind::kPaper;
-  }
-  if (const Node* memory = top.optional("memory")) {
-    scene.keep_memory = readChoice(document_, *memory, "'memory'", {"clear", "keep"}) == 1;
-  }
-  if (const Node* images = top.optional("images")) readImages(*images);
-  if (const Node* materials = top.optional("materials"))
+  scene.renderer = top.choice("renderer") == 0 ? RendererKind::kConstraint : RendererKind::kPaper;
+  scene.keep_memory = top.choice("memory") == 1;
+  if (const Node* images = top.find("images")) readImages(*images);
+  if (const Node* materials = top.find("materials")) {
     scene.materials = readMaterials(*this, *materials);
-  if (const Node* fields = top.optional("fields")) fields_.define(*fields);
+  }
+  if (const Node* fields = top.find("fields")) fields_.define(*fields);
   scene.fields = fields_.all();
 
   RegionReader regions(*this, registry_, fields_, scene);
-  if (const Node* layers = top.optional("layers")) regions.readLayers(*layers);
-  if (const Node* walls = top.optional("walls")) regions.readWalls(*walls);
-  if (const Node* sheets = top.optional("sheets")) regions.readSheets(*sheets);
-  if (const Node* ports = top.optional("ports")) regions.readPorts(*ports);
-  if (const Node* start = top.optional("start")) regions.readStart(*start);
-  if (const Node* device = top.optional("device")) scene.device = readDevice(*this, *device);
-  if (const Node* paper = top.optional("paper")) scene.paper = readPaper(*this, *paper);
-  if (const Node* grids = top.optional("grids")) readGrids(*this, registry_, *grids, scene);
+  if (top.has("layers")) regions.readLayers(top.maps("layers"));
+  if (top.has("walls")) regions.readWalls(top.maps("walls"));
+  if (top.has("sheets")) regions.readSheets(top.maps("sheets"));
+  if (top.has("ports")) regions.readPorts(top.maps("ports"));
+  if (top.has("start")) regions.readStart(top.map("start"));
+  if (top.has("device")) scene.device = readDevice(top.map("device"));
+  if (top.has("paper")) scene.paper = readPaper(top.map("paper"));
+  if (top.has("grids")) readGrids(top.map("grids"), registry_, scene);
   return scene;
 }
 

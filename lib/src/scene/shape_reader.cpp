@@ -1,253 +1,162 @@
 #include "scene/shape_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 #include "scene/messages.h"
-#include "scene/values.h"
 
 namespace palpate {
 namespace {
 
 using Make = std::function<FieldPtr()>;
+using Reader = const MapReader&;
 
-Vec3 positiveLengths(MapReader& reader, std::string_view key) {
-  const Vec3 lengths = reader.requirePoint(key);
-  if (!(lengths.x > 0.0 && lengths.y > 0.0 && lengths.z > 0.0)) {
-    throw reader.errorAt(key, "scene.range",
-                         "each length of " + inQuotes(key) + " must be more than 0");
-  }
-  return lengths;
+/// `make` of these values, when it is called for.
+template <typename Function, typename... Values>
+Make later(Function make, Values... values) {
+  return [=] { return make(values...); };
 }
 
-/// `key` may be at most `most`, which is `why`.
-void refuseAbove(const MapReader& reader, std::string_view key, double value, double most,
-                 const std::string& why, const std::string& hint) {
+/// `key`, which may be at most `most`, which is `why`.
+double valueUpTo(Reader reader, std::string_view key, double most, const std::string& why,
+                 const std::string& hint) {
+  const double value = reader.value(key);
   // Halves and fifths of decimal numbers are not exact.
-  if (value <= most * (1.0 + 1e-12)) return;
+  if (value <= most * (1.0 + 1e-12)) return std::min(value, most);
   throw reader.errorAt(
       key, "scene.range",
       inQuotes(key) + " must not be more than " + why + ", " + inUnitOf(reader.loader(), most),
       hint);
 }
 
-Make halfSpaceOf(MapReader& reader) {
-  const Vec3 point = reader.requirePoint("point");
-  const Vec3 normal = reader.requireDirection("normal");
-  return [=] { return halfSpace(point, normal); };
+Make roundedBoxOf(Reader r) {
+  const Vec3 size = r.point("size");
+  const double rounding =
+      valueUpTo(r, "rounding", 0.5 * std::min({size.x, size.y, size.z}),
+                "half of the smallest 'size'", "a box rounded that far is a capsule or a ball");
+  return later(roundedBox, r.point("center"), size, rounding);
 }
 
-Make sphereOf(MapReader& reader) {
-  const Vec3 center = reader.requirePoint("center");
-  const double radius = positiveLength(reader, "radius");
-  return [=] { return sphere(center, radius); };
-}
-
-Make boxOf(MapReader& reader) {
-  const Vec3 center = reader.requirePoint("center");
-  const Vec3 size = positiveLengths(reader, "size");
-  return [=] { return box(center, size); };
-}
-
-Make roundedBoxOf(MapReader& reader) {
-  const Vec3 center = reader.requirePoint("center");
-  const Vec3 size = positiveLengths(reader, "size");
-  const double rounding = positiveLength(reader, "rounding");
-  const double most = 0.5 * std::min({size.x, size.y, size.z});
-  refuseAbove(reader, "rounding", rounding, most, "half of the smallest 'size'",
-              "a box rounded that far is a capsule or a ball");
-  return [=] { return roundedBox(center, size, std::min(rounding, most)); };
-}
-
-Make cylinderOf(MapReader& reader) {
-  const Vec3 center = reader.requirePoint("center");
-  const Vec3 axis = reader.requireDirection("axis");
-  const double radius = positiveLength(reader, "radius");
-  const double height = positiveLength(reader, "height");
-  return [=] { return cylinder(center, axis, radius, height); };
-}
-
-Make coneOf(MapReader& reader) {
-  const Vec3 base = reader.requirePoint("base");
-  const Vec3 axis = reader.requireDirection("axis");
-  const double radius = positiveLength(reader, "radius");
-  const double height = positiveLength(reader, "height");
-  return [=] { return cone(base, axis, radius, height); };
-}
-
-Make torusOf(MapReader& reader) {
-  const Vec3 center = reader.requirePoint("center");
-  const Vec3 axis = reader.requireDirection("axis");
-  const double radius = positiveLength(reader, "radius");
-  const double tube = positiveLength(reader, "tube");
+Make torusOf(Reader r) {
+  const double radius = r.value("radius");
+  const double tube = r.value("tube");
   if (!(tube < radius)) {
-    throw reader.errorAt("tube", "scene.range",
-                         "'tube' must be less than 'radius', " + inUnitOf(reader.loader(), radius),
-                         "the radius is from the center to the middle of the tube");
+    throw r.errorAt("tube", "scene.range",
+                    "'tube' must be less than 'radius', " + inUnitOf(r.loader(), radius),
+                    "the radius is from the center to the middle of the tube");
   }
-  return [=] { return torus(center, axis, radius, tube); };
+  return later(torus, r.point("center"), r.point("axis"), radius, tube);
 }
 
-Make capsuleOf(MapReader& reader) {
-  const Vec3 from = reader.requirePoint("from");
-  const Vec3 to = reader.requirePoint("to");
-  const double radius = positiveLength(reader, "radius");
+Make capsuleOf(Reader r) {
+  const Vec3 from = r.point("from");
+  const Vec3 to = r.point("to");
   if (from == to) {
-    throw reader.errorAt("to", "scene.range", "'from' and 'to' are the same point",
-                         "a capsule without length is a sphere: {sphere: {center, radius}}");
+    throw r.errorAt("to", "scene.range", "'from' and 'to' are the same point",
+                    "a capsule without length is a sphere: {sphere: {center, radius}}");
   }
-  return [=] { return capsule(from, to, radius); };
-}
-
-Make ellipsoidOf(MapReader& reader) {
-  const Vec3 center = reader.requirePoint("center");
-  const Vec3 radii = positiveLengths(reader, "radii");
-  return [=] { return ellipsoid(center, radii); };
-}
-
-Make heartOf(MapReader& reader) {
-  const Vec3 center = reader.requirePoint("center");
-  const double width = positiveLength(reader, "width");
-  return [=] { return heart(center, width); };
+  return later(capsule, from, to, r.value("radius"));
 }
 
 // The file's polynomial takes its x, y, z as numbers in the file's length unit, the library's in metres.
-Make quadricOf(MapReader& reader) {
-  const Vec3 center = reader.requirePoint("center");
-  QuadricCoefficients q;
-  const double per_metre = 1.0 / reader.loader().metresPerUnit();
+Make quadricOf(Reader r) {
+  using Q = QuadricCoefficients;
+  Q q;
+  const double per_metre = 1.0 / r.loader().metresPerUnit();
   bool is_flat = true;
   const auto read = [&](std::string_view key, double& coefficient, double scale) {
-    const double number = reader.numberOr(key, 0.0);
+    const double number = r.value(key);
     is_flat = is_flat && number == 0.0;
     coefficient = number * scale;
     if (!std::isfinite(coefficient)) {
-      throw reader.errorAt(key, "scene.range", inQuotes(key) + " is too large",
-                           "only the ratios of the coefficients count; make all of them smaller");
+      throw r.errorAt(key, "scene.range", inQuotes(key) + " is too large",
+                      "only the ratios of the coefficients count; make all of them smaller");
     }
   };
-  for (const auto& [key, member] :
-       {std::pair{"xx", &QuadricCoefficients::xx}, std::pair{"yy", &QuadricCoefficients::yy},
-        std::pair{"zz", &QuadricCoefficients::zz}, std::pair{"xy", &QuadricCoefficients::xy},
-        std::pair{"xz", &QuadricCoefficients::xz}, std::pair{"yz", &QuadricCoefficients::yz}}) {
+  for (const auto& [key, member] : {std::pair{"xx", &Q::xx},
+                                    {"yy", &Q::yy},
+                                    {"zz", &Q::zz},
+                                    {"xy", &Q::xy},
+                                    {"xz", &Q::xz},
+                                    {"yz", &Q::yz}}) {
     read(key, q.*member, per_metre * per_metre);
   }
-  for (const auto& [key, member] :
-       {std::pair{"x", &QuadricCoefficients::x}, std::pair{"y", &QuadricCoefficients::y},
-        std::pair{"z", &QuadricCoefficients::z}}) {
+  for (const auto& [key, member] : {std::pair{"x", &Q::x}, {"y", &Q::y}, {"z", &Q::z}}) {
     read(key, q.*member, per_metre);
   }
-  q.constant = reader.numberOr("constant", 0.0);
-  const bool reaches = reader.optional("reach") != nullptr;
-  const double reach = reaches ? positiveLength(reader, "reach") : 0.0;
+  q.constant = r.value("constant");
   if (is_flat) {
-    reader.finish();  // perhaps one is there, with a slip in it
-    throw reader.errorAt("", "scene.missing_key",
-                         "this quadric has no coefficient of x, y or z other than 0",
-                         "add one or more of xx, yy, zz, xy, xz, yz, x, y, z; inside is where the "
-                         "polynomial is negative");
+    throw r.errorAt("", "scene.missing_key",
+                    "this quadric has no coefficient of x, y or z other than 0",
+                    "add one or more of xx, yy, zz, xy, xz, yz, x, y, z; inside is where the "
+                    "polynomial is negative");
   }
-  return [=] { return reaches ? quadric(center, q, reach) : quadric(center, q); };
+  return later(quadric, r.point("center"), q, r.value("reach"));
 }
 
-Make gyroidOf(MapReader& reader) {
-  const Vec3 center = reader.requirePoint("center");
-  const double period = positiveLength(reader, "period");
-  if (reader.optional("thickness") == nullptr) return [=] { return gyroid(center, period); };
-  const double thickness = positiveLength(reader, "thickness");
-  const double most = 0.2 * period;
-  refuseAbove(reader, "thickness", thickness, most, "a fifth of 'period'",
-              "leave it out for the solid on one side of the gyroid");
-  return [=] { return gyroidWall(center, period, std::min(thickness, most)); };
+Make gyroidOf(Reader r) {
+  const double period = r.value("period");
+  if (!r.has("thickness")) return later(gyroid, r.point("center"), period);
+  return later(gyroidWall, r.point("center"), period,
+               valueUpTo(r, "thickness", 0.2 * period, "a fifth of 'period'",
+                         "leave it out for the solid on one side of the gyroid"));
 }
 
-Metaball readBall(const SceneLoader& loader, const Node& node) {
-  MapReader reader(loader, node, "a ball of 'metaballs'");
-  Metaball ball;
-  ball.center = reader.requirePoint("center");
-  ball.radius = positiveLength(reader, "radius");
-  ball.strength = reader.numberOr("strength", ball.strength);
-  reader.finish();
-  if (ball.strength == 0.0) {
-    throw reader.errorAt("strength", "scene.range", "'strength' must not be 0",
-                         "more than 0 adds to the solid, less takes away; 1 if left out");
-  }
-  return ball;
-}
-
-Make metaballsOf(MapReader& reader) {
-  const Document& document = reader.loader().document();
+Make metaballsOf(Reader r) {
   constexpr FallOff kFallOffs[] = {FallOff::kWyvill, FallOff::kGaussian, FallOff::kInverseSquare};
-  const FallOff fall_off = kFallOffs[readChoice(document, reader.require("fall_off"), "'fall_off'",
-                                                {"wyvill", "gaussian", "inverse_square"})];
-  const double iso = reader.requireNumber("iso");
-  if (!(iso > 0.0)) throw reader.errorAt("iso", "scene.range", "'iso' must be more than 0");
+  const double iso = r.value("iso");
   std::vector<Metaball> balls;
   double most = 0.0;
-  for (const Node& node : readList(document, reader.require("balls"), "'balls'", 1, 0)) {
-    balls.push_back(readBall(reader.loader(), node));
+  for (Reader ball : r.maps("balls")) {
+    balls.push_back({ball.point("center"), ball.value("radius"), ball.value("strength")});
     most += std::max(0.0, balls.back().strength);
   }
   if (!(most > iso)) {
-    throw reader.errorAt("iso", "scene.range",
-                         "'iso' is never reached: the strengths above 0 do not add up to more",
-                         "a ball's influence is its strength at its center; with one ball of "
-                         "strength 1, iso: 0.5 is usual");
+    throw r.errorAt("iso", "scene.range",
+                    "'iso' is never reached: the strengths above 0 do not add up to more",
+                    "a ball's influence is its strength at its center; with one ball of "
+                    "strength 1, iso: 0.5 is usual");
   }
-  return [=] { return metaballs(balls, fall_off, iso); };
+  return later(metaballs, balls, kFallOffs[r.choice("fall_off")], iso);
 }
 
-struct Shape {
-  std::string_view kind;
-  Make (*read)(MapReader&);
-};
-
-constexpr Shape kShapes[] = {
-    {"half_space", halfSpaceOf},
-    {"sphere", sphereOf},
-    {"box", boxOf},
-    {"rounded_box", roundedBoxOf},
-    {"cylinder", cylinderOf},
-    {"cone", coneOf},
-    {"torus", torusOf},
-    {"capsule", capsuleOf},
-    {"ellipsoid", ellipsoidOf},
-    {"heart", heartOf},
-    {"quadric", quadricOf},
-    {"gyroid", gyroidOf},
-    {"metaballs", metaballsOf},
-};
+const std::map<std::string_view, Make (*)(Reader)>& shapes() {
+  static const std::map<std::string_view, Make (*)(Reader)> all = {
+      {"half_space",
+       [](Reader r) { return later(halfSpace, r.point("point"), r.point("normal")); }},
+      {"sphere", [](Reader r) { return later(sphere, r.point("center"), r.value("radius")); }},
+      {"box", [](Reader r) { return later(box, r.point("center"), r.point("size")); }},
+      {"rounded_box", roundedBoxOf},
+      {"cylinder",
+       [](Reader r) {
+         return later(cylinder, r.point("center"), r.point("axis"), r.value("radius"),
+                      r.value("height"));
+       }},
+      {"cone",
+       [](Reader r) {
+         return later(cone, r.point("base"), r.point("axis"), r.value("radius"), r.value("height"));
+       }},
+      {"torus", torusOf},
+      {"capsule", capsuleOf},
+      {"ellipsoid", [](Reader r) { return later(ellipsoid, r.point("center"), r.point("radii")); }},
+      {"heart", [](Reader r) { return later(heart, r.point("center"), r.value("width")); }},
+      {"quadric", quadricOf},
+      {"gyroid", gyroidOf},
+      {"metaballs", metaballsOf},
+  };
+  return all;
+}
 
 }  // namespace
 
-std::span<const std::string_view> shapeKinds() {
-  static constexpr auto kKinds = [] {
-    std::array<std::string_view, std::size(kShapes)> kinds;
-    for (std::size_t i = 0; i < kinds.size(); ++i) kinds[i] = kShapes[i].kind;
-    return kinds;
-  }();
-  return kKinds;
-}
-
-std::function<FieldPtr()> readShape(std::string_view kind, MapReader& reader) {
-  const auto* const shape = std::find_if(std::begin(kShapes), std::end(kShapes),
-                                         [&](const Shape& s) { return s.kind == kind; });
-  Make make = shape->read(reader);
-  reader.finish();
-  return make;
-}
-
-double positiveLength(MapReader& reader, std::string_view key) {
-  const double length = reader.requireLength(key);
-  if (!(length > 0.0)) {
-    throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be more than 0");
-  }
-  return length;
+std::function<FieldPtr()> readShape(std::string_view kind, const MapReader& reader) {
+  const auto shape = shapes().find(kind);
+  return shape == shapes().end() ? nullptr : shape->second(reader);
 }
 
 std::string inUnitOf(const SceneLoader& loader, double metres) {

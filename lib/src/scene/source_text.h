@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "palpate/scene/document.h"
+#include "palpate/scene/scene_file.h"
 
 namespace palpate {
 

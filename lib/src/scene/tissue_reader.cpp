@@ -3,15 +3,10 @@
 #include <charconv>
 #include <iterator>
 
-#include "scene/messages.h"
 #include "scene/parameter_reader.h"
-#include "scene/shape_reader.h"
-#include "scene/values.h"
 
 namespace palpate {
 namespace {
-
-constexpr double kStickSpeed = 1e-3;  // [m/s] (documented in tools/docs/scene.md)
 
 std::string forceText(double newton) {
   char digits[32];
@@ -20,37 +15,13 @@ std::string forceText(double newton) {
   return std::string(std::begin(digits), end.ptr) + " N";
 }
 
-double positive(MapReader& reader, std::string_view key, Dimension dimension) {
-  (void)reader.require(key);
-  const double value = reader.quantityOr(key, dimension, 0.0);
-  if (!(value > 0.0)) {
-    throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be more than 0");
-  }
-  return value;
-}
-
-/// More than 0 somewhere.
-Parameter positiveParameter(MapReader& reader, std::string_view key, Dimension dimension) {
-  Parameter parameter = requireParameter(reader, key, dimension);
-  if (!(parameter.range().most > 0.0)) {
-    throw reader.errorAt(key, "scene.range", inQuotes(key) + " must be more than 0");
-  }
-  return parameter;
-}
-
-SpringCurve readCurve(const SceneLoader& loader, const Node& node) {
-  MapReader reader(loader, node, "'curve'");
+SpringCurve readCurve(const MapReader& reader) {
   SpringCurve curve;
-  curve.stiffening = readParameter(reader, "stiffening", Dimension::kStiffness2, {});
-  curve.exponent = reader.numberOr("exponent", 1.0);
-  const bool has_reference = reader.optional("reference") != nullptr;
-  if (has_reference) curve.reference = positiveLength(reader, "reference");
-  reader.finish();
-  if (!(curve.exponent >= 1.0 && curve.exponent <= SpringCurve::kHighestExponent)) {
-    throw reader.errorAt("exponent", "scene.range", "'exponent' must be from 1 to 4",
-                         "1 is a straight spring, 1.5 the contact of a ball (Hertz)");
-  }
-  if (curve.exponent != 1.0 && !has_reference) {
+  curve.stiffening = readParameter(reader, "stiffening");
+  curve.exponent = reader.value("exponent");
+  if (reader.has("reference")) {
+    curve.reference = reader.value("reference");
+  } else if (curve.exponent != 1.0) {
     throw reader.errorAt("exponent", "scene.missing_key", "'exponent' needs 'reference'",
                          "the depth at which the wall pushes as a straight spring of its "
                          "'stiffness' would, such as reference: 1 mm");
@@ -58,22 +29,9 @@ SpringCurve readCurve(const SceneLoader& loader, const Node& node) {
   return curve;
 }
 
-Maxwell readMaxwell(const SceneLoader& loader, const Node& node) {
-  MapReader reader(loader, node, "'maxwell'");
-  Maxwell branch;
-  branch.stiffness = positiveParameter(reader, "stiffness", Dimension::kStiffness);
-  branch.time = positive(reader, "time", Dimension::kTime);
-  reader.finish();
-  return branch;
-}
-
-Lattice readLattice(const SceneLoader& loader, const Node& node, double stiffness) {
-  MapReader reader(loader, node, "'lattice'");
-  Lattice lattice;
-  lattice.force = positiveParameter(reader, "force", Dimension::kForce);
-  lattice.wavelength = reader.requirePoint("wavelength");
-  if (reader.optional("origin") != nullptr) lattice.origin = reader.requirePoint("origin");
-  reader.finish();
+Lattice readLattice(const MapReader& reader, double stiffness) {
+  const Lattice lattice{readParameter(reader, "force"), reader.point("wavelength"),
+                        reader.point("origin")};
   const Vec3& waves = lattice.wavelength;
   if (waves.x < 0.0 || waves.y < 0.0 || waves.z < 0.0 || !lattice.hasWaves()) {
     throw reader.errorAt("wavelength", "scene.range",
@@ -97,66 +55,51 @@ Lattice readLattice(const SceneLoader& loader, const Node& node, double stiffnes
   return lattice;
 }
 
-ShaftFriction::Way readWay(const SceneLoader& loader, const Node& node, const std::string& what) {
-  MapReader reader(loader, node, what);
-  const Parameter held = requireParameter(reader, "static", Dimension::kStiffness);
-  const Parameter slides = readParameter(reader, "kinetic", Dimension::kStiffness, held);
-  const Parameter damping = readParameter(reader, "damping", Dimension::kDamping2, {});
-  reader.finish();
-  if (slides.range().most > held.range().most || slides.range().least > held.range().least) {
-    throw reader.errorAt("kinetic", "scene.range", "'kinetic' must not be more than 'static'",
-                         "what slides is held less than what sticks");
-  }
-  return {held, slides, damping};
+ShaftFriction::Way readWay(const MapReader& reader) {
+  const auto [held, slides] = readFriction(reader);
+  return {held, slides, readParameter(reader, "damping")};
 }
 
-ShaftFriction::Lateral readLateral(const SceneLoader& loader, const Node& node) {
-  MapReader reader(loader, node, "'lateral'");
-  ShaftFriction::Lateral lateral;
-  lateral.stiffness = positive(reader, "stiffness", Dimension::kStiffness2);
-  if (reader.optional("strength") != nullptr) {
-    lateral.strength = positive(reader, "strength", Dimension::kStiffness);
-  }
-  reader.finish();
-  return lateral;
-}
-
-ShaftFriction readShaft(const SceneLoader& loader, const Node& node) {
-  MapReader reader(loader, node, "'shaft'");
+ShaftFriction readShaft(const MapReader& reader) {
   ShaftFriction shaft;
-  shaft.stiffness = positive(reader, "stiffness", Dimension::kStiffness2);
-  shaft.stick_speed = reader.quantityOr("stick_speed", Dimension::kVelocity, kStickSpeed);
-  if (shaft.stick_speed < 0.0) {
-    throw reader.errorAt("stick_speed", "scene.range", "'stick_speed' must be 0 or more");
+  shaft.stiffness = reader.value("stiffness");
+  shaft.stick_speed = reader.value("stick_speed");
+  shaft.in = readWay(reader.map("in"));
+  shaft.out = reader.has("out") ? readWay(reader.map("out")) : shaft.in;
+  if (reader.has("lateral")) {
+    const MapReader lateral = reader.map("lateral");
+    shaft.lateral.stiffness = lateral.value("stiffness");
+    if (lateral.has("strength")) shaft.lateral.strength = lateral.value("strength");
   }
-  shaft.in = readWay(loader, reader.require("in"), "'in' of 'shaft'");
-  const Node* out = reader.optional("out");
-  shaft.out = out != nullptr ? readWay(loader, *out, "'out' of 'shaft'") : shaft.in;
-  if (const Node* lateral = reader.optional("lateral")) {
-    shaft.lateral = readLateral(loader, *lateral);
-  }
-  reader.finish();
   return shaft;
 }
 
 }  // namespace
 
-void readTissue(MapReader& reader, Material& material) {
-  const SceneLoader& loader = reader.loader();
+std::pair<Parameter, Parameter> readFriction(const MapReader& reader) {
+  const Parameter held = readParameter(reader, "static");
+  const Parameter slides = readParameter(reader, "kinetic", held);
+  if (slides.range().most > held.range().most || slides.range().least > held.range().least) {
+    throw reader.errorAt("kinetic", "scene.range", "'kinetic' must not be more than 'static'",
+                         "what slides is held less than what sticks");
+  }
+  return {held, slides};
+}
+
+void readTissue(const MapReader& reader, Material& material) {
   const double stiffness = material.stiffness.range().least;
-  if (const Node* curve = reader.optional("curve")) material.curve = readCurve(loader, *curve);
-  if (const Node* branch = reader.optional("maxwell")) {
-    material.maxwell = readMaxwell(loader, *branch);
+  if (reader.has("curve")) material.curve = readCurve(reader.map("curve"));
+  if (reader.has("maxwell")) {
+    const MapReader branch = reader.map("maxwell");
+    material.maxwell = {readParameter(branch, "stiffness"), branch.value("time")};
   }
-  if (const Node* lattice = reader.optional("lattice")) {
-    material.lattice = readLattice(loader, *lattice, stiffness);
-  }
-  material.cutting = readParameter(reader, "cutting", Dimension::kForce, {});
+  if (reader.has("lattice")) material.lattice = readLattice(reader.map("lattice"), stiffness);
+  material.cutting = readParameter(reader, "cutting");
   if (material.cutting.range().most > 0.0 && !(stiffness > 0.0)) {
     throw reader.errorAt("cutting", "scene.range", "a material with 'cutting' needs a 'stiffness'",
                          "with it the tip presses until it cuts; give one, such as 300 N/m");
   }
-  if (const Node* shaft = reader.optional("shaft")) material.shaft = readShaft(loader, *shaft);
+  if (reader.has("shaft")) material.shaft = readShaft(reader.map("shaft"));
 }
 
 }  // namespace palpate

@@ -1,13 +1,18 @@
 #pragma once
 /// What a material says of tissue: curved springs, relaxation, lattices, and needles.
 
+#include <utility>
+
 #include "palpate/materials/material.h"
 #include "palpate/scene/scene_file.h"
 
 namespace palpate {
 
+/// `static` and `kinetic`, which is no more, and `static` if it is not given.
+[[nodiscard]] std::pair<Parameter, Parameter> readFriction(const MapReader& reader);
+
 /// Reads `curve`, `maxwell`, `lattice`, `cutting` and `shaft` of a material whose stiffness is known.
 /// @throws Error (kInput) at the offending value.
-void readTissue(MapReader& reader, Material& material);
+void readTissue(const MapReader& reader, Material& material);
 
 }  // namespace palpate

@@ -1,5 +1,7 @@
 #include "palpate/scene/transitions.h"
 
+#include "palpate/interior/port_machine.h"
+
 namespace palpate {
 
 std::vector<Transition> transitions(const Scene& scene) {

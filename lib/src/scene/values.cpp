@@ -1,6 +1,8 @@
 #include "scene/values.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "scene/messages.h"
@@ -220,12 +222,136 @@ void refuseEmpty(const Document& document, const Node::Entry& entry) {
   }
 }
 
-Mat3 readRotation(const SceneLoader& loader, const Node& node) {
-  MapReader reader(loader, node, "'rotate'");
-  const Vec3 axis = reader.requireDirection("axis");
-  const double degrees = reader.requireNumber("degrees");
-  reader.finish();
-  return rotationAbout(axis, degrees * std::numbers::pi / 180.0);
+Mat3 readRotation(const MapReader& rotate) {
+  return rotationAbout(rotate.point("axis"), rotate.value("degrees") * std::numbers::pi / 180.0);
+}
+
+namespace {
+
+void checkBounds(const Document& document, const Node& node, const KeyWords& key, double value) {
+  const bool is_whole = key.form == KeyWords::Form::kWhole;
+  const double most =
+      is_whole ? std::min<double>(key.most, std::numeric_limits<int>::max()) : key.most;
+  const bool is_within = (key.is_above ? value > key.least : value >= key.least) && value <= most &&
+                         (!is_whole || value == std::floor(value)) && value != key.never;
+  if (is_within) return;
+  const std::string what = key.form == KeyWords::Form::kPoint ? "each length of " : "";
+  throw document.error(
+      node.mark, "scene.range",
+      what + inQuotes(key.name) + " must " +
+          (key.never ? "not be " + boundsText(key).substr(4) : "be " + boundsText(key)),
+      key.remedy);
+}
+
+/// `units: parsec`
+void checkUnit(const Document& document, const Node& node, const std::string& what) {
+  const std::string unit = readText(document, node, what);
+  if (metresPer(unit)) return;
+  throw document.error(node.mark, "scene.unit", inQuotes(unit) + " is no length unit",
+                       "units: " + std::string(unitHelp(Dimension::kLength)));
+}
+
+void checkOne(const SceneLoader& loader, const Node& node, const KeyWords& key,
+              const std::string& what) {
+  const Document& document = loader.document();
+  switch (key.form) {
+    case KeyWords::Form::kText:
+      (void)readText(document, node, what);
+      return;
+    case KeyWords::Form::kNumber:
+    case KeyWords::Form::kWhole:
+    case KeyWords::Form::kQuantity:
+      (void)readValue(loader, node, key);
+      return;
+    case KeyWords::Form::kBoolean:
+      (void)readBool(document, node, what);
+      return;
+    case KeyWords::Form::kChoice:
+      (void)readChoice(document, node, key);
+      return;
+    case KeyWords::Form::kLengthUnit:
+      checkUnit(document, node, what);
+      return;
+    case KeyWords::Form::kPoint:
+    case KeyWords::Form::kDirection:
+      (void)readVector(loader, node, key);
+      return;
+    case KeyWords::Form::kField:
+    case KeyWords::Form::kMap:
+    case KeyWords::Form::kAny:
+      return;
+  }
+}
+
+}  // namespace
+
+double readValue(const SceneLoader& loader, const Node& node, const KeyWords& key) {
+  const Document& document = loader.document();
+  const std::string what =
+      (key.count == KeyWords::Count::kList ? "a component of " : "") + inQuotes(key.name);
+  const double value = key.form != KeyWords::Form::kQuantity ? readNumber(document, node, what)
+                       : key.dimension == Dimension::kLength
+                           ? readLength(loader, node, what)
+                           : readQuantity(document, node, *key.dimension, what);
+  checkBounds(document, node, key, value);
+  return value;
+}
+
+Vec3 readVector(const SceneLoader& loader, const Node& node, const KeyWords& key) {
+  const Document& document = loader.document();
+  const bool is_direction = key.form == KeyWords::Form::kDirection;
+  const auto& items = readList(document, node, inQuotes(key.name), 3, 3);
+  const std::string what =
+      (is_direction ? "a component of " : "a coordinate of ") + inQuotes(key.name);
+  Vec3 vector;
+  for (int i = 0; i < 3; ++i) {
+    const Node& item = items[static_cast<std::size_t>(i)];
+    vector[i] = is_direction ? readNumber(document, item, what) : readLength(loader, item, what);
+  }
+  if (!is_direction) {
+    for (int i = 0; i < 3; ++i) checkBounds(document, node, key, vector[i]);
+  } else if (vector == Vec3(0.0)) {
+    throw document.error(node.mark, "scene.range", inQuotes(key.name) + " has no direction",
+                         "one of its numbers must differ from 0");
+  }
+  return vector;
+}
+
+std::size_t readChoice(const Document& document, const Node& node, const KeyWords& key) {
+  const std::vector<std::string_view> choices(key.choices.begin(), key.choices.end());
+  const std::string what = inQuotes(key.name);
+  if (key.refused_as.empty()) return readChoice(document, node, what, choices);
+  const std::string word = readText(document, node, what);
+  const auto found = std::find(choices.begin(), choices.end(), word);
+  if (found != choices.end()) return static_cast<std::size_t>(found - choices.begin());
+  std::string write = "write ";
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (i > 0) write += i + 1 == choices.size() ? " or " : ", ";
+    write += key.name + ": " + std::string(choices[i]);
+  }
+  throw document.error(node.mark, key.refused_as, what + " is `" + word + "`",
+                       key.remedy.empty() ? write : key.remedy);
+}
+
+void checkValue(const SceneLoader& loader, const Node& node, const KeyWords& key) {
+  const Document& document = loader.document();
+  const std::string what = inQuotes(key.name);
+  const auto is_map_of_places = [&](const Node& value) {
+    return key.varies && value.kind == Node::Kind::kMap;
+  };
+  switch (key.count) {
+    case KeyWords::Count::kNames:
+      requireMap(document, node, what);
+      return;
+    case KeyWords::Count::kOne:
+      if (!is_map_of_places(node)) checkOne(loader, node, key, what);
+      return;
+    case KeyWords::Count::kList:
+      for (const Node& item : readList(document, node, what, key.at_least, key.at_most)) {
+        if (!is_map_of_places(item)) checkOne(loader, item, key, "an item of " + what);
+      }
+      return;
+  }
 }
 
 }  // namespace palpate

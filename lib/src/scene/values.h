@@ -8,6 +8,7 @@
 
 #include "palpate/core/math.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/scene/vocabulary.h"
 
 namespace palpate {
 
@@ -25,7 +26,18 @@ namespace palpate {
                                 const std::string& what);
 
 /// `{axis, degrees}`: a turn about an axis through the origin, by the right hand.
-[[nodiscard]] Mat3 readRotation(const SceneLoader& loader, const Node& node);
+[[nodiscard]] Mat3 readRotation(const MapReader& rotate);
+
+/// The number at `node` for `key`, within its bounds; in SI.
+[[nodiscard]] double readValue(const SceneLoader& loader, const Node& node, const KeyWords& key);
+/// Three lengths, or three numbers that are a direction.
+[[nodiscard]] Vec3 readVector(const SceneLoader& loader, const Node& node, const KeyWords& key);
+/// Index of the choice that is written.
+[[nodiscard]] std::size_t readChoice(const Document& document, const Node& node,
+                                     const KeyWords& key);
+/// @throws Error unless what is written at `node` is of the type of `key` and within its bounds. What stands
+/// in fields, maps and lists of these is for their own readers.
+void checkValue(const SceneLoader& loader, const Node& node, const KeyWords& key);
 
 /// The items of a list of at least `least` and, unless 0, at most `most` items, none of them empty.
 [[nodiscard]] const std::vector<Node>& readList(const Document& document, const Node& node,

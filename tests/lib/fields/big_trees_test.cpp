@@ -10,7 +10,6 @@
 #include "palpate/fields/csg.h"
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "support/alloc_guard.h"
 #include "support/field_contract.h"
 

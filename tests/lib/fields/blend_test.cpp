@@ -1,12 +1,8 @@
-#include "palpate/fields/blend.h"
-
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
-#include "palpate/fields/modify.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "support/field_contract.h"
 
 namespace palpate::test {

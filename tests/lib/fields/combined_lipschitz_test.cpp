@@ -6,12 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "palpate/fields/blend.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/implicit.h"
-#include "palpate/fields/modify.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 
 namespace palpate::test {
 namespace {

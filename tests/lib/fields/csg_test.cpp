@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "support/field_contract.h"
 
 namespace palpate::test {

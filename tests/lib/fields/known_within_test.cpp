@@ -1,7 +1,5 @@
 // A field of which only a box is kept.
 
-#include "palpate/fields/known_within.h"
-
 #include <gtest/gtest.h>
 
 #include "palpate/fields/csg.h"

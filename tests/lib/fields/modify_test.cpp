@@ -1,12 +1,9 @@
-#include "palpate/fields/modify.h"
-
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "support/field_contract.h"
 
 namespace palpate::test {

@@ -1,8 +1,7 @@
-#include "palpate/fields/transform.h"
-
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
+#include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "support/field_contract.h"
 

@@ -10,6 +10,7 @@
 
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
+#include "palpate/interior/port_machine.h"
 #include "support/field_contract.h"
 
 namespace palpate::test {

@@ -10,7 +10,6 @@
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "support/field_contract.h"
 
 namespace palpate::test {

@@ -5,7 +5,6 @@
 #include "lib/oracle/shapes.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "support/oracle/closed_forms.h"
 
 namespace palpate::testing {

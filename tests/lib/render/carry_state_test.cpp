@@ -1,12 +1,11 @@
 // A probe in a scene that is edited under it.
 
-#include "palpate/render/carry_state.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "lib/render/drive.h"
+#include "palpate/render/haptic_renderer.h"
 #include "support/field_contract.h"
 #include "support/stored_trace.h"
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lib/render/drive.h"
+#include "palpate/render/tick_state.h"
 #include "support/random_hand.h"
 
 namespace palpate::test {
@@ -53,7 +54,9 @@ class LoopHand {
   /// [J] done on the hand since it was at `start`, by the trapezium rule, beyond counted sources ...
   [[nodiscard]] double work() const { return work_ - renderer_->sourceWork(); }
   /// [J] ... and what tissue about a needle holds, which the hand gave to it: it gives that back over many laps.
-  [[nodiscard]] double inTissue() const { return renderer_->state().needle.stored(); }
+  [[nodiscard]] double inTissue() const {
+    return TickState::of(renderer_->state()).needle.stored();
+  }
 
  private:
   static constexpr double kStepped = 0.01;  // [N]

@@ -7,7 +7,6 @@
 #include "lib/render/hard_judge.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "support/oracle/closed_forms.h"
 
 namespace palpate::test {

@@ -7,7 +7,6 @@
 
 #include "lib/render/hard_judge.h"
 #include "lib/render/shake.h"
-#include "palpate/fields/blend.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "lib/render/hard_judge.h"
+#include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 
 namespace palpate::test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "lib/render/hard_judge.h"
 #include "lib/render/opaque.h"
-#include "palpate/fields/modify.h"
+#include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 
 namespace palpate::test {

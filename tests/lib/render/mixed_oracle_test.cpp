@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lib/render/drive.h"
+#include "palpate/render/tick_state.h"
 #include "support/random_hand.h"
 
 namespace palpate::test {
@@ -145,7 +146,7 @@ TEST(MixedOracle, WhatIsStoredIsTheLeastThatCanBeHoweverDeepThePressIs) {
     const TickResult out = drive.walk(hand, 20e-6);
     ASSERT_TRUE(out.contact) << i;
     const std::vector<Rest> rests = restsOf(out.proxy, hand);
-    const double stored = drive.renderer().state().source.stored.energy;
+    const double stored = TickState::of(drive.renderer().state()).source.stored.energy;
     several += rests.size() > 1 ? 1 : 0;
     deep += glm::length(hand - out.proxy) > kBars[1].radius ? 1 : 0;
     EXPECT_NEAR(stored, rests[0].energy, 1e-5 * rests[0].energy) << i << ", " << rests.size();
@@ -169,14 +170,14 @@ TEST(MixedOracle, WhereACreaseIsReachedDeepNothingStepsAndNothingIsGiven) {
   double jump = 0.0;
   double slope = 0.0;
   TickResult last = drive.last();
-  double stored = drive.renderer().state().source.stored.energy;
+  double stored = TickState::of(drive.renderer().state()).source.stored.energy;
   double work = 0.0;
   const auto go = [&](const Vec3& to) {
     const Vec3 from = drive.hip();
     const TickResult now = drive.to(to);
     const double done = 0.5 * glm::dot(now.force + last.force, to - from);
     work += done;
-    const double there = drive.renderer().state().source.stored.energy;
+    const double there = TickState::of(drive.renderer().state()).source.stored.energy;
     jump = std::max(jump, std::fabs(there - stored + done));
     const double change = glm::length(now.force - last.force);
     if (glm::length(now.proxy - edge) < 1e-8 && glm::length(last.proxy - edge) > 1e-8)

@@ -142,7 +142,7 @@ InParts inParts(const ScenePtr& scene, const RendererState& before, const Vec3& 
   EXPECT_TRUE(fine->setState(before));
   const Vec3 hand = before.hip;
   const Vec3 first = fine->update({hand, Vec3(0.0)}).force;
-  const double stored = fine->state().source.stored.energy;
+  const double stored = TickState::of(fine->state()).source.stored.energy;
   Vec3 last = first;
   for (int i = 1; i <= kParts; ++i) {
     const Vec3 force = fine->update({glm::mix(hand, next, 1.0 * i / kParts), Vec3(0.0)}).force;
@@ -151,7 +151,7 @@ InParts inParts(const ScenePtr& scene, const RendererState& before, const Vec3& 
     last = force;
   }
   out.change = glm::length(last - first);
-  out.lost = stored - fine->state().source.stored.energy;
+  out.lost = stored - TickState::of(fine->state()).source.stored.energy;
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include <cstdlib>
 
 #include "lib/render/drive.h"
+#include "palpate/interior/port_machine.h"
 #include "support/alloc_guard.h"
 #include "support/field_contract.h"
 #include "support/test_maps.h"

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "lib/render/drive.h"
+#include "palpate/render/tick_state.h"
 #include "support/alloc_guard.h"
 #include "support/field_contract.h"
 
@@ -99,7 +100,7 @@ TEST_P(RendererStates, OfANewRendererAreThoseAfterReset) {
   std::vector<TickResult> felt;
   for (const HipState& hip : path) felt.push_back(renderer->update(hip));
   renderer->reset();
-  EXPECT_FALSE(renderer->state().has_begun);
+  EXPECT_FALSE(TickState::of(renderer->state()).has_begun);
   for (std::size_t i = 0; i < path.size(); ++i) {
     ASSERT_TRUE(isSame(renderer->update(path[i]).force, felt[i].force)) << i;
   }
@@ -130,24 +131,25 @@ TEST(RendererState, ThatIsNotOfTheSceneIsRefusedAndNothingChanges) {
   const auto slab = makeRenderer(sceneNamed("slab"));
   for (const HipState& hip : wander(*sceneNamed("slab"), 1, 100)) (void)slab->update(hip);
   for (const HipState& hip : wander(*sceneNamed("composite_tube"), 1, 100)) (void)tube->update(hip);
-  const RendererState before = slab->state();
+  const TickState before = TickState::of(slab->state());
   EXPECT_FALSE(slab->setState(tube->state())) << "other leaves";
-  RendererState bad = before;
+  TickState bad = before;
   bad.place.region = 400;
-  EXPECT_FALSE(slab->setState(bad));
+  EXPECT_FALSE(slab->setState(bad.sealed()));
   bad = before;
   bad.place.point.y = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(slab->setState(bad));
+  EXPECT_FALSE(slab->setState(bad.sealed()));
   bad = before;
   bad.pressed = 1000;
-  EXPECT_FALSE(slab->setState(bad));
+  EXPECT_FALSE(slab->setState(bad.sealed()));
   bad = before;
   bad.relaxation.material = -2;
-  EXPECT_FALSE(slab->setState(bad));
-  EXPECT_EQ(slab->state().place.region, before.place.region);
-  EXPECT_EQ(slab->state().place.point, before.place.point);
-  EXPECT_EQ(slab->state().pressed, before.pressed);
-  EXPECT_TRUE(slab->setState(before));
+  EXPECT_FALSE(slab->setState(bad.sealed()));
+  const TickState after = TickState::of(slab->state());
+  EXPECT_EQ(after.place.region, before.place.region);
+  EXPECT_EQ(after.place.point, before.place.point);
+  EXPECT_EQ(after.pressed, before.pressed);
+  EXPECT_TRUE(slab->setState(before.sealed()));
 }
 
 }  // namespace

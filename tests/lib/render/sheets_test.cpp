@@ -5,6 +5,7 @@
 
 #include "lib/render/drive.h"
 #include "lib/scene/problems.h"
+#include "palpate/interior/port_machine.h"
 
 namespace palpate::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "lib/render/drive.h"
-#include "palpate/fields/modify.h"
+#include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "support/random_hand.h"
 #include "support/random_scene.h"

@@ -8,6 +8,7 @@
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/scene/scene.h"
 #include "support/error_of.h"
 #include "support/field_contract.h"

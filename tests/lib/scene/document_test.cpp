@@ -1,10 +1,9 @@
-#include "palpate/scene/document.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "lib/scene/problems.h"
+#include "palpate/scene/scene_file.h"
 #include "support/temp_file.h"
 
 namespace palpate {

@@ -7,12 +7,9 @@
 #include <random>
 
 #include "lib/scene/problems.h"
-#include "palpate/fields/blend.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/implicit.h"
-#include "palpate/fields/modify.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
 #include "palpate/scene/units.h"
 
 namespace palpate {

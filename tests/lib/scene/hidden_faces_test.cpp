@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "lib/scene/problems.h"
+#include "palpate/interior/partition.h"
 #include "palpate/scene/scene.h"
 
 namespace palpate {

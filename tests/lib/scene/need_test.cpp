@@ -7,8 +7,9 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
-#include "palpate/fields/known_within.h"
+#include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
+#include "palpate/interior/port_machine.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene_file.h"
 

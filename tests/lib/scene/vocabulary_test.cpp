@@ -91,6 +91,7 @@ const std::vector<Probe>& probes() {
       {"sheet", "sheets:\n  - {name: s, on: " + ball + ", @}\n"},
       {"port", layers + "ports:\n  - {name: p, between: [a, outside], @}\n"},
       {"device", "device: {scale: 1, @}\n"},
+      {"start", "start: {region: outside, @}\n"},
       {"paper", "paper: {alpha: 1, @}\n"},
       {"passed_before", layers +
                             "ports:\n  - {name: q, between: [a, outside]}\n  - {name: p, between: "

@@ -4,7 +4,6 @@
 
 #include "bench/contact_case.h"
 #include "palpate/fields/csg.h"
-#include "palpate/fields/modify.h"
 #include "palpate/fields/primitives.h"
 
 namespace palpate::tools {

@@ -2,6 +2,7 @@
 /// The machine as reports name it.
 
 #include "bench/machine.h"
+#include "palpate/version.h"
 #include "report.h"
 
 namespace palpate::tools {
@@ -10,7 +11,7 @@ namespace palpate::tools {
   return {{"cpu", machine.cpu},           {"threads", machine.threads},
           {"system", machine.system},     {"compiler", machine.compiler},
           {"build", machine.build_type},  {"optimised", machine.optimised},
-          {"clock_ns", machine.clock_ns}, {"palpate", PALPATE_VERSION}};
+          {"clock_ns", machine.clock_ns}, {"palpate", PALPATE_VERSION_STRING}};
 }
 
 [[nodiscard]] inline std::string machineText(const Machine& machine) {

@@ -143,8 +143,15 @@ void defineBench(CLI::App& app, Invocation& invocation) {
 void defineHelp(CLI::App& app, Invocation& invocation) {
   auto& o = choose<HelpOptions>(invocation);
   app.add_option("verb", o.verb);
-  addFlag(app, "Options", "--markdown", o.markdown,
-          "everything, as the reference in tools/README.md");
+  app.add_option("key", o.key);
+  const char* g = "Options";
+  addFlag(app, g, "--markdown", o.markdown,
+          "everything, as the reference in tools/README.md; of a map of scene files the table of "
+          "its keys");
+  addFlag(app, g, "--schema", o.schema, "scene: the JSON Schema of scene files");
+  addFlag(app, g, "--man", o.man, "the manual page palpate(1)");
+  add(app, g, "--completion", "SHELL", o.completion, "what completes words in bash, zsh or fish")
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
 }
 
 }  // namespace
@@ -276,13 +283,23 @@ Verb benchVerb() {
 
 Verb helpVerb() {
   return {"help",
-          "Print help, also as the reference manual",
-          "palpate help touch",
-          "palpate help [VERB] [--markdown]",
-          "",
+          "Print help: all about a verb or a key of scene files, the manual, completion",
+          "palpate help scene opens_at",
+          "palpate help [VERB | scene [KEY]] [OPTIONS]",
+          "KEY is a key of scene files, a map of keys such as material, or both: port.rate.\n"
+          "Completion is switched on by `source <(palpate help --completion bash)`, or for good by "
+          "a file:\n"
+          "bash ~/.local/share/bash-completion/completions/palpate, zsh _palpate in a folder of "
+          "fpath,\n"
+          "fish ~/.config/fish/completions/palpate.fish.",
           {},
           defineHelp,
-          [](const Invocation&) {}};
+          [](const Invocation& i) {
+            const auto& o = chosen<HelpOptions>(i);
+            if (o.verb == "scene") return;
+            if (!o.key.empty()) throw usageError("'" + o.key + "' is one argument too many", "");
+            if (o.schema) throw usageError("--schema is about scene files", "palpate help scene");
+          }};
 }
 
 }  // namespace palpate::tools

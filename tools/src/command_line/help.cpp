@@ -1,6 +1,9 @@
 #include <memory>
 
 #include "command_line/verb.h"
+#include "command_line/verb_words.h"
+#include "palpate/vdb/register.h"
+#include "vocabulary/documents.h"
 
 namespace palpate::tools {
 namespace {
@@ -76,6 +79,16 @@ std::string overview() {
 }
 
 std::string helpText(const HelpOptions& options) {
+  if (options.verb == "scene") {
+    const VocabularyPtr vocabulary = vdb::vocabulary();
+    if (options.schema) return schemaText(*vocabulary);
+    return options.markdown ? keyTable(*vocabulary, options.key)
+                            : sceneHelp(*vocabulary, options.key);
+  }
+  if (options.man) return manPage(verbWords());
+  if (!options.completion.empty()) {
+    return completion(options.completion, verbWords(), sceneWords(*vdb::vocabulary()));
+  }
   if (options.markdown) return markdown();
   if (options.verb.empty()) return overview();
   const Verb* verb = findVerb(options.verb);

@@ -2,6 +2,7 @@
 
 #include "command_line/verb.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/version.h"
 
 namespace palpate::tools {
 namespace {
@@ -108,7 +109,7 @@ Invocation parseCommandLine(const std::vector<std::string>& arguments) {
     return invocation;
   }
   if (word == "--version") {
-    invocation.print = "palpate " PALPATE_VERSION "\n";
+    invocation.print = "palpate " PALPATE_VERSION_STRING "\n";
     return invocation;
   }
   const Verb* verb = findVerb(word);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "palpate/interior/port_machine.h"
 #include "picture/palette.h"
 #include "picture/parallel_rows.h"
 #include "picture/section.h"

@@ -4,6 +4,7 @@
 #include <array>
 #include <unordered_map>
 
+#include "palpate/interior/port_machine.h"
 #include "picture/parallel_rows.h"
 
 namespace palpate::tools {

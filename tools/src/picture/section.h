@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "palpate/core/progress.h"
+#include "palpate/interior/partition.h"
 #include "palpate/scene/scene.h"
 #include "picture/canvas.h"
 #include "picture/cut_plane.h"

@@ -1,5 +1,3 @@
-#include "palpate/vdb/hybrid.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +13,7 @@
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
-#include "palpate/fields/transform.h"
+#include "palpate/vdb/bake.h"
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_error.h"
 #include "palpate/vdb/grid_memory.h"

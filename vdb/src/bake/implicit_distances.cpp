@@ -31,12 +31,16 @@ constexpr int kLooks = 3;
 constexpr double kSamePlace = 2e-3;
 /// [voxels] A neighbor's point this near to the one that two in a row lead to is one of a smooth surface.
 constexpr double kInLine = 1.0;
+/// [voxels] Of a voxel that no one asks for: out of every band, so that it tells its neighbors nothing.
+constexpr double kOutOfReach = 1e6;
 
 class Spreading {
  public:
-  Spreading(const Field& field, const ImplicitSurface& surface, const BakePlan& plan,
-            const Progress& progress)
+  Spreading(const Field& field, const ImplicitSurface& surface, const BakeDomain& domain,
+            const BakePlan& plan, const Progress& progress)
       : closest_(field, plan.voxel),
+        source_(field, domain.box, domain.is_cut, plan.band),
+        is_cut_(domain.is_cut),
         plan_(plan),
         progress_(progress),
         sided_(surface.leaves.size()),
@@ -93,8 +97,17 @@ class Spreading {
                                 const Coord& step) const noexcept {
     const DistanceLeaf& leaf = leaves_.all()[b];
     const Around around(leaves_, leaf);
+    const bool is_inside = isInside(b, leaf, around, place, step);
+    const double wall = source_.boxDistance(leaf.positionOf(place) * plan_.voxel) / plan_.voxel;
+    // Leaves reach out of the band of the whole.
+    if (wall > plan_.half_width + kBeyond) return {place, start, kOutOfReach, is_inside};
+    const double nearest = glm::length(start);
+    // Beyond a face that cuts, the wall tells unless the surface is farther off than that; so a point of the surface that is
+    // nearer does, and leads its neighbors as well.
+    const bool is_walled = is_cut_ && wall > 0.0 && (is_inside || nearest <= wall);
+    if (is_walled) return {place, start, nearest, is_inside};
     const Vec3 foot = footOf(leaf, around, place, start, step);
-    return {place, foot, glm::length(foot), isInside(b, leaf, around, place, step)};
+    return {place, foot, glm::length(foot), is_inside};
   }
 
   /// For the closest point of a voxel, from that of a neighbor, `start`, on. `step` leads to the neighbor.
@@ -132,6 +145,8 @@ class Spreading {
   }
 
   ClosestPoint closest_;
+  BandSource source_;
+  bool is_cut_;
   const BakePlan& plan_;
   const Progress& progress_;
   std::vector<VoxelBits> sided_;  ///< by leaf: voxels whose side is known from the field's value
@@ -179,7 +194,7 @@ openvdb::FloatGrid::Ptr implicitDistances(const Field& field, const BakeDomain& 
   requireNear(voxelRange(around, plan, options.name), plan, options);
   const ImplicitSurface surface = findSurface(field, around, plan, options, progress);
   requireMemory(kScratch * areaOf(surface, domain, plan), 1.0, plan);
-  Spreading spreading(field, surface, plan, progress);
+  Spreading spreading(field, surface, domain, plan, progress);
   const DistanceLeaves& leaves = spreading.run();
   report(progress, "bake: distances", 0.95);
   openvdb::FloatGrid::Ptr grid = emptyGrid(plan, options);

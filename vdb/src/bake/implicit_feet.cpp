@@ -68,11 +68,13 @@ struct Found {
 
 class SurfaceFinder {
  public:
-  SurfaceFinder(const Field& field, const BandSource& source, const BakePlan& plan)
+  SurfaceFinder(const Field& field, const BandSource& source, const Box3& domain,
+                const BakePlan& plan)
       : field_(field),
         source_(source),
         closest_(field, plan.voxel),
         voxel_(plan.voxel),
+        asked_(domain.grownBy(kSided * plan.voxel)),
         lipschitz_(field.lipschitz()),
         domain_(field.lipschitzDomain()) {}
 
@@ -100,6 +102,8 @@ class SurfaceFinder {
       if (std::fabs(values[n]) > steepest * reach) continue;
       const std::size_t low = (n >> 4 << 7) + ((n >> 2 & 3U) << 4) + ((n & 3U) << 1);
       for (const std::size_t step : {0U, 1U, 8U, 9U, 64U, 65U, 72U, 73U}) {
+        // The leaf may reach out of what is asked for.
+        if (!asked_.contains(first + voxel_ * vec(offsetOf(low + step)))) continue;
         places[count++] = static_cast<std::uint16_t>(low + step);
       }
     }
@@ -200,6 +204,7 @@ class SurfaceFinder {
   const BandSource& source_;
   ClosestPoint closest_;
   double voxel_;
+  Box3 asked_;  ///< [m] of voxels
   double lipschitz_;
   Box3 domain_;
 };
@@ -214,7 +219,7 @@ ImplicitSurface findSurface(const Field& field, const Box3& domain, const BakePl
   CubeSearch search(source, plan, 2.0 * kSided, kMargin);
   search.run(voxelRange(domain, plan, options.name), progress);
   const std::vector<CubeSearch::Cube>& cubes = search.cubes();
-  const SurfaceFinder finder(field, source, plan);
+  const SurfaceFinder finder(field, source, domain, plan);
   std::vector<Found> found(cubes.size());
   std::atomic<bool> broken = false;
   parallelWithProgress(cubes.size(), progress, "bake: the surface", 0.0, 0.3, [&](std::size_t i) {

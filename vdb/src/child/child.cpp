@@ -16,7 +16,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/core/stop.h"
-#include "palpate/vdb/library_limits.h"
+#include "palpate/vdb/image.h"
 
 namespace palpate::vdb {
 namespace {

@@ -9,7 +9,7 @@
 #include "bake/bake_plan.h"
 #include "brick/brick_field.h"
 #include "grid/survey.h"
-#include "palpate/fields/known_within.h"
+#include "palpate/fields/csg.h"
 #include "palpate/vdb/grid_memory.h"
 #include "palpate/vdb/openvdb_access.h"
 

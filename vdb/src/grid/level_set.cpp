@@ -9,6 +9,7 @@
 
 #include "palpate/scene/units.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/version.h"
 
 namespace palpate::vdb {
 namespace {
@@ -128,7 +129,7 @@ LevelSet makeLevelSet(openvdb::FloatGrid::Ptr grid, const std::string& length_un
   if (grid->getCreator().empty()) grid->setCreator("palpate");
   grid->insertMeta("length_unit", openvdb::StringMetadata(length_unit));
   if (!(*grid)["palpate:version"]) {
-    grid->insertMeta("palpate:version", openvdb::StringMetadata(PALPATE_VERSION));
+    grid->insertMeta("palpate:version", openvdb::StringMetadata(PALPATE_VERSION_STRING));
   }
   for (const auto& [key, value] : metadata) {
     grid->insertMeta(key, openvdb::StringMetadata(value));

@@ -1,10 +1,9 @@
-#include "palpate/vdb/surface_mesh.h"
-
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <cmath>
 
 #include "palpate/core/error.h"
+#include "palpate/vdb/mesh.h"
 #include "palpate/vdb/openvdb_access.h"
 
 namespace palpate::vdb {

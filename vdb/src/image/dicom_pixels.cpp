@@ -9,7 +9,7 @@
 #include "image/dicom_unpack.h"
 #include "palpate/core/error.h"
 #include "palpate/core/stop.h"
-#include "palpate/vdb/library_limits.h"
+#include "palpate/vdb/image.h"
 
 namespace palpate::vdb {
 namespace {

@@ -11,6 +11,7 @@
 #include "grid/vdb_file.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/version.h"
 
 namespace palpate::vdb {
 namespace {
@@ -210,7 +211,7 @@ openvdb::FloatGrid::Ptr toOpenVdb(const NamedMaterialGrid& named) {
   note(kUnit, named.unit);
   const MaterialMap::Range range = named.grid->range();
   note("range", exactText(range.least) + " to " + exactText(range.most) + " " + named.unit);
-  note("palpate:version", PALPATE_VERSION);
+  note("palpate:version", PALPATE_VERSION_STRING);
   if (const Quantisation& how = named.grid->info().quantisation; how.bits != 32) {
     note(kQuantised, std::to_string(how.bits) + " bits, least " + exactText(how.least) + ", step " +
                          exactText(how.step) + ", error " + exactText(how.error));

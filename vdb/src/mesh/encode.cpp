@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "palpate/core/error.h"
-#include "palpate/vdb/surface_mesh.h"
+#include "palpate/vdb/mesh.h"
 
 namespace palpate::vdb {
 namespace {

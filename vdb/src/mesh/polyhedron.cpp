@@ -1,5 +1,3 @@
-#include "palpate/vdb/polyhedron.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,6 +12,7 @@
 #include "palpate/core/error.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
+#include "palpate/vdb/mesh.h"
 
 namespace palpate::vdb {
 namespace {

@@ -15,7 +15,7 @@
 #include "mesh/builder.h"
 #include "mesh/gltf_guard.h"
 #include "palpate/core/error.h"
-#include "palpate/vdb/library_limits.h"
+#include "palpate/vdb/image.h"
 
 namespace palpate::vdb {
 namespace {

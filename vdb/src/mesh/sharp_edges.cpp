@@ -1,5 +1,3 @@
-#include "palpate/vdb/sharp_edges.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +8,7 @@
 #include "mesh/edge_cells.h"
 #include "palpate/core/error.h"
 #include "palpate/core/stop.h"
+#include "palpate/vdb/mesh.h"
 
 namespace palpate::vdb {
 namespace {

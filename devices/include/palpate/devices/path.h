@@ -1,15 +1,17 @@
 #pragma once
-/// Hand paths: where the HIP is, tick by tick.
+/// Hand paths: where the HIP is, tick by tick; and a device that follows one.
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "palpate/core/math.h"
 #include "palpate/devices/device.h"
+#include "palpate/export.h"
 
 namespace palpate::devices {
 
@@ -57,7 +59,8 @@ enum class PathRules : std::uint8_t {
 /// By PathRules::kAsRecorded `nan`, `inf` and `-inf` are let in, and any time.
 /// @throws Error (kInput) with file:line:column and the offending line for anything else; codes
 /// path.unreadable, .empty, .header, .comment, .blank, .columns, .number, .not_finite, .time.
-[[nodiscard]] RecordedPath readPath(const std::string& file, PathRules rules = PathRules::kSound);
+[[nodiscard]] PALPATE_EXPORT RecordedPath readPath(const std::string& file,
+                                                   PathRules rules = PathRules::kSound);
 
 // Generators. Row i is at t = i / rate, exactly; the first row is the start and the last row the end
 // point, exactly, at the first sample not before the end of the motion. In between, positions are the
@@ -76,8 +79,10 @@ struct PressPath {
   double speed = 0.05;          ///< [m/s] above 0
   double hold = 0.2;            ///< [s] 0 or more
 };
-[[nodiscard]] PathFormula formula(const PressPath& shape, double rate);  ///< rate [Hz]
-[[nodiscard]] Path generate(const PressPath& shape, double rate);        ///< all of its rows
+[[nodiscard]] PALPATE_EXPORT PathFormula formula(const PressPath& shape,
+                                                 double rate);  ///< rate [Hz]
+[[nodiscard]] PALPATE_EXPORT Path generate(const PressPath& shape,
+                                           double rate);  ///< all of its rows
 
 /// Straight stroke between two points at constant speed, there and back `repeats` times: at the
 /// distance |((speed t + L) mod 2 L) - L| from `from`, L = |to - from|. Begins and ends at `from`.
@@ -87,8 +92,9 @@ struct StrokePath {
   double speed = 0.1;        ///< [m/s] above 0
   int repeats = 1;           ///< 1 or more
 };
-[[nodiscard]] PathFormula formula(const StrokePath& shape, double rate);
-[[nodiscard]] Path generate(const StrokePath& shape, double rate);  ///< all of its rows
+[[nodiscard]] PALPATE_EXPORT PathFormula formula(const StrokePath& shape, double rate);
+[[nodiscard]] PALPATE_EXPORT Path generate(const StrokePath& shape,
+                                           double rate);  ///< all of its rows
 
 /// Sinusoidal taps along `normal`: from `clearance` above to `depth` below, `taps` times: height
 /// (clearance - depth) / 2 + (clearance + depth) / 2 cos(2 pi frequency t).
@@ -100,8 +106,8 @@ struct TapPath {
   double frequency = 4.0;       ///< [Hz] above 0
   int taps = 4;                 ///< 1 or more
 };
-[[nodiscard]] PathFormula formula(const TapPath& shape, double rate);
-[[nodiscard]] Path generate(const TapPath& shape, double rate);  ///< all of its rows
+[[nodiscard]] PALPATE_EXPORT PathFormula formula(const TapPath& shape, double rate);
+[[nodiscard]] PALPATE_EXPORT Path generate(const TapPath& shape, double rate);  ///< all of its rows
 
 /// Straight through way points at constant speed, there and (if asked) back: at the arc length
 /// speed t of the polyline. Ends at the last point, or at the first if `back`. With hold >= 1 / rate a
@@ -112,7 +118,48 @@ struct InsertPath {
   double hold = 0.1;         ///< [s] at the far end, 0 or more
   bool back = true;
 };
-[[nodiscard]] PathFormula formula(const InsertPath& shape, double rate);
-[[nodiscard]] Path generate(const InsertPath& shape, double rate);  ///< all of its rows
+[[nodiscard]] PALPATE_EXPORT PathFormula formula(const InsertPath& shape, double rate);
+[[nodiscard]] PALPATE_EXPORT Path generate(const InsertPath& shape,
+                                           double rate);  ///< all of its rows
+
+/// One read() is one row of the path. The velocity is the backward difference of the rows (0 at the
+/// first, and where the time does not rise), the time is the row's. After the last row read() answers kEnd and leaves its argument alone.
+/// While it is not open, read() and write() answer kDisconnected. open() starts the path anew.
+/// Its maximum force is kMaxForce, its workspace the box of the path.
+class PALPATE_EXPORT VirtualDevice final : public Device {
+ public:
+  /// [N] A hundred times what desktop devices hold, so that closed forms hold in every sane scene, and
+  /// yet a limit, as every device has one.
+  static constexpr double kMaxForce = 1000.0;
+
+  /// @throws Error (kInput) for an empty path or times that do not rise, unless `rules` let them.
+  /// Positions are taken as they are, so that a NaN from a broken sensor can be played.
+  explicit VirtualDevice(Path path, DeviceFrame frame = DeviceFrame::kWorld,
+                         PathRules rules = PathRules::kSound);
+
+  /// The same of a path that is computed row by row: it takes no memory.
+  explicit VirtualDevice(PathFormula formula, DeviceFrame frame = DeviceFrame::kWorld);
+
+  void open() override;
+  void close() noexcept override;
+  [[nodiscard]] const DeviceInfo& info() const noexcept override;
+  [[nodiscard]] DeviceStatus read(DeviceState& out) noexcept override;
+  [[nodiscard]] DeviceStatus write(const Vec3& force) noexcept override;
+
+  /// The last force written [N]; zero before the first and after close().
+  [[nodiscard]] const Vec3& lastForce() const noexcept { return force_; }
+
+ private:
+  void describe(DeviceFrame frame);
+  [[nodiscard]] std::size_t size() const noexcept;
+  [[nodiscard]] PathPoint pointAt(std::size_t row) const;
+
+  DeviceInfo info_;
+  Path path_;  ///< empty: formula_ says it
+  std::optional<PathFormula> formula_;
+  std::size_t next_ = 0;
+  bool is_open_ = false;
+  Vec3 force_{0.0, 0.0, 0.0};
+};
 
 }  // namespace palpate::devices

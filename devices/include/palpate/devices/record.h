@@ -1,14 +1,95 @@
 #pragma once
-/// TickRecord: a tick as it stands in a record's file, for NumPy and for replay().
+/// Records of ticks. A Recorder takes what goes into each tick and what comes out, and hands it on in a thread of its own.
+/// In files, the ticks are an array that NumPy loads, and beside it are the states from which a replay can begin. A replay
+/// feeds the readings to a session again, and compares what comes out.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <type_traits>
+#include <vector>
 
-#include "palpate/devices/recorder.h"
+#include "palpate/core/error.h"
+#include "palpate/devices/session.h"
+#include "palpate/export.h"
 
 namespace palpate::devices {
+
+/// One tick with all that it took in and all that came out.
+struct RecordedTick {
+  SessionTick tick;
+  ServoTurn turn;
+  std::uint32_t entry_count = 0;  ///< regions that the proxy came into
+  bool has_state = false;         ///< RecordSink::addState() has brought what was before it
+};
+
+/// Who uses the ticks: a file, a summary, a plot. Called in the recorder's thread only, where it may allocate, wait and throw:
+/// who throws gets no more of that record, the others do.
+class PALPATE_EXPORT RecordSink {
+ public:
+  virtual ~RecordSink() = default;
+  RecordSink(const RecordSink&) = delete;
+  RecordSink& operator=(const RecordSink&) = delete;
+
+  /// Ticks come in order; SessionTick::number leaves a gap where some were dropped. `entries` are valid during the call.
+  virtual void add(const RecordedTick& tick, std::span<const RegionEntry> entries) = 0;
+  /// What was before the tick that comes next.
+  virtual void addState(const SessionState&) {}
+  /// Now and then, and at the end: what came so far should outlive the process.
+  virtual void flush() {}
+
+ protected:
+  RecordSink() = default;
+};
+
+struct RecorderSettings {
+  std::size_t ticks = 16384;  ///< room for so many that were not handed on yet: 16 s at 1 kHz, 6 MB
+  std::size_t entries = 4096;
+  std::size_t states = 4;
+  /// When the ring is full, add() waits until there is room instead of dropping the tick: for loops that run as fast as they can.
+  bool waits = false;
+  double flush = 0.25;  ///< [s] at most between two flushes
+  /// Called at once, in the recorder's thread, when a sink has failed.
+  std::function<void(const Error&)> on_failure = {};
+};
+
+struct RecorderReport {
+  std::uint64_t ticks = 0;            ///< handed on
+  std::uint64_t dropped = 0;          ///< ticks for which there was no room
+  std::uint64_t dropped_entries = 0;  ///< of ticks that were handed on
+  std::uint64_t dropped_states = 0;
+  std::vector<Error> failures = {};  ///< of sinks
+};
+
+/// Memory is fixed at construction. One thread calls add(), one finish().
+class PALPATE_EXPORT Recorder {
+ public:
+  /// Starts the thread. The sinks must outlive the recorder.
+  /// @throws Error (kOperation) if it cannot be started.
+  explicit Recorder(std::vector<RecordSink*> sinks, const RecorderSettings& settings = {});
+  ~Recorder();  ///< finish()es
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Real-time safe unless RecorderSettings::waits: never allocates, locks, throws or blocks, whatever the sinks do. `state`: what
+  /// was before the tick, if it is to be kept.
+  void add(const SessionTick& tick, const ServoTurn& turn, std::span<const RegionEntry> entries,
+           const SessionState* state = nullptr) noexcept;
+
+  /// Hands on what is left, flushes, and ends the thread; again: the same report.
+  const RecorderReport& finish();
+
+ private:
+  class Work;
+  std::unique_ptr<Work> work_;
+};
 
 /// One row: the bytes of the file, little-endian and without gaps. Frames: `device`: of the readings, which DeviceInfo::frame
 /// says; `world`: the scene's.
@@ -48,9 +129,140 @@ struct TickRecord {
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 static_assert(sizeof(TickRecord) == 288, "the file has no gaps between the columns");
 
-[[nodiscard]] TickRecord rowOf(const RecordedTick& recorded) noexcept;
+[[nodiscard]] PALPATE_EXPORT TickRecord rowOf(const RecordedTick& recorded) noexcept;
 
 /// What the device said at that tick.
-[[nodiscard]] DeviceState readingOf(const TickRecord& row) noexcept;
+[[nodiscard]] PALPATE_EXPORT DeviceState readingOf(const TickRecord& row) noexcept;
+
+/// A file that is written from front to back, and of which something at the front is written anew.
+class PALPATE_EXPORT OutFile {
+ public:
+  /// Opens `file`, which is emptied; `name`: for messages. @throws Error (kOperation, record.write).
+  OutFile(const std::string& file, std::string name);
+  ~OutFile();
+  OutFile(const OutFile&) = delete;
+  OutFile& operator=(const OutFile&) = delete;
+
+  /// At the end. Where not all of it can be written, as many whole pieces of `piece` bytes stay as there is room for.
+  /// @throws Error (kOperation, record.write) with what the system says: a full disk, for one.
+  void append(const void* bytes, std::size_t count, std::size_t piece);
+  void overwrite(std::uint64_t at, std::string_view bytes);  ///< @throws Error as append()
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+ private:
+  [[nodiscard]] Error failure() const;  ///< of the last system call
+
+  std::string name_;
+  int number_ = -1;
+  std::uint64_t size_ = 0;
+};
+
+/// Ticks as a structured array (.npy, format 1.0), whose columns are those of TickRecord. Rows are written a megabyte at a time or at
+/// flush(), and the number of rows after them: whatever ends the process, what the header promises is there, whole.
+class PALPATE_EXPORT RowFile final : public RecordSink {
+ public:
+  /// @throws Error as OutFile.
+  RowFile(const std::string& file, std::string name);
+  void add(const RecordedTick& tick, std::span<const RegionEntry> entries) override;
+  void flush() override;
+
+ private:
+  OutFile out_;
+  std::vector<TickRecord> rows_;  ///< that were not written yet
+};
+
+/// States of a session, for the build that wrote them.
+class PALPATE_EXPORT StateFile final : public RecordSink {
+ public:
+  /// `about`: what the record was made with; only a record about which the same is known has these states.
+  /// @throws Error as OutFile.
+  StateFile(const std::string& file, std::string name, std::string_view about);
+  void add(const RecordedTick&, std::span<const RegionEntry>) override {}
+  void addState(const SessionState& state) override;
+
+ private:
+  OutFile out_;
+};
+
+/// Reads what RowFile wrote, front to back, in constant memory.
+class PALPATE_EXPORT RecordReader {
+ public:
+  /// @throws Error (kInput): record.unreadable, record.magic (not a .npy file), record.columns (not those of a record).
+  explicit RecordReader(std::string file);
+
+  /// Rows that are there, whole.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  /// Rows that the header promises; more than size(): the file was cut.
+  [[nodiscard]] std::uint64_t promised() const noexcept { return promised_; }
+  /// The next row is the first whose number is not below `tick`.
+  void seek(std::uint64_t tick);
+  /// The next row; false at the end. @throws Error (kInput, record.unreadable).
+  [[nodiscard]] bool next(TickRecord& row);
+
+ private:
+  /// @throws Error (kInput, record.unreadable).
+  void read(std::uint64_t at, TickRecord& row);
+
+  std::string file_;
+  std::ifstream in_;
+  std::uint64_t in_at_ = 0;  ///< the row that `in_` stands before
+  std::uint64_t size_ = 0;
+  std::uint64_t promised_ = 0;
+  std::uint64_t at_ = 0;  ///< the next row
+};
+
+/// Reads what StateFile wrote.
+class PALPATE_EXPORT StateReader {
+ public:
+  /// @throws Error (kInput): record.unreadable; record.states for a file that does not hold states, or holds those of another build or another
+  /// record.
+  StateReader(std::string file, std::string_view about);
+
+  [[nodiscard]] std::size_t size() const noexcept { return ticks_.size(); }
+  /// The ticks before which there is a state, in order.
+  [[nodiscard]] const std::vector<std::uint64_t>& ticks() const noexcept { return ticks_; }
+  /// The latest state that is whole and no later than `tick`; empty if there is none.
+  [[nodiscard]] std::optional<SessionState> before(std::uint64_t tick);
+
+ private:
+  std::string file_;
+  std::ifstream in_;
+  std::vector<std::uint64_t> ticks_;
+};
+
+/// What states depend on: the version, the compiler, the size and the layout. States of one are refused by another.
+[[nodiscard]] PALPATE_EXPORT std::string stateBuild();
+
+/// A checksum, FNV-1a of 64 bits: against damage, not against deceit.
+[[nodiscard]] PALPATE_EXPORT std::uint64_t checksum(
+    std::string_view bytes, std::uint64_t begin = 0xcbf29ce484222325U) noexcept;
+
+struct ReplayReport {
+  std::uint64_t ticks = 0;      ///< that the session made
+  std::uint64_t compared = 0;   ///< of these
+  std::uint64_t different = 0;  ///< of these: not the same bit for bit
+  struct First {
+    std::uint64_t tick = 0;
+    double t = 0.0;    ///< [s]
+    std::string what;  ///< columns of TickRecord, ", " between
+  };
+  std::optional<First> first;  ///< the first tick that is different
+  double most_force =
+      0.0;  ///< [N] largest difference of forces after their limits; infinite: one is not finite
+  std::uint64_t most_force_tick = 0;
+  double most_proxy = 0.0;  ///< [m] the same of proxies
+  std::uint64_t most_proxy_tick = 0;
+  std::uint64_t regions = 0;         ///< ticks that end in another region
+  std::uint64_t contacts = 0;        ///< ticks of which one touches and the other does not
+  std::optional<std::uint64_t> gap;  ///< a tick that the record has not: the replay ended before it
+};
+
+/// Feeds the record's readings to `session`, from its next row on, and compares each tick that is not below `from`. The record's next row must
+/// be the tick that the session is to make: 0, or that of the state which it resumed from. Ends at the record's end, before a
+/// gap, or when `stops` says so.
+/// @throws Error (kInput) as RecordReader::next().
+[[nodiscard]] PALPATE_EXPORT ReplayReport replay(RecordReader& record, Session& session,
+                                                 DeviceFrame frame, std::uint64_t from = 0,
+                                                 const std::function<bool()>& stops = {});
 
 }  // namespace palpate::devices

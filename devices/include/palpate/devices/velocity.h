@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "palpate/core/math.h"
+#include "palpate/export.h"
 
 namespace palpate::devices {
 
@@ -35,7 +36,7 @@ struct Velocity {
 };
 
 /// Readings go in, a velocity comes out. A value type; add() never allocates, locks or throws.
-class VelocityTracker {
+class PALPATE_EXPORT VelocityTracker {
  public:
   /// Readings that are kept: a window that holds more of them is that much shorter.
   static constexpr std::size_t kCapacity = 64;

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "palpate/export.h"
+
 namespace palpate {
 
 /// Whose fault it was. The command maps these to its exit codes.
@@ -28,10 +30,10 @@ struct Problem {
 };
 
 /// "file:line:column: error: message" with the excerpt, a caret and the hint on lines of their own.
-[[nodiscard]] std::string formatProblem(const Problem& problem);
+[[nodiscard]] PALPATE_EXPORT std::string formatProblem(const Problem& problem);
 
 /// The one exception type that the library throws on purpose.
-class Error : public std::runtime_error {
+class PALPATE_EXPORT Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, Problem problem)
       : std::runtime_error(formatProblem(problem)), kind_(kind), problem_(std::move(problem)) {}

@@ -8,6 +8,8 @@
 #include <glm/vec3.hpp>
 #include <limits>
 
+#include "palpate/export.h"
+
 namespace palpate {
 
 using Vec3 =
@@ -33,7 +35,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 }
 
 /// Axis-aligned box [m]. A default box is empty; a box may be infinite in any direction.
-struct Box3 {
+struct PALPATE_EXPORT Box3 {
   Vec3 lo{kInfinity, kInfinity, kInfinity};     ///< [m] lower corner
   Vec3 hi{-kInfinity, -kInfinity, -kInfinity};  ///< [m] upper corner
 
@@ -65,7 +67,7 @@ struct Box3 {
 };
 
 /// Rigid motion x -> rotation * x + translation. `X_AB` maps coordinates in B to coordinates in A.
-struct Pose {
+struct PALPATE_EXPORT Pose {
   Mat3 rotation{1.0};
   Vec3 translation{0.0, 0.0, 0.0};  ///< [m]
 
@@ -82,6 +84,6 @@ struct Pose {
 };
 
 /// Rotation about `axis` (any length but zero) by `radians`.
-[[nodiscard]] Mat3 rotationAbout(const Vec3& axis, double radians) noexcept;
+[[nodiscard]] PALPATE_EXPORT Mat3 rotationAbout(const Vec3& axis, double radians) noexcept;
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "palpate/core/math.h"
+#include "palpate/export.h"
 
 namespace palpate {
 
@@ -68,7 +69,7 @@ struct FieldStructure {
 ///
 /// Thread safety: immutable after construction; any number of threads may sample one field.
 /// Real time:     the const noexcept members never allocate, lock, throw or block.
-class Field {
+class PALPATE_EXPORT Field {
  public:
   virtual ~Field() = default;
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "palpate/export.h"
 #include "palpate/fields/field.h"
 
 namespace palpate {
@@ -15,7 +16,7 @@ namespace palpate {
 /// does not vanish on the surface. The tip and the dimple, where the true surface has cusps of zero
 /// width, are rounded within about a hundredth of the half width. The Lipschitz bound holds
 /// everywhere. (G. Taubin, "Distance approximations for rasterizing implicit curves", 1994.)
-[[nodiscard]] FieldPtr heart(const Vec3& center, double width);
+[[nodiscard]] PALPATE_EXPORT FieldPtr heart(const Vec3& center, double width);
 
 /// Coefficients of a polynomial of second degree in x, y, z [m] about its center. They may be given
 /// in any common scale: the field is divided by its steepest slope in lipschitzDomain().
@@ -29,16 +30,18 @@ struct QuadricCoefficients {
 /// The points where the polynomial is negative. lipschitz() is 1; it holds in the bounds grown by
 /// their diagonal if the solid is an ellipsoid, else in the cube that reaches `reach` [m] from
 /// `center` to each side. Throws if it can tell that there is no surface.
-[[nodiscard]] FieldPtr quadric(const Vec3& center, const QuadricCoefficients& coefficients,
-                               double reach = 0.5);
+[[nodiscard]] PALPATE_EXPORT FieldPtr quadric(const Vec3& center,
+                                              const QuadricCoefficients& coefficients,
+                                              double reach = 0.5);
 
 /// One half of space, as parted by the gyroid sin X cos Y + sin Y cos Z + sin Z cos X = 0 with
 /// X = 2 pi x / period. Endless: intersect it with a solid. lipschitz() is 1, everywhere.
-[[nodiscard]] FieldPtr gyroid(const Vec3& center, double period);
+[[nodiscard]] PALPATE_EXPORT FieldPtr gyroid(const Vec3& center, double period);
 
 /// A wall along the gyroid, `thickness` across to within an eighth; at most a fifth of `period`. The
 /// intersection of two smooth fields, its two faces.
-[[nodiscard]] FieldPtr gyroidWall(const Vec3& center, double period, double thickness);
+[[nodiscard]] PALPATE_EXPORT FieldPtr gyroidWall(const Vec3& center, double period,
+                                                 double thickness);
 
 /// How the influence of a metaball falls off with q = distance / radius; each is 1 at its center.
 enum class FallOff {
@@ -58,7 +61,8 @@ struct Metaball {
 /// it has a gradient everywhere, and its first two derivatives are continuous where the surface touches the box. The Lipschitz
 /// bound holds everywhere. Of many balls only those that reach the point are asked; a Gaussian ends
 /// where all of them together are below rounding. Throws if the balls cannot reach `iso`.
-[[nodiscard]] FieldPtr metaballs(std::vector<Metaball> balls, FallOff fall_off, double iso);
+[[nodiscard]] PALPATE_EXPORT FieldPtr metaballs(std::vector<Metaball> balls, FallOff fall_off,
+                                                double iso);
 
 /// A function of one's own; its gradient and Hessian are taken numerically.
 struct UserFunction {
@@ -70,6 +74,6 @@ struct UserFunction {
   Box3 lipschitz_domain = Box3::everything();  ///< [m]
   Metric metric = Metric::kImplicit;
 };
-[[nodiscard]] FieldPtr userField(UserFunction function);
+[[nodiscard]] PALPATE_EXPORT FieldPtr userField(UserFunction function);
 
 }  // namespace palpate

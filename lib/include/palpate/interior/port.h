@@ -1,16 +1,21 @@
 #pragma once
-/// Ports: the openings in walls and sheets, compiled for the loop.
+/// Regions and ports as the loop knows them: by number. Ports are the openings in walls and sheets.
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "palpate/interior/partition.h"
-#include "palpate/materials/parameter.h"
+#include "palpate/export.h"
+#include "palpate/materials/material.h"
 
 namespace palpate {
 
+using RegionId =
+    std::uint16_t;  ///< 0 is `outside`; layer i (from 0, outermost first) is region i + 1
+using LeafId = std::uint16_t;  ///< of a smooth field whose surface parts regions
 using PortId = std::uint16_t;
+
+inline constexpr RegionId kOutside = 0;
 
 /// Which way a port lets the proxy through. `in` is from the first region named to the second.
 enum class PortDirection : std::uint8_t { kBoth, kIn, kOut };
@@ -40,7 +45,7 @@ struct RuptureRate {
 };
 
 /// One opening. Regions may be several on each side (globs). Immutable after set-up.
-struct Port {
+struct PALPATE_EXPORT Port {
   std::string name;
   std::vector<RegionId> from;  ///< the first of `between`, resolved; empty in a sheet
   std::vector<RegionId> to;    ///< the second of `between`, resolved; empty in a sheet

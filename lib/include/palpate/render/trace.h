@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "palpate/export.h"
 #include "palpate/render/haptic_renderer.h"
 
 namespace palpate {
@@ -62,7 +63,7 @@ class Trace {
 };
 
 /// Trace rows as CSV, one at a time: header() and then add() for each gives what traceCsv() gives. Names come from the scene.
-class TraceText {
+class PALPATE_EXPORT TraceText {
  public:
   explicit TraceText(const Scene& scene);
   /// `regions` by RegionId, `ports` by PortId.
@@ -81,12 +82,13 @@ class TraceText {
 /// t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_ns
 /// with shortest numbers that read back exactly (`nan`, `inf` for a broken sensor's position). A name
 /// with a comma, quote or line end is quoted as RFC 4180 says. Names come from the scene.
-[[nodiscard]] std::string traceCsv(std::span<const TraceRow> rows, const Scene& scene);
+[[nodiscard]] PALPATE_EXPORT std::string traceCsv(std::span<const TraceRow> rows,
+                                                  const Scene& scene);
 
 /// The same with names given: `regions` by RegionId, `ports` by PortId.
 /// @throws Error (kInput) for an id that has no name.
-[[nodiscard]] std::string traceCsv(std::span<const TraceRow> rows,
-                                   std::span<const std::string> regions,
-                                   std::span<const std::string> ports);
+[[nodiscard]] PALPATE_EXPORT std::string traceCsv(std::span<const TraceRow> rows,
+                                                  std::span<const std::string> regions,
+                                                  std::span<const std::string> ports);
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 /// What an author says about a scene: plain data, from a scene file or from code, not yet checked
 /// against geometry. compile() turns it into a Scene.
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -9,14 +10,87 @@
 #include <utility>
 #include <vector>
 
-#include "palpate/contact/paper_parameters.h"
+#include "palpate/core/math.h"
 #include "palpate/core/progress.h"
+#include "palpate/export.h"
 #include "palpate/fields/field.h"
 #include "palpate/interior/port.h"
 #include "palpate/materials/material.h"
-#include "palpate/scene/device_mapping.h"
 
 namespace palpate {
+
+/// World = offset + scale * rotation * device, in [m]; forces go back by the rotation, `force` times as large. So the hand does
+/// force / scale times the work that is done in the world, and a stiffness is felt scale * force times as stiff.
+/// The workspace is what the device's tip can be brought to.
+struct DeviceMapping {
+  Vec3 offset{0.0, 0.0, 0.0};  ///< [m, world] where the device's origin is
+  Mat3 rotation{1.0};          ///< [-] of the device's axes into the world's; proper
+  double scale = 1.0;          ///< [-] world per device, more than 0
+  double force = 1.0;          ///< [-] force at the hand per force in the world, more than 0
+  bool clutch = false;  ///< the hand can let go and take hold elsewhere: all the world is in reach
+  Box3 workspace{Vec3(-kInfinity), Vec3(kInfinity)};  ///< [m, device] around it
+
+  [[nodiscard]] Vec3 toWorld(const Vec3& device) const noexcept {
+    return offset + scale * (rotation * device);
+  }
+  /// [m/s, world] of [m/s, device]
+  [[nodiscard]] Vec3 velocityToWorld(const Vec3& device) const noexcept {
+    return scale * (rotation * device);
+  }
+  /// [N, device] at the hand, of [N, world]
+  [[nodiscard]] Vec3 forceToDevice(const Vec3& world) const noexcept {
+    return force * (glm::transpose(rotation) * world);
+  }
+  /// [-] Work at the hand per work in the world.
+  [[nodiscard]] double workAtHand() const noexcept { return force / scale; }
+  /// [-] Stiffness at the hand per stiffness in the world.
+  [[nodiscard]] double stiffnessAtHand() const noexcept { return force * scale; }
+
+  /// [m, world] A box around what a hand can get to; everything if the workspace is not bounded or there is a clutch.
+  [[nodiscard]] Box3 reach() const noexcept {
+    if (clutch || !workspace.isBounded()) return {Vec3(-kInfinity), Vec3(kInfinity)};
+    return Pose{scale * rotation, offset}.apply(workspace);
+  }
+};
+
+/// How the paper's algorithms nudge the contact point back onto the surface (its alpha term).
+enum class AlphaForm : std::uint8_t {
+  kByMetric,  ///< kLength for distances (exact and bound fields), kNewton for implicit ones
+  kLength,    ///< alpha S N / |N|, as printed: its strength depends on the field's scale
+  kNewton,    ///< alpha S N / (N . N)
+};
+
+/// What is felt at the wall from within (row 3 of Table I).
+enum class PaperInterior : std::uint8_t {
+  kTogether,  ///< wall and content at once, as the text says
+  kWall,      ///< the wall alone, as the table says
+};
+
+/// What is not given is as the scene has it, or else as written here.
+struct PaperParameters {
+  static constexpr int kMaxHalvings = 48;
+  static constexpr double kAlpha = 1.0;
+
+  /// [m] epsilon: so near to the surface the contact point counts as on it; more than 0. By default 1 um, but at
+  /// most a ten-thousandth of the field's feature size. |S| is held against it times the slope of S.
+  std::optional<double> epsilon = {};
+  std::optional<int> max_halvings =
+      {};  ///< MAX_N: of the segment in which the surface is searched; 1 to 1000
+  std::optional<double> alpha = {};  ///< [-] share of the nudge; 0 or more
+  std::optional<AlphaForm> alpha_form = {};
+  std::optional<PaperInterior> interior = {};
+
+  /// These, and of `others` what these do not give.
+  [[nodiscard]] PaperParameters over(const PaperParameters& others) const {
+    PaperParameters out = *this;
+    if (!out.epsilon) out.epsilon = others.epsilon;
+    if (!out.max_halvings) out.max_halvings = others.max_halvings;
+    if (!out.alpha) out.alpha = others.alpha;
+    if (!out.alpha_form) out.alpha_form = others.alpha_form;
+    if (!out.interior) out.interior = others.interior;
+    return out;
+  }
+};
 
 /// Where in a file something was said, so that later errors can point at it. Line 0: nowhere.
 struct SourcePlace {
@@ -27,12 +101,12 @@ struct SourcePlace {
 };
 
 /// An error about something said at `place`.
-[[nodiscard]] Error errorAt(const SourcePlace& place, std::string code, std::string message,
-                            std::string hint = {});
+[[nodiscard]] PALPATE_EXPORT Error errorAt(const SourcePlace& place, std::string code,
+                                           std::string message, std::string hint = {});
 
 /// A field that is ready, or that costs work (a mesh, a scan) and is made when first asked for, so that
 /// what a scene does not need is never made. Set-up thread only.
-class FieldSource {
+class PALPATE_EXPORT FieldSource {
  public:
   using Maker = std::function<FieldPtr(const Progress&)>;
 

@@ -7,12 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "palpate/interior/partition.h"
-#include "palpate/interior/port_machine.h"
+#include "palpate/export.h"
+#include "palpate/interior/port.h"
 #include "palpate/materials/material.h"
 #include "palpate/scene/description.h"
 
 namespace palpate {
+
+class Partition;
+class Passages;
 
 /// Whether there is a sequence of transitions, from the start and with the ports in their order, that leads
 /// somewhere. Of the shapes it looks at what touches what: a region in two parts counts as one.
@@ -40,13 +43,15 @@ struct Region {
   bool has_seed = false;     ///< false: no point of it was found (an empty or dropped region)
 };
 
-class Scene {
+class PALPATE_EXPORT Scene {
  public:
-  [[nodiscard]] const Partition& partition() const noexcept { return partition_; }
+  ~Scene();
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
   [[nodiscard]] std::span<const Region> regions() const noexcept { return regions_; }
   [[nodiscard]] std::span<const Material> materials() const noexcept { return materials_; }
-  [[nodiscard]] const Passages& passages() const noexcept { return passages_; }
-  [[nodiscard]] std::span<const Port> ports() const noexcept { return passages_.ports(); }
+  [[nodiscard]] std::span<const Port> ports() const noexcept { return ports_; }
   /// Whether the port can ever be passed.
   [[nodiscard]] Reach reachOf(PortId port) const { return reach_of_port_[port]; }
   /// True if the two regions were found to have a wall (or an absent one) between them.
@@ -71,16 +76,21 @@ class Scene {
   /// Box around all bounded layers and sheets [m]; empty if there is none.
   [[nodiscard]] Box3 bounds() const;
 
+  /// Space cut into regions, and what stands between them, for the library's own renderers.
+  [[nodiscard]] const Partition& partition() const noexcept { return *partition_; }
+  [[nodiscard]] const Passages& passages() const noexcept { return *passages_; }
+
  private:
   friend class SceneCompiler;
-  Scene(Partition partition) : partition_(std::move(partition)) {}
+  explicit Scene(Partition partition);
 
-  Partition partition_;
+  std::unique_ptr<const Partition> partition_;  ///< never null, as passages_
   std::vector<Region> regions_;
   std::vector<Material> materials_;
-  Passages passages_;
-  Box3 sheet_bounds_;        ///< [m]
-  std::vector<bool> touch_;  ///< [a * regions + b], symmetric
+  std::unique_ptr<const Passages> passages_;
+  std::span<const Port> ports_;  ///< of passages_
+  Box3 sheet_bounds_;            ///< [m]
+  std::vector<bool> touch_;      ///< [a * regions + b], symmetric
   std::vector<Reach> reach_of_port_;
   PaperParameters paper_;
   std::vector<NamedField> fields_;
@@ -107,7 +117,8 @@ enum class Purpose {
 /// (`composite`). A probe that presses no deeper than that feels the whole; further off a cut shape goes on as it is at the cut.
 /// @throws Error (kInput) pointing at the offending place: unknown layer or material, a port between
 /// regions that do not touch, `on` not a leaf of either region, a cycle in `after`, ...
-[[nodiscard]] ScenePtr compile(const SceneDescription& description, const Progress& progress = {},
-                               Purpose purpose = Purpose::kTouch);
+[[nodiscard]] PALPATE_EXPORT ScenePtr compile(const SceneDescription& description,
+                                              const Progress& progress = {},
+                                              Purpose purpose = Purpose::kTouch);
 
 }  // namespace palpate

@@ -1,6 +1,10 @@
 #pragma once
-/// Scene files: YAML -> SceneDescription, strictly. What reads other files (meshes,
+/// Scene files: YAML -> Document -> SceneDescription, strictly. What reads other files (meshes,
 /// grids, scans) is not known here; it comes through a SceneRegistry that the vdb module fills.
+///
+/// A Document is a strict YAML subset as an immutable tree with places. No yaml-cpp type is visible here.
+/// Refused with file:line:column: duplicate keys, aliases and anchors, tags, more than one document,
+/// keys that are not plain text, nesting deeper than 64. JSON is a subset and is read too.
 
 #include <functional>
 #include <map>
@@ -11,21 +15,89 @@
 #include <string_view>
 #include <vector>
 
-#include "palpate/materials/parameter.h"
-#include "palpate/scene/document.h"
+#include "palpate/export.h"
+#include "palpate/materials/material.h"
+#include "palpate/scene/description.h"
 #include "palpate/scene/units.h"
 
 namespace palpate {
 
+struct Mark {
+  int line = 0;    ///< from 1
+  int column = 0;  ///< from 1
+};
+
+struct PALPATE_EXPORT Node {
+  enum class Kind { kNull, kScalar, kSequence, kMap };
+  struct Entry;
+
+  Kind kind = Kind::kNull;
+  Mark mark = {};
+  std::string text = {};  ///< scalar: as written
+  bool quoted = false;    ///< scalar: "..." or '...': text, never a number
+  std::vector<Node> items = {};
+  std::vector<Entry> entries;  ///< map: in the order of the file (no "= {}": Entry is incomplete)
+
+  [[nodiscard]] const Node* find(std::string_view key) const noexcept;
+};
+
+struct Node::Entry {
+  std::string key;
+  Mark key_mark;
+  Node value;
+};
+
+struct PALPATE_EXPORT Document {
+  std::string file;                ///< as the user named it, for messages
+  std::vector<std::string> lines;  ///< of the source, for excerpts
+  Node root;
+
+  [[nodiscard]] SourcePlace place(Mark mark) const;
+  [[nodiscard]] Error error(Mark mark, std::string code, std::string message,
+                            std::string hint = {}) const;
+};
+
+/// @throws Error (kInput).
+[[nodiscard]] PALPATE_EXPORT std::shared_ptr<const Document> parseDocument(std::string_view text,
+                                                                           std::string file);
+[[nodiscard]] PALPATE_EXPORT std::shared_ptr<const Document> readDocument(const std::string& path);
+
 class SceneLoader;
 
-/// A map node being read: every key must be asked for, and what is left over is an error with a
-/// suggestion (finish()). All getters throw Error (kInput) at the offending place.
-class MapReader {
+class Vocabulary;  // vocabulary.h: maps, keys, and what may stand at them, as data
+struct MapWords;
+struct KeyWords;
+using VocabularyPtr = std::shared_ptr<const Vocabulary>;
+
+/// What lib itself reads. The top level is the map "scene"; the kinds of fields are the keys of "field_kind".
+[[nodiscard]] PALPATE_EXPORT const VocabularyPtr& sceneVocabulary();
+
+/// A map node being read. A map that the vocabulary declares is checked whole when it is opened: unknown
+/// and missing keys, types and bounds; value(), text() and their like then only fetch what is there, or the
+/// declared default. In any other map every key must be asked for, by require(), optional() or one of the
+/// getters with a fallback, and what is left over is an error with a suggestion (finish()).
+/// All throw Error (kInput) at the offending place.
+class PALPATE_EXPORT MapReader {
  public:
   MapReader(const SceneLoader& loader, const Node& map, std::string what);
+  /// `declared`: the vocabulary's name of the map; read as one that it does not declare if it has no keys for it.
+  MapReader(const SceneLoader& loader, const Node& map, std::string what,
+            std::string_view declared);
 
   [[nodiscard]] bool has(std::string_view key) const noexcept;
+  /// What is written at a declared key; null if it is not there.
+  [[nodiscard]] const Node* find(std::string_view key) const noexcept { return map_->find(key); }
+  /// A number, or a quantity in SI; not given: the declared default, or 0 where that is in words.
+  [[nodiscard]] double value(std::string_view key) const;
+  [[nodiscard]] std::string text(std::string_view key) const;  ///< "" without a default
+  [[nodiscard]] int choice(std::string_view key) const;        ///< -1 without a default
+  [[nodiscard]] bool flag(std::string_view key) const;
+  [[nodiscard]] Vec3 point(std::string_view key) const;  ///< [m], or a direction
+  /// The map at `key`, opened; `key` must be there.
+  [[nodiscard]] MapReader map(std::string_view key) const;
+  /// The maps of a list of them.
+  [[nodiscard]] std::vector<MapReader> maps(std::string_view key) const;
+
   [[nodiscard]] const Node& require(std::string_view key);
   [[nodiscard]] const Node* optional(std::string_view key);
   [[nodiscard]] std::string requireText(std::string_view key);
@@ -36,9 +108,7 @@ class MapReader {
   /// A bare number in the file's length unit, or a text with a unit; in [m].
   [[nodiscard]] double requireLength(std::string_view key);
   [[nodiscard]] double lengthOr(std::string_view key, double fallback_metres);
-  [[nodiscard]] Vec3 requirePoint(std::string_view key);      ///< lengths, in [m]
-  [[nodiscard]] Vec3 requireDirection(std::string_view key);  ///< unitless, not zero
-  [[nodiscard]] double quantityOr(std::string_view key, Dimension dimension, double fallback);
+  [[nodiscard]] Vec3 requirePoint(std::string_view key);  ///< lengths, in [m]
   /// Error at the key's value (or at the map if the key is not there).
   [[nodiscard]] Error errorAt(std::string_view key, std::string code, std::string message,
                               std::string hint = {}) const;
@@ -47,6 +117,8 @@ class MapReader {
 
   [[nodiscard]] const SceneLoader& loader() const noexcept { return *loader_; }
   [[nodiscard]] const Node& node() const noexcept { return *map_; }
+  /// What the vocabulary says of a key of this map, which it must declare.
+  [[nodiscard]] const KeyWords& words(std::string_view key) const;
 
  private:
   [[nodiscard]] Error unknown(const Node::Entry& entry,
@@ -55,6 +127,7 @@ class MapReader {
   const SceneLoader* loader_;
   const Node* map_;
   std::string what_;
+  const MapWords* words_ = nullptr;
   std::vector<std::string> known_;
 };
 
@@ -66,10 +139,11 @@ struct ParameterKind {
 };
 
 /// What a loader extension needs to know of the file that is being read.
-class SceneLoader {
+class PALPATE_EXPORT SceneLoader {
  public:
   virtual ~SceneLoader() = default;
   [[nodiscard]] virtual const Document& document() const noexcept = 0;
+  [[nodiscard]] virtual const Vocabulary& vocabulary() const { return *sceneVocabulary(); }
   [[nodiscard]] virtual double metresPerUnit() const noexcept = 0;
   [[nodiscard]] virtual std::string lengthUnit() const = 0;
   /// A path written in the scene, made relative to the scene file's folder.
@@ -82,7 +156,8 @@ class SceneLoader {
   [[nodiscard]] virtual MaterialMapPtr map(const Node& node, const ParameterKind& of) const = 0;
 };
 
-/// Kinds that other modules add. Names are the YAML keys.
+/// Kinds that other modules add: what makes them, by their YAML keys, and what may be written of them. A kind that
+/// the vocabulary does not declare asks for its keys itself.
 struct SceneRegistry {
   /// `fields: {x: {mesh: {...}}}`: makes the source of a field; must not do heavy work itself.
   using FieldKind = std::function<FieldSourcePtr(MapReader&)>;
@@ -113,6 +188,7 @@ struct SceneRegistry {
   /// it is asked for.
   using GridChooser = std::function<FieldSourcePtr(const FieldSourcePtr&, const GridChoice&)>;
 
+  VocabularyPtr vocabulary = sceneVocabulary();
   std::map<std::string, FieldKind> fields = {};
   std::map<std::string, LayerKind> layers = {};
   std::map<std::string, ParameterMapKind> maps = {};
@@ -121,16 +197,18 @@ struct SceneRegistry {
 };
 
 /// @throws Error (kInput) for the first problem found, with file:line:column, the line and a remedy.
-[[nodiscard]] SceneDescription parseScene(std::string_view text, const std::string& file,
-                                          const SceneRegistry& registry = {});
-[[nodiscard]] SceneDescription readScene(const std::string& path,
-                                         const SceneRegistry& registry = {});
+[[nodiscard]] PALPATE_EXPORT SceneDescription parseScene(std::string_view text,
+                                                         const std::string& file,
+                                                         const SceneRegistry& registry = {});
+[[nodiscard]] PALPATE_EXPORT SceneDescription readScene(const std::string& path,
+                                                        const SceneRegistry& registry = {});
 
 /// The closest of `candidates` to `word` if it is close enough to be a slip; else empty.
-[[nodiscard]] std::string suggest(std::string_view word,
-                                  std::span<const std::string_view> candidates);
+[[nodiscard]] PALPATE_EXPORT std::string suggest(std::string_view word,
+                                                 std::span<const std::string_view> candidates);
 
 /// True if `name` matches `glob` ('*' any run, '?' any one; everything else literal).
-[[nodiscard]] bool matchesGlob(std::string_view glob, std::string_view name) noexcept;
+[[nodiscard]] PALPATE_EXPORT bool matchesGlob(std::string_view glob,
+                                              std::string_view name) noexcept;
 
 }  // namespace palpate

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string_view>
 
+#include "palpate/export.h"
+
 namespace palpate {
 
 enum class Dimension {
@@ -19,7 +21,7 @@ enum class Dimension {
 };
 
 /// Metres in one `unit` ("mm", "cm", "m", "um", "in"); nothing if the unit is not known.
-[[nodiscard]] std::optional<double> metresPer(std::string_view unit) noexcept;
+[[nodiscard]] PALPATE_EXPORT std::optional<double> metresPer(std::string_view unit) noexcept;
 
 /// What became of a quantity's text.
 struct Quantity {
@@ -30,12 +32,13 @@ struct Quantity {
 };
 
 /// "1500 N/m", "1.5 N/mm", "4 N.s/m", "0.5 Ns/m", "2.8 N", "3 mm", "30 um".
-[[nodiscard]] Quantity parseQuantity(std::string_view text, Dimension dimension) noexcept;
+[[nodiscard]] PALPATE_EXPORT Quantity parseQuantity(std::string_view text,
+                                                    Dimension dimension) noexcept;
 
 /// Plain decimal number, the whole text, finite, no octal, hex or inf; else nothing.
-[[nodiscard]] std::optional<double> parseNumber(std::string_view text) noexcept;
+[[nodiscard]] PALPATE_EXPORT std::optional<double> parseNumber(std::string_view text) noexcept;
 
 /// The SI unit and some that are understood, for messages: "N/m (also N/mm, N/cm, kN/m)".
-[[nodiscard]] std::string_view unitHelp(Dimension dimension) noexcept;
+[[nodiscard]] PALPATE_EXPORT std::string_view unitHelp(Dimension dimension) noexcept;
 
 }  // namespace palpate

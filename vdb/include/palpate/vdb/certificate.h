@@ -8,6 +8,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/core/progress.h"
+#include "palpate/export.h"
 #include "palpate/vdb/level_set.h"
 
 namespace palpate::vdb {
@@ -46,14 +47,15 @@ inline constexpr double kMostRough = 0.5;
 
 /// 16 hexadecimal digits of all that a sample can depend on: voxels, band, place and unit. Names and other metadata do not
 /// count. Not a signature: it tells damage, not forgery.
-[[nodiscard]] std::string contentHash(const LevelSet& grid);
+[[nodiscard]] PALPATE_EXPORT std::string contentHash(const LevelSet& grid);
 
 /// The certificate in the metadata (`palpate:certificate`), if it is of `sampler` and of this very content.
-[[nodiscard]] std::optional<BandCertificate> storedCertificate(const LevelSet& grid,
-                                                               Sampler sampler = Sampler::kCubic);
+[[nodiscard]] PALPATE_EXPORT std::optional<BandCertificate> storedCertificate(
+    const LevelSet& grid, Sampler sampler = Sampler::kCubic);
 
 /// The same grid, with the certificate in its metadata.
-[[nodiscard]] LevelSet withCertificate(const LevelSet& grid, const BandCertificate& certificate);
+[[nodiscard]] PALPATE_EXPORT LevelSet withCertificate(const LevelSet& grid,
+                                                      const BandCertificate& certificate);
 
 struct CertifyOptions {
   Sampler sampler = Sampler::kCubic;
@@ -80,11 +82,13 @@ struct CertifiedGrid {
 /// vdb.no_surface: samples are outside everywhere; vdb.torn: the band has a hole or inside and outside meet; vdb.jump: voxels by the surface differ by more than their
 /// distance; vdb.uncertified: points near the surface would not answer, or samples by the surface are steeper than kMostSteep),
 /// kOperation for memory, kCancelled.
-[[nodiscard]] CertifiedGrid certified(const LevelSet& grid, const CertifyOptions& options = {},
-                                      const Progress& progress = {});
+[[nodiscard]] PALPATE_EXPORT CertifiedGrid certified(const LevelSet& grid,
+                                                     const CertifyOptions& options = {},
+                                                     const Progress& progress = {});
 
 /// What users should know of a surface more of which than kMostRough is rough: BandCertificate::off does not hold
 /// there. Empty: nothing.
-[[nodiscard]] std::string roughNote(const LevelSet& grid, const BandCertificate& certificate);
+[[nodiscard]] PALPATE_EXPORT std::string roughNote(const LevelSet& grid,
+                                                   const BandCertificate& certificate);
 
 }  // namespace palpate::vdb

@@ -9,9 +9,16 @@
 #include <vector>
 
 #include "palpate/core/math.h"
-#include "palpate/vdb/space.h"
+#include "palpate/export.h"
 
 namespace palpate::vdb {
+
+/// The library's own is RAS: to the right, the front, up.
+enum class Space {
+  kStated,  ///< as the file says; if it does not, what its format has by convention
+  kRas,
+  kLps,  ///< to the left, the back, up: x and y negated
+};
 
 /// Label value -> name.
 using NameTable = std::map<int, std::string>;
@@ -27,7 +34,7 @@ struct LabelTable {
 
 /// A 3-D image. Voxel (i, j, k) is values[i + nx (j + ny k)] and its centre lies at affine applied
 /// to (i, j, k): RAS, [m]. Sheared, oblique and left-handed affines are kept as they are.
-struct Image {
+struct PALPATE_EXPORT Image {
   std::string source;
   std::array<int, 3> size{};
   std::vector<float> values;   ///< after the file's own slope and intercept
@@ -87,15 +94,17 @@ struct ImageInfo {
 /// told in `notes`; what it contradicts itself in, and what is cut short or damaged, is refused. Each format's
 /// rules are in vdb/README.md.
 /// @throws Error (kInput, codes "nifti.*", "nrrd.*", "metaimage.*", "dicom.*", "image.*").
-[[nodiscard]] Image readImage(const std::string& path, const ImageOptions& options = {});
+[[nodiscard]] PALPATE_EXPORT Image readImage(const std::string& path,
+                                             const ImageOptions& options = {});
 
 /// Header only: no voxel is read, so that only what the header and the file's size tell is checked. Throws as
 /// readImage() does.
-[[nodiscard]] ImageInfo readImageInfo(const std::string& path, const ImageOptions& options = {});
+[[nodiscard]] PALPATE_EXPORT ImageInfo readImageInfo(const std::string& path,
+                                                     const ImageOptions& options = {});
 
 /// True if readImage() takes `path` for an image by its extension, in any case; of folders and files without
 /// one, if it holds or is DICOM.
-[[nodiscard]] bool isImageFile(const std::string& path);
+[[nodiscard]] PALPATE_EXPORT bool isImageFile(const std::string& path);
 
 /// NIfTI-1 and -2, .nii and .nii.gz, either byte order, every integer and float type of 8 to 64
 /// bits, scaled by scl_slope and scl_inter (libnifti reads the header). The place is the sform if
@@ -106,17 +115,19 @@ struct ImageInfo {
 /// @throws Error (kInput, codes "nifti.*"): missing, empty, not NIfTI, cut short, wrong gzip
 /// checksum, 4-D or 2-D, colour or complex voxels, neither form set or both in conflict, singular
 /// affine, a detached .hdr / .img pair, ...
-[[nodiscard]] Image readNifti(const std::string& path, const ImageOptions& options = {});
-[[nodiscard]] ImageInfo readNiftiInfo(const std::string& path, const ImageOptions& options = {});
+[[nodiscard]] PALPATE_EXPORT Image readNifti(const std::string& path,
+                                             const ImageOptions& options = {});
+[[nodiscard]] PALPATE_EXPORT ImageInfo readNiftiInfo(const std::string& path,
+                                                     const ImageOptions& options = {});
 
 /// The bytes of a NIfTI-1 file: float voxels, the place as sform (code 2, aligned), mm; compressed
 /// with gzip if asked. readNifti() gives the same values back, the place to a float's rounding.
 /// @throws Error (kInput) for an empty image or one longer than 32767 voxels (the format's limit).
-[[nodiscard]] std::string encodeNifti(const Image& image, bool gzip);
+[[nodiscard]] PALPATE_EXPORT std::string encodeNifti(const Image& image, bool gzip);
 
 /// The same for labels: voxels of 8 bits without sign, or of 16 where labels go beyond 255.
 /// @throws Error (kInput, "nifti.label") for a value that is no whole number from 0 to 65535.
-[[nodiscard]] std::string encodeLabels(const Image& image, bool gzip);
+[[nodiscard]] PALPATE_EXPORT std::string encodeLabels(const Image& image, bool gzip);
 
 /// A table of label names, and colours if it has some:
 ///   `index name [code]`, `index name R G B [A]` (Slicer .ctbl and .txt, FreeSurfer LUT; 0 to 255), separated by
@@ -128,6 +139,26 @@ struct ImageInfo {
 /// UTF-8 are taken for Latin-1.
 /// @throws Error (kInput, codes "labels.*") naming file and line: a value that is no integer or has
 /// two names, a missing name, a column that does not belong, a colour out of range.
-[[nodiscard]] LabelTable readLabelTable(const std::string& path);
+[[nodiscard]] PALPATE_EXPORT LabelTable readLabelTable(const std::string& path);
+
+/// Assimp (glTF, GLB and what else it reads) and GDCM's unpackers (compressed DICOM pixels) are
+/// told what files hold in ways that cannot all be checked beforehand, and answer some damage with
+/// a crash or without end. In a child process of their own they end alone: readMesh() and
+/// readImage() then throw Error (kInput, mesh.unreadable or dicom.pixels). Everything else is read
+/// by code that checks each length itself.
+struct LibraryLimits {
+  bool in_child = false;  ///< the command sets it; a fork() takes some milliseconds
+  /// [bytes] that a child may take beyond what this process has; 0: 512 MB and 32 times the file.
+  /// Not enforced in builds with the address sanitizer, which reserves terabytes.
+  std::uint64_t memory = 0;
+  /// [s] of processor time of a child; 0: 15 s and one more for each MB of the file.
+  double seconds = 0.0;
+};
+
+/// For all reading from now on, by any thread. Not to be called while files are being read. A child
+/// is made by fork(): locks that other threads hold stay locked in it, so read while no other
+/// thread uses these two libraries.
+PALPATE_EXPORT void setLibraryLimits(const LibraryLimits& limits) noexcept;
+[[nodiscard]] PALPATE_EXPORT LibraryLimits libraryLimits() noexcept;
 
 }  // namespace palpate::vdb

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/export.h"
 #include "palpate/vdb/level_set.h"
 #include "palpate/vdb/material_grid.h"
 
@@ -13,8 +14,8 @@ namespace palpate::vdb {
 /// Writes beside `path` and renames; nothing is left behind on failure. Replaces an existing file only if
 /// `overwrite`. The grids of materials come after the others, with the voxels as their maps store them.
 /// @throws Error (kOperation).
-void writeVdb(const std::string& path, std::span<const LevelSet> grids, bool overwrite,
-              std::span<const NamedMaterialGrid> materials = {});
+PALPATE_EXPORT void writeVdb(const std::string& path, std::span<const LevelSet> grids,
+                             bool overwrite, std::span<const NamedMaterialGrid> materials = {});
 
 /// One grid of a file as `info` reports it; level sets and others alike.
 struct VdbGridSummary {
@@ -23,7 +24,7 @@ struct VdbGridSummary {
   std::string grid_class;  ///< "level set", "fog volume", "unknown"
   LevelSetInfo info;       ///< as far as it applies
 };
-[[nodiscard]] std::vector<VdbGridSummary> listVdb(const std::string& path);
+[[nodiscard]] PALPATE_EXPORT std::vector<VdbGridSummary> listVdb(const std::string& path);
 
 /// What a grid without a class (OpenVDB's "unknown") is taken for.
 enum class UnknownClass {
@@ -33,8 +34,8 @@ enum class UnknownClass {
 
 /// Reads a float level set; `name` may be empty if the file holds exactly one. A file without a length
 /// unit in its metadata needs `unit_if_missing`. @throws Error (kInput) with the reason and remedy.
-[[nodiscard]] LevelSet readVdb(const std::string& path, const std::string& name,
-                               const std::string& unit_if_missing,
-                               UnknownClass unknown_class = UnknownClass::kRefuse);
+[[nodiscard]] PALPATE_EXPORT LevelSet readVdb(const std::string& path, const std::string& name,
+                                              const std::string& unit_if_missing,
+                                              UnknownClass unknown_class = UnknownClass::kRefuse);
 
 }  // namespace palpate::vdb

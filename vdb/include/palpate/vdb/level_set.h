@@ -9,6 +9,7 @@
 
 #include "palpate/core/math.h"
 #include "palpate/core/progress.h"
+#include "palpate/export.h"
 #include "palpate/fields/field.h"
 
 namespace palpate::vdb {
@@ -27,7 +28,7 @@ struct LevelSetInfo {
 };
 
 /// Shared handle on an immutable grid; copying is cheap.
-class LevelSet {
+class PALPATE_EXPORT LevelSet {
  public:
   struct Impl;  ///< holds the openvdb::FloatGrid; see palpate/vdb/openvdb_access.h
 
@@ -80,19 +81,20 @@ inline constexpr double kCubicHalfWidth = 6.0;
 ///
 /// Of a grid that reaches out of the bounded box `within` [m] only the bricks that samples there need are made, and the field
 /// is knownWithin() it; kAccessor keeps the grid as it is.
-[[nodiscard]] FieldPtr gridField(const LevelSet& grid, Sampler sampler = Sampler::kCubic,
-                                 const Box3& within = Box3::everything());
+[[nodiscard]] PALPATE_EXPORT FieldPtr gridField(const LevelSet& grid,
+                                                Sampler sampler = Sampler::kCubic,
+                                                const Box3& within = Box3::everything());
 
 /// [bytes] What the samples of a field by gridField() are read from: its bricks with their tables, or
 /// the grid for kAccessor. 0 for any other field.
-[[nodiscard]] std::uint64_t memoryOf(const Field& grid_field) noexcept;
+[[nodiscard]] PALPATE_EXPORT std::uint64_t memoryOf(const Field& grid_field) noexcept;
 
 /// The same grid with a band of `half_width` [voxels]; `grid` itself if it is as wide already. The
 /// voxels of the old band keep their values. A new voxel holds the distance to the closest point of
 /// the surface that the old band tells, found by Newton steps on a C2 spline through it.
 /// @throws Error (kInput) if the old band is narrower than 2 voxels, kOperation for memory,
 /// kCancelled.
-[[nodiscard]] LevelSet widened(const LevelSet& grid, double half_width,
-                               const Progress& progress = {});
+[[nodiscard]] PALPATE_EXPORT LevelSet widened(const LevelSet& grid, double half_width,
+                                              const Progress& progress = {});
 
 }  // namespace palpate::vdb

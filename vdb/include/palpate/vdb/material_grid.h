@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "palpate/core/math.h"
-#include "palpate/materials/parameter.h"
+#include "palpate/export.h"
+#include "palpate/materials/material.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/image.h"
 
@@ -41,7 +42,7 @@ struct MaterialGridInfo {
 /// linear from voxel to voxel is met exactly. It does not pass through the voxels: over a curved run it is
 /// off by up to an eighth of the second difference. From half a voxel beyond the outermost centres on it is
 /// constant. Reading allocates nothing and takes some 90 ns.
-class MaterialGrid final : public MaterialMap {
+class PALPATE_EXPORT MaterialGrid final : public MaterialMap {
  public:
   /// Values in an image's order and place [SI unit]. What is NaN takes the mean of its neighbours, from the
   /// known voxels outwards. Stored in as few bits as put no voxel off by more than `tolerance` [SI unit]; 0: as
@@ -86,8 +87,10 @@ using Transfer = std::vector<std::pair<double, double>>;
 
 /// The image's voxels behind `transfer`, at the image's place.
 /// @throws Error (kInput) for a transfer without points or that does not rise; as MaterialGrid().
-[[nodiscard]] MaterialGridPtr materialFromImage(const Image& image, const Transfer& transfer,
-                                                double tolerance, std::uint64_t max_memory = 0);
+[[nodiscard]] PALPATE_EXPORT MaterialGridPtr materialFromImage(const Image& image,
+                                                               const Transfer& transfer,
+                                                               double tolerance,
+                                                               std::uint64_t max_memory = 0);
 
 /// What is asked of a material grid in a file.
 struct MaterialGridRequest {
@@ -102,8 +105,8 @@ struct MaterialGridRequest {
 /// A fog volume of floats; any linear transform. Where it has no active voxel the nearest ones count.
 /// @throws Error (kInput, "vdb.*"): no such grid, another type or class, no unit or one of another dimension,
 /// values that are no numbers, a transform that is not linear, ...
-[[nodiscard]] MaterialGridPtr readMaterialGrid(const std::string& path,
-                                               const MaterialGridRequest& request);
+[[nodiscard]] PALPATE_EXPORT MaterialGridPtr readMaterialGrid(const std::string& path,
+                                                              const MaterialGridRequest& request);
 
 /// A material grid on its way into a file.
 struct NamedMaterialGrid {

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "palpate/export.h"
 #include "palpate/vdb/level_set.h"
 
 namespace palpate::vdb {
@@ -18,7 +19,7 @@ struct LevelSet::Impl {
 };
 
 /// openvdb::initialize(), once in a process and from any thread.
-void initializeOpenVdb();
+PALPATE_EXPORT void initializeOpenVdb();
 
 /// Takes over `grid`: marks it as a level set, writes `length_unit`, the version of palpate and
 /// `metadata` into it, and looks at it once. Values and world coordinates must be in `length_unit`;
@@ -26,7 +27,8 @@ void initializeOpenVdb();
 /// the grid's tree afterwards.
 /// @throws Error (kInput): unknown unit, background not positive, a transform that is not a positive
 /// uniform scale and a translation.
-[[nodiscard]] LevelSet makeLevelSet(openvdb::FloatGrid::Ptr grid, const std::string& length_unit,
-                                    const std::map<std::string, std::string>& metadata = {});
+[[nodiscard]] PALPATE_EXPORT LevelSet
+makeLevelSet(openvdb::FloatGrid::Ptr grid, const std::string& length_unit,
+             const std::map<std::string, std::string>& metadata = {});
 
 }  // namespace palpate::vdb

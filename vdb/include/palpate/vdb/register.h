@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "palpate/export.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/level_set.h"
@@ -39,25 +40,17 @@ struct RegisterOptions {
   std::string cache_folder = {};
 };
 
-/// Adds to a scene's vocabulary (paths are relative to the scene file, lengths in its unit):
-///   fields  mesh: {file, units, space, voxel, half_width, edges: sharp | rounded, sharp, sampler}  units: the
-///                  scene's, of glTF metres; voxel: longest side / 128; edges: see polyhedron.h; sharp: [degrees] see
-///                  sharp_edges.h
-///           grid: {file, name, units, sampler}               units: only if the file does not say
-///           baked: {field, voxel, half_width, sampler, parts, tolerance}   parts: auto | operands | whole,
-///                  see hybrid.h
-///   images  NAME: {file, names, affine, space, frame, series}
-///   layers  labels: {image, match: [..], voxel, sampler}      its label group is the image's name
-///           threshold: {image, above, keep: largest | all, fill, voxel, sampler}
-///   parameters of materials and opening forces (material_grid.h); made when the scene is read
-///           grid: {file, name, unit, units, tolerance}        unit, units: only if the file does not say
-///           image, transfer: [[value, quantity], ..], tolerance    of the image; stored in 16 or 8 bits
-///   sampler: cubic (the default) | trilinear | accessor. Notes tell of a band too narrow for cubic, and of
-///   thin parts that a grid has lost.
+/// `of`, and what a scene may say of meshes, grids and images.
+[[nodiscard]] PALPATE_EXPORT VocabularyPtr vocabulary(const Vocabulary& of = *sceneVocabulary());
+
+/// Adds vocabulary() and what makes it: fields `mesh`, `grid`, `mask` and `baked`; images; layers `labels` and
+/// `threshold`; maps of parameters `grid` and `image`; `grids`. `palpate help scene` tells their keys. Paths are
+/// relative to the scene file, lengths in its unit. Notes tell of a band too narrow for the cubic sampler, and of
+/// thin parts that a grid has lost.
 /// Reading a scene looks at files only as far as it is quick: that they are there, image headers,
 /// name tables. Grids are made when their field is first asked for; an image is then read once for
 /// all its layers. Errors of either point at the scene's file, line and column. The functions in
 /// `options` must stay callable as long as the registry and the fields it made are used.
-void registerKinds(SceneRegistry& registry, const RegisterOptions& options = {});
+PALPATE_EXPORT void registerKinds(SceneRegistry& registry, const RegisterOptions& options = {});
 
 }  // namespace palpate::vdb

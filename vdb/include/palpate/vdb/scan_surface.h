@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/export.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/image.h"
 
@@ -34,8 +35,10 @@ struct ThresholdOptions {
 /// The wall is the iso-surface of the image, interpolated by a C2 tri-cubic spline, at `above` (or
 /// `below`): where the image is smooth, to a small share of a voxel.
 /// @throws Error (kInput) if that is not finite, or nothing lies above (below) it.
-[[nodiscard]] LevelSet surfaceFromThreshold(const Image& image, const ThresholdOptions& options,
-                                            const BakeOptions& bake, const Progress& progress = {});
+[[nodiscard]] PALPATE_EXPORT LevelSet surfaceFromThreshold(const Image& image,
+                                                           const ThresholdOptions& options,
+                                                           const BakeOptions& bake,
+                                                           const Progress& progress = {});
 
 struct LabelOptions {
   std::vector<int> values;  ///< the union of these labels
@@ -48,8 +51,10 @@ struct LabelOptions {
 /// their voxels are wide leave degrees. It encloses the volume of the voxels. Parts one or two voxels
 /// thin are held open. LabelSurfaces makes the walls of several labels fit.
 /// @throws Error (kInput) if no voxel has one of the labels.
-[[nodiscard]] LevelSet surfaceFromLabels(const Image& image, const LabelOptions& options,
-                                         const BakeOptions& bake, const Progress& progress = {});
+[[nodiscard]] PALPATE_EXPORT LevelSet surfaceFromLabels(const Image& image,
+                                                        const LabelOptions& options,
+                                                        const BakeOptions& bake,
+                                                        const Progress& progress = {});
 
 /// How the surface of a layer ends where another begins.
 enum class LabelEdge : std::uint8_t {
@@ -67,7 +72,7 @@ enum class LabelEdge : std::uint8_t {
 /// Surfaces of several layers of one label image, with one wall between neighbors. Every point is in exactly
 /// one of the layers or in the surroundings: in that whose field is smallest, that of the surroundings
 /// being -united(). Layers that have a label in common do not limit each other.
-class LabelSurfaces {
+class PALPATE_EXPORT LabelSurfaces {
  public:
   /// `image` must outlive it. `layers`: the labels of each.
   LabelSurfaces(const Image& image, std::vector<std::vector<int>> layers);
@@ -99,16 +104,17 @@ struct ScanLoss {
   std::uint64_t filled = 0;   ///< outside ones that are inside now
   Vec3 place{0.0, 0.0, 0.0};  ///< [m] of the one that is furthest on the wrong side
 };
-[[nodiscard]] ScanLoss scanLoss(const LevelSetInfo& info);
+[[nodiscard]] PALPATE_EXPORT ScanLoss scanLoss(const LevelSetInfo& info);
 
 /// The same as a sentence for people, in mm; empty if nothing is lost.
-[[nodiscard]] std::string scanLossNote(const LevelSetInfo& info);
+[[nodiscard]] PALPATE_EXPORT std::string scanLossNote(const LevelSetInfo& info);
 
 /// `match` entries (a value, a name, or a glob over names; case-sensitive) -> label values, sorted,
 /// each once. A value needs no name. A glob leaves out label 0, the background. `source` is the
 /// table's file, for messages. @throws Error (kInput) with a suggestion for an entry that matches
 /// nothing.
-[[nodiscard]] std::vector<int> resolveLabels(const std::vector<std::string>& match,
-                                             const NameTable& names, const std::string& source);
+[[nodiscard]] PALPATE_EXPORT std::vector<int> resolveLabels(const std::vector<std::string>& match,
+                                                            const NameTable& names,
+                                                            const std::string& source);
 
 }  // namespace palpate::vdb

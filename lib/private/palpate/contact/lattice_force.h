@@ -1,0 +1,17 @@
+#pragma once
+/// The periodic force of a content (materials/material.h, Lattice).
+
+#include "palpate/materials/material.h"
+
+namespace palpate {
+
+struct LatticePush {
+  Vec3 force{0.0, 0.0, 0.0};  ///< [N] minus the slope of `energy`, also where the amplitude varies
+  double energy = 0.0;        ///< [J] 0 or more; 0 at the origin
+};
+
+/// At `p` [m, world], with `amplitude` the lattice's own force there, or what stands for it.
+[[nodiscard]] LatticePush latticePush(const Lattice& lattice, const MaterialMap::Sample& amplitude,
+                                      const Vec3& p) noexcept;
+
+}  // namespace palpate

@@ -1,0 +1,75 @@
+#pragma once
+/// The contents of a scene's regions as one renderer feels them: what the scene says, but for what was
+/// changed while it runs.
+
+#include <cstdint>
+#include <vector>
+
+#include "palpate/render/haptic_renderer.h"
+#include "palpate/scene/scene.h"
+
+namespace palpate {
+
+/// A value for each region. Real-time safe but for the constructor.
+class Contents {
+ public:
+  explicit Contents(const Scene& scene);
+
+  /// False, and nothing is changed, for an unknown region or a value that it cannot have.
+  [[nodiscard]] bool change(RegionId region, const ContentChange& change) noexcept;
+
+  /// Null where nothing is felt, whatever is changed.
+  [[nodiscard]] const Material* material(RegionId region) const noexcept {
+    return regions_[region].material;
+  }
+  /// [N s/m] at `p` [m]
+  [[nodiscard]] double viscosity(RegionId region, const Vec3& p) const noexcept {
+    const Region& r = regions_[region];
+    if (r.change.viscosity) return *r.change.viscosity;
+    return r.material != nullptr ? r.material->viscosity.at(p) : 0.0;
+  }
+  /// [m/s] at `p` [m]
+  [[nodiscard]] Vec3 flow(RegionId region, const Vec3& p) const noexcept {
+    const Region& r = regions_[region];
+    if (r.change.flow) return *r.change.flow;
+    return r.material != nullptr ? r.material->flow.at(p) : Vec3(0.0);
+  }
+  [[nodiscard]] bool hasLattice(RegionId region) const noexcept {
+    return regions_[region].has_lattice;
+  }
+  /// [N] of the lattice's force at `p` [m]
+  [[nodiscard]] MaterialMap::Sample latticeForce(RegionId region, const Vec3& p) const noexcept {
+    const Region& r = regions_[region];
+    if (r.change.lattice_force) return {*r.change.lattice_force, Vec3(0.0)};
+    return r.material->lattice.force.sample(p);
+  }
+  /// [N] at `p` [m]
+  [[nodiscard]] double cutting(RegionId region, const Vec3& p) const noexcept {
+    const Region& r = regions_[region];
+    if (r.change.cutting) return *r.change.cutting;
+    return r.material != nullptr ? r.material->cutting.at(p) : 0.0;
+  }
+  /// Whether a needle is held there: by cutting, or along its shaft.
+  [[nodiscard]] bool holdsNeedle(RegionId region) const noexcept {
+    return regions_[region].holds_needle;
+  }
+  /// Grows with every change.
+  [[nodiscard]] std::uint32_t version() const noexcept { return version_; }
+  /// Whether any region does.
+  [[nodiscard]] bool holdNeedles() const noexcept { return hold_needles_; }
+
+ private:
+  struct Region {
+    const Material* material = nullptr;
+    ContentChange change = {};
+    bool has_lattice = false;
+    bool holds_needle = false;
+  };
+  void look(Region& region) noexcept;
+
+  std::vector<Region> regions_;
+  bool hold_needles_ = false;
+  std::uint32_t version_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,124 @@
+#include "renderer_base.h"
+
+#include <utility>
+
+#include "constraint_renderer.h"
+#include "palpate/contact/lattice_force.h"
+#include "palpate/core/error.h"
+#include "palpate/interior/partition.h"
+#include "palpate/interior/port_machine.h"
+#include "paper_renderer.h"
+
+namespace palpate {
+namespace {
+
+/// False for NaN too.
+bool isNear(const Vec3& p) noexcept {
+  constexpr double kFarthest = HapticRenderer::kFarthest;
+  return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest;
+}
+
+}  // namespace
+
+TickResult RendererBase::update(const HipState& hip) noexcept {
+  SourceState& source = state_.source;
+  if (!isNear(hip.position) || !isFinite(hip.velocity)) {
+    source.flow_push = Vec3(0.0);
+    state_.last.event_count = 0;
+    crossing_count_ = 0;
+    entry_count_ = 0;
+    unlimited_ = Vec3(0.0);
+    TickResult held = state_.last;
+    held.force = state_.guard.apply(Vec3(0.0), hip.dt);
+    return held;
+  }
+  if (state_.has_begun) source.work += glm::dot(source.flow_push, hip.position - state_.hip);
+  source.flow_push = Vec3(0.0);
+  const bool was_in_lattice = std::exchange(source.in_lattice, false);
+  TickResult out = step(hip);
+  if (was_in_lattice && !source.in_lattice) {
+    source.work -= std::exchange(source.lattice_energy, 0.0);
+    source.lattice_region = kOutside;
+  }
+  unlimited_ = out.force;
+  out.force = state_.guard.apply(out.force, hip.dt);
+  state_.has_begun = true;
+  state_.hip = hip.position;
+  state_.last = out;
+  crossing_count_ = out.event_count;
+  entry_count_ = entered().size();
+  return out;
+}
+
+void RendererBase::reset() noexcept {
+  ForceGuard guard = state_.guard;
+  guard.reset();
+  state_ = {};
+  state_.guard = guard;
+  state_.last.region = scene_->startRegion();
+  crossing_count_ = 0;
+  entry_count_ = 0;
+  unlimited_ = Vec3(0.0);
+  resume();
+}
+
+bool RendererBase::setState(const RendererState& sealed) noexcept {
+  const TickState state = TickState::of(sealed);
+  const auto regions = scene_->regions().size();
+  const auto leaves = scene_->partition().leaves().size();
+  const auto is_region = [&](std::size_t region) { return region < regions; };
+  const auto is_material = [&](int material) {
+    return material >= -1 && material < static_cast<int>(scene_->materials().size());
+  };
+  const PlaceState& place = state.place;
+  const bool fits = isNear(state.hip) && isNear(place.point) && is_region(place.region) &&
+                    is_region(state.last.region) && is_region(state.fade.region) &&
+                    is_region(state.relaxation.region) && is_region(state.source.lattice_region) &&
+                    is_region(state.paper.layer) && is_material(state.pressed) &&
+                    is_material(state.relaxation.material) && place.mouth >= -1 &&
+                    place.mouth < static_cast<int>(leaves) &&
+                    (!state.has_begun || place.sides.size() == leaves) &&
+                    place.punctures.isOf(scene_->ports().size()) && state.needle.isOf(regions);
+  if (!fits) return false;
+  state_ = state;
+  crossing_count_ = 0;
+  entry_count_ = 0;
+  unlimited_ = Vec3(0.0);
+  resume();
+  return true;
+}
+
+Vec3 RendererBase::dragForce(RegionId region, const Vec3& p, const Vec3& velocity,
+                             double share) noexcept {
+  const double viscosity = contents_.viscosity(region, p);
+  if (!(viscosity > 0.0)) return Vec3(0.0);
+  const Vec3 flow = contents_.flow(region, p);
+  state_.source.flow_push = share * viscosity * flow;
+  return -(share * viscosity * (velocity - flow));
+}
+
+Vec3 RendererBase::latticeForce(RegionId region, const Vec3& p) noexcept {
+  if (!contents_.hasLattice(region)) return Vec3(0.0);
+  const LatticePush push =
+      latticePush(contents_.material(region)->lattice, contents_.latticeForce(region, p), p);
+  // What the hand's motion changes the potential by, the force gives or takes. All else comes from nowhere.
+  SourceState& source = state_.source;
+  const bool goes_on =
+      source.lattice_region == region && source.lattice_version == contents_.version();
+  if (!goes_on) source.work += push.energy - source.lattice_energy;
+  source.lattice_energy = push.energy;
+  source.lattice_region = region;
+  source.lattice_version = contents_.version();
+  source.in_lattice = true;
+  return push.force;
+}
+
+std::unique_ptr<HapticRenderer> makeRenderer(ScenePtr scene, RendererSettings settings) {
+  if (!scene) throw inputError("render.no_scene", "makeRenderer() was given no scene");
+  if (settings.kind.value_or(scene->renderer()) == RendererKind::kPaper) {
+    return std::make_unique<PaperRenderer>(std::move(scene), settings);
+  }
+  return std::make_unique<ConstraintRenderer>(std::move(scene), settings);
+}
+
+}  // namespace palpate

@@ -1,0 +1,38 @@
+#pragma once
+/// Verbs and options as plain words, for what is written from their declarations besides --help.
+
+#include <string>
+#include <vector>
+
+namespace palpate::tools {
+
+struct OptionWords {
+  std::vector<std::string> names = {};  ///< "-o", "--output"
+  std::string value = {};               ///< what stands behind it, for people; empty: a flag
+  std::string help = {};
+  std::string group = {};
+  std::vector<std::string> choices = {};  ///< empty: anything
+  bool is_file = false;
+};
+
+struct VerbWords {
+  std::string name;
+  std::string line = {};
+  std::string usage = {};
+  std::string example = {};
+  std::string details = {};
+  std::vector<OptionWords> options = {};  ///< in the order of their groups, with --help
+};
+
+/// In the order of `palpate --help`.
+[[nodiscard]] std::vector<VerbWords> verbWords();
+
+/// palpate(1), in the man macros of roff.
+[[nodiscard]] std::string manPage(const std::vector<VerbWords>& verbs);
+
+/// A script that completes verbs, options, their words and files in `shell`, one of bash, zsh and fish; behind
+/// `palpate help scene` also `scene_words`.
+[[nodiscard]] std::string completion(const std::string& shell, const std::vector<VerbWords>& verbs,
+                                     const std::vector<std::string>& scene_words);
+
+}  // namespace palpate::tools
