@@ -44,6 +44,13 @@ Session::Session(ScenePtr scene, SessionSettings settings)
       renderer_(makeRenderer(scene_, settings_.renderer)),
       tracker_(settings_.velocity) {
   check(*scene_, settings_);
+  if (!settings_.loop) return;
+  LoopModel loop = *settings_.loop;
+  loop.period = 1.0 / settings_.servo.rate;
+  loop.velocity = settings_.velocity;
+  for (BudgetItem& item : sceneBudget(*scene_, loop)) {
+    if (item.isAbove()) over_budget_.push_back(std::move(item));
+  }
 }
 
 SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcept {

@@ -189,12 +189,6 @@ Motion makeMotion(const TouchOptions& o, const LengthUnit& unit) {
   return formulaMotion(shape, o.rate);
 }
 
-devices::VirtualDevice deviceOf(Motion motion) {
-  if (motion.formula) return devices::VirtualDevice(std::move(*motion.formula));
-  return devices::VirtualDevice(std::move(motion.recorded.points), motion.recorded.frame,
-                                motion.rules);
-}
-
 double nominalPeriod(const devices::Path& path, double rate) {
   std::vector<double> steps;
   steps.reserve(path.size());

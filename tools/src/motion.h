@@ -25,9 +25,6 @@ struct Motion {
 /// @throws Error: kUsage for values, kInput for the path file.
 [[nodiscard]] Motion makeMotion(const TouchOptions& options, const LengthUnit& unit);
 
-/// A hand that moves so, whatever it feels.
-[[nodiscard]] devices::VirtualDevice deviceOf(Motion motion);
-
 /// [s] from tick to tick: what half of the path's steps do not exceed, so that gaps in it do not
 /// count, nor times that do not rise. Of a path without a step, 1 / `rate` [Hz].
 [[nodiscard]] double nominalPeriod(const devices::Path& path, double rate);

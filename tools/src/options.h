@@ -25,6 +25,13 @@ struct ScanOptions {
   std::string series;        ///< DICOM
 };
 
+/// Which device the hand holds.
+struct DeviceOptions {
+  std::string name;          ///< empty: none, the hand follows its path whatever it feels
+  std::string hand;          ///< empty: "relaxed"
+  std::optional<int> delay;  ///< [samples]
+};
+
 struct TouchOptions {
   std::string scene;
   // Exactly one of these five says how the hand moves.
@@ -56,6 +63,7 @@ struct TouchOptions {
   bool as_recorded = false;  ///< path: its faults, too
   int states = 10000;        ///< [ticks] record: from state to state; 0: none
   double rate = 1000.0;      ///< [Hz]
+  DeviceOptions device;
   std::string max_force;
   std::string slew;
   std::string ramp;
@@ -155,6 +163,8 @@ struct QueryOptions {
 
 struct ExplainOptions {
   std::string scene;
+  DeviceOptions device;        ///< of the stability budget
+  std::optional<double> rate;  ///< [Hz] of it; none: 1000
   bool measure = false;
   std::string svg;
 };

@@ -1,9 +1,13 @@
 #include <algorithm>
 
+#include "budget_report.h"
 #include "json_parts.h"
 #include "loaded_scene.h"
 #include "map_coverage.h"
+#include "open_device.h"
 #include "output_files.h"
+#include "palpate/core/error.h"
+#include "palpate/devices/scene_budget.h"
 #include "palpate/interior/port_machine.h"
 #include "palpate/scene/transitions.h"
 #include "saving.h"
@@ -161,6 +165,11 @@ std::string graphOf(const Scene& scene, const SceneDescription& description,
 }  // namespace
 
 Report run(const ExplainOptions& options, const GeneralOptions& general, Console& console) {
+  const double rate = options.rate.value_or(1000.0);
+  const auto simulation = simulationOf(options.device, rate);
+  if (options.rate && !simulation) {
+    throw Error(ErrorKind::kUsage, {"usage.explain", "--rate is of a device", "add --device NAME"});
+  }
   OutputFiles files(general);
   if (!options.svg.empty())
     files.announce(options.svg, {options.scene}, OutputFiles::Streams::kYes);
@@ -366,6 +375,19 @@ Report run(const ExplainOptions& options, const GeneralOptions& general, Console
         std::move(note.json));
   }
   if (!notes.empty()) report.text += "\nOf the walls\n" + notes;
+
+  report.json["loop"] = deviceJson(options.device, rate);
+  report.json["hand_limits"] = Json::array();
+  report.json["budget"] = Json::array();
+  if (simulation) {
+    const devices::LoopModel loop = loopOf(*simulation);
+    const auto items = devices::sceneBudget(scene, loop);
+    report.json["hand_limits"] = handLimitsJson(loop);
+    report.json["budget"] = budgetJson(items);
+    report.text += "\nStability at " + formatNumber(rate) + " Hz" + delayText(simulation->delay) +
+                   "\n" + deviceText(options.device) + handLimitsText(loop) +
+                   "What is felt, at the hand in N/m or N.s/m\n" + budgetText(items);
+  }
 
   report.json["sources"] = Json::array();
   Table source_table({"field or layer", "made from", "made"});

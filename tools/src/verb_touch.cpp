@@ -1,10 +1,14 @@
 #include <filesystem>
+#include <memory>
+#include <utility>
 
+#include "budget_report.h"
 #include "content_changes.h"
 #include "input_kind.h"
 #include "loaded_scene.h"
 #include "map_coverage.h"
 #include "motion.h"
+#include "open_device.h"
 #include "output_files.h"
 #include "palpate/devices/record.h"
 #include "palpate/devices/session.h"
@@ -73,6 +77,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   }
   if (finds_place) options.press = "0,0,0";  // for now: its parameters apply
   checkMotion(options);
+  checkDevice(options);
   (void)forceLimits(options);  // errors in them come before any work
   const std::vector<ContentSetting> content_settings = readSettings(options.set);
   OutputFiles files(general);
@@ -119,7 +124,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   if (finds_place) pressOnSurface(*scene, options, console);
   Motion motion = makeMotion(options, loaded.unit());
   ForceLimits& limits = settings.limits;
-  limits.period = motion.period;
+  limits.period = options.device.name.empty() ? motion.period : 1.0 / options.rate;
   for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
     console.warn(gapText(gap, scene->lengthUnit(), scene->metresPerUnit()));
   }
@@ -134,20 +139,26 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   how.servo.rate = options.rate;
   how.servo.elevate = options.realtime;
   if (!options.record.empty()) how.checkpoint_every = static_cast<std::uint64_t>(options.states);
+  if (const auto simulation = simulationOf(options.device, options.rate)) {
+    how.loop = loopOf(*simulation);
+  }
   devices::Session session(scene, std::move(how));
+  warnOfBudget(session.overBudget(), options.device, is_shape ? "" : options.scene, options.rate,
+               console);
   if (options.realtime) {
     console.note("following the hand's path for " + formatSeconds(motion.end - motion.begin) +
                  " in real time");
   }
-  devices::VirtualDevice device = deviceOf(std::move(motion));
+  const std::unique_ptr<devices::Device> device =
+      makeDevice(options, std::move(motion), scene->device(), console);
   RecordAbout about;
   about.shows_all = wants_all;
   about.renderer = rendererName(*settings.kind);
   if (!options.record.empty()) {
-    describe(about, options, device.info(), *scene, scene_text);
+    describe(about, options, device->info(), *scene, scene_text);
     about.period = limits.period;
   }
-  const TouchRun run = runTouch(session, device, options, about, files, console,
+  const TouchRun run = runTouch(session, *device, options, about, files, console,
                                 !options.image.empty() || !options.plot.empty());
   const TouchSummary& summary = run.summary;
   const devices::ServoReport& servo_report = run.servo;
@@ -183,6 +194,8 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   report.json["met_something"] = summary.met_something;
   report.json["set"] = settingsJson(content_settings);
   report.json["limits"] = limitsJson(limits);
+  report.json["device"] = deviceJson(options.device, options.rate);
+  report.json["over_budget"] = budgetJson(session.overBudget());
   report.json["grids"] = loaded.gridsJson();
   report.json["trace"] = options.trace.empty() ? Json() : Json(options.trace);
   report.json["record"] = options.record.empty() ? Json() : Json(options.record);
@@ -190,7 +203,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   report.json["written_scene"] = options.write_scene.empty() ? Json() : Json(options.write_scene);
   report.json["plot"] = options.plot.empty() ? Json() : Json(options.plot);
 
-  report.text = summaryText(summary, *scene) + limitsText(limits);
+  report.text = summaryText(summary, *scene) + limitsText(limits) + deviceText(options.device);
   if (!report.is_yes) {
     report.text = std::string(options.press.empty() ? "The tap" : "The press") +
                   " met nothing: no wall, no port and no content. Is the point on a surface, and "

@@ -1,9 +1,24 @@
 // The verbs that look at a scene or feel it.
 
 #include "command_line/verb.h"
+#include "palpate/devices/simulated_device.h"
 
 namespace palpate::tools {
 namespace {
+
+/// What the hand holds.
+void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const char* what) {
+  const std::string text =
+      std::string(what) +
+      ": excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3 "
+      "(virtual:NAME means the same)";
+  add(app, group, "--device", "NAME", o.name, text.c_str());
+  add(app, group, "--hand", "HAND", o.hand,
+      "device: how it is held: none, relaxed (default) or firm");
+  add(app, group, "--delay", "N", o.delay,
+      "device: samples from a force to when the motors give it (default 0)")
+      ->check(CLI::Range(0, devices::SimulatedDevice::kMostDelay));
+}
 
 void defineTouch(CLI::App& app, Invocation& invocation) {
   auto& o = choose<TouchOptions>(invocation);
@@ -38,6 +53,10 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       ->check(CLI::IsMember({"constraint", "paper"}));
   add(app, g, "--rate", "HZ", o.rate, "ticks a second (default 1000)")
       ->check(CLI::Range(1.0, 100000.0));
+  addDevice(
+      app, g, o.device,
+      "follow the motion with this simulated device, in a hand that feels the force (default: "
+      "a hand that goes where it is told)");
   addFlag(app, g, "--realtime", o.realtime,
           "keep to the clock (default: as fast as the machine goes)");
   addList(
@@ -143,8 +162,14 @@ void defineRender(CLI::App& app, Invocation& invocation) {
 void defineExplain(CLI::App& app, Invocation& invocation) {
   auto& o = choose<ExplainOptions>(invocation);
   app.add_option("scene", o.scene);
-  addFlag(app, "What to look at", "--measure", o.measure,
+  const char* g = "What to look at";
+  addFlag(app, g, "--measure", o.measure,
           "make all of it, and what is needed, and tell memory and time");
+  g = "The device that the scene is for";
+  addDevice(app, g, o.device,
+            "list what is felt beside what this device can hold, and what cures what it cannot");
+  add(app, g, "--rate", "HZ", o.rate, "device: ticks a second (default 1000)")
+      ->check(CLI::Range(1.0, 100000.0));
   add(app, "Output files", "--svg", "FILE.svg", o.svg,
       "draw the table of transitions: regions, and the ports between them");
 }

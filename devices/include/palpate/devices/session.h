@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
 #include "palpate/core/math.h"
 #include "palpate/devices/device.h"
+#include "palpate/devices/scene_budget.h"
 #include "palpate/devices/velocity.h"
 #include "palpate/export.h"
 #include "palpate/render/haptic_renderer.h"
@@ -82,6 +84,9 @@ struct SessionSettings {
   /// [ticks] Before each tick whose number is a multiple of this, but 0, Session::checkpoint() is taken; 0: never. Two sessions
   /// feel the same bit for bit only if theirs is the same: see HapticRenderer::checkpoint().
   std::uint64_t checkpoint_every = 0;
+  /// The device and the hand that the scene is for: Session::overBudget() then warns. Its period
+  /// and its velocity are the session's own, whatever is here.
+  std::optional<LoopModel> loop = {};
 };
 
 /// All that one tick of a session leaves for the next. A value of fixed size, about 30 kB, for the build that made it: stored, it
@@ -119,7 +124,8 @@ class PALPATE_EXPORT Session {
   /// Called after each tick of run(), in the servo thread: it must not allocate, lock, throw or block.
   using Listener = std::function<void(const SessionTick&, const HapticRenderer&)>;
 
-  /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a button or changes that cannot be.
+  /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a button or changes
+  /// that cannot be, and as sceneBudget() for a loop.
   explicit Session(ScenePtr scene, SessionSettings settings = {});
 
   /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld), velocity, clutch, renderer, and
@@ -142,6 +148,10 @@ class PALPATE_EXPORT Session {
   /// The number of the next tick.
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
 
+  /// A warning of set-up: what of the scene is stiffer than SessionSettings::loop can hold. Empty
+  /// without a loop. What is felt does not change for it.
+  [[nodiscard]] const std::vector<BudgetItem>& overBudget() const noexcept { return over_budget_; }
+
   [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
   [[nodiscard]] HapticRenderer& renderer() noexcept { return *renderer_; }
   [[nodiscard]] const HapticRenderer& renderer() const noexcept { return *renderer_; }
@@ -161,6 +171,7 @@ class PALPATE_EXPORT Session {
   bool has_begun_ = false;
   double last_time_ = 0.0;
   SessionState checkpoint_;
+  std::vector<BudgetItem> over_budget_;
 };
 
 }  // namespace palpate::devices

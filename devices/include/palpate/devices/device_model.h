@@ -1,0 +1,41 @@
+#pragma once
+/// What a device and the hand that holds it are to the loop: masses, springs and friction at the
+/// tip.
+
+#include <string>
+
+#include "palpate/core/math.h"
+#include "palpate/export.h"
+
+namespace palpate::devices {
+
+/// A device as it is at its tip, alike along its three axes, which do not act on each other.
+struct DeviceModel {
+  std::string name = {};
+  double mass = 0.1;             ///< [kg] more than 0
+  double damping = 0.0;          ///< [N s/m] viscous, 0 or more
+  double friction = 0.0;         ///< [N] Coulomb, sticking and sliding alike; 0 or more
+  double encoder = 0.0;          ///< [m] step of a reading; 0: none
+  double lag = 0.0;              ///< [s] time constant of the amplifier; 0: none
+  double max_force = kInfinity;  ///< [N] what the motors give at most; more than 0
+  Box3 workspace{Vec3(-kInfinity), Vec3(kInfinity)};  ///< [m, device] what the tip can get to
+};
+
+/// A hand: a mass on a spring and a damper, whose other end goes along the path that the hand is
+/// told to go. It holds the device by a grip, another spring and damper, or is one with it.
+struct HandModel {
+  std::string name = {};
+  double mass = 0.0;            ///< [kg] 0 or more; with a grip more than 0
+  double damping = 0.0;         ///< [N s/m] to the path, 0 or more
+  double stiffness = 0.0;       ///< [N/m] to the path, 0 or more
+  double grip_stiffness = 0.0;  ///< [N/m] 0 or more; 0 of both: the hand is one with the device
+  double grip_damping = 0.0;    ///< [N s/m] 0 or more
+
+  [[nodiscard]] bool hasGrip() const noexcept { return grip_stiffness > 0.0 || grip_damping > 0.0; }
+};
+
+/// @throws Error (kUsage, device.model) for a value out of its range.
+PALPATE_EXPORT void check(const DeviceModel& device);
+PALPATE_EXPORT void check(const HandModel& hand);
+
+}  // namespace palpate::devices

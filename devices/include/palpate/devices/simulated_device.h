@@ -1,0 +1,83 @@
+#pragma once
+/// SimulatedDevice: a device with a mass, friction, encoders and motors, in a hand that feels the
+/// force.
+
+#include <memory>
+#include <optional>
+
+#include "palpate/devices/device.h"
+#include "palpate/devices/device_model.h"
+#include "palpate/devices/path.h"
+#include "palpate/export.h"
+
+namespace palpate::devices {
+
+struct SimulationSettings {
+  DeviceModel device;
+  std::optional<HandModel> hand = {};  ///< none: nobody holds the device
+  double rate = 1000.0;                ///< [Hz] of readings; 1 to 1e5
+  /// [samples] from when a force is written to when the motors give it; 0 to
+  /// SimulatedDevice::kMostDelay. With 0 they give it from the reading on that it answers.
+  int delay = 0;
+  bool realtime = false;     ///< a reading is of when it is asked for, not of 1 / rate later
+  Vec3 push{0.0, 0.0, 0.0};  ///< [N] constant on the tip: a weight, or what preloads a contact
+};
+
+/// What went where since open(), of all axes [J].
+struct DeviceWork {
+  double motor = 0.0;     ///< done by the motors
+  double push = 0.0;      ///< done by the constant push
+  double friction = 0.0;  ///< lost to Coulomb friction
+  double viscous = 0.0;   ///< lost to the device's own damping
+  double kinetic = 0.0;   ///< in the device's own mass, now
+
+  /// What the hand got from the device, at its port.
+  [[nodiscard]] double given() const noexcept {
+    return motor + push - friction - viscous - kinetic;
+  }
+};
+
+/// Each reading is one tick of: sample, encoder; then, when the force is written, delay, saturation
+/// (the vector is shortened, its direction kept) and hold until the next reading. In between
+/// device, hand and amplifier move by their equations, exactly: the linear part by the matrix
+/// exponential, stick and slip by events within the tick. Between two readings the hand's path is a
+/// straight line at even speed. Coulomb friction and encoder act along each axis by itself.
+///
+/// The device starts at rest where the path begins, and the hand with it. Without a hand the path
+/// only says where that is, and how long it lasts. A write() that is left out leaves the force as
+/// it is: a dropped sample. Set-up allocates and takes some 10 ms; read() and write() never
+/// allocate, lock, throw or block.
+class PALPATE_EXPORT SimulatedDevice final : public Device {
+ public:
+  static constexpr int kMostDelay = 64;
+
+  /// `path`: where the hand is told to go, in `frame`, at times that rise.
+  /// @throws Error (kUsage, device.model, device.rate, device.delay, device.push) for settings out
+  /// of range; (kInput, path.empty, path.time, path.not_finite) for the path.
+  SimulatedDevice(const SimulationSettings& settings, Path path,
+                  DeviceFrame frame = DeviceFrame::kDevice);
+  SimulatedDevice(const SimulationSettings& settings, PathFormula path,
+                  DeviceFrame frame = DeviceFrame::kDevice);
+  ~SimulatedDevice() override;
+
+  void open() override;
+  void close() noexcept override;
+  [[nodiscard]] const DeviceInfo& info() const noexcept override;
+  [[nodiscard]] DeviceStatus read(DeviceState& out) noexcept override;
+  [[nodiscard]] DeviceStatus write(const Vec3& force) noexcept override;
+
+  // As it is at the last reading, before the encoder.
+  [[nodiscard]] Vec3 position() const noexcept;  ///< [m]
+  [[nodiscard]] Vec3 velocity() const noexcept;  ///< [m/s]
+  [[nodiscard]] Vec3 handPosition()
+      const noexcept;  ///< [m] the device's own where there is no grip
+  [[nodiscard]] DeviceWork work() const noexcept;
+  /// [N] The motors' command since the last write(): delayed and saturated.
+  [[nodiscard]] const Vec3& heldForce() const noexcept;
+
+ private:
+  class Plant;
+  std::unique_ptr<Plant> plant_;
+};
+
+}  // namespace palpate::devices

@@ -1,0 +1,35 @@
+#pragma once
+// The sampled loop of a device, a hand and a wall as one matrix.
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "palpate/devices/stability.h"
+
+namespace palpate::devices {
+
+/// In units of the moving mass and the period, so that all entries are of the same size whatever
+/// the device.
+class ClosedLoop {
+ public:
+  /// @throws Error as the functions of stability.h.
+  explicit ClosedLoop(const LoopModel& loop);
+
+  /// The spectral radius.
+  [[nodiscard]] double growth(const WallModel& wall) const;
+  /// Beyond what rounding makes of a loop that neither grows nor dies.
+  [[nodiscard]] bool isStable(const WallModel& wall) const;
+
+  [[nodiscard]] double unitOfStiffness() const noexcept { return mass_ / (period_ * period_); }
+  [[nodiscard]] double unitOfDamping() const noexcept { return mass_ / period_; }
+
+ private:
+  Eigen::MatrixXd plant_;        ///< from tick to tick; the device's position first
+  Eigen::VectorXd input_;        ///< of a force held for a tick
+  std::vector<double> weights_;  ///< of positions in a velocity
+  double mass_;                  ///< [kg]
+  double period_;                ///< [s]
+  int delay_;                    ///< [samples]
+};
+
+}  // namespace palpate::devices

@@ -1,0 +1,51 @@
+#pragma once
+// Where a hand is told to be at any time, by rows or by a formula.
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "palpate/devices/path.h"
+
+namespace palpate::devices {
+
+/// Straight from row to row. Asked at times that do not fall; then real-time safe.
+class HandPath {
+ public:
+  explicit HandPath(Path rows) : rows_(std::move(rows)) {}
+  explicit HandPath(PathFormula formula) : formula_(std::move(formula)) {}
+
+  [[nodiscard]] std::size_t size() const noexcept {
+    return formula_ ? formula_->size() : rows_.size();
+  }
+  [[nodiscard]] PathPoint row(std::size_t i) const { return formula_ ? formula_->at(i) : rows_[i]; }
+  [[nodiscard]] double begin() const { return row(0).t; }
+  [[nodiscard]] double end() const { return row(size() - 1).t; }
+
+  /// The next time is anywhere.
+  void rewind() {
+    next_ = 0;
+    from_ = to_ = row(0);
+  }
+  /// [m]
+  [[nodiscard]] Vec3 at(double t) {
+    while (to_.t < t && next_ + 1 < size()) {
+      from_ = to_;
+      to_ = row(++next_);
+    }
+    const double span = to_.t - from_.t;
+    if (!(span > 0.0) || t >= to_.t) return to_.position;
+    const double share = std::max(0.0, (t - from_.t) / span);
+    return from_.position + share * (to_.position - from_.position);
+  }
+
+ private:
+  Path rows_;
+  std::optional<PathFormula> formula_;  ///< none: rows_
+  std::size_t next_ = 0;                ///< row of to_
+  PathPoint from_;
+  PathPoint to_;
+};
+
+}  // namespace palpate::devices

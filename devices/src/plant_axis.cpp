@@ -1,0 +1,153 @@
+#include "plant_axis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "plant_matrix.h"
+
+namespace palpate::devices {
+namespace {
+
+constexpr std::size_t kSize = plant::kSize;
+
+/// What is slower stands still: 1e-12 m/s is 1e-15 m in a millisecond. Without it a device that
+/// rounding takes for sliding back and forth would never get on.
+constexpr double kStill = 1e-12;
+/// The same of a force, as a share of the friction.
+constexpr double kLetsGo = 1e-12;
+/// In one call. Physics has a few; beyond that friction holds until the next call.
+constexpr int kMostEvents = 64;
+
+double dot(const PlantState& row, const PlantState& state) noexcept {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < kSize; ++j) sum += row[j] * state[j];
+  return sum;
+}
+
+double form(const std::array<double, 81>& matrix, const PlantState& state) noexcept {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kSize; ++i) {
+    double row = 0.0;
+    for (std::size_t j = 0; j < kSize; ++j) row += matrix[kSize * i + j] * state[j];
+    sum += state[i] * row;
+  }
+  return sum;
+}
+
+PlantState after(const PlantStep& step, const PlantState& state, double length) noexcept {
+  PlantState next = state;
+  for (std::size_t i = 0; i < plant::kPath; ++i) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < kSize; ++j) sum += step.next[kSize * i + j] * state[j];
+    next[i] = sum;
+  }
+  next[plant::kPath] += length * state[plant::kPathRate];
+  return next;
+}
+
+/// Whether a function with these values and slopes at the ends of `length` comes below zero: at the
+/// end, or, where it turns, maybe before. It is taken to turn no more than once.
+bool mayCross(double after, double before, double slope_before, double slope_after,
+              double length) noexcept {
+  if (after < 0.0) return true;
+  if (slope_before >= 0.0 || slope_after <= 0.0) return false;
+  // Convex: above both tangents.
+  return before + slope_before * length < 0.0 && after - slope_after * length < 0.0;
+}
+
+}  // namespace
+
+void PlantAxis::start(double x, double push, double damping) noexcept {
+  *this = {};
+  push_ = push;
+  damping_ = damping;
+  state_[plant::kX] = x;
+  state_[plant::kHandX] = x;
+  state_[plant::kConstant] = push;
+}
+
+double PlantAxis::netForce(const PlantTables& tables) const noexcept {
+  PlantState bare = state_;
+  bare[plant::kConstant] = push_;
+  return tables.mass * dot(tables.acceleration, bare);
+}
+
+void PlantAxis::slide(const PlantTables& tables, int way) noexcept {
+  way_ = way;
+  state_[plant::kConstant] = push_ - way * tables.friction;
+}
+
+/// At rest: sticks, or which way it slides.
+void PlantAxis::setWay(const PlantTables& tables) noexcept {
+  const double force = netForce(tables);
+  const bool lets_go = std::fabs(force) > tables.friction * (1.0 + kLetsGo);
+  slide(tables, !lets_go ? 0 : force > 0.0 ? 1 : -1);
+}
+
+bool PlantAxis::hasEvent(const PlantTables& tables, const PlantState& next,
+                         double length) const noexcept {
+  if (way_ != 0) {
+    return mayCross(way_ * next[plant::kV] + kStill, way_ * state_[plant::kV] + kStill,
+                    way_ * dot(tables.acceleration, state_), way_ * dot(tables.acceleration, next),
+                    length);
+  }
+  // The constant is the push alone while it sticks.
+  const double force = tables.mass * dot(tables.acceleration, state_);
+  const double force_after = tables.mass * dot(tables.acceleration, next);
+  const double most = tables.friction * (1.0 + kLetsGo);
+  const double rate = tables.mass * dot(tables.jerk, state_);
+  const double rate_after = tables.mass * dot(tables.jerk, next);
+  return mayCross(most - force_after, most - force, -rate, -rate_after, length) ||
+         mayCross(most + force_after, most + force, rate, rate_after, length);
+}
+
+void PlantAxis::take(const PlantStep& step, const PlantTables& tables,
+                     const PlantState& next) noexcept {
+  const double way = next[plant::kX] - state_[plant::kX];
+  work_.motor += tables.has_lag ? form(step.power, state_) : state_[plant::kForce] * way;
+  if (damping_ > 0.0) work_.viscous += damping_ * form(step.speed, state_);
+  work_.push += push_ * way;
+  work_.friction += tables.friction * std::fabs(way);
+  state_ = next;
+}
+
+void PlantAxis::advance(const PlantTables& tables, const Inputs& inputs,
+                        std::int64_t quanta) noexcept {
+  state_[plant::kCommand] = inputs.force;
+  if (!tables.has_lag) state_[plant::kForce] = inputs.force;
+  state_[plant::kPath] = inputs.path;
+  state_[plant::kPathRate] = inputs.path_rate;
+  const bool has_friction = tables.friction > 0.0;
+  if (has_friction && way_ == 0) setWay(tables);
+
+  int events = 0;
+  int finest = 0;  // level of the longest step that is worth a try: a longer one had an event in it
+  while (quanta > 0) {
+    int level = finest;
+    while (PlantTables::kLongest >> level > quanta) ++level;
+    const auto& steps = has_friction && way_ == 0 ? tables.sticking : tables.moving;
+    double length = tables.quantum * static_cast<double>(PlantTables::kLongest >> level);
+    PlantState next = after(steps[static_cast<std::size_t>(level)], state_, length);
+    const bool looks = has_friction && events < kMostEvents;
+    bool is_event = looks && hasEvent(tables, next, length);
+    while (is_event && level < PlantTables::kDepth) {
+      ++level;
+      length *= 0.5;
+      next = after(steps[static_cast<std::size_t>(level)], state_, length);
+      is_event = hasEvent(tables, next, length);
+      finest = level;
+    }
+    take(steps[static_cast<std::size_t>(level)], tables, next);
+    quanta -= PlantTables::kLongest >> level;
+    finest = std::max(0, finest - 1);
+    if (!is_event) continue;
+    finest = 0;
+    ++events;
+    state_[plant::kV] = 0.0;
+    setWay(tables);
+    if (events == kMostEvents) slide(tables, 0);
+  }
+}
+
+}  // namespace palpate::devices

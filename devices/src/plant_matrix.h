@@ -1,0 +1,75 @@
+#pragma once
+// The linear part of a device with a hand, along one axis, as z' = M z.
+
+#include <Eigen/Dense>
+#include <optional>
+
+#include "palpate/devices/device_model.h"
+
+namespace palpate::devices::plant {
+
+/// The entries of z, by index. What is not there (a grip, a lag) has rows of zeros.
+enum : int {
+  kX,         ///< [m] of the device
+  kV,         ///< [m/s]
+  kHandX,     ///< [m] of the hand, where it has a grip
+  kHandV,     ///< [m/s]
+  kForce,     ///< [N] of the motor
+  kPath,      ///< [m] where the hand is told to be
+  kPathRate,  ///< [m/s] constant
+  kConstant,  ///< [N] constant on the device: a push, less the friction that acts
+  kCommand,   ///< [N] constant: what the amplifier was told; without a lag kForce is that itself
+  kSize
+};
+
+using Matrix = Eigen::Matrix<double, kSize, kSize>;
+
+/// [kg] that moves with the device: its own mass, and that of a hand that is one with it.
+[[nodiscard]] inline double movingMass(const DeviceModel& device,
+                                       const std::optional<HandModel>& hand) {
+  return device.mass + (hand && !hand->hasGrip() ? hand->mass : 0.0);
+}
+
+/// While the device moves; `sticks`: while friction holds it.
+[[nodiscard]] inline Matrix matrixOf(const DeviceModel& device,
+                                     const std::optional<HandModel>& hand, bool sticks = false) {
+  Matrix m = Matrix::Zero();
+  m(kX, kV) = 1.0;
+  m(kV, kV) = -device.damping;
+  m(kV, kForce) = 1.0;
+  m(kV, kConstant) = 1.0;
+  if (hand && hand->hasGrip()) {
+    const double k = hand->grip_stiffness;
+    const double b = hand->grip_damping;
+    m(kV, kX) = -k;
+    m(kV, kHandX) = k;
+    m(kV, kV) -= b;
+    m(kV, kHandV) = b;
+    m(kHandX, kHandV) = 1.0;
+    m(kHandV, kX) = k;
+    m(kHandV, kV) = b;
+    m(kHandV, kHandX) = -k - hand->stiffness;
+    m(kHandV, kHandV) = -b - hand->damping;
+    m(kHandV, kPath) = hand->stiffness;
+    m(kHandV, kPathRate) = hand->damping;
+    m.row(kHandV) /= hand->mass;
+  } else if (hand) {
+    m(kV, kX) = -hand->stiffness;
+    m(kV, kV) -= hand->damping;
+    m(kV, kPath) = hand->stiffness;
+    m(kV, kPathRate) = hand->damping;
+  }
+  m.row(kV) /= movingMass(device, hand);
+  if (device.lag > 0.0) {
+    m(kForce, kForce) = -1.0 / device.lag;
+    m(kForce, kCommand) = 1.0 / device.lag;
+  }
+  m(kPath, kPathRate) = 1.0;
+  if (sticks) {
+    m.row(kX).setZero();
+    m.row(kV).setZero();
+  }
+  return m;
+}
+
+}  // namespace palpate::devices::plant
