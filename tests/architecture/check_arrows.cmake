@@ -23,7 +23,7 @@ set(layers_scene contact interior ${layers_contact})
 set(layers_render scene ${layers_scene})
 
 # What every file may include: beside the layers, or made when the build is configured.
-set(common palpate/export.h palpate/version.h)
+set(common palpate/export.h palpate/version.h own_vocabulary.h)
 
 # Libraries that live in one place only: regular expression of the include, then where it may stand.
 set(confined_names openvdb tbb imath assimp nifti gdcm boost yaml eigen)
@@ -61,7 +61,8 @@ function(resolve file included out)
   foreach(base "${folder}" "${module}/src" lib/include vdb/include devices/include lib/private vdb/private)
     set(candidate "${base}/${included}")
     cmake_path(NORMAL_PATH candidate)
-    if(EXISTS "${ROOT}/${candidate}")
+    # Or made by CMake out of a file beside it.
+    if(EXISTS "${ROOT}/${candidate}" OR EXISTS "${ROOT}/${candidate}.in")
       set(${out} "${candidate}" PARENT_SCOPE)
       return()
     endif()

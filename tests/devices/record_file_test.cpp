@@ -15,6 +15,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/devices/record.h"
+#include "palpate/render/tick_state.h"
 #include "support/temp_file.h"
 
 namespace palpate::devices {
@@ -234,7 +235,9 @@ TEST(RecordFile, OnlyWholeStatesOfThisBuildAndRecordAreGiven) {
     for (std::uint64_t n = 1; n <= 5; ++n) {
       state->ticks = 100 * n;
       state->last_time = static_cast<double>(random());
-      state->renderer.hip = Vec3(static_cast<double>(random()));
+      TickState tick = TickState::of(state->renderer);
+      tick.hip = Vec3(static_cast<double>(random()));
+      state->renderer = tick.sealed();
       states.addState(*state);
       written.push_back(bits_of(*state));
     }

@@ -1,5 +1,6 @@
-#include "own_vocabulary.h"
 #include "palpate/scene/vocabulary.h"
+
+#include "own_vocabulary.h"
 #include "palpate/vdb/register.h"
 
 namespace palpate::vdb {

@@ -1,6 +1,7 @@
 #include "palpate/contact/slide.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "contact/eigen2.h"
@@ -48,13 +49,20 @@ Vec3 onSurface(const Vec3& pull, const Vec3& normal, const Mat3& bend) noexcept 
 }  // namespace
 
 Vec3 tangentialPart(const Vec3& v, std::span<const HeldWall> walls) noexcept {
-  switch (walls.size()) {
+  std::array<Vec3, 3> normals;
+  const std::size_t count = std::min(walls.size(), normals.size());
+  for (std::size_t i = 0; i < count; ++i) normals[i] = walls[i].normal;
+  return partAcross(v, {normals.data(), count});
+}
+
+Vec3 partAcross(const Vec3& v, std::span<const Vec3> normals) noexcept {
+  switch (normals.size()) {
     case 0:
       return v;
     case 1:
-      return v - glm::dot(walls[0].normal, v) * walls[0].normal;
+      return v - glm::dot(normals[0], v) * normals[0];
     case 2: {
-      const Vec3 along = glm::cross(walls[0].normal, walls[1].normal);
+      const Vec3 along = glm::cross(normals[0], normals[1]);
       const double square = glm::dot(along, along);
       return square > 0.0 ? along * (glm::dot(along, v) / square) : Vec3(0.0);
     }

@@ -70,8 +70,10 @@ SweepResult sweep(const SweepSurface& surface, const Vec3& a, const Vec3& b, dou
     return out;
   }
   const double end = motion.valueAt(1.0);
-  // Two ends that together outreach the segment leave no room for a passage between them.
-  if (start > surface.tolerance && end > surface.tolerance && start + end >= reach) {
+  // Two ends that together outreach the segment leave no room for a passage between them, nor do
+  // two before a plane.
+  if (start > surface.tolerance && end > surface.tolerance &&
+      (surface.is_flat || start + end >= reach)) {
     out.end_value = end;
     return out;
   }
@@ -84,6 +86,7 @@ SweepResult sweep(const SweepSurface& surface, const Vec3& a, const Vec3& b, dou
     --motion.budget;
     // Along the surface, to rounding, is not through it: the steps below tell.
     if (slope < -kAlong * reach) return {SweepResult::Kind::kHit, 0.0, start};
+    if (surface.is_flat && end > surface.tolerance) return {SweepResult::Kind::kFree, 1.0, end};
     // Leaving the surface: tiny steps at first, so that a fold close by is not jumped.
     stride = std::min(surface.graze, 8.0 * surface.tolerance / surface.lipschitz);
   }

@@ -42,11 +42,12 @@ void CellWalker::flip(LeafId leaf, Signs& signs) const noexcept {
 }
 
 Facet CellWalker::facetAt(LeafId leaf) noexcept {
-  gather(leaf);
   Known& known = known_[leaf];
+  if (known.state == state_ && known.stay == stay_) return known.facet;
+  gather(leaf);
   const bool in_hole = here_.punctures.anyAt(here_.point);
-  if (crossing_count_ == 1 && !in_hole && known.state == state_ &&
-      (!known.facet.varies || known.stay == stay_)) {
+  if (crossing_count_ == 1 && !in_hole && known.state == state_ && !known.facet.varies) {
+    known.stay = stay_;
     return known.facet;
   }
   beyond_.assign(here_.sides);

@@ -237,6 +237,7 @@ SweepSurface CellWalker::surfaceOf(LeafId leaf) const noexcept {
   surface.lipschitz = leaves_[leaf].lipschitz;
   surface.tolerance = tolerance_[leaf];
   surface.graze = limits::kGraze * leaves_[leaf].feature;
+  surface.is_flat = leaves_[leaf].is_flat;
   return surface;
 }
 

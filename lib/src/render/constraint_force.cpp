@@ -115,8 +115,7 @@ Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
   const SeriesForce series = seriesForce(x, x - length * u, walls_.stop(), walls_);
   out.energy = series.energy;
   const Vec3& pressed = series.force;
-  const HeldWalls held = c.held();
-  const Vec3 along = tangentialPart(pressed, held.walls());
+  const Vec3 along = c.along(pressed);
   const double straight = glm::dot(pressed, u);
   const double lag = glm::dot(c.left, c.left);
   out.stiffness = straight / length;
@@ -250,12 +249,12 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
     rise += 0.5 * stretch * stretch * own.gradient;
     varies = varies || !branch.stiffness.isConstant();
   }
-  const HeldWalls held = c.held();
   bool is_held_back = false;
   if (state_.friction.is_felt) {
     rise += springs.turn;
     state_.friction.lean = springs.stiffness > 0.0 ? rise / springs.stiffness : Vec3(0.0);
-  } else {
+  } else if (varies || springs.turn != Vec3(0.0)) {
+    const HeldWalls held = c.held();
     if (varies) elastic -= gradientByHand(rise, held.walls());
     if (springs.turn != Vec3(0.0)) {
       const Vec3 all = gradientByHand(springs.turn, held.walls());

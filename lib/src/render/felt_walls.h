@@ -113,7 +113,7 @@ class FeltWalls final : public SoftKinds {
   std::vector<double> reach_;  ///< [m] by material: of its texture
   std::vector<double>
       contrast_;  ///< [m] by material: infinite where its stiffness is felt at a point
-  std::vector<bool> is_plain_;  ///< by material
+  std::vector<bool> is_plain_;   ///< by material
   std::vector<bool> is_convex_;  ///< by leaf: hollow all over, seen from within
   std::vector<bool>
       may_differ_;  ///< by region: its walls, or those of regions that it leads to freely

@@ -16,12 +16,12 @@ namespace {
 /// The part of `wish` along the planes that hold `solution`.
 Vec3 tangentialStep(const Vec3& wish, const std::array<Plane, 3>& planes,
                     const PlaneSolution& solution) noexcept {
-  HeldWalls held;
-  for (int k = 0; k < solution.count; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    held.wall[held.count++].normal = planes[static_cast<std::size_t>(solution.plane[i])].normal;
+  std::array<Vec3, 3> normals;
+  const auto count = static_cast<std::size_t>(solution.count);
+  for (std::size_t k = 0; k < count; ++k) {
+    normals[k] = planes[static_cast<std::size_t>(solution.plane[k])].normal;
   }
-  return tangentialPart(wish, held.walls());
+  return partAcross(wish, {normals.data(), count});
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
     out.held.multiplier = exact.multiplier[e];
   }
   nameMaterials(last);
-  contact_.left = tangentialPart(wish_, contact_.held().walls());
+  contact_.left = contact_.along(wish_);
 }
 
 /// On the rim of a union the facet of one part leads into the other, and the walker may be on either side of the leaves that
@@ -130,7 +130,7 @@ void ProxySolver::holdByFriction(FrictionState& friction, bool is_first) noexcep
   ContactSet& c = contact_;
   FrictionRatios ratios;
   for (const WallContact& each : c.walls()) ratios.take(frictionOf(each.facet), x_);
-  const Vec3 rest = tangentialPart(friction.lean, c.held().walls());
+  const Vec3 rest = c.along(friction.lean);
   c.lag = lagOf(ratios, c.left, rest, c.load(), is_first, friction);
 }
 

@@ -168,7 +168,7 @@ bool ProxySolver::glideBetween(LeafId a, LeafId b, const Vec3& hip,
     out.held.normal = wall[k].normal;
     out.held.multiplier = press[k];
   }
-  contact_.left = tangentialPart(wish, contact_.held().walls());
+  contact_.left = contact_.along(wish);
   return true;
 }
 

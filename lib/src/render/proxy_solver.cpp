@@ -13,6 +13,12 @@ double ContactSet::load() const noexcept {
   return glm::length(sum);
 }
 
+Vec3 ContactSet::along(const Vec3& v) const noexcept {
+  std::array<Vec3, 3> normals;
+  for (std::size_t i = 0; i < count; ++i) normals[i] = wall[i].held.normal;
+  return partAcross(v, {normals.data(), count});
+}
+
 HeldWalls ContactSet::held() const noexcept {
   HeldWalls out;
   for (const WallContact& each : walls()) out.wall[out.count++] = each.held;
@@ -33,6 +39,7 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
   before_.fill(Vec3(kInfinity));
   hops_ = 0;
   crossed_ = {};
+  wander_ = {.from = walker_.position()};
   trusts_sides_ = false;
   contact_.clear();
   if (goQuickly(hip, friction) && !opener.open(contact_)) return true;
@@ -53,6 +60,7 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
         return false;
       case Look::kCrossed:
         may_fly = true;
+        wander_ = {.from = x_};
         continue;
       case Look::kFree: {
         friction.sticks = false;
@@ -64,6 +72,7 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
           if (stop == CellWalker::Stop::kSpent && flown <= rest_) return false;
           // Stopped at once by a wall that it leads along: from here in steps that keep to the walls.
           may_fly = flown > rest_;
+          wander_ = {.from = walker_.position()};
           continue;
         }
         outcome = moveOn();
@@ -87,11 +96,18 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
     // Only at rest does the spring of the wall have the length that is felt: a tangent plane that one tick's
     // motion left behind may be pressed harder, and must not open what was never pressed so.
     if (opener.open(contact_)) continue;
-    if (outcome == Try::kRefused) return false;
+    if (outcome == Try::kRefused) return goesNowhere();
     if (friction.sticks || !kick()) return true;
   }
   takeLastContact(hip);
-  return false;
+  return goesNowhere();
+}
+
+/// About an apex in the plane of another wall, steps of some times the noise may lead round the tip
+/// for ever.
+bool ProxySolver::goesNowhere() const noexcept {
+  return !trusts_sides_ && wander_.in_vain >= limits::kIdleSteps &&
+         wander_.farthest <= limits::kWanders;
 }
 
 double ProxySolver::restLength(const Vec3& x, const Vec3& wish) noexcept {

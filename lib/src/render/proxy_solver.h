@@ -44,6 +44,7 @@ struct ContactSet {
     lag = snug = left = Vec3(0.0);
   }
   [[nodiscard]] HeldWalls held() const noexcept;
+  [[nodiscard]] Vec3 along(const Vec3& v) const noexcept;  ///< the part of `v` along all walls
   [[nodiscard]] double load() const noexcept;  ///< [m] length of the sum of multiplier * normal
 };
 
@@ -120,6 +121,13 @@ class ProxySolver {
     bool is_last = false;  ///< where it is now, it stays
   };
 
+  /// The steps since the proxy last flew or crossed a wall in this tick.
+  struct Wander {
+    Vec3 from{0.0, 0.0, 0.0};  ///< [m]
+    double farthest = 0.0;     ///< [-] from there, over the noise of the walls
+    int in_vain = 0;           ///< steps that came no nearer to the aim than one before
+  };
+
   enum class Look { kFree, kRests, kCrossed, kMoves, kNowhere };
   enum class Try { kMoved, kRests, kRefused };
   /// What a step has to do: end on the walls and gain a share of what it promised; gain at all; or it may end in free space.
@@ -134,6 +142,7 @@ class ProxySolver {
                                   FrictionState& friction) noexcept;
   void takeOnly(LeafId id, const Facet& facet, const WallThere& wall, const FieldJet& jet,
                 const Vec3& wish) noexcept;
+  [[nodiscard]] bool goesNowhere() const noexcept;
   [[nodiscard]] Look lookAround(FrictionState& friction, bool is_first) noexcept;
   [[nodiscard]] bool goesOnInto(RegionId beyond, const CellProblem& problem) noexcept;
   [[nodiscard]] Try moveOn() noexcept;
@@ -217,6 +226,7 @@ class ProxySolver {
   std::array<Vec3, limits::kPlaces> before_{};  ///< [m] where the last steps of this tick began
   bool is_nearest_ = false;  ///< the last step of this tick ended there, but for rounding
   int idle_steps_ = 0;       ///< in a row, which lead nowhere (limits::kIdleSteps)
+  Wander wander_;
 };
 
 }  // namespace palpate

@@ -238,6 +238,8 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   const bool is_nearer = left < (1.0 - limits::kRoundedGain) * nearest_;
   const bool is_idle = is_back || (glm::length(moved) <= noise && !is_nearer);
   idle_steps_ = is_idle ? idle_steps_ + 1 : 0;
+  wander_.in_vain += is_nearer ? 0 : 1;
+  wander_.farthest = std::max(wander_.farthest, glm::length(y - wander_.from) / noise);
   is_nearest_ = left <= (1.0 + limits::kRoundedGain) * nearest_;
   nearest_ = std::min(nearest_, left);
   std::rotate(before_.begin(), before_.end() - 1, before_.end());

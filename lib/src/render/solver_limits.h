@@ -73,6 +73,9 @@ inline constexpr int kIdleSteps = 4;
 inline constexpr int kIdleMore = 2;
 inline constexpr int kPlaces = 4;  ///< steps before
 inline constexpr double kRoundedGain = 1e-14;
+/// Where the budget ends amid such steps, the proxy rests too if all places of the tick lie within so
+/// many times the noise of its walls of the first, 1e-7 of the feature size.
+inline constexpr double kWanders = 10.0;
 /// A Newton step shorter than this share of the plain one, where the normal would turn by more than
 /// that [rad] over it, is one of a singular point: the plain step is tried in its place.
 inline constexpr double kSingularStep = 0.2;

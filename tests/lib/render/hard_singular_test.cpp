@@ -84,6 +84,18 @@ TEST(HardSingular, ConeApexStraightOn) {
   EXPECT_EQ(drive.walk(mm(0, 0, 60)).force, Vec3(0.0));
 }
 
+TEST(HardSingular, StraightThroughABallsCenterTheNearSideIsFelt) {
+  // Beyond the center the place where the hand went in is stationary, but the farthest of all: 35 N.
+  for (const Vec3& way : {Vec3(0, 0, 1), Vec3(1, 0, 0), glm::normalize(Vec3(1, 2, 3))}) {
+    Drive drive(sceneOfSolid(sphere(Vec3(0.0), 0.02)));
+    (void)drive.to(0.03 * way);
+    const TickResult out = drive.walk(-0.015 * way);
+    EXPECT_TRUE(out.settled);
+    EXPECT_TRUE(isNear(out.proxy, -0.02 * way, 1e-8));
+    EXPECT_TRUE(isNear(out.force, -5.0 * way, 1e-5));
+  }
+}
+
 TEST(HardSingular, HollowConeApex) {
   // From within: beyond the tip the tip itself is nearest, as long as P lies in the cone of normals.
   const FieldPtr field = cone(Vec3(0.0), Vec3(0, 0, 1), 0.015, 0.04);

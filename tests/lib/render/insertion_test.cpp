@@ -1,6 +1,8 @@
 // Needle insertion: the slab of data/scenes against its stated model, tick by tick; what a needle's contents do
 // on ways that are not straight; and their energy.
 
+#include "palpate/render/insertion.h"
+
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -140,7 +140,7 @@ InParts inParts(const ScenePtr& scene, const RendererState& before, const Vec3& 
   InParts out;
   const auto fine = makeRenderer(scene);
   EXPECT_TRUE(fine->setState(before));
-  const Vec3 hand = before.hip;
+  const Vec3 hand = TickState::of(before).hip;
   const Vec3 first = fine->update({hand, Vec3(0.0)}).force;
   const double stored = TickState::of(fine->state()).source.stored.energy;
   Vec3 last = first;

@@ -102,8 +102,8 @@ class Spreading {
     // Leaves reach out of the band of the whole.
     if (wall > plan_.half_width + kBeyond) return {place, start, kOutOfReach, is_inside};
     const double nearest = glm::length(start);
-    // Beyond a face that cuts, the wall tells unless the surface is farther off than that; so a point of the surface that is
-    // nearer does, and leads its neighbors as well.
+    // Beyond a face that cuts, the wall tells unless the surface is farther off than that; so a
+    // point of the surface that is nearer does, and leads its neighbors as well.
     const bool is_walled = is_cut_ && wall > 0.0 && (is_inside || nearest <= wall);
     if (is_walled) return {place, start, nearest, is_inside};
     const Vec3 foot = footOf(leaf, around, place, start, step);

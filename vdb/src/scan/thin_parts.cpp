@@ -1,6 +1,5 @@
 #include "scan/thin_parts.h"
 
-#include <cstdint>
 #include <cstdlib>
 
 namespace palpate::vdb {
@@ -33,53 +32,7 @@ bool holdsSide(const Mask& mask, const std::array<int, 3>& low, const std::array
   return false;
 }
 
-/// The 3^3 voxels around one: bit 9 x + 3 y + z, each from 0 on.
-using Around = std::uint32_t;
-constexpr Around kCenter = Around{1} << 13U;
-
-/// Voxels that share a face with one of `from`.
-Around facesOf(Around from) noexcept {
-  constexpr Around kFirstX = 0x1FF;
-  constexpr Around kFirstY = 0x1C0E07;
-  constexpr Around kFirstZ = 0x1249249;
-  constexpr Around kLastX = kFirstX << 18U;
-  constexpr Around kLastY = kFirstY << 6U;
-  constexpr Around kLastZ = kFirstZ << 2U;
-  return (from & ~kFirstX) >> 9U | (from & ~kLastX) << 9U | (from & ~kFirstY) >> 3U |
-         (from & ~kLastY) << 3U | (from & ~kFirstZ) >> 1U | (from & ~kLastZ) << 1U;
-}
-
-/// Whether a voxel of that side is all that parts two voxels of the other side, which lie on opposite faces of it: no way
-/// leads from one to the other by faces through the other side's voxels around it. So it is in a wall one voxel thick; over
-/// a lone voxel on a body there is a way. What lies beyond the image is such a way.
-bool isWall(const Mask& mask, const std::array<int, 3>& at, bool side) noexcept {
-  const auto isOther = [&](const std::array<int, 3>& voxel) {
-    return !isIn(mask, voxel) || isInside(mask, voxel) != side;
-  };
-  for (std::size_t a = 0; a < 3; ++a) {
-    std::array<int, 3> before = at;
-    std::array<int, 3> after = at;
-    --before[a];
-    ++after[a];
-    if (!isOther(before) || !isOther(after)) continue;
-    Around others = 0;
-    for (int n = 0; n < 27; ++n) {
-      const bool is_other = isOther({at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1});
-      if (is_other) others |= Around{1} << static_cast<unsigned>(n);
-    }
-    const unsigned step = a == 0 ? 9U : a == 1 ? 3U : 1U;
-    Around reached = kCenter >> step;
-    for (Around last = 0; reached != last;) {
-      last = reached;
-      reached |= facesOf(reached) & others;
-    }
-    if ((reached & kCenter << step) == 0) return true;
-  }
-  return false;
-}
-
 bool isThin(const Mask& mask, const std::array<int, 3>& at, bool side) noexcept {
-  if (isWall(mask, at, side)) return true;
   // Nearest cubes first: nearly always one of them is whole.
   for (const int reach : {1, 2}) {
     for (int n = 0; n < 64; ++n) {

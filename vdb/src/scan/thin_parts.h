@@ -11,9 +11,8 @@ namespace palpate::vdb {
 [[nodiscard]] bool isIn(const Mask& mask, const std::array<int, 3>& at) noexcept;
 
 /// Whether a voxel of the box is in a thin part of its own side, or such a part of the other side begins across one of
-/// its faces. Thin is a voxel if no cube of 2^3 voxels of its side holds it or one of the 26 voxels around it, or if it is all
-/// that parts two voxels of the other side, on opposite faces of it: so are places of a wall of one to two voxels. A lone
-/// voxel on a body is not thin, nor is the tip of a ball. What lies beyond the image is of either side.
+/// its faces. Thin is a voxel if no cube of 2^3 voxels of its side holds it or one of the 26 voxels around it: a lone
+/// voxel on a body is not, nor is the tip of a ball. What lies beyond the image is of either side.
 [[nodiscard]] bool isAtThinPart(const Mask& mask, const std::array<int, 3>& at) noexcept;
 
 }  // namespace palpate::vdb

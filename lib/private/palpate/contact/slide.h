@@ -16,7 +16,9 @@ struct HeldWall {
   double multiplier = 0.0;  ///< [m] of PlaneSolution
 };
 
-/// The part of `v` along all walls.
+/// The part of `v` across all `normals` (unit), ...
+[[nodiscard]] Vec3 partAcross(const Vec3& v, std::span<const Vec3> normals) noexcept;
+/// ... and along all walls.
 [[nodiscard]] Vec3 tangentialPart(const Vec3& v, std::span<const HeldWall> walls) noexcept;
 
 /// The chain rule through a proxy at rest: the gradient by the hand's position of what has `gradient` by the

@@ -14,6 +14,7 @@ struct SweepSurface {
   double lipschitz = 1.0;  ///< of the field
   double tolerance = 0.0;  ///< |S| that counts as on the surface
   double graze = 0.0;      ///< [m] shortest step: below it a passage in and out again is let go
+  bool is_flat = false;    ///< Field::isFlat()
   double allowance = 0.0;  ///< |S| beyond the surface that still counts as on the near side
 };
 
