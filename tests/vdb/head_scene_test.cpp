@@ -23,7 +23,7 @@ TEST(HeadScene, ANeedlePassesSkinBrainAndThalamusInThatOrder) {
   registerKinds(registry, {[&](const GridRecord& record) { grids.push_back(record); },
                            [&](const std::string& note) { notes.push_back(note); }});
   const ScenePtr scene =
-      compile(readScene(test::sourceFolder() + "/data/scenes/head.yaml", registry));
+      compile(readScene(palpate::test::sourceFolder() + "/data/scenes/head.yaml", registry));
   const auto naming = [&](const char* text) {
     return std::count_if(notes.begin(), notes.end(), [&](const std::string& note) {
       return note.find(text) != std::string::npos;

@@ -19,7 +19,7 @@ TEST(NeedleScene, BrainIsCutAndHoldsTheShaft) {
   SceneRegistry registry;
   registerKinds(registry, {});
   const ScenePtr scene =
-      compile(readScene(test::sourceFolder() + "/data/scenes/needle.yaml", registry));
+      compile(readScene(palpate::test::sourceFolder() + "/data/scenes/needle.yaml", registry));
   const Vec3 from = Vec3(-100, -42, 60) * kMm;
   const Vec3 to = Vec3(-12, -18, 8) * kMm;
   const Vec3 way = glm::normalize(to - from);

@@ -17,7 +17,7 @@ std::vector<std::vector<double>> askPython(const std::string& command,
 std::vector<std::vector<double>> askScript(const std::string& script, const std::string& command,
                                            const std::vector<std::string>& arguments) {
   std::string line =
-      "/usr/bin/python3 '" + test::sourceFolder() + "/tests/" + script + "' " + command;
+      "/usr/bin/python3 '" + palpate::test::sourceFolder() + "/tests/" + script + "' " + command;
   for (const std::string& argument : arguments) line += " '" + argument + "'";
   FILE* pipe = popen(line.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot start: " + line);

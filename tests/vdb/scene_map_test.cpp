@@ -24,7 +24,7 @@ namespace {
 using palpate::testing::TempFolder;
 
 std::string oracle(const std::string& arguments) {
-  const std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
+  const std::string command = "/usr/bin/python3 '" + palpate::test::sourceFolder() +
                               "/tests/vdb/material_grid_oracle.py' " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   std::string out;

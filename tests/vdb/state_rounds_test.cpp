@@ -17,8 +17,9 @@ class StateRoundsOfImages : public ::testing::TestWithParam<const char*> {};
 TEST_P(StateRoundsOfImages, GoOnToTheLastBit) {
   SceneRegistry registry;
   vdb::registerKinds(registry, {});
-  const ScenePtr scene = compile(readScene(
-      test::sourceFolder() + "/data/scenes/" + std::string(GetParam()) + ".yaml", registry));
+  const ScenePtr scene = compile(
+      readScene(palpate::test::sourceFolder() + "/data/scenes/" + std::string(GetParam()) + ".yaml",
+                registry));
   for (const RendererKind kind : {RendererKind::kConstraint, RendererKind::kPaper}) {
     SCOPED_TRACE(kind == RendererKind::kPaper ? "paper" : "constraint");
     EXPECT_TRUE(goesOnFromItsStates(scene, kind, runsSlowTests() ? 200 : 12));

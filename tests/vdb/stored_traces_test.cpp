@@ -17,9 +17,9 @@ TEST_P(StoredTracesOfScans, AreFeltStill) {
   const std::string name = GetParam();
   SceneRegistry registry;
   vdb::registerKinds(registry, {});
-  const ScenePtr scene =
-      compile(readScene(test::sourceFolder() + "/data/scenes/" + name + ".yaml", registry));
-  const std::string golden = test::sourceFolder() + "/tests/vdb/golden/" + name;
+  const ScenePtr scene = compile(
+      readScene(palpate::test::sourceFolder() + "/data/scenes/" + name + ".yaml", registry));
+  const std::string golden = palpate::test::sourceFolder() + "/tests/vdb/golden/" + name;
   EXPECT_TRUE(compareWithStored(scene, RendererKind::kConstraint, golden + ".constraint.txt"));
   EXPECT_TRUE(compareWithStored(scene, RendererKind::kPaper, golden + ".paper.txt"));
 }

@@ -41,7 +41,7 @@ class VdbOfOthers : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     home = new TempFolder;
-    const std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
+    const std::string command = "/usr/bin/python3 '" + palpate::test::sourceFolder() +
                                 "/tests/vdb/vdb_interop.py' '" + home->path() + "'";
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
   }

@@ -160,7 +160,7 @@ TEST(VdbIo, PythonReadsIt) {
   // In the band, outside, far outside, and deep inside.
   const std::vector<Coord> voxels_asked{
       {12, 0, 0}, {-3, 11, 2}, {20, 0, 0}, {300, 0, 0}, {0, 0, 0}};
-  std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
+  std::string command = "/usr/bin/python3 '" + palpate::test::sourceFolder() +
                         "/tests/vdb/vdb_oracle.py' '" + path + "' skin/surface";
   for (const Coord& at : voxels_asked) {
     command += " ' " + std::to_string(at.x()) + "," + std::to_string(at.y()) + "," +

@@ -8,7 +8,7 @@ _palpate() {
   case $verb in
     '') words='touch replay import bake convert info check query explain render bench accuracy help'; options='--help --version --json --quiet --force' ;;
     touch)
-      options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --realtime --set --epsilon --halvings --alpha --alpha-form --interior --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --json --quiet --force -h --help'
+      options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --device --hand --delay --realtime --set --epsilon --halvings --alpha --alpha-form --interior --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --json --quiet --force -h --help'
       words=FILES
       case $last in
         --path) words=FILES ;;
@@ -26,6 +26,9 @@ _palpate() {
         --taps) words=NONE ;;
         --renderer) words='constraint paper' ;;
         --rate) words=NONE ;;
+        --device) words=NONE ;;
+        --hand) words=NONE ;;
+        --delay) words=NONE ;;
         --set) words=NONE ;;
         --epsilon) words=NONE ;;
         --halvings) words=NONE ;;
@@ -167,9 +170,13 @@ _palpate() {
       esac
       ;;
     explain)
-      options='--measure --svg --json --quiet --force -h --help'
+      options='--measure --device --hand --delay --rate --svg --json --quiet --force -h --help'
       words=FILES
       case $last in
+        --device) words=NONE ;;
+        --hand) words=NONE ;;
+        --delay) words=NONE ;;
+        --rate) words=NONE ;;
         --svg) words=FILES ;;
       esac
       ;;

@@ -37,6 +37,9 @@ _palpate() {
         '*--back[insert\: come back the same way]' \
         '*--renderer[constraint or paper (default\: as the scene says)]:value:(constraint paper)' \
         '*--rate[ticks a second (default 1000)]:value:' \
+        '*--device[follow the motion with this simulated device, in a hand that feels the force (default\: a hand that goes where it is told)\: excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3 (virtual\:NAME means the same)]:value:' \
+        '*--hand[device\: how it is held\: none, relaxed (default) or firm]:value:' \
+        '*--delay[device\: samples from a force to when the motors give it (default 0)]:value:' \
         '*--realtime[keep to the clock (default\: as fast as the machine goes)]' \
         '*--set[change a content while the hand moves, may be repeated\: syrup.viscosity=9@0.5 (N.s/m, s); also flow, lattice.force, cutting]:value:' \
         '*--epsilon[so near to the surface a contact point is on it (default 1 um)]:value:' \
@@ -215,6 +218,10 @@ _palpate() {
     explain)
       _arguments \
         '*--measure[make all of it, and what is needed, and tell memory and time]' \
+        '*--device[list what is felt beside what this device can hold, and what cures what it cannot\: excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3 (virtual\:NAME means the same)]:value:' \
+        '*--hand[device\: how it is held\: none, relaxed (default) or firm]:value:' \
+        '*--delay[device\: samples from a force to when the motors give it (default 0)]:value:' \
+        '*--rate[device\: ticks a second (default 1000)]:value:' \
         '*--svg[draw the table of transitions\: regions, and the ports between them]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
