@@ -33,7 +33,7 @@ double marginOf(const LoopModel& loop, double ticks, double stiffness, double da
     const double imaginary = 0.5 * stiffness * loop.period / std::tan(0.5 * angle);
     const double asked = (1.0 - std::cos(ticks * angle)) / (2.0 * loop.device.damping);
     const double norm = real * real + imaginary * imaginary;
-    least = std::min(least, norm > 0.0 ? real / norm - asked : kInfinity);
+    if (norm > 0.0) least = std::min(least, real / norm - asked);
   }
   return least;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "palpate/core/error.h"
@@ -11,6 +12,10 @@ namespace {
 
 /// Between the ends of a diagonal step in space both of which are off by half an encoder step along each axis.
 const double kEncoderDiagonal = std::sqrt(3.0);
+
+/// [-] Times mass / T: half of what a sampled and held damper on a mass is stable below. There, at z = exp(j a) of its
+/// characteristic equation z^(d+1) (z - 1) / (z + 1) = -alpha T / (2 m), is a = pi / (2 (d + 1)).
+double halfOfStableDamping(int delay) { return std::tan(std::numbers::pi / (4.0 * (delay + 1))); }
 
 Error usageError(const char* name, const std::string& message) {
   return Error(ErrorKind::kUsage, {std::string("passivity.") + name, message});
@@ -84,7 +89,8 @@ void PassivityObserver::hold(const Vec3& force) noexcept {
 PassivityController::PassivityController(const PassivitySettings& settings)
     : observer_(settings),
       period_(settings.period),
-      most_damping_(kDampingShare * settings.mass / settings.period),
+      most_damping_(std::min(kDampingShare, halfOfStableDamping(settings.delay)) * settings.mass /
+                    settings.period),
       travel_(0.5 * settings.period * settings.period / settings.mass),
       hand_force_(settings.hand_force.value_or(0.0)),
       encoder_(settings.encoder),

@@ -149,6 +149,9 @@ struct Felt {
 };
 
 constexpr double kBudget = 5011.0;  // [N/m]
+/// [N] rms while 3 N are held. Without the controller it is 4 N and more; a simulation that was written apart from this one left
+/// 0.16 N at most with it.
+constexpr double kQuiet = 0.17;
 
 Felt press(const Pressed& how) {
   TinyPlant plant({.mass = 0.2, .damping = 0.5, .hand_damping = 2.0, .hand_stiffness = 300.0},
@@ -224,14 +227,14 @@ TEST(PassivityController, ItHoldsTenTimesTheBudget) {
       EXPECT_LT(felt.to_hand, felt.tick_cost);
       EXPECT_LT(felt.to_hand, 1e-4);
       if (taps) continue;
-      EXPECT_LT(felt.chatter, 0.17);
+      EXPECT_LT(felt.chatter, kQuiet);
       EXPECT_NEAR(felt.share, 1.0, 0.01);
     }
   }
 }
 
 TEST(PassivityController, WithADelayItNeedsTheLimitOfItsDamping) {
-  // 0.25 m / T is stable with two ticks of delay. Of what it holds: the budget of d ticks is 1 / (1 + 2 d) of that of none.
+  // Of what it holds: the budget of d ticks is 1 / (1 + 2 d) of that of none.
   for (int delay = 1; delay <= 2; ++delay) {
     PassivitySettings how = settings();
     how.delay = delay;
@@ -242,7 +245,30 @@ TEST(PassivityController, WithADelayItNeedsTheLimitOfItsDamping) {
                 without.to_hand, with.to_hand, without.chatter, with.chatter);
     EXPECT_GT(without.to_hand, 0.05);
     EXPECT_LT(with.to_hand, 1e-3);
-    EXPECT_LT(with.chatter, 0.2);
+    EXPECT_LT(with.chatter, kQuiet);
+  }
+}
+
+TEST(PassivityController, ItsDamperCalmsAMassWithAnyDelay) {
+  // On a mass alone such a damper is stable below 2 tan(pi / (4 (d + 1))) m / T: at 6 ticks 0.225, which is less than kDampingShare.
+  for (int delay = 0; delay <= 12; ++delay) {
+    PassivitySettings how = settings();
+    how.damping = 0.0;
+    how.delay = delay;
+    PassivityController guard(how);
+    TinyPlant plant({.mass = how.mass, .damping = 0.0}, kTick, 0.0, 0.1);
+    std::vector<double> line(static_cast<std::size_t>(delay), 0.0);
+    // An account that is never made good, so that it damps as much as it may.
+    double source = -1e6;
+    for (int k = 0; k < 2000; ++k) {
+      const Vec3 at(0.0, plant.position(), 0.0);
+      line.push_back(guard.step(at, kTick, Vec3(0.0), source).force.y);
+      source = 0.0;
+      plant.step(line.front(), 0.0);
+      line.erase(line.begin());
+    }
+    // Slower than 1e-6 m/s it is left alone.
+    EXPECT_LT(std::fabs(plant.velocity()), 1e-5) << delay;
   }
 }
 
@@ -259,7 +285,7 @@ TEST(PassivityController, TheBoundGivesNothingBeforeItIsThere) {
           times, hand, felt.by_motor, felt.chatter, felt.share, felt.most_added);
       EXPECT_LE(felt.by_motor, PassivityObserver::kSeed * 1.01);
       EXPECT_LE(felt.to_hand, PassivityObserver::kSeed * 1.01);
-      EXPECT_LT(felt.chatter, 0.17);
+      EXPECT_LT(felt.chatter, kQuiet);
     }
     PassivitySettings how = settings();
     how.damping = 0.0;

@@ -1,12 +1,15 @@
 #include "support/rivals/rival_renderer.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "palpate/core/error.h"
+#include "palpate/interior/port_machine.h"
 
 namespace palpate::rivals {
 
-RivalRenderer::RivalRenderer(ScenePtr scene) : HapticRenderer(std::move(scene), {}) {
+RivalRenderer::RivalRenderer(ScenePtr scene) : scene_(std::move(scene)) {
   for (std::size_t i = 1; i < scene_->regions().size(); ++i) {
     const FieldPtr& field = scene_->regions()[i].field;
     const Wall& wall = scene_->passages().wall(kOutside, static_cast<RegionId>(i));
@@ -17,6 +20,23 @@ RivalRenderer::RivalRenderer(ScenePtr scene) : HapticRenderer(std::move(scene), 
   if (solids_.empty()) {
     throw inputError("rivals.no_solid", "the scene has no solid that can be touched from outside");
   }
+}
+
+TickResult RivalRenderer::update(const HipState& hip) noexcept {
+  const Vec3 size = glm::abs(hip.position);
+  const bool is_good = isFinite(hip.position) && isFinite(hip.velocity) &&
+                       std::max({size.x, size.y, size.z}) <= kFarthest;
+  if (is_good) {
+    last_ = step(hip);
+  } else {
+    last_.force = Vec3(0.0);
+  }
+  return last_;
+}
+
+void RivalRenderer::reset() noexcept {
+  last_ = {};
+  forget();
 }
 
 const Solid* RivalRenderer::deepestAt(const Vec3& p) const noexcept {

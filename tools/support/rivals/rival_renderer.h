@@ -1,6 +1,7 @@
 #pragma once
 // What all rivals share.
 
+#include <span>
 #include <vector>
 
 #include "palpate/render/haptic_renderer.h"
@@ -14,7 +15,25 @@ struct Solid {
   double damping = 0.0;    ///< [N s/m]
 };
 
+/// What the interface asks for beside a tick: rivals cross nothing, keep to the contents of the scene, have no sources of
+/// energy and no limits of the force.
 class RivalRenderer : public HapticRenderer {
+ public:
+  [[nodiscard]] TickResult update(const HipState& hip) noexcept final;
+  [[nodiscard]] std::span<const PortCrossing> crossings() const noexcept final { return {}; }
+  [[nodiscard]] std::span<const RegionEntry> entries() const noexcept final { return {}; }
+  [[nodiscard]] bool setContent(RegionId /*region*/,
+                                const ContentChange& /*change*/) noexcept final {
+    return false;
+  }
+  [[nodiscard]] const Vec3& unlimitedForce() const noexcept final { return last_.force; }
+  [[nodiscard]] double sourceWork() const noexcept final { return 0.0; }
+  void reset() noexcept final;
+  /// Their memory is not a RendererState: a state is always that of a first tick, and none is taken.
+  [[nodiscard]] RendererState state() const noexcept final { return {}; }
+  [[nodiscard]] RendererState checkpoint() noexcept final { return {}; }
+  [[nodiscard]] bool setState(const RendererState& /*state*/) noexcept final { return false; }
+
  protected:
   /// @throws Error (kInput, rivals.no_solid)
   explicit RivalRenderer(ScenePtr scene);
@@ -32,12 +51,12 @@ class RivalRenderer : public HapticRenderer {
  private:
   /// As before the first tick.
   virtual void forget() noexcept = 0;
+  /// A tick of a good reading.
+  [[nodiscard]] virtual TickResult step(const HipState& hip) noexcept = 0;
 
-  void resume() noexcept final { forget(); }
-  [[nodiscard]] std::span<const PortCrossing> details() const noexcept final { return {}; }
-  [[nodiscard]] std::span<const RegionEntry> entered() const noexcept final { return {}; }
-
+  ScenePtr scene_;
   std::vector<Solid> solids_;
+  TickResult last_;
 };
 
 /// Steps of Newton's from `p` onto the surface: for a distance one is all.

@@ -91,15 +91,15 @@ struct PassivityTick {
 /// The observer, and a controller behind it (after Hannaford and Ryu, IEEE Transactions on Robotics and Automation 18(1),
 /// 2002, with the energy of the observer above). A value; step() never allocates, locks or throws.
 ///
-/// - While the reserve is below 0 it damps: -alpha v, alpha = -reserve / (T |v|^2), but kDampingShare mass / T at most. A
-///   damper that is sampled and held gives energy itself: without that limit the device would be unstable at rest, and
-///   above it with two ticks of delay. It acts once energy was given.
+/// - While the reserve is below 0 it damps: -alpha v, alpha = -reserve / (T |v|^2), but kDampingShare mass / T and
+///   tan(pi / (4 (d + 1))) mass / T at most, with d ticks of delay. A damper that is sampled and held gives energy itself: on a mass
+///   alone it is stable below twice the latter. The controller acts once energy was given.
 /// - With `hand_force` F_H it acts before that, without delay. Until the next tick the tip goes
 ///   x_k - x_{k-1} + T^2 / (2 m) (f_{k-1} + f_k + 2 F) with |F| <= F_H along the force at most, so
 ///   |f| <= (-s + sqrt(s^2 + 4 c reserve)) / (2 c), c = T^2 / (2 m), s = n . (x_k - x_{k-1}) + c n . f_{k-1} + 2 c F_H
 ///   (and the encoder's step), n = f / |f|, gives no more than the reserve.
 ///
-/// Both are felt: the first 0.05 to 0.2 mm of a stiff wall become soft, and a fast tap gets a kick against it.
+/// Both are felt: a stiff wall is softer where it is first touched, and a fast tap gets a kick against it.
 class PassivityController {
  public:
   static constexpr double kDampingShare = 0.25;  ///< [-]
