@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "folders/folders.h"
 #include "palpate/devices/device_presets.h"
 #include "palpate/devices/scene_budget.h"
 #include "palpate/scene/scene_file.h"
@@ -152,7 +153,8 @@ std::string remarkOf(const std::vector<std::string>& names) {
 
 TEST(ExampleScenes, SayOnWhichDevicesTheyAreAboveTheStabilityBudget) {
   int scenes = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(PALPATE_SOURCE_DIR "/data/scenes")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(palpate::test::sourceFolder() + "/data/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
     ++scenes;
     SceneRegistry registry;
