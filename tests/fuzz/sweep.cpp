@@ -95,7 +95,7 @@ std::vector<std::string> commandFor(const Reader& reader, const std::string& fil
   const std::string name = reader.name;
   if (name == "yaml") return {"check", file};
   if (name == "path")
-    return {"touch", test::sourceFolder() + "/data/scenes/container.yaml", "--path", file};
+    return {"touch", palpate::test::sourceFolder() + "/data/scenes/container.yaml", "--path", file};
   if (name == "labels") return {"info", image, "--names", file};
   if (name == "vdb" || name == "stl" || name == "obj" || name == "ply" || name == "vtk" ||
       name == "gltf" || name == "glb") {

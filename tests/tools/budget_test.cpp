@@ -154,7 +154,7 @@ std::string remarkOf(const std::vector<std::string>& names) {
 TEST(ExampleScenes, SayOnWhichDevicesTheyAreAboveTheStabilityBudget) {
   int scenes = 0;
   for (const auto& entry :
-       std::filesystem::directory_iterator(test::sourceFolder() + "/data/scenes")) {
+       std::filesystem::directory_iterator(palpate::test::sourceFolder() + "/data/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
     ++scenes;
     SceneRegistry registry;
