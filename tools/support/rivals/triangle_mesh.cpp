@@ -36,13 +36,17 @@ class Mesher {
 
  private:
   [[nodiscard]] std::size_t indexOf(int x, int y, int z) const {
-    return static_cast<std::size_t>((z * count_[1] + y) * count_[0] + x);
+    const auto at = [](int i) { return static_cast<std::size_t>(i); };
+    return (at(z) * at(count_[1]) + at(y)) * at(count_[0]) + at(x);
   }
   [[nodiscard]] Vec3 pointOf(std::size_t index) const {
     const auto nx = static_cast<std::size_t>(count_[0]);
     const auto ny = static_cast<std::size_t>(count_[1]);
-    return lo_ + edge_ * Vec3(static_cast<double>(index % nx), static_cast<double>(index / nx % ny),
-                              static_cast<double>(index / nx / ny));
+    const std::size_t x = index % nx;
+    const std::size_t y = index / nx % ny;
+    const std::size_t z = index / nx / ny;
+    return lo_ +
+           edge_ * Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
   }
 
   void cube(int x, int y, int z) {
@@ -65,7 +69,7 @@ class Mesher {
 
   void cut(std::array<std::size_t, 4> c) {
     const auto is_inside = [&](std::size_t index) { return values_[index] < 0.0; };
-    const auto first_outside = std::partition(c.begin(), c.end(), is_inside);
+    auto* const first_outside = std::partition(c.begin(), c.end(), is_inside);
     const auto inside = first_outside - c.begin();
     if (inside == 1) add(between(c[0], c[1]), between(c[0], c[2]), between(c[0], c[3]));
     if (inside == 3) add(between(c[3], c[0]), between(c[3], c[1]), between(c[3], c[2]));
