@@ -65,9 +65,11 @@ MapReader MapReader::map(std::string_view key) const {
 }
 
 std::vector<MapReader> MapReader::maps(std::string_view key) const {
-  const std::string& type = words(key).type;
+  const KeyWords& declared = words(key);
+  const std::string& type = declared.type;
   std::vector<MapReader> all;
-  for (const Node& item : find(key)->items) {
+  for (const Node& item : readList(loader_->document(), *find(key), inQuotes(declared.name),
+                                   declared.at_least, declared.at_most)) {
     all.emplace_back(*loader_, item, loader_->vocabulary().find(type)->called, type);
   }
   return all;

@@ -347,7 +347,10 @@ void checkValue(const SceneLoader& loader, const Node& node, const KeyWords& key
       if (!is_map_of_places(node)) checkOne(loader, node, key, what);
       return;
     case KeyWords::Count::kList:
-      for (const Node& item : readList(document, node, what, key.at_least, key.at_most)) {
+      // How many maps a list has is checked when they are opened: what stands before them is read first.
+      for (const Node& item :
+           readList(document, node, what, key.form == KeyWords::Form::kMap ? 0 : key.at_least,
+                    key.form == KeyWords::Form::kMap ? 0 : key.at_most)) {
         if (!is_map_of_places(item)) checkOne(loader, item, key, "an item of " + what);
       }
       return;
