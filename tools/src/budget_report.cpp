@@ -171,7 +171,7 @@ std::string budgetText(std::span<const BudgetItem> items) {
     }
     if (std::isfinite(each.quiet_speed)) {
       above += "; friction keeps it quiet for taps up to " +
-               formatNumber(1e3 * each.quiet_speed, 3) + " mm/s";
+               formatNumber(10.0 * std::round(1e2 * each.quiet_speed), 4) + " mm/s";
     }
     above += "\n    cured by " + cures(each) + "\n";
   }
