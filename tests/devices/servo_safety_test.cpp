@@ -7,9 +7,9 @@
 #include <limits>
 #include <thread>
 
-#include "../../devices/src/reading_watch.h"
 #include "devices/scripted_device.h"
 #include "palpate/devices/device.h"
+#include "palpate/devices/reading_watch.h"
 #include "support/alloc_guard.h"
 
 namespace palpate::devices {
