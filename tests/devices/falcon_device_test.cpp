@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <thread>
 
 #include "devices/falcon_emulator.h"
 #include "falcon/boot_table.h"
@@ -16,6 +15,7 @@
 #include "palpate/scene/scene_file.h"
 #include "support/error_of.h"
 #include "support/temp_file.h"
+#include "support/wait.h"
 #ifdef PALPATE_LIBUSB
 #include "devices/usbfs_emulation.h"
 #endif
@@ -303,13 +303,15 @@ TEST(FalconFaults, OneFailedTransferIsOnePacketLess) {
   for (const int error : {EPIPE, EOVERFLOW, EPROTO, ETIME}) {
     for (const auto step : {UsbfsEmulation::Step::kReapIn, UsbfsEmulation::Step::kReapOut}) {
       Rig rig;
-      const FaultRun run = runWith(rig, [=](Rig& r) {
+      constexpr std::uint64_t kTicks = 700;
+      const auto every_hundredth = [=](Rig& r) {
         r.usb.fault = [=, n = 0](UsbfsEmulation::Step now) mutable {
-          return now == step && ++n % 500 == 0 ? error : 0;
+          return now == step && ++n % 100 == 0 ? error : 0;
         };
-      });
+      };
+      const FaultRun run = runWith(rig, every_hundredth, kTicks);
       EXPECT_EQ(run.report.exit, ServoExit::kStopped) << error;
-      EXPECT_GT(run.report.ticks, 2900U);
+      EXPECT_EQ(run.report.ticks, kTicks);
       expectLetGo(rig);
     }
   }
@@ -409,17 +411,19 @@ TEST(FalconFaults, AThreadThatStandsStillIsCutByAnother) {
   Rig rig;
   rig.emulator.mass = 1e9;
   std::atomic<bool> stop{false};
+  bool was_cut = false;
   int n = 0;
   const auto tick = [&](const DeviceState&) {
     // Stands still until the motors have let go; nobody but the second thread can do that.
     if (++n == 700) {
       const std::uint64_t before = rig.usb.outs();
-      while (rig.usb.outs() == before) std::this_thread::yield();
+      was_cut = testing::waitUntil([&] { return rig.usb.outs() != before; });
     }
     if (n == 701) stop = true;
     return kPush;
   };
   const ServoReport report = runServo(rig.device, tick, {.realtime = true}, stop);
+  EXPECT_TRUE(was_cut);
   EXPECT_GE(report.safety.hangs, 1U);
   expectLetGo(rig);
 }
@@ -458,8 +462,10 @@ TEST(FalconDevice, AWallIsHeldWithoutAHiddenSample) {
     double early = 0.0;
     double late = 0.0;
     for (int i = 0; i < 2000; ++i) {
-      while (rig.device.read(state) == DeviceStatus::kStale) {
-      }
+      DeviceStatus status = DeviceStatus::kStale;
+      for (int k = 0; k < 10 && status == DeviceStatus::kStale; ++k)
+        status = rig.device.read(state);
+      ASSERT_EQ(status, DeviceStatus::kOk) << i;
       (void)rig.device.write(-share * limit * state.position);
       const double size = std::abs(state.position.z);
       if (i >= 100 && i < 300) early = std::max(early, size);

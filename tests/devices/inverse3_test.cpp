@@ -20,6 +20,7 @@
 #include "palpate/devices/device.h"
 #include "support/alloc_guard.h"
 #include "support/error_of.h"
+#include "support/wait.h"
 
 namespace palpate::devices {
 namespace {
@@ -115,10 +116,10 @@ class MockService {
 
 DeviceStatus nextReading(Device& device, DeviceState& state) {
   DeviceStatus status = DeviceStatus::kStale;
-  while (status == DeviceStatus::kStale) {
+  (void)testing::waitUntil([&] {
     status = device.read(state);
-    std::this_thread::yield();
-  }
+    return status != DeviceStatus::kStale;
+  });
   return status;
 }
 
@@ -133,14 +134,15 @@ TEST(Inverse3, EachWriteIsAForceAndEachAnswerAReading) {
   EXPECT_EQ(state.velocity.x, 1.0);
   for (int n = 1; n <= 50; ++n) {
     ASSERT_EQ(device->write(Vec3(n, 0.0, -1.0)), DeviceStatus::kOk);
-    while (service.forces().empty() || service.forces().back().x != n) std::this_thread::yield();
+    ASSERT_TRUE(testing::waitUntil(
+        [&] { return !service.forces().empty() && service.forces().back().x == n; }));
     ASSERT_EQ(nextReading(*device, state), DeviceStatus::kOk);
   }
   EXPECT_GE(state.position.x, 0.049);
   EXPECT_EQ(service.forces().front(), Vec3(0.0)) << "the first one asks for an answer only";
   device->close();
   EXPECT_EQ(device->read(state), DeviceStatus::kDisconnected);
-  while (service.forces().back() != Vec3(0.0)) std::this_thread::yield();
+  EXPECT_TRUE(testing::waitUntil([&] { return service.forces().back() == Vec3(0.0); }));
 }
 
 TEST(Inverse3, ALoopRampsAndLeavesZeroForce) {
@@ -171,11 +173,11 @@ TEST(Inverse3, AServiceThatHangsUpIsAnUnplugging) {
   device->open();
   DeviceState state;
   DeviceStatus status = DeviceStatus::kOk;
-  while (status == DeviceStatus::kOk || status == DeviceStatus::kStale) {
+  (void)testing::waitUntil([&] {
     (void)device->write(Vec3(1.0));
     status = device->read(state);
-    std::this_thread::yield();
-  }
+    return status != DeviceStatus::kOk && status != DeviceStatus::kStale;
+  });
   EXPECT_EQ(status, DeviceStatus::kDisconnected);
 }
 
@@ -197,7 +199,7 @@ TEST(Inverse3, GarbageIsNoReading) {
     for (int n = 0; n < 4; ++n) {
       const int before = service.messages();
       (void)device->write(Vec3(1.0));
-      while (service.messages() == before) std::this_thread::yield();
+      ASSERT_TRUE(testing::waitUntil([&] { return service.messages() != before; }));
       const DeviceStatus status = device->read(state);
       EXPECT_TRUE(status == DeviceStatus::kOk || status == DeviceStatus::kStale) << bad;
       EXPECT_EQ(state.position.y, 0.02);

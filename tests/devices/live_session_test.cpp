@@ -11,6 +11,7 @@
 #include "palpate/devices/session.h"
 #include "palpate/scene/scene_file.h"
 #include "support/alloc_guard.h"
+#include "support/wait.h"
 
 namespace palpate::devices {
 namespace {
@@ -31,11 +32,12 @@ TEST(SeqLock, AValueIsSeenWhole) {
   SeqLock<Pair> lock;
   EXPECT_FALSE(lock.load());
   constexpr std::uint64_t kStores = 200'000;
-  std::thread writer([&] {
+  std::jthread writer([&] {
     for (std::uint64_t i = 1; i <= kStores; ++i) lock.store({i, 2 * i, 3 * i});
   });
   std::uint64_t last = 0;
-  while (last < kStores) {
+  const testing::Deadline deadline;
+  while (last < kStores && !deadline.hasPassed()) {
     const auto seen = lock.load();
     if (!seen) continue;
     ASSERT_EQ(seen->b, 2 * seen->a);
@@ -44,6 +46,7 @@ TEST(SeqLock, AValueIsSeenWhole) {
     last = seen->a;
   }
   writer.join();
+  EXPECT_EQ(last, kStores);
 }
 
 TEST(LiveSession, TheViewIsTheLastTick) {
@@ -86,7 +89,7 @@ TEST(LiveSession, ScenesThatAnotherThreadOffersAreTakenOneAfterTheOther) {
   Session session(floorScene(0.0, 1000.0));
   std::atomic<bool> is_over{false};
   std::atomic<int> offered{0};
-  std::thread world([&] {
+  std::jthread world([&] {
     for (int i = 0; i < 50; ++i) {
       session.offer(floorScene(0.0, 1000.0 + i), {});
       ++offered;
