@@ -8,6 +8,8 @@
 
 #include "palpate/core/error.h"
 #include "palpate/devices/record.h"
+#include "palpate/devices/scene_swap.h"
+#include "palpate/devices/seq_lock.h"
 
 namespace palpate::devices {
 namespace {
@@ -38,8 +40,19 @@ void check(const Scene& scene, const SessionSettings& settings) {
 
 }  // namespace
 
+/// What other threads touch.
+struct Session::Shared {
+  SceneSwap swap;
+  SeqLock<SessionView> view;
+};
+
+Session::~Session() = default;
+Session::Session(Session&& other) noexcept = default;
+Session& Session::operator=(Session&& other) noexcept = default;
+
 Session::Session(ScenePtr scene, SessionSettings settings)
-    : scene_(std::move(scene)),
+    : shared_(std::make_unique<Shared>()),
+      scene_(std::move(scene)),
       settings_(std::move(settings)),
       renderer_(makeRenderer(scene_, settings_.renderer)),
       tracker_(settings_.velocity) {
@@ -54,6 +67,7 @@ Session::Session(ScenePtr scene, SessionSettings settings)
 }
 
 SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcept {
+  swapScene();
   SessionTick tick;
   tick.number = ticks_;
   tick.reading = reading;
@@ -88,9 +102,25 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
   const auto after = std::chrono::steady_clock::now();
   tick.unlimited = renderer_->unlimitedForce();
   tick.renderer_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count();
-  const Vec3 felt = now.share * tick.result.force;
+  const Vec3 felt = swap_fade_ * now.share * tick.result.force;
   tick.force = is_mapped ? mapping.forceToDevice(felt) : felt;
+  swap_fade_ = std::min(1.0, swap_fade_ + tick.dt / kSwapFade);
+  shared_->view.store({tick.number, reading.time, now.position, tick.result.proxy,
+                       tick.result.force, tick.result.region, reading.buttons, tick.is_held});
   return tick;
+}
+
+std::optional<SessionView> Session::view() const noexcept { return shared_->view.load(); }
+
+void Session::offer(ScenePtr scene, const RendererSettings& settings) {
+  auto renderer = makeRenderer(scene, settings);
+  shared_->swap.offer(std::move(scene), std::move(renderer));
+}
+
+void Session::swapScene() noexcept {
+  if (!shared_->swap.take(scene_, renderer_)) return;
+  swap_fade_ = 0.0;
+  next_change_ = settings_.changes.size();
 }
 
 void Session::changeUntil(double time) noexcept {
