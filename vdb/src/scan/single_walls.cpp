@@ -32,22 +32,22 @@ struct Around {
 bool isSingleWall(const Mask& mask, const std::array<int, 3>& at, std::size_t axis) noexcept {
   const std::ptrdiff_t here = mask.at(at[0], at[1], at[2]);
   const std::ptrdiff_t step = mask.strides()[axis];
-  const auto isInside = [&](std::ptrdiff_t place) {
+  const auto is_inside = [&](std::ptrdiff_t place) {
     return mask.inside[static_cast<std::size_t>(place)] != 0;
   };
-  const bool side = isInside(here);
-  if (isInside(here - step) == side || isInside(here + step) == side) return false;
+  const bool side = is_inside(here);
+  if (is_inside(here - step) == side || is_inside(here + step) == side) return false;
   Around around;
   around.by_edges = side;  // outside voxels hang together across edges too
   for (int n = 0; n < 27; ++n) {
     const std::ptrdiff_t there =
         mask.at(at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1);
-    around.is_open[static_cast<std::size_t>(n)] = isInside(there) != side;
+    around.is_open[static_cast<std::size_t>(n)] = is_inside(there) != side;
   }
-  constexpr int kCenter = 13;
-  const int n = axis == 0 ? 9 : axis == 1 ? 3 : 1;
-  around.spread(kCenter - n);
-  return !around.is_reached[static_cast<std::size_t>(kCenter + n)];
+  constexpr std::size_t kCenter = 13;
+  const std::size_t n = axis == 0 ? 9 : axis == 1 ? 3 : 1;
+  around.spread(static_cast<int>(kCenter - n));
+  return !around.is_reached[kCenter + n];
 }
 
 }  // namespace palpate::vdb
