@@ -32,9 +32,10 @@ struct SeamPoint {
 /// Scratch of one renderer: nothing in it is left for the next tick.
 class Seams {
  public:
-  /// Leaves near the patch that are looked at, and seams that count: the nearest ones.
-  static constexpr std::size_t kMostLeaves = 32;
-  static constexpr std::size_t kMostSeams = 4;
+  /// Leaves near the patch that are looked at, and seams that count: the nearest ones. Where there are more, the patch is
+  /// taken to end at the nearest of those that do not count, so that none comes or goes at once.
+  static constexpr std::size_t kMostLeaves = 64;
+  static constexpr std::size_t kMostSeams = 10;
   static constexpr std::size_t kMostParts = std::size_t{1} << kMostSeams;
 
   Seams(const Scene& scene, CellWalker& walker) : scene_(scene), walker_(walker) {}
@@ -85,6 +86,7 @@ class Seams {
   void gather(LeafId leaf, const HeldWall& held) noexcept;
   void findSeams(const HeldWall& held, const Vec3& place, double radius) noexcept;
   void addSeam(const Seam& seam) noexcept;
+  void leaveOut(const Seam& seam) noexcept;
   /// The wall behind the surface, on the far side of the seams whose bits are set; not closed where there is none.
   [[nodiscard]] Facet facetAcross(unsigned across, const Vec3& place) noexcept;
 
@@ -96,6 +98,10 @@ class Seams {
   std::size_t surface_count_ = 0;
   std::array<Seam, kMostSeams> seam_{};
   std::size_t seam_count_ = 0;
+  double patch_ =
+      0.0;  ///< [m] radius: that of the press, or up to the nearest seam that is left out
+  Vec3 patch_away_{0.0, 0.0, 0.0};  ///< gradient of that by the place, in the second case
+  bool leaves_out_ = false;
   std::array<Part, kMostParts> part_{};
 };
 
