@@ -50,10 +50,11 @@ class Seams {
     gather(leaf, held);
     return surface_count_ == 1;
   }
-  /// The facet at `place` [m] of all leaves that coincide there.
-  [[nodiscard]] Facet facetOf(LeafId leaf, const HeldWall& held, const Vec3& place) noexcept {
+  /// The facet at `place` [m], on the other side of the leaves `turned`, of all leaves that coincide there.
+  [[nodiscard]] Facet facetOf(LeafId leaf, const HeldWall& held, const Vec3& place,
+                              std::span<const LeafId> turned = {}) noexcept {
     gather(leaf, held);
-    return walker_.facetAside({}, {surface_.data(), surface_count_}, place);
+    return walker_.facetAside(turned, {surface_.data(), surface_count_}, place);
   }
   /// True if `leaf` is on the surface that was asked for last, or coincides with it.
   [[nodiscard]] bool isOnSurface(LeafId leaf) const noexcept;
