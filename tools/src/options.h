@@ -32,6 +32,16 @@ struct DeviceOptions {
   std::optional<int> delay;  ///< [samples]
 };
 
+/// How a device that a hand holds is reached.
+struct RealDeviceOptions {
+  std::string serial;             ///< falcon; empty: the first
+  std::optional<int> descriptor;  ///< falcon: of its node, open
+  std::string firmware;           ///< falcon: image file
+  std::string calibration;        ///< falcon: file of constants
+  std::string library;            ///< hd, dhd: the maker's library
+  std::string service;            ///< inverse3: HOST:PORT
+};
+
 struct TouchOptions {
   std::string scene;
   // Exactly one of these five says how the hand moves.
@@ -64,6 +74,8 @@ struct TouchOptions {
   int states = 10000;        ///< [ticks] record: from state to state; 0: none
   double rate = 1000.0;      ///< [Hz]
   DeviceOptions device;
+  RealDeviceOptions real;
+  std::optional<double> seconds;  ///< [s] of a device that a hand holds; none: until a stop
   std::string max_force;
   std::string slew;
   std::string ramp;
@@ -180,7 +192,7 @@ struct RenderOptions {
 };
 
 struct BenchOptions {
-  std::string what;  ///< "contact"
+  std::string what;  ///< "contact" or "servo"
   std::vector<std::string> scenes;
   std::string renderer;  ///< empty: both
   int repeats = 10;
@@ -188,7 +200,21 @@ struct BenchOptions {
   int cold = 30;
   std::string csv;
   std::string svg;
+  std::vector<double> rates;  ///< servo: [Hz]; empty: 1000 and 4000
+  double seconds = 5.0;       ///< servo: of each
+  std::optional<int>
+      load;  ///< servo: busy threads; none: without, and then as many as there are cores
 };
+
+struct DevicesOptions {
+  std::string test;       ///< name of a device
+  std::string calibrate;  ///< file to write
+  bool states = false;
+  double seconds = 10.0;
+  RealDeviceOptions device;
+};
+
+struct DoctorOptions {};
 
 struct AccuracyOptions {
   std::string scene;
@@ -216,6 +242,6 @@ struct HelpOptions {
 using VerbOptions =
     std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions, ImportOptions, InfoOptions,
                  CheckOptions, QueryOptions, ExplainOptions, RenderOptions, BenchOptions,
-                 AccuracyOptions, ReplayOptions>;
+                 AccuracyOptions, ReplayOptions, DevicesOptions, DoctorOptions>;
 
 }  // namespace palpate::tools

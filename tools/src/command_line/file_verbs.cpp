@@ -135,6 +135,19 @@ void defineBench(CLI::App& app, Invocation& invocation) {
   add(app, g, "--cold", "N", o.cold,
       "ticks that are timed after other data went through the caches (default 30)")
       ->check(CLI::Range(0, 1000000));
+  g = "Of `bench servo`";
+  app.add_option("--rate", o.rates, "a rate, may be repeated (default 1000 and 4000)")
+      ->group(g)
+      ->option_text("HZ")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false)
+      ->check(CLI::Range(1.0, 100000.0));
+  add(app, g, "--seconds", "S", o.seconds, "for how long at each rate (default 5)")
+      ->check(CLI::Range(0.1, 86400.0));
+  add(app, g, "--load", "N", o.load,
+      "threads that compute meanwhile (default: none, and then as many as there are cores)")
+      ->check(CLI::Range(0, 1024));
   g = "Output files";
   add(app, g, "--csv", "FILE.csv", o.csv, "the table, one row for each scene and renderer");
   add(app, g, "--svg", "FILE.svg", o.svg, "a plot of error against time");
@@ -255,9 +268,9 @@ Verb checkVerb() {
 Verb benchVerb() {
   return {
       "bench",
-      "Measure contact: how long a tick takes, and how far off its force is",
+      "Measure contact (a tick's time, its force's error), or how late a servo loop wakes",
       "palpate bench contact --scene sphere --scene torus --svg contact.svg",
-      "palpate bench contact [OPTIONS]",
+      "palpate bench contact|servo [OPTIONS]",
       "Runs both renderers along the same paths on scenes of known truth and compares the forces "
       "with\n"
       "closed forms, or with a slow oracle where there is none: `judged` is the number of ticks "
@@ -274,10 +287,13 @@ Verb benchVerb() {
       "cone-tip,\n"
       "cone-wide, csg-nested, crease, groove, saddle, container, ports-10, ports-100, ports-1000, "
       "balls-1,\n"
-      "balls-1000, balls-10000, five-layers and lump (not judged).",
+      "balls-1000, balls-10000, five-layers and lump (not judged).\n"
+      "`palpate bench servo` runs an empty loop in real time, and says whether this machine is "
+      "good\n"
+      "enough for each rate: how late turns began, and how many were missed.",
       {},
       defineBench,
-      [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact"); },
+      [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact or servo"); },
       true};
 }
 
