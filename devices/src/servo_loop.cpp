@@ -8,10 +8,35 @@
 #include "palpate/core/error.h"
 #include "palpate/devices/device.h"
 #include "palpate/devices/safety.h"
+#include "servo_check.h"
 #include "servo_clock.h"
 #include "servo_schedule.h"
 
 namespace palpate::devices {
+
+void checkServo(const ServoSettings& settings, bool has_rate) {
+  if (has_rate && !(settings.rate >= 1.0 && settings.rate <= 1e5)) {
+    throw Error(ErrorKind::kUsage, {"servo.rate", "the servo rate must be 1 to 1e5 Hz, not " +
+                                                      std::to_string(settings.rate)});
+  }
+  if (settings.elevate > Elevate::kRequire) {
+    throw Error(ErrorKind::kUsage,
+                {"servo.elevate", "there is no such wish of the servo loop: " +
+                                      std::to_string(static_cast<int>(settings.elevate))});
+  }
+  constexpr double kLongest = 1e6;  // [s] far beyond use, well within a clock's nanoseconds
+  if (!(settings.watchdog > 0.0 && settings.watchdog <= kLongest)) {
+    throw Error(ErrorKind::kUsage,
+                {"servo.watchdog", "the servo watchdog must be above 0 s and at most 1e6 s, not " +
+                                       std::to_string(settings.watchdog)});
+  }
+  if (!(settings.recovery >= 0.0 && settings.recovery <= kLongest)) {
+    throw Error(ErrorKind::kUsage,
+                {"servo.recovery", "the servo recovery must be from 0 s to 1e6 s, not " +
+                                       std::to_string(settings.recovery)});
+  }
+}
+
 namespace {
 
 /// Zero force, then closed, however the loop is left.
@@ -50,25 +75,6 @@ bool ends(DeviceStatus status, ServoExit& exit) noexcept {
   }
   exit = ServoExit::kFault;
   return true;
-}
-
-void check(const ServoTick& tick, const ServoSettings& settings) {
-  if (!tick) throw Error(ErrorKind::kUsage, {"servo.tick", "the servo loop needs a tick function"});
-  if (settings.realtime && !(settings.rate >= 1.0 && settings.rate <= 1e5)) {
-    throw Error(ErrorKind::kUsage, {"servo.rate", "the servo rate must be 1 to 1e5 Hz, not " +
-                                                      std::to_string(settings.rate)});
-  }
-  constexpr double kLongest = 1e6;  // [s] far beyond use, well within a clock's nanoseconds
-  if (!(settings.watchdog > 0.0 && settings.watchdog <= kLongest)) {
-    throw Error(ErrorKind::kUsage,
-                {"servo.watchdog", "the servo watchdog must be above 0 s and at most 1e6 s, not " +
-                                       std::to_string(settings.watchdog)});
-  }
-  if (!(settings.recovery >= 0.0 && settings.recovery <= kLongest)) {
-    throw Error(ErrorKind::kUsage,
-                {"servo.recovery", "the servo recovery must be from 0 s to 1e6 s, not " +
-                                       std::to_string(settings.recovery)});
-  }
 }
 
 /// [ns]
@@ -110,7 +116,8 @@ void noteElevation(const Elevation& elevation, Elevate wanted, ServoReport& repo
 
 ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings& settings,
                      const std::atomic<bool>& stop, const ServoObserver& observer) {
-  check(tick, settings);
+  if (!tick) throw Error(ErrorKind::kUsage, {"servo.tick", "the servo loop needs a tick function"});
+  checkServo(settings, settings.realtime);
   ServoReport report;
   const OpenDevice open(device);
   const Elevation elevation(settings.elevate != Elevate::kOff, settings.realtime);

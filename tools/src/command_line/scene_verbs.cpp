@@ -19,6 +19,17 @@ void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::st
       ->check(CLI::Range(0, devices::SimulatedDevice::kMostDelay));
 }
 
+/// "" for a file that has a name.
+std::string named(const std::string& text) { return text.empty() ? "a name is missing" : ""; }
+
+/// "" for the number of a tick.
+std::string tickNumber(const std::string& text) {
+  constexpr std::size_t kMostDigits = 15;
+  const bool is_number = !text.empty() && text.size() <= kMostDigits &&
+                         text.find_first_not_of("0123456789") == std::string::npos;
+  return is_number ? "" : "'" + text + "' is not the number of a tick, which is 0 or more";
+}
+
 void defineTouch(CLI::App& app, Invocation& invocation) {
   auto& o = choose<TouchOptions>(invocation);
   app.add_option("scene", o.scene);
@@ -94,18 +105,23 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       "start without force, and reach all of it after this: "
       "0.2 (s), 200ms");
   g = "Output files";
-  add(app, g, "--trace", "FILE.csv", o.trace, "write one row a tick (SI units)");
-  add(app, g, "--record", "FILE.npy", o.record,
-      "write all that goes into each tick and comes out, for replay and NumPy; beside it "
-      "FILE.npy.json and FILE.npy.states");
+  add(app, g, "--trace", "FILE.csv", o.trace, "write one row a tick (SI units)")->check(named);
+  auto* record = add(app, g, "--record", "FILE.npy", o.record,
+                     "write all that goes into each tick and comes out, for replay and NumPy; "
+                     "beside it FILE.npy.json and FILE.npy.states")
+                     ->check(named);
   add(app, g, "--states", "N", o.states,
       "record: keep a state every N ticks, from which a replay can begin; 0: none (default 10000)")
-      ->check(CLI::Range(0, 1000000000));
+      ->check(CLI::Range(0, 1000000000))
+      ->needs(record);
   add(app, g, "--image", "FILE.png", o.image,
-      "draw the scene cut open, with the path and the forces");
-  add(app, g, "--plot", "FILE.svg", o.plot, "draw the force over the depth of the hand");
+      "draw the scene cut open, with the path and the forces")
+      ->check(named);
+  add(app, g, "--plot", "FILE.svg", o.plot, "draw the force over the depth of the hand")
+      ->check(named);
   add(app, g, "--write-scene", "FILE.yaml", o.write_scene,
-      "a mesh, image or grid: the scene that it is touched as");
+      "a mesh, image or grid: the scene that it is touched as")
+      ->check(named);
   g = "A mesh, an image or a grid instead of a scene (without a motion: pressed on from above)";
   add(app, g, "--above", "VALUE", o.above,
       "image, grid of densities: the surface around what is greater");
@@ -130,12 +146,13 @@ void defineReplay(CLI::App& app, Invocation& invocation) {
   auto& o = choose<ReplayOptions>(invocation);
   app.add_option("record", o.record);
   const char* g = "Options";
-  add(app, g, "--scene", "SCENE", o.scene, "feel this scene instead of the record's");
+  add(app, g, "--scene", "SCENE", o.scene, "feel this scene instead of the record's")->check(named);
   add(app, g, "--renderer", "NAME", o.renderer,
       "constraint or paper (default: the one of the record)")
       ->check(CLI::IsMember({"constraint", "paper"}));
   add(app, g, "--from", "TICK", o.from,
-      "compare from this tick on, and begin at the last state saved before it (default 0)");
+      "compare from this tick on, and begin at the last state saved before it (default 0)")
+      ->check(tickNumber);
 }
 
 void defineQuery(CLI::App& app, Invocation& invocation) {

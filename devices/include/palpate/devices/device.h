@@ -105,7 +105,8 @@ enum class Elevate : std::uint8_t {
 
 struct ServoSettings {
   bool realtime = false;  ///< false: as fast as possible, one reading after the other
-  double rate = 1000.0;   ///< [Hz] 1 to 1e5; without `realtime` only the watchdog asks for it
+  double rate =
+      1000.0;  ///< [Hz] 1 to 1e5; without `realtime` the watchdog and the first tick ask for it
   /// A real-time priority of the calling thread (SCHED_FIFO) and locked memory, for as long as the loop runs.
   Elevate elevate = Elevate::kOff;
   /// [s] without a new reading after which the force is zero; above 0. Without `realtime` a turn of

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "palpate/core/math.h"
+#include "palpate/export.h"
 
 namespace palpate::devices {
 
@@ -34,7 +35,7 @@ struct PassivitySettings {
 /// in between. (f_k . v_k T, with the velocity of the tick that computes f_k, is off by K times the sum of the squared
 /// steps, and calls a loop passive that gives energy away.) Against that count two incomes that a real device surely has:
 /// viscous damping b takes b |x_k - x_{k-1}|^2 / T or more, friction f_c takes f_c |x_k - x_{k-1}| or more.
-class PassivityObserver {
+class PALPATE_EXPORT PassivityObserver {
  public:
   static constexpr int kMostDelay = 64;
   /// [J] With so much the account begins, and it has no more than that while no force is held.
@@ -100,7 +101,7 @@ struct PassivityTick {
 ///   (and the encoder's step), n = f / |f|, gives no more than the reserve.
 ///
 /// Both are felt: a stiff wall is softer where it is first touched, and a fast tap gets a kick against it.
-class PassivityController {
+class PALPATE_EXPORT PassivityController {
  public:
   static constexpr double kDampingShare = 0.25;  ///< [-]
 

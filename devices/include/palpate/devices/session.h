@@ -136,8 +136,8 @@ class PALPATE_EXPORT Session {
   /// Called after each tick of run(), in the servo thread: it must not allocate, lock, throw or block.
   using Listener = std::function<void(const SessionTick&, const HapticRenderer&)>;
 
-  /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a button or changes
-  /// that cannot be, and as sceneBudget() for a loop.
+  /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a servo loop, limits
+  /// of the force, a button or changes that cannot be, and as sceneBudget() for a loop.
   explicit Session(ScenePtr scene, SessionSettings settings = {});
   ~Session();
   Session(Session&& other) noexcept;

@@ -26,6 +26,9 @@ class PALPATE_EXPORT ForceGuard {
   /// As before the first tick: the last force is zero and the ramp begins again.
   void reset() noexcept;
 
+  /// What the last tick left is finite, and its time is not below 0: of a value out of a file it need not be.
+  [[nodiscard]] bool isSound() const noexcept;
+
  private:
   [[nodiscard]] Vec3 slewed(const Vec3& wanted, double step) const noexcept;
 
