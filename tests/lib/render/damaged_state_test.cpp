@@ -25,8 +25,8 @@ RendererState damaged(const RendererState& state, std::mt19937& random) {
     const std::size_t at = random() % (random() % 2 == 0 ? 600 : bytes.size());
     unsigned char& byte = bytes[at];
     const unsigned how = random() % 4;
-    const unsigned turned = byte ^ (1U << (random() % 8));
-    byte = static_cast<unsigned char>(how < 2 ? turned : how == 2 ? 255U : 0U);
+    const unsigned filled = how == 2 ? 255U : 0U;
+    byte = static_cast<unsigned char>(how < 2 ? byte ^ (1U << (random() % 8)) : filled);
   }
   RendererState out;
   std::memcpy(static_cast<void*>(&out), bytes.data(), sizeof out);
