@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdio>
 #include <cstring>
 #include <random>
 
@@ -55,7 +56,7 @@ TEST(DamagedState, IsRefusedOrGoneOnFromWithoutHarm) {
         (void)hand->update({p, Vec3(0.0)});
         if (++ticks % 50 != 0) continue;
         const RendererState state = hand->state();
-        for (int i = 0; i < 20; ++i) {
+        for (int i = 0; i < 40; ++i) {
           const RendererState wrong = damaged(state, random);
           (void)carryState(wrong, kind, *scene, *scene);
           if (!other->setState(wrong)) {
@@ -72,6 +73,7 @@ TEST(DamagedState, IsRefusedOrGoneOnFromWithoutHarm) {
       }
     }
   }
+  std::printf("  %d states refused, %d taken\n", refused, taken);
   EXPECT_GT(refused, 100);
   EXPECT_GT(taken, 100);
 }
