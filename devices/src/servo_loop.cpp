@@ -21,7 +21,7 @@ void checkServo(const ServoSettings& settings, bool has_rate) {
   }
   if (settings.elevate > Elevate::kRequire) {
     throw Error(ErrorKind::kUsage,
-                {"servo.elevate", "there is no such wish of the servo loop: " +
+                {"servo.elevate", "the servo loop cannot be elevated by " +
                                       std::to_string(static_cast<int>(settings.elevate))});
   }
   constexpr double kLongest = 1e6;  // [s] far beyond use, well within a clock's nanoseconds
@@ -94,7 +94,7 @@ std::int64_t longestTurn(const SafetyLimits& limits, std::int64_t turn) noexcept
   return std::max(nanoseconds(limits.hang), 2 * turn);
 }
 
-/// What the operating system has granted. @throws Error (kOperation) if less than what is required.
+/// Reports what the operating system granted. @throws Error (kOperation) if `wanted` requires more.
 void noteElevation(const Elevation& elevation, Elevate wanted, ServoReport& report) {
   report.has_priority = elevation.hasPriority();
   report.has_locked_memory = elevation.hasLockedMemory();

@@ -13,7 +13,7 @@ namespace palpate::devices {
 VelocityTracker::VelocityTracker(const VelocitySettings& settings) : settings_(settings) {
   if (settings.estimator > VelocityEstimator::kAdaptiveWindow) {
     throw Error(ErrorKind::kUsage,
-                {"velocity.estimator", "there is no velocity estimator with the number " +
+                {"velocity.estimator", "unknown velocity estimator: number " +
                                            std::to_string(static_cast<int>(settings.estimator))});
   }
   if (!(settings.window > 0.0) || !std::isfinite(settings.window)) {

@@ -3,17 +3,16 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "helpers.h"
 #include "support/run_command.h"
 #include "support/temp_file.h"
+#include "support/wait.h"
 #include "vdb/python_oracle.h"
 
 namespace palpate::testing {
@@ -204,10 +203,10 @@ TEST_F(TouchRecord, AKillInTheMiddleLeavesARecordThatIsWhole) {
         sent = true;
         // Once some hundred ticks are there.
         std::error_code failed;
-        while (kill(process, 0) == 0 && !(std::filesystem::exists(record, failed) &&
-                                          std::filesystem::file_size(record, failed) > 100000)) {
-          std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
+        EXPECT_TRUE(waitUntil([&] {
+          return kill(process, 0) != 0 || (std::filesystem::exists(record, failed) &&
+                                           std::filesystem::file_size(record, failed) > 100000);
+        }));
         kill(process, SIGKILL);
       });
   EXPECT_TRUE(sent);

@@ -133,7 +133,7 @@ Json jsonOf(devices::DeviceFrame frame) {
   return frame == devices::DeviceFrame::kDevice ? "device" : "world";
 }
 
-/// What the command line would not take; quantities are read later, for the scene that they are of.
+/// Refuses what the command line would refuse; quantities are read later, for the scene that they are of.
 void checkOptions(const TouchOptions& options, const Values& all) {
   const auto need = [&](bool may_be, const char* key) {
     if (!may_be) throw all.bad(key);

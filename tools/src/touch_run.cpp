@@ -12,10 +12,10 @@
 namespace palpate::tools {
 namespace {
 
-/// What there is in the files `kept` after so many ticks.
+/// Says what the files `kept` hold after so many ticks.
 std::string hintOf(const std::string& kept, std::uint64_t ticks) {
   if (kept.empty()) return {};
-  if (ticks == 0) return "no tick was felt yet: there is none in " + kept;
+  if (ticks == 0) return "no tick was felt yet, and none is in " + kept;
   return "what was felt until then is in " + kept;
 }
 

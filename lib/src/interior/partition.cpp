@@ -256,7 +256,7 @@ Partition::Sides Partition::sidesOf(const Program& program) {
 
 bool Signs::isOf(std::size_t leaves) const noexcept {
   if (leaves_ != leaves || leaves > kMaxLeaves || used_ != (leaves + 63) / 64) return false;
-  // What lies beyond the last leaf in its word is no leaf.
+  // Bits beyond the last leaf do not stand for leaves.
   const std::size_t rest = leaves % 64;
   return rest == 0 || words_[used_ - 1] >> rest == 0;
 }

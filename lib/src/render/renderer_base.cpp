@@ -97,7 +97,7 @@ std::unique_ptr<HapticRenderer> makeRenderer(ScenePtr scene, RendererSettings se
   const RendererKind kind = settings.kind.value_or(scene->renderer());
   if (kind != RendererKind::kConstraint && kind != RendererKind::kPaper) {
     throw inputError("render.kind",
-                     "there is no renderer of kind " + std::to_string(static_cast<int>(kind)));
+                     "unknown kind of renderer: " + std::to_string(static_cast<int>(kind)));
   }
   if (kind == RendererKind::kPaper) {
     return std::make_unique<PaperRenderer>(std::move(scene), settings);

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// A byte that is neither is no value of a bool.
+/// 0 and 1 are the only bytes that a bool may have.
 bool isBool(const bool& value) noexcept {
   unsigned char byte = 0;
   std::memcpy(&byte, &value, sizeof byte);
@@ -26,7 +26,7 @@ bool areFinite(Numbers... values) noexcept {
   return (std::isfinite(values) && ...);
 }
 
-/// How much of what a state may count there is in a scene.
+/// How many regions, materials, leaves and ports a scene has.
 class Counts {
  public:
   explicit Counts(const Scene& scene) noexcept

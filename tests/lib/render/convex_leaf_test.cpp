@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-// A box off the center of what is asked, so that no place is one without a normal.
+// Off the centers of the shapes below, so that every place has a normal.
 const Box3 kBox{Vec3(-0.031, -0.029, -0.033), Vec3(0.027, 0.031, 0.03)};
 const Vec3 kTilted = glm::normalize(Vec3(0.3, -0.5, 0.8));
 

@@ -1,13 +1,20 @@
 // The verbs that look at a scene or feel it.
 
 #include "command_line/verb.h"
+#include "palpate/devices/device_presets.h"
 #include "palpate/devices/simulated_device.h"
 
 namespace palpate::tools {
 namespace {
 
-constexpr const char* kModels =
-    "excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3";
+/// The names of the simulated devices.
+std::string models() {
+  std::string text;
+  for (const devices::DevicePreset& preset : devices::devicePresets()) {
+    text += (text.empty() ? "" : ", ") + std::string(preset.name);
+  }
+  return text;
+}
 
 /// What the hand holds.
 void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::string& what) {
@@ -67,10 +74,10 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       app, g, o.device,
       std::string("follow the motion with a simulated device, in a hand that feels the force: "
                   "virtual:NAME, NAME one of ") +
-          kModels +
+          models() +
           "; virtual: may be left out unless NAME is falcon or inverse3. Or let a hand move "
           "a device: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension). Default: a "
-          "hand that goes where it is told");
+          "hand that follows the motion whatever it feels");
   add(app, g, "--seconds", "S", o.seconds,
       "a device that a hand holds: for how long (default: until Ctrl-C)")
       ->check(CLI::Range(0.1, 86400.0));
@@ -193,7 +200,7 @@ void defineExplain(CLI::App& app, Invocation& invocation) {
   addDevice(app, g, o.device,
             std::string("list what is felt beside what this device can hold, and what cures what "
                         "it cannot: ") +
-                kModels + " (virtual:NAME means the same)");
+                models() + " (virtual:NAME means the same)");
   add(app, g, "--rate", "HZ", o.rate, "device: ticks a second (default 1000)")
       ->check(CLI::Range(1.0, 100000.0));
   add(app, "Output files", "--svg", "FILE.svg", o.svg,

@@ -96,10 +96,10 @@ struct ServoTurn {
 /// Called for each tick once its force was written. Must not allocate, lock, throw or block; without `realtime` it may block.
 using ServoObserver = std::function<void(const ServoTurn&)>;
 
-/// What is asked of the operating system.
+/// How much the loop asks of the operating system.
 enum class Elevate : std::uint8_t {
   kOff,
-  kPrefer,   ///< try; what was refused is in the report
+  kPrefer,   ///< try; the report has the refusals
   kRequire,  ///< no loop without it
 };
 

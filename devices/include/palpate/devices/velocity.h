@@ -46,7 +46,7 @@ class PALPATE_EXPORT VelocityTracker {
   static constexpr double kLongestGap = 10.0;
 
   /// @throws Error (kUsage, velocity.window, velocity.noise, velocity.estimator) for a window that is not above 0 or noise that is
-  /// below 0, or either that is not a number; for an estimator that there is not.
+  /// below 0, or either that is not a number; for an unknown estimator.
   explicit VelocityTracker(const VelocitySettings& settings = {});
 
   /// The velocity at the reading at `position` [m] and `time` [s]. Zero at the first. A time that does not rise repeats the

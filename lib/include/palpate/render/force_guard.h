@@ -26,7 +26,7 @@ class PALPATE_EXPORT ForceGuard {
   /// As before the first tick: the last force is zero and the ramp begins again.
   void reset() noexcept;
 
-  /// What the last tick left is finite, and its time is not below 0: of a value out of a file it need not be.
+  /// True if the numbers of the last tick are finite, and its time is not below 0; a damaged file may say otherwise.
   [[nodiscard]] bool isSound() const noexcept;
 
  private:

@@ -178,17 +178,17 @@ class PALPATE_EXPORT HapticRenderer {
   /// leaves around the proxy it finds anew in the next tick.
   [[nodiscard]] virtual RendererState checkpoint() noexcept = 0;
   /// Goes on from `state` as the renderer that it was taken from would: bit for bit if that gave it by checkpoint(), else
-  /// but for rounding, since what a renderer knows of the leaves around the proxy, which is not in the state, decides
+  /// but for rounding, since its knowledge of the leaves around the proxy, which is not in the state, decides
   /// which of them it looks at once more. False, and nothing is changed, if it cannot be a state of this scene and of this kind of
-  /// renderer; every number in it that stands for a part of the scene is looked at, and update() is safe with what is taken. What
-  /// setContent() changed is not part of it. Until the next tick crossings() and entries() are empty.
+  /// renderer; every number in it that stands for a part of the scene is looked at, and update() is safe with what is taken. Changes
+  /// by setContent() are not part of it. Until the next tick crossings() and entries() are empty.
   [[nodiscard]] virtual bool setState(const RendererState& state) noexcept = 0;
 
  protected:
   HapticRenderer() = default;
 };
 
-/// @throws Error (kInput) if the scene is null, the kind of renderer is none, or it asks the paper's renderer for what it cannot do.
+/// @throws Error (kInput) if the scene is null, the kind of renderer is unknown, or it asks the paper's renderer for what it cannot do.
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<HapticRenderer> makeRenderer(
     ScenePtr scene, RendererSettings settings = {});
 
