@@ -18,13 +18,6 @@ namespace {
 
 const Vec3 kBroken(std::numeric_limits<double>::quiet_NaN());
 
-/// False where no hand can be, and for NaN.
-bool isInReach(const Vec3& world) noexcept {
-  constexpr double kFarthest = HapticRenderer::kFarthest;
-  return std::fabs(world.x) <= kFarthest && std::fabs(world.y) <= kFarthest &&
-         std::fabs(world.z) <= kFarthest;
-}
-
 void checkLimit(double value, bool may_be, const char* name) {
   if (may_be) return;
   throw Error(ErrorKind::kUsage, {"session.limits", std::string(name) + " of the force cannot be " +
@@ -109,10 +102,11 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
   const Vec3 position = is_mapped ? mapping.toWorld(reading.position) : reading.position;
   // Of the device's positions: a clutch that is let go must not look like a leap of the hand. Nor must a broken reading.
   const Vec3 velocity =
-      tracker_.add(reading.time, isInReach(position) ? reading.position : kBroken).value;
+      tracker_.add(reading.time, HapticRenderer::isInReach(position) ? reading.position : kBroken)
+          .value;
   tick.is_held = mapping.clutch &&
                  (reading.buttons >> static_cast<unsigned>(settings_.clutch_button) & 1U) != 0;
-  const bool is_sound = isInReach(position) && isFinite(velocity);
+  const bool is_sound = HapticRenderer::isInReach(position) && isFinite(velocity);
   // A broken reading neither engages the clutch nor lets it go.
   const Clutched now =
       is_sound ? clutch_.step(position, is_mapped ? mapping.velocityToWorld(velocity) : velocity,

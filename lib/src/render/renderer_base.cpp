@@ -14,7 +14,7 @@
 namespace palpate {
 TickResult RendererBase::update(const HipState& hip) noexcept {
   SourceState& source = state_.source;
-  if (!isNear(hip.position) || !isFinite(hip.velocity)) {
+  if (!isInReach(hip.position) || !isFinite(hip.velocity)) {
     source.flow_push = Vec3(0.0);
     state_.last.event_count = 0;
     crossing_count_ = 0;

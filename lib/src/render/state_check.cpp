@@ -43,8 +43,9 @@ class Counts {
   }
   /// Before the first tick there are no sides of leaves yet.
   [[nodiscard]] bool hold(const PlaceState& place, bool has_begun) const noexcept {
-    return isNear(place.point) && isRegion(place.region) && isOneOf(place.mouth, leaves_) &&
-           (!has_begun || place.sides.isOf(leaves_)) && place.punctures.isOf(ports_);
+    return HapticRenderer::isInReach(place.point) && isRegion(place.region) &&
+           isOneOf(place.mouth, leaves_) && (!has_begun || place.sides.isOf(leaves_)) &&
+           place.punctures.isOf(ports_);
   }
   [[nodiscard]] bool hold(const RelaxationState& relaxation) const noexcept {
     return isRegion(relaxation.region) && isOneOf(relaxation.material, materials_) &&
@@ -87,16 +88,11 @@ class Counts {
 
 }  // namespace
 
-bool isNear(const Vec3& p) noexcept {
-  constexpr double kFarthest = HapticRenderer::kFarthest;
-  return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest;
-}
-
 bool isStateOf(const TickState& state, RendererKind kind, const Scene& scene) noexcept {
   const Counts counts(scene);
   const FrictionState& friction = state.friction;
   if (!isBool(state.has_begun) || (state.has_begun && state.kind != kind)) return false;
-  return isNear(state.hip) && counts.hold(state.last) &&
+  return HapticRenderer::isInReach(state.hip) && counts.hold(state.last) &&
          counts.hold(state.place, state.has_begun) && areBools(friction.sticks, friction.is_felt) &&
          isFinite(friction.lean) && counts.isMaterial(state.pressed) &&
          counts.hold(state.relaxation) && counts.hold(state.fade) &&

@@ -6,9 +6,6 @@
 
 namespace palpate {
 
-/// No further from the origin than HapticRenderer::kFarthest; false for NaN.
-[[nodiscard]] bool isNear(const Vec3& p) noexcept;
-
 /// Whether every number in `state` that stands for a part of a scene stands for one of `scene`, and every other is finite: then
 /// update() is safe with it. One that has begun must be of a renderer of `kind`. Real-time safe.
 [[nodiscard]] bool isStateOf(const TickState& state, RendererKind kind,

@@ -3,6 +3,7 @@
 /// to tick is the RendererState that a renderer owns, and what was changed of the contents.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -138,6 +139,11 @@ class PALPATE_EXPORT HapticRenderer {
   /// [m] No hand is that far away: such a position is a broken one. Beyond it double precision no longer
   /// tells one side of a wall from the other along the way there.
   static constexpr double kFarthest = 1e4;
+  /// False beyond it, and for NaN.
+  [[nodiscard]] static bool isInReach(const Vec3& p) noexcept {
+    return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest &&
+           std::fabs(p.z) <= kFarthest;
+  }
 
   virtual ~HapticRenderer() = default;
   HapticRenderer(const HapticRenderer&) = delete;
