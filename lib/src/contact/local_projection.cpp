@@ -14,6 +14,9 @@ constexpr double kLargestTurn = 0.5;  // [rad]
 /// Of the way to the target, and of the coordinates: a step as short as this is none.
 constexpr double kSettled = 1e-12;
 constexpr double kRounding = 1e-14;
+/// Of the way: as short a step ends it where steps no longer get shorter. A wall whose shape is given about a far place
+/// rounds more than the coordinates do.
+constexpr double kSettledAtLast = 1e-8;
 
 }  // namespace
 
@@ -60,7 +63,9 @@ LocalProjection projectLocally(const Vec3& from, const Vec3& target,
     const double length = glm::length(step);
     const double size = std::max({std::fabs(out.at.x), std::fabs(out.at.y), std::fabs(out.at.z)});
     if (!std::isfinite(length)) return out;
-    if (length <= kSettled * glm::length(wish) + kRounding * size) {
+    const double way = glm::length(wish);
+    if (length <= kSettled * way + kRounding * size ||
+        (length <= kSettledAtLast * way && length > 0.5 * last)) {
       out.settled = true;
       return out;
     }

@@ -15,7 +15,7 @@ constexpr double kParallel = 1.0 - 1e-12;
 /// Facets that one ray crosses, sheets and openings included.
 constexpr int kMostCrossings = 12;
 /// Cosine of the ray and an interface's normal below which the interface's depth has no slope: the ray grazes it.
-constexpr double kGrazing = 0.05;
+constexpr double kGrazing = 1e-3;
 
 /// The part of `v` along a wall.
 Vec3 alongWall(const Vec3& v, const Vec3& normal) noexcept {

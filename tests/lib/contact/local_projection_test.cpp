@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "lib/contact/outside_of.h"
@@ -41,6 +42,19 @@ TEST(LocalProjection, SettlesOnAnEllipsoidSmallerThanTheWay) {
     const std::vector<HeldWall> walls{outsideOf(field)};
     const Vec3 hand = handBelow(random);
     expectHeld(projectLocally(Vec3(0.0), hand, walls), hand, i);
+  }
+}
+
+/// A ball's distance is as exact as its center's coordinates: steps never get shorter than that.
+TEST(LocalProjection, SettlesOnABallWhoseCenterIsFarFromAShortWay) {
+  Random random(34);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 u = random.direction();
+    const double radius = random.uniform(10e-3, 100e-3);
+    const FieldPtr ball = sphere((u.z > 0.0 ? -radius : radius) * u, radius);
+    const std::vector<HeldWall> walls{outsideOf(ball)};
+    const Vec3 hand = std::pow(10.0, random.uniform(-5.0, -2.0)) * handBelow(random);
+    expectHeld(projectLocally(0.1 * hand, hand, walls), hand, i);
   }
 }
 
