@@ -25,8 +25,8 @@ Node::Node(const Testbed& bed, int number)
       path_("/dev/input/event" + std::to_string(number)),
       base_(umockdev_ioctl_base_new()) {
   const std::string text = "P: /devices/mock/event" + std::to_string(number) + "\nN: input/event" +
-                           std::to_string(number) +
-                           "\nE: SUBSYSTEM=input\nE: DEVNAME=" + path_ + "\n";
+                           std::to_string(number) + "\nE: SUBSYSTEM=input\nE: DEVNAME=" + path_ +
+                           "\n";
   GError* error = nullptr;
   EXPECT_TRUE(umockdev_testbed_add_from_string(bed.get(), text.c_str(), &error))
       << (error != nullptr ? error->message : "");
@@ -61,6 +61,11 @@ void Node::unplug() {
   is_gone_ = true;
 }
 
+void Node::unplugAfter(int calls) {
+  const std::lock_guard lock(mutex_);
+  calls_left_ = calls;
+}
+
 /// What the kernel writes for the request `number`; empty: it has none.
 std::vector<unsigned char> Node::bytesFor(unsigned number) {
   if (number == 0x06) return {name.c_str(), name.c_str() + name.size() + 1};
@@ -91,10 +96,11 @@ bool Node::answer(UMockdevIoctlClient* client) {
   const std::lock_guard lock(mutex_);
   const gulong request = umockdev_ioctl_client_get_request(client);
   if (_IOC_TYPE(request) != 'E') return false;
-  if (is_gone_) {
+  if (is_gone_ || calls_left_ == 0) {
     umockdev_ioctl_client_complete(client, -1, ENODEV);
     return true;
   }
+  --calls_left_;
   UMockdevIoctlData* argument = umockdev_ioctl_client_get_arg(client);
   const std::size_t size = _IOC_SIZE(request);
   UMockdevIoctlData* data = umockdev_ioctl_data_resolve(argument, 0, size, nullptr);
@@ -130,15 +136,15 @@ gboolean Node::onRead(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client, 
     umockdev_ioctl_client_complete(client, -1, node.is_gone_ ? ENODEV : EAGAIN);
     return TRUE;
   }
-  const std::size_t room = umockdev_ioctl_client_get_request(client) / sizeof(input_event);
-  (void)room;
   UMockdevIoctlData* argument = umockdev_ioctl_client_get_arg(client);
-  std::vector<input_event> out(node.queue_.begin(), node.queue_.end());
+  const std::size_t room = static_cast<std::size_t>(argument->data_len) / sizeof(input_event);
+  const auto count = static_cast<std::ptrdiff_t>(std::min(room, node.queue_.size()));
+  std::vector<input_event> out(node.queue_.begin(), node.queue_.begin() + count);
   const std::size_t size = out.size() * sizeof(input_event);
   umockdev_ioctl_data_update(argument, 0, reinterpret_cast<guint8*>(out.data()),
                              static_cast<gint>(size));
   umockdev_ioctl_client_complete(client, static_cast<glong>(size), 0);
-  node.queue_.clear();
+  node.queue_.erase(node.queue_.begin(), node.queue_.begin() + count);
   return TRUE;
 }
 

@@ -50,7 +50,8 @@ class Node {
     int type, code, value;
   };
   void report(std::int64_t at, const std::vector<Input>& inputs);
-  void unplug();  ///< from now on: ENODEV
+  void unplug();                                      ///< from now on: ENODEV
+  void unplugAfter(int calls);                        ///< of ioctl(): ENODEV from then on
   [[nodiscard]] int clock() const { return clock_; }  ///< that EVIOCSCLOCKID has set; -1: none
 
  private:
@@ -65,6 +66,7 @@ class Node {
   std::mutex mutex_;
   std::deque<input_event> queue_;
   bool is_gone_ = false;
+  int calls_left_ = -1;  // below 0: no limit
   int clock_ = -1;
 };
 
