@@ -43,6 +43,15 @@ Node::~Node() {
 
 void Node::report(std::int64_t at, const std::vector<Input>& inputs) {
   const std::lock_guard lock(mutex_);
+  push(at, inputs);
+}
+
+void Node::reportAtRead(int number, const std::vector<Input>& inputs) {
+  const std::lock_guard lock(mutex_);
+  at_read_[number] = inputs;
+}
+
+void Node::push(std::int64_t at, const std::vector<Input>& inputs) {
   std::vector<Input> all = inputs;
   all.push_back({EV_SYN, SYN_REPORT, 0});
   for (const Input& each : all) {
@@ -132,6 +141,8 @@ gboolean Node::onIoctl(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client,
 gboolean Node::onRead(UMockdevIoctlBase* /*base*/, UMockdevIoctlClient* client, gpointer self) {
   auto& node = *static_cast<Node*>(self);
   const std::lock_guard lock(node.mutex_);
+  const auto due = node.at_read_.find(node.reads_++);
+  if (due != node.at_read_.end()) node.push(g_get_monotonic_time() * 1'000, due->second);
   if (node.is_gone_ || node.queue_.empty()) {
     umockdev_ioctl_client_complete(client, -1, node.is_gone_ ? ENODEV : EAGAIN);
     return TRUE;

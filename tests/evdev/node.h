@@ -50,6 +50,8 @@ class Node {
     int type, code, value;
   };
   void report(std::int64_t at, const std::vector<Input>& inputs);
+  /// The same, of the time when the reading `number` (from 0) comes.
+  void reportAtRead(int number, const std::vector<Input>& inputs);
   void unplug();                                      ///< from now on: ENODEV
   void unplugAfter(int calls);                        ///< of ioctl(): ENODEV from then on
   [[nodiscard]] int clock() const { return clock_; }  ///< that EVIOCSCLOCKID has set; -1: none
@@ -57,6 +59,7 @@ class Node {
  private:
   static gboolean onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer self);
   static gboolean onRead(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer self);
+  void push(std::int64_t at, const std::vector<Input>& inputs);
   [[nodiscard]] bool answer(UMockdevIoctlClient* client);
   [[nodiscard]] std::vector<unsigned char> bytesFor(unsigned number);
 
@@ -65,6 +68,8 @@ class Node {
   UMockdevIoctlBase* base_;
   std::mutex mutex_;
   std::deque<input_event> queue_;
+  std::map<int, std::vector<Input>> at_read_;
+  int reads_ = 0;
   bool is_gone_ = false;
   int calls_left_ = -1;  // below 0: no limit
   int clock_ = -1;

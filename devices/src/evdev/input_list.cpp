@@ -18,7 +18,7 @@ std::vector<int> eventNumbers() {
   DIR* folder = opendir(kFolder);
   if (folder == nullptr) return out;
   constexpr std::string_view kPrefix = "event";
-  while (const dirent* entry = ::readdir(folder)) {  // NOLINT(concurrency-mt-unsafe)
+  while (const dirent* entry = ::readdir(folder)) {
     const std::string_view name(entry->d_name);
     if (name.substr(0, kPrefix.size()) != kPrefix) continue;
     int number = 0;

@@ -1,5 +1,7 @@
 #include "evdev/input_map.h"
 
+#include <algorithm>
+
 namespace palpate::devices::evdev {
 namespace {
 
@@ -90,10 +92,8 @@ std::vector<AxisMap> mouseAxes() {
 
 template <std::size_t kSize>
 bool hasAll(const std::bitset<kSize>& axes) {
-  for (const Row& row : kSpaceMouse) {
-    if (!axes[row.code]) return false;
-  }
-  return true;
+  return std::all_of(kSpaceMouse.begin(), kSpaceMouse.end(),
+                     [&](const Row& row) { return axes[row.code]; });
 }
 
 std::vector<std::uint16_t> buttonsOf(const Capabilities& has) {
