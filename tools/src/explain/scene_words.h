@@ -1,0 +1,30 @@
+#pragma once
+/// What a scene's walls, contents and ports are called in print.
+
+#include <string>
+#include <vector>
+
+#include "palpate/interior/port_machine.h"
+#include "palpate/scene/description.h"
+#include "palpate/scene/scene.h"
+#include "palpate/scene/transitions.h"
+
+namespace palpate::tools {
+
+/// None for an index below 0.
+[[nodiscard]] const Material* materialOf(const Scene& scene, int index);
+/// "skin (300 N/m)", "absent", or "-" for none.
+[[nodiscard]] std::string wallText(const Scene& scene, const Wall& wall);
+[[nodiscard]] std::string contentText(const Material& content);
+/// Of a port as it was written; none for one that the scene made by itself.
+[[nodiscard]] const PortDescription* describedPort(const SceneDescription& description,
+                                                   const std::string& name);
+/// Where and when a port is open.
+[[nodiscard]] std::vector<std::string> conditionsOf(const Transition& t, const Scene& scene,
+                                                    const SceneDescription& description);
+[[nodiscard]] const char* directionName(PortDirection direction);
+[[nodiscard]] const char* reachName(Reach reach);
+/// Why the probe cannot get into a region.
+[[nodiscard]] std::string whyUnreachable(const Scene& scene, RegionId region);
+
+}  // namespace palpate::tools

@@ -1,0 +1,34 @@
+#pragma once
+/// Rows of a report: a table for people and an array for programs, from the same calls.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "report.h"
+#include "text.h"
+
+namespace palpate::tools {
+
+class ReportRows {
+ public:
+  explicit ReportRows(std::vector<std::string> heading) : table_(std::move(heading)) {}
+
+  void add(std::vector<std::string> cells, Json json) {
+    table_.add(std::move(cells));
+    json_.push_back(std::move(json));
+  }
+  /// The array as `key`; the table below `title`, or, without any rows, `none` (nothing at all if that is empty).
+  void writeTo(Report& report, const std::string& key, const std::string& title,
+               const std::string& none = {}) {
+    report.json[key] = std::move(json_);
+    if (table_.empty() && none.empty()) return;
+    report.text += "\n" + title + "\n" + (table_.empty() ? none : table_.text("  "));
+  }
+
+ private:
+  Table table_;
+  Json json_ = Json::array();
+};
+
+}  // namespace palpate::tools
