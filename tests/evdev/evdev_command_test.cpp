@@ -44,8 +44,8 @@ TEST_F(EvdevCommand, TheListHasTheDeviceByTheNameThatTouchTakes) {
 
 TEST_F(EvdevCommand, AMouseFeelsAWallAndItsRecordIsFeltAnew) {
   // 60 counts of 25.4 um towards the wall: 0.524 mm beyond it.
-  mouse_.reportAtRead(20, {{EV_REL, REL_Y, -60}});
-  const CommandResult result = run({"touch", "wall.yaml", "--device", "evdev", "--seconds", "0.3",
+  mouse_.reportAtRead(5, {{EV_REL, REL_Y, -60}});
+  const CommandResult result = run({"touch", "wall.yaml", "--device", "evdev", "--seconds", "1",
                                     "--record", "felt.npy", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
   const Json report = parseOnly(result);
