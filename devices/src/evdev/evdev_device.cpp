@@ -14,7 +14,7 @@
 namespace palpate::devices {
 namespace {
 
-/// Those of a turn: 64 KiB of events are more than the kernel keeps of a device.
+/// Those of a turn: 2048 events, more than the kernel keeps of a device.
 constexpr int kMostReads = 32;
 constexpr std::size_t kEvents = 64;
 
