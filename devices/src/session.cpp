@@ -7,10 +7,18 @@
 #include <utility>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/hand_guards.h"
 #include "palpate/devices/record.h"
 
 namespace palpate::devices {
 namespace {
+
+/// [world] What a coupling needs to know of the renderer's tick.
+ToolForce toolForce(const HapticRenderer& renderer, const SessionTick& tick) noexcept {
+  const ForceSlope slope = renderer.slope(tick.hip);
+  return {tick.result.force, slope.normal,  slope.stiffness,
+          slope.sideways,    slope.damping, slope.drag};
+}
 
 void check(const Scene& scene, const SessionSettings& settings) {
   if (settings.clutch_button < 0 || settings.clutch_button > 31) {
@@ -44,6 +52,11 @@ Session::Session(ScenePtr scene, SessionSettings settings)
       renderer_(makeRenderer(scene_, settings_.renderer)),
       tracker_(settings_.velocity) {
   check(*scene_, settings_);
+  const HandGuards guards = guardsOf(scene_->device(), settings_.loop, 1.0 / settings_.servo.rate);
+  const auto coupling = settings_.coupling ? settings_.coupling : guards.coupling;
+  const auto passivity = settings_.passivity ? settings_.passivity : guards.passivity;
+  if (coupling) coupling_.emplace(*coupling);
+  if (passivity) passivity_.emplace(*passivity);
   if (!settings_.loop) return;
   LoopModel loop = *settings_.loop;
   loop.period = 1.0 / settings_.servo.rate;
@@ -82,15 +95,44 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
                : Clutched{position, velocity, 0.0};
 
   changeUntil(reading.time);
-  tick.hip = {now.position, now.velocity, tick.dt};
+  const Vec3 felt = now.share * feel(now, frame, tick);
+  tick.force = is_mapped ? mapping.forceToDevice(felt) : felt;
+  if (passivity_) {
+    const double work = renderer_->sourceWork();
+    const double source = (is_mapped ? mapping.workAtHand() : 1.0) * (work - source_work_);
+    source_work_ = work;
+    const PassivityTick guarded = passivity_->step(reading.position, tick.dt, tick.force, source);
+    tick.force = guarded.force;
+    tick.added = guarded.added;
+  }
+  return tick;
+}
+
+Vec3 Session::feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept {
+  const bool is_coupled = coupling_ && isFinite(probe.position) && isFinite(probe.velocity);
+  // The coupling is as stiff as it says at the hand, and works in the hand's own measure.
+  const DeviceMapping& mapping = scene_->device();
+  const bool is_mapped = frame == DeviceFrame::kDevice;
+  const double scale = is_mapped ? mapping.scale : 1.0;
+  const double force = is_mapped ? mapping.force : 1.0;
+  tick.hip = {probe.position, probe.velocity, tick.dt};
+  if (is_coupled) {
+    const ToolMotion tool = coupling_->reach(probe.position / scale, tick.dt);
+    tick.hip.position = scale * tool.position;
+    tick.hip.velocity = scale * tool.velocity;
+  }
   const auto before = std::chrono::steady_clock::now();
   tick.result = renderer_->update(tick.hip);
   const auto after = std::chrono::steady_clock::now();
   tick.unlimited = renderer_->unlimitedForce();
   tick.renderer_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count();
-  const Vec3 felt = now.share * tick.result.force;
-  tick.force = is_mapped ? mapping.forceToDevice(felt) : felt;
-  return tick;
+  if (!is_coupled) return tick.result.force;
+  ToolForce answer = toolForce(*renderer_, tick);
+  answer.force *= force;
+  for (double* slope : {&answer.stiffness, &answer.sideways, &answer.damping, &answer.drag}) {
+    *slope *= force * scale;
+  }
+  return coupling_->push(answer) / force;
 }
 
 void Session::changeUntil(double time) noexcept {
@@ -105,6 +147,9 @@ void Session::saveCheckpoint() noexcept {
   checkpoint_.renderer = renderer_->checkpoint();
   checkpoint_.tracker = tracker_;
   checkpoint_.clutch = clutch_;
+  checkpoint_.coupling = coupling_;
+  checkpoint_.passivity = passivity_;
+  checkpoint_.source_work = source_work_;
   checkpoint_.ticks = ticks_;
   checkpoint_.next_change = next_change_;
   checkpoint_.last_time = last_time_;
@@ -113,6 +158,10 @@ void Session::saveCheckpoint() noexcept {
 
 bool Session::resume(const SessionState& state) noexcept {
   if (ticks_ > 0 || state.next_change > settings_.changes.size()) return false;
+  if (state.coupling.has_value() != coupling_.has_value() ||
+      state.passivity.has_value() != passivity_.has_value()) {
+    return false;
+  }
   if (!renderer_->setState(state.renderer)) return false;
   for (; next_change_ < state.next_change; ++next_change_) {
     const ContentEvent& event = settings_.changes[next_change_];
@@ -120,6 +169,9 @@ bool Session::resume(const SessionState& state) noexcept {
   }
   tracker_ = state.tracker;
   clutch_ = state.clutch;
+  coupling_ = state.coupling;
+  passivity_ = state.passivity;
+  source_work_ = state.source_work;
   ticks_ = state.ticks;
   last_time_ = state.last_time;
   has_begun_ = state.has_begun;

@@ -64,6 +64,10 @@ struct TouchOptions {
   int states = 10000;        ///< [ticks] record: from state to state; 0: none
   double rate = 1000.0;      ///< [Hz]
   DeviceOptions device;
+  std::string passivity;   ///< "observe" or "control"; empty: as the scene says
+  std::string hand_force;  ///< of `passivity`
+  std::string
+      coupling;  ///< "springs", "any_scene" or "STIFFNESS,DAMPING"; empty: as the scene says
   std::string max_force;
   std::string slew;
   std::string ramp;
@@ -180,9 +184,15 @@ struct RenderOptions {
 };
 
 struct BenchOptions {
-  std::string what;  ///< "contact"
+  std::string what;  ///< "contact" or "stability"
   std::vector<std::string> scenes;
-  std::string renderer;  ///< empty: both
+  std::string renderer;  ///< empty: all
+  // Of stability.
+  bool full = false;                 ///< where nothing else is said: all scenes, four devices, three rates
+  std::vector<std::string> devices;  ///< empty: Falcon and Touch
+  std::vector<std::string> rates;    ///< [Hz] empty: 1000
+  std::string curvature_svg;
+  // Of contact.
   int repeats = 10;
   int paced = 2000;
   int cold = 30;

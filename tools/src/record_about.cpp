@@ -115,6 +115,12 @@ void eachValue(About& about, const Visit& visit) {
   visit("options", "slew", options.slew);
   visit("options", "ramp", options.ramp);
   visit("options", "set", options.set);
+  visit("options", "device", options.device.name);
+  visit("options", "hand", options.device.hand);
+  visit("options", "delay", options.device.delay);
+  visit("options", "passivity", options.passivity);
+  visit("options", "hand_force", options.hand_force);
+  visit("options", "coupling", options.coupling);
   visit("", "regions", about.regions);
   visit("", "ports", about.ports);
 }

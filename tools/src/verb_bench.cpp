@@ -2,6 +2,7 @@
 
 #include "bench/contact_report.h"
 #include "bench/machine_json.h"
+#include "bench/stability_bench.h"
 #include "input_kind.h"
 #include "output_files.h"
 #include "palpate/scene/scene_file.h"
@@ -70,8 +71,20 @@ std::vector<BenchRow> measureAll(const BenchOptions& options, Console& console) 
 }  // namespace
 
 Report run(const BenchOptions& options, const GeneralOptions& general, Console& console) {
+  if (options.what == "stability") return runStabilityBench(options, general, console);
   if (options.what != "contact") {
-    throw usageError("there is no bench '" + options.what + "'", "write palpate bench contact");
+    throw usageError("there is no bench '" + options.what + "'",
+                     "write palpate bench contact or palpate bench stability");
+  }
+  if (!options.renderer.empty() && options.renderer != "constraint" &&
+      options.renderer != "paper") {
+    throw usageError("the bench of contact has no renderer '" + options.renderer + "'",
+                     "it has constraint and paper");
+  }
+  if (options.full || !options.devices.empty() || !options.rates.empty() ||
+      !options.curvature_svg.empty()) {
+    throw usageError("--full, --device, --rate and --curvature-svg are of the bench of stability",
+                     "write palpate bench stability");
   }
   (void)chosenCases(options.scenes);
   OutputFiles files(general);

@@ -3,6 +3,8 @@
 #include "content_changes.h"
 #include "input_kind.h"
 #include "loaded_scene.h"
+#include "loop_guards.h"
+#include "open_device.h"
 #include "palpate/devices/record.h"
 #include "record_about.h"
 #include "scene_hash.h"
@@ -137,6 +139,14 @@ Report run(const ReplayOptions& options, const GeneralOptions&, Console& console
   how.changes = contentEvents(readSettings(asked.set), *scene, kInfinity);
   how.servo.rate = about.rate;
   how.checkpoint_every = about.states_every;
+  std::optional<devices::LoopModel> loop;
+  if (const auto simulation = simulationOf(asked.device, about.rate)) {
+    loop = loopOf(*simulation);
+  }
+  asked.rate = about.rate;
+  const devices::HandGuards guards = guardsOf(asked, scene->device(), loop);
+  how.passivity = guards.passivity;
+  how.coupling = guards.coupling;
   devices::Session session(scene, std::move(how));
 
   const std::optional<devices::SessionState> state = stateFor(options, read, console);

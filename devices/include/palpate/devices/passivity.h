@@ -66,11 +66,12 @@ class PassivityObserver {
  private:
   double damping_ = 0.0;
   double friction_ = 0.0;
-  double encoder_ = 0.0;
+  double unsure_ = 0.0;     ///< [m] of a step, by the encoder
+  double half_step_ = 0.0;  ///< [m] of the encoder
   double max_force_ = 0.0;
   int delay_ = 0;
 
-  std::array<Vec3, kMostDelay + 1> written_{};  ///< [N] a ring
+  std::array<Vec3, kMostDelay + 1> written_{};  ///< [N] a ring of delay + 1, the oldest at next_
   std::size_t next_ = 0;
   Vec3 held_{0.0, 0.0, 0.0};
   Vec3 position_{0.0, 0.0, 0.0};
@@ -119,11 +120,11 @@ class PassivityController {
   [[nodiscard]] Vec3 bounded(const Vec3& force) const noexcept;
 
   PassivityObserver observer_;
-  double period_ = 1e-3;
+  double per_period_ = 1e3;    ///< [1/s]
   double most_damping_ = 0.0;  ///< [N s/m]
-  double travel_ = 0.0;        ///< [m/N] T^2 / (2 m)
-  double hand_force_ = 0.0;    ///< [N]
-  double encoder_ = 0.0;       ///< [m]
+  double least_step_ = 0.0;    ///< [m] shorter is at rest
+  double travel_ = 0.0;        ///< [m/N] c = T^2 / (2 m)
+  double margin_ = 0.0;        ///< [m] 2 c F_H and the encoder's step
   bool controls_ = false;
   bool bounds_ = false;
 };

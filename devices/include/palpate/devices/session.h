@@ -12,8 +12,10 @@
 
 #include "palpate/core/math.h"
 #include "palpate/devices/device.h"
+#include "palpate/devices/passivity.h"
 #include "palpate/devices/scene_budget.h"
 #include "palpate/devices/velocity.h"
+#include "palpate/devices/virtual_coupling.h"
 #include "palpate/export.h"
 #include "palpate/render/haptic_renderer.h"
 
@@ -81,6 +83,10 @@ struct SessionSettings {
   int clutch_button =
       0;  ///< bit of DeviceState::buttons, 0 to 31, that holds the clutch, where the scene allows one
   std::vector<ContentEvent> changes = {};  ///< by time
+  /// Both are at the hand, in the device's frame. Not given: as the scene's `device` asks for, with what it does not say from
+  /// `loop` (hand_guards.h); off if it does not.
+  std::optional<PassivitySettings> passivity = {};
+  std::optional<CouplingSettings> coupling = {};
   /// [ticks] Before each tick whose number is a multiple of this, but 0, Session::checkpoint() is taken; 0: never. Two sessions
   /// feel the same bit for bit only if theirs is the same: see HapticRenderer::checkpoint().
   std::uint64_t checkpoint_every = 0;
@@ -95,6 +101,9 @@ struct SessionState {
   RendererState renderer;
   VelocityTracker tracker;
   Clutch clutch;
+  std::optional<VirtualCoupling> coupling;
+  std::optional<PassivityController> passivity;
+  double source_work = 0.0;       ///< [J] of the renderer, up to the last tick
   std::uint64_t ticks = 0;        ///< that were made
   std::uint64_t next_change = 0;  ///< of SessionSettings::changes, the first that has not come yet
   double last_time = 0.0;         ///< [s]
@@ -108,28 +117,30 @@ struct SessionTick {
   DeviceState reading;       ///< as it came
   /// [s] since the last reading: the servo's period at the first, 0 where the time did not rise or is not a number
   double dt = 0.0;
-  HipState hip;                   ///< [world] what the renderer got
+  HipState hip;                   ///< [world] what the renderer got; with a coupling the tool
   TickResult result;              ///< [world] what it answered
   Vec3 unlimited{0.0, 0.0, 0.0};  ///< [N, world] its force before the limits
   Vec3 force{0.0, 0.0, 0.0};      ///< [N] in the device's frame: for the device
+  Vec3 added{0.0, 0.0, 0.0};      ///< [N] of it by the passivity controller
   std::int64_t renderer_ns = 0;   ///< [ns] of the renderer's update alone
   bool is_held = false;           ///< the clutch is
   bool is_checkpoint = false;     ///< Session::checkpoint() is what was before this tick
 };
 
-/// Owns the renderer, the velocity tracker, the clutch and all that they keep between ticks; the scene is shared and const.
+/// Owns the renderer, the velocity tracker, the clutch, the guards of stability and all that they keep between ticks; the scene is shared and const.
 /// Construction may throw and allocate; step() never allocates, locks, throws or blocks. One thread at a time.
 class PALPATE_EXPORT Session {
  public:
   /// Called after each tick of run(), in the servo thread: it must not allocate, lock, throw or block.
   using Listener = std::function<void(const SessionTick&, const HapticRenderer&)>;
 
-  /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a button or changes
-  /// that cannot be, and as sceneBudget() for a loop.
+  /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a button, changes,
+  /// passivity or a coupling that cannot be, and as sceneBudget() for a loop.
   explicit Session(ScenePtr scene, SessionSettings settings = {});
 
-  /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld), velocity, clutch, renderer, and
-  /// the force back. A reading that is not finite gives zero force.
+  /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld), velocity, clutch, coupling,
+  /// renderer, and the force back through the coupling and the passivity controller. A reading that is not finite gives
+  /// zero force.
   [[nodiscard]] SessionTick step(const DeviceState& reading, DeviceFrame frame) noexcept;
 
   /// step() for each reading of `device`, by runServo(), until that ends or `stop` is set. @throws Error as runServo().
@@ -148,6 +159,11 @@ class PALPATE_EXPORT Session {
   /// The number of the next tick.
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
 
+  /// The energy that the loop gave to the hand; null unless SessionSettings::passivity is given.
+  [[nodiscard]] const PassivityObserver* observer() const noexcept {
+    return passivity_ ? &passivity_->observer() : nullptr;
+  }
+
   /// A warning of set-up: what of the scene is stiffer than SessionSettings::loop can hold. Empty
   /// without a loop. What is felt does not change for it.
   [[nodiscard]] const std::vector<BudgetItem>& overBudget() const noexcept { return over_budget_; }
@@ -162,6 +178,12 @@ class PALPATE_EXPORT Session {
   std::unique_ptr<HapticRenderer> renderer_;
   VelocityTracker tracker_;
   Clutch clutch_;
+  std::optional<VirtualCoupling> coupling_;
+  std::optional<PassivityController> passivity_;
+  double source_work_ = 0.0;  ///< [J] of the renderer, up to the last tick
+
+  /// [N, world] The renderer's answer for the probe at `probe`, through the coupling if there is one, and before the clutch.
+  [[nodiscard]] Vec3 feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept;
   /// Changes the contents whose time has come.
   void changeUntil(double time) noexcept;
   void saveCheckpoint() noexcept;

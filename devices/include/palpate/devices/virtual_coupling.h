@@ -55,6 +55,8 @@ class VirtualCoupling {
   bool has_begun_ = false;
   double per_time_ = 0.0;     ///< [1/s] 1 / T of this tick
   double slope_ = 0.0;        ///< [N/m] K_c + B_c / T
+  double give_ = 0.0;         ///< [m/N] 1 / slope_
+  double share_ = 0.0;        ///< [-] of the slope that is the damper's
   Vec3 hand_{0.0, 0.0, 0.0};  ///< [m]
   Vec3 free_{0.0, 0.0, 0.0};  ///< [m] where the tool would be without a force of the scene
   Vec3 tool_{0.0, 0.0, 0.0};  ///< [m] after the last tick
