@@ -6,13 +6,11 @@
 #include <sys/prctl.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <ctime>
 
 namespace palpate::devices {
 namespace {
-
-/// Above the threaded interrupts (50), below the kernel's own migration and watchdog threads (99).
-constexpr int kPriority = 75;
 
 /// Longer than most wake-ups are late on a stock kernel: 80 us, or 8 % of a 1 kHz tick.
 constexpr std::int64_t kSpin = 80'000;  // [ns]
@@ -54,11 +52,13 @@ Elevation::Elevation(bool elevate, bool timers) noexcept {
     old_priority_ = old.sched_priority;
     sched_param wanted{};
     wanted.sched_priority = kPriority;
-    has_priority_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted) == 0;
+    priority_error_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
+    has_priority_ = priority_error_ == 0;
   }
   // What is mapped now is all the loop uses. MCL_FUTURE would make other threads' allocations fail
   // wherever the limit on locked memory is finite.
   has_locked_memory_ = mlockall(MCL_CURRENT) == 0;
+  if (!has_locked_memory_) memory_error_ = errno;
 }
 
 Elevation::~Elevation() {

@@ -24,10 +24,18 @@ class Elevation {
 
   [[nodiscard]] bool hasPriority() const noexcept { return has_priority_; }
   [[nodiscard]] bool hasLockedMemory() const noexcept { return has_locked_memory_; }
+  /// errno of what was refused, 0 if nothing was.
+  [[nodiscard]] int priorityError() const noexcept { return priority_error_; }
+  [[nodiscard]] int memoryError() const noexcept { return memory_error_; }
+
+  /// Above the threaded interrupts (50), below the kernel's own migration and watchdog threads (99).
+  static constexpr int kPriority = 75;
 
  private:
   bool has_priority_ = false;
   bool has_locked_memory_ = false;
+  int priority_error_ = 0;
+  int memory_error_ = 0;
   int old_policy_ = 0;
   int old_priority_ = 0;
   int old_slack_ = -1;  // [ns]; below 0: not changed

@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <system_error>
 
+#include "hang_watch.h"
 #include "palpate/core/error.h"
 #include "palpate/devices/device.h"
-#include "reading_watch.h"
+#include "palpate/devices/safety.h"
 #include "servo_clock.h"
 #include "servo_schedule.h"
 
@@ -77,6 +80,32 @@ std::int64_t turnOf(const ServoSettings& settings) noexcept {
   return nanoseconds(1.0 / (is_sound ? settings.rate : 1000.0));
 }
 
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+/// [ns] after which the loop counts as hung: at least two turns, however slow it is.
+std::int64_t longestTurn(const SafetyLimits& limits, std::int64_t turn) noexcept {
+  if (!(limits.hang < 1e6)) return kNever;
+  return std::max(nanoseconds(limits.hang), 2 * turn);
+}
+
+/// What the operating system has granted. @throws Error (kOperation) if less than what is required.
+void noteElevation(const Elevation& elevation, Elevate wanted, ServoReport& report) {
+  report.has_priority = elevation.hasPriority();
+  report.has_locked_memory = elevation.hasLockedMemory();
+  report.elevated = report.has_priority && report.has_locked_memory;
+  report.priority_error = elevation.priorityError();
+  report.memory_error = elevation.memoryError();
+  if (wanted != Elevate::kRequire || report.elevated) return;
+  const bool lacks_priority = !report.has_priority;
+  const int error = lacks_priority ? report.priority_error : report.memory_error;
+  throw Error(ErrorKind::kOperation,
+              {"servo.elevate",
+               std::string("the system refuses ") +
+                   (lacks_priority ? "a real-time priority: " : "locked memory: ") +
+                   std::generic_category().message(error),
+               "devices/README.md says how to allow it; or run without requiring it"});
+}
+
 }  // namespace
 
 ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings& settings,
@@ -84,69 +113,93 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
   check(tick, settings);
   ServoReport report;
   const OpenDevice open(device);
-  const Elevation elevation(settings.elevate, settings.realtime);
-  report.has_priority = elevation.hasPriority();
-  report.has_locked_memory = elevation.hasLockedMemory();
-  report.elevated = report.has_priority && report.has_locked_memory;
+  const Elevation elevation(settings.elevate != Elevate::kOff, settings.realtime);
+  noteElevation(elevation, settings.elevate, report);
 
-  // A maximum that is not a number is not a permission.
-  const double limit = device.info().max_force > 0.0 ? device.info().max_force : 0.0;
+  const DeviceInfo& info = device.info();
+  const bool has_timer = settings.realtime && !info.is_clock;
+  const std::int64_t period = settings.realtime ? std::llround(1e9 / settings.rate) : 1;
+  const std::int64_t turn = turnOf(settings);
+  Safety safety(info.limits, info.max_force, nanoseconds(settings.watchdog),
+                nanoseconds(settings.recovery), turn);
+  HangWatch hangs(device, settings.realtime ? longestTurn(info.limits, turn) : kNever,
+                  elevation.hasPriority() ? Elevation::kPriority + 1 : 0);
+  std::uint64_t cuts = 0;
   DeviceState last;
   bool has_reading = false;
-  const std::int64_t period = settings.realtime ? std::llround(1e9 / settings.rate) : 1;
   ServoSchedule schedule(settings.realtime ? monotonicNs() : 0, period);
-  const std::int64_t turn = turnOf(settings);
-  ReadingWatch watch(std::max(nanoseconds(settings.watchdog), 2 * turn),
-                     nanoseconds(settings.recovery));
-  std::int64_t now = 0;
+  std::int64_t now = settings.realtime ? monotonicNs() : 0;
+  hangs.beat(now);
+  safety.open(now);
   while (true) {
-    if (settings.realtime) sleepUntil(schedule.due(), stop);
+    if (has_timer) sleepUntil(schedule.due(), stop);
     if (stop.load(std::memory_order_relaxed)) {
       report.exit = ServoExit::kStopped;
       break;
     }
+    const std::int64_t before = now;
     now = settings.realtime ? monotonicNs() : now + turn;
-    if (settings.realtime) schedule.begin(now);
+    if (has_timer) {
+      report.lateness.add(now - schedule.due());
+      schedule.begin(now);
+    }
     DeviceState fresh = last;
     const DeviceStatus read = device.read(fresh);
+    // A reading is as old as its reply.
+    if (settings.realtime && info.is_clock) now = monotonicNs();
+    if (settings.realtime) report.interval.add(now - before);
+    const ReadingVerdict verdict = safety.read(now, read, fresh);
     if (ends(read, report.exit)) break;
-    if (read == DeviceStatus::kOk) {
+    if (verdict == ReadingVerdict::kSound) {
       last = fresh;
       has_reading = true;
     }
-    if (has_reading) watch.turn(now, read == DeviceStatus::kOk);
     Vec3 force(0.0);
-    ServoTurn done{.is_stale = read == DeviceStatus::kStale};
-    const bool ticks = has_reading && !watch.hasExpired();
-    if (has_reading && !ticks) {
-      ++report.stale;
-    } else if (ticks) {
-      force = tick(last);
+    ServoTurn done{.is_stale = verdict != ReadingVerdict::kSound};
+    const bool ticks = safety.ticks();
+    if (has_reading && safety.isSilent()) ++report.stale;
+    if (ticks) {
+      const SafeForce safe = safety.ask(tick(last), last);
       ++report.ticks;
-      if (!isFinite(force) || !isFinite(last.position) || !isFinite(last.velocity)) {
-        force = Vec3(0.0);
-        ++report.zeroed;
-        done.is_zeroed = true;
-      } else if (const double length = glm::length(force); length > limit) {
-        force *= limit / length;
-        ++report.shortened;
-        done.is_shortened = true;
-      }
-      done.share = watch.share();
-      force *= done.share;
+      force = safe.force;
+      done.is_zeroed = safe.is_zeroed;
+      done.is_shortened = safe.is_shortened;
+      done.share = safe.share;
+    } else {
+      (void)safety.ask(Vec3(0.0), last);  // the motors cool
     }
+    if (const std::uint64_t count = hangs.cuts(); count != cuts) {
+      cuts = count;
+      safety.hang(monotonicNs() - hangs.lastBeat());
+      force = Vec3(0.0);
+    }
+    if (!permitsForce(safety.state())) force = Vec3(0.0);
     const DeviceStatus wrote = device.write(force);
     const std::uint64_t overruns = schedule.overruns();
-    if (settings.realtime) schedule.end(monotonicNs());
+    if (settings.realtime) {
+      const std::int64_t end = monotonicNs();
+      hangs.beat(end);
+      report.work.add(end - now);
+      if (has_timer) schedule.end(end);
+    }
     if (ticks && observer) {
       done.written = force;
       done.is_late = schedule.overruns() != overruns;
       observer(done);
     }
     if (ends(wrote, report.exit)) break;
+    if (safety.state() == SafetyState::kFault) {
+      report.exit = ServoExit::kFault;
+      break;
+    }
   }
   report.overruns = schedule.overruns();
   report.worst_lateness = 1e-9 * static_cast<double>(schedule.worstLateness());
+  report.state = safety.state();
+  report.fault = safety.fault();
+  report.safety = safety.counts();
+  report.zeroed = report.safety.zeroed;
+  report.shortened = report.safety.shortened;
   return report;
 }
 

@@ -9,6 +9,8 @@
 #include "palpate/core/error.h"
 #include "palpate/devices/hand_guards.h"
 #include "palpate/devices/record.h"
+#include "palpate/devices/scene_swap.h"
+#include "palpate/devices/seq_lock.h"
 
 namespace palpate::devices {
 namespace {
@@ -46,8 +48,19 @@ void check(const Scene& scene, const SessionSettings& settings) {
 
 }  // namespace
 
+/// What other threads touch.
+struct Session::Shared {
+  SceneSwap swap;
+  SeqLock<SessionView> view;
+};
+
+Session::~Session() = default;
+Session::Session(Session&& other) noexcept = default;
+Session& Session::operator=(Session&& other) noexcept = default;
+
 Session::Session(ScenePtr scene, SessionSettings settings)
-    : scene_(std::move(scene)),
+    : shared_(std::make_unique<Shared>()),
+      scene_(std::move(scene)),
       settings_(std::move(settings)),
       renderer_(makeRenderer(scene_, settings_.renderer)),
       tracker_(settings_.velocity) {
@@ -67,6 +80,7 @@ Session::Session(ScenePtr scene, SessionSettings settings)
 }
 
 SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcept {
+  swapScene();
   SessionTick tick;
   tick.number = ticks_;
   tick.reading = reading;
@@ -95,7 +109,7 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
                : Clutched{position, velocity, 0.0};
 
   changeUntil(reading.time);
-  const Vec3 felt = now.share * feel(now, frame, tick);
+  const Vec3 felt = swap_fade_ * now.share * feel(now, frame, tick);
   tick.force = is_mapped ? mapping.forceToDevice(felt) : felt;
   if (passivity_) {
     const double work = renderer_->sourceWork();
@@ -105,6 +119,9 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
     tick.force = guarded.force;
     tick.added = guarded.added;
   }
+  swap_fade_ = std::min(1.0, swap_fade_ + tick.dt / kSwapFade);
+  shared_->view.store({tick.number, reading.time, now.position, tick.result.proxy,
+                       tick.result.force, tick.result.region, reading.buttons, tick.is_held});
   return tick;
 }
 
@@ -133,6 +150,21 @@ Vec3 Session::feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) 
     *slope *= force * scale;
   }
   return coupling_->push(answer) / force;
+}
+
+std::optional<SessionView> Session::view() const noexcept { return shared_->view.load(); }
+
+void Session::offer(ScenePtr scene, const RendererSettings& settings) {
+  auto renderer = makeRenderer(scene, settings);
+  shared_->swap.offer(std::move(scene), std::move(renderer));
+}
+
+void Session::swapScene() noexcept {
+  if (!shared_->swap.take(scene_, renderer_)) return;
+  swap_fade_ = 0.0;
+  next_change_ = settings_.changes.size();
+  if (coupling_) coupling_->letGo();
+  source_work_ = 0.0;
 }
 
 void Session::changeUntil(double time) noexcept {

@@ -88,7 +88,8 @@ TEST(ContentLoops, ALatticeAtTheHandsResonanceSwingsAsItsClosedFormDoes) {
         "materials:\n  wall: {stiffness: 1000 N/m}\n  grid: {stiffness: 1000 N/m, lattice: "
         "{force: " +
         std::to_string(force) +
-        " N, wavelength: 5}}\nlayers:\n  - {name: tank, inside: {box: {center: [0, 0, 0], size: "
+        " N, wavelength: [5, 5, 5]}}\nlayers:\n  - {name: tank, inside: {box: {center: [0, 0, 0], "
+        "size: "
         "[200, 200, 200]}}, content: grid, wall: wall}\nstart: {region: tank}\n");
     const auto ours = makeLoopRenderer("constraint", scene);
     Lattice truth(scene, std::stod(std::to_string(force)), kWave);

@@ -11,6 +11,7 @@
 
 #include "palpate/devices/record.h"
 #include "support/alloc_guard.h"
+#include "support/wait.h"
 
 namespace palpate::devices {
 namespace {
@@ -27,7 +28,7 @@ SessionTick tickOf(std::uint64_t number) {
 class Collector : public RecordSink {
  public:
   void add(const RecordedTick& tick, std::span<const RegionEntry> entries) override {
-    while (blocks) std::this_thread::yield();
+    ASSERT_TRUE(testing::waitUntil([&] { return !blocks; }));
     ASSERT_EQ(tick.tick.force.x, static_cast<double>(tick.tick.number));
     ASSERT_EQ(entries.size(), tick.entry_count);
     for (const RegionEntry& entry : entries) {

@@ -54,7 +54,7 @@ TEST(ServoClock, NeitherPriorityNorMemoryIsTakenUnlessAskedFor) {
     return Vec3(0.0);
   };
   const ServoReport report =
-      runServo(device, tick, {.realtime = true, .elevate = false}, kNeverStop);
+      runServo(device, tick, {.realtime = true, .elevate = Elevate::kOff}, kNeverStop);
   EXPECT_EQ(during, policy);
   EXPECT_FALSE(report.has_priority);
   EXPECT_FALSE(report.has_locked_memory);

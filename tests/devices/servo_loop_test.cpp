@@ -10,6 +10,7 @@
 #include "palpate/devices/device.h"
 #include "palpate/devices/path.h"
 #include "support/alloc_guard.h"
+#include "support/error_of.h"
 
 namespace palpate::devices {
 namespace {
@@ -270,7 +271,7 @@ TEST(RunServo, ElevationIsReportedAndUndone) {
         pthread_getschedparam(pthread_self(), &during, &param);
         return Vec3(0.0);
       },
-      {.elevate = true}, kNeverStop);
+      {.elevate = Elevate::kPrefer}, kNeverStop);
   // What is allowed depends on who runs the test; what is reported must be what happened.
   EXPECT_EQ(during, report.has_priority ? SCHED_FIFO : policy);
   EXPECT_EQ(report.elevated, report.has_priority && report.has_locked_memory);
@@ -279,6 +280,24 @@ TEST(RunServo, ElevationIsReportedAndUndone) {
   ASSERT_EQ(pthread_getschedparam(pthread_self(), &policy_after, &after), 0);
   EXPECT_EQ(policy_after, policy);
   EXPECT_EQ(after.sched_priority, before.sched_priority);
+}
+
+TEST(RunServo, WhatIsRequiredIsGrantedOrTheLoopDoesNotRun) {
+  // What is allowed depends on who runs the test: the one or the other, as the system says when it is asked.
+  ScriptedDevice device;
+  device.reads = {DeviceStatus::kOk, DeviceStatus::kOk};
+  VirtualDevice asked({{0.0, Vec3(0.0)}});
+  const auto zero = [](const DeviceState& /*state*/) { return Vec3(0.0); };
+  const bool is_granted = runServo(asked, zero, {.elevate = Elevate::kPrefer}, kNeverStop).elevated;
+  if (is_granted) {
+    EXPECT_TRUE(runServo(device, zero, {.elevate = Elevate::kRequire}, kNeverStop).elevated);
+  } else {
+    const Error error =
+        errorOf([&] { (void)runServo(device, zero, {.elevate = Elevate::kRequire}, kNeverStop); });
+    EXPECT_EQ(error.kind(), ErrorKind::kOperation);
+    EXPECT_EQ(error.problem().code, "servo.elevate");
+  }
+  expectAtRest(device);
 }
 
 }  // namespace

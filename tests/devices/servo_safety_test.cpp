@@ -7,10 +7,11 @@
 #include <limits>
 #include <thread>
 
-#include "../../devices/src/reading_watch.h"
 #include "devices/scripted_device.h"
 #include "palpate/devices/device.h"
+#include "palpate/devices/reading_watch.h"
 #include "support/alloc_guard.h"
+#include "support/wait.h"
 
 namespace palpate::devices {
 namespace {
@@ -145,7 +146,7 @@ TEST(ServoSafety, AStopWhileItSleepsIsSeenAtOnce) {
   std::atomic<bool> stop{false};
   std::atomic<bool> has_ticked{false};
   std::thread stopper([&] {
-    while (!has_ticked) std::this_thread::yield();
+    (void)testing::waitUntil([&] { return has_ticked.load(); });
     stop = true;
   });
   const ServoReport report = runServo(

@@ -134,6 +134,7 @@ Totals sweepFormat(const Sweep& sweep, const Reader& reader) {
   const std::vector<std::string> seeds = palpate::fuzz::seedsOf(reader.name);
   std::map<int, int> codes;
   long most = 0;
+  double seconds = 0.0;
   Totals totals;
   // A folder of its own: DICOM series are all that is in one.
   const fs::path own = sweep.folder / reader.name;
@@ -160,6 +161,7 @@ Totals sweepFormat(const Sweep& sweep, const Reader& reader) {
       std::ofstream(file, std::ios::binary) << bytes;
       const Run result = run(sweep.program, command, sound[from] + kSeconds);
       ++totals.runs;
+      seconds += result.seconds;
       most = std::max(most, result.resident);
       if (WIFEXITED(result.status)) ++codes[WEXITSTATUS(result.status)];
       const std::string fault = faultOf(result, bytes.size());
@@ -171,8 +173,8 @@ Totals sweepFormat(const Sweep& sweep, const Reader& reader) {
       std::printf("  %s: %s\n", kept.c_str(), fault.c_str());
     }
   }
-  std::printf("%-10s %8d %8d %8d %8d %10ld %8d\n", reader.name, totals.runs, codes[0], codes[1],
-              codes[3], most / 1024, totals.faults);
+  std::printf("%-10s %8d %8d %8d %8d %10ld %8.1f %8d\n", reader.name, totals.runs, codes[0],
+              codes[1], codes[3], most / 1024, 1e3 * seconds / totals.runs, totals.faults);
   std::fflush(stdout);
   return totals;
 }
@@ -207,8 +209,8 @@ int main(int argc, char** argv) {
   fs::create_directories(sweep.folder);
   sweep.image = sweep.folder / "image.nii";
   std::ofstream(sweep.image, std::ios::binary) << palpate::fuzz::seedsOf("nifti").front();
-  std::printf("%-10s %8s %8s %8s %8s %10s %8s\n", "format", "runs", "exit 0", "exit 1", "exit 3",
-              "most MB", "faults");
+  std::printf("%-10s %8s %8s %8s %8s %10s %8s %8s\n", "format", "runs", "exit 0", "exit 1",
+              "exit 3", "most MB", "ms each", "faults");
   std::fflush(stdout);
   int ends[2] = {};
   if (pipe(ends) != 0) return 2;

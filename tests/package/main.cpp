@@ -11,6 +11,7 @@
 #include <memory>
 #include <string>
 #ifdef WITH_devices
+#include <palpate/devices/falcon.h>
 #include <palpate/devices/path.h>
 #endif
 #ifdef WITH_vdb
@@ -82,6 +83,8 @@ int main() {
   palpate::devices::DeviceState state;
   require(hand.read(state) == palpate::devices::DeviceStatus::kOk, "devices: a hand that moves");
   require(std::abs(state.position.z - 0.025) < 1e-12, "devices: it starts at its clearance");
+  require(palpate::devices::makeFalcon({})->info().name == "Novint Falcon",
+          "devices: a driver is linked with all that it needs");
 #endif
 
 #ifdef WITH_vdb

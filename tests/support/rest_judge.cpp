@@ -135,6 +135,11 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   // Either end will do, or another minimum between them; a point that is none will not.
   if (off <= allowed || (out.is_ambiguous && is_minimum)) return out;
   if (!rest.has_settled) {
+    // The oracle does not know where it ends; values can still show a place nearby that is nearer to the hand.
+    for (const double share : {1e-2, 1e-3, 1e-4}) {
+      const double gain = oracle_.gainNear(now.proxy, hip, share * depth);
+      if (gain > 0.02) return is_at_fault(Fault::kPlace, gain * share * depth);
+    }
     out.is_unjudged = true;
     return out;
   }

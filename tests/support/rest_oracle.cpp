@@ -90,9 +90,11 @@ RestCheck RestOracle::check(const Vec3& x, const Vec3& hip) const {
   tree_.nearby(x, radius, nearby_);
   const Nearby nearby = nearby_;
   out.is_judged = !nearby.is_too_much;
+  bool is_inside = true;
   for (const std::uint32_t bits : nearby.cells) {
     Cell cell = cellAt(x, nearby, bits, radius, 4.0 * tree_.onSurface(), true);
     if (!cell.holds) continue;
+    is_inside = false;
     out.is_judged &= cell.is_judged;
     NearestOfPlanes next = PlaneProblem(cell.planes).nearestTo(way);
     // At an apex a few normals more, about the way that is left.
@@ -117,6 +119,9 @@ RestCheck RestOracle::check(const Vec3& x, const Vec3& hip) const {
     }
     out.doubt = std::max(out.doubt, cell.doubt);
   }
+  // A point that no cell holds is inside a wall, so it does not rest there; its value alone does not tell where a blend is
+  // far less steep than one.
+  if (is_inside) out.residual = depth;
   return out;
 }
 

@@ -289,6 +289,30 @@ ports:
   EXPECT_NE(text.find("core: no port leads into it"), std::string::npos) << text;
 }
 
+TEST(Explain, WhatIsNeitherShownNorRefutedIsUndecided) {
+  // A port whose extent holds nothing of its wall, as far as was seen.
+  const TempFolder folder;
+  const std::string scene = folder.file("s.yaml", R"(palpate: 1
+length: mm
+fields:
+  far: {sphere: {center: [0, 0, 90], radius: 5}}
+layers:
+  - {name: shell, inside: {sphere: {center: [0, 0, 0], radius: 40}}}
+  - {name: core, inside: {sphere: {center: [0, 0, 0], radius: 20}}}
+ports:
+  - {name: gate, between: [outside, shell], where: far}
+)");
+  const Json json = jsonOf({"explain", scene});
+  const std::vector<std::string> expected = {"yes", "undecided", "no"};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(json["regions"][i]["reach"], expected[i]) << i;
+  }
+  EXPECT_EQ(json["regions"][1]["reachable"], true) << "it is made as if it could be entered";
+  EXPECT_EQ(json["ports"][0]["reach"], "undecided");
+  const std::string text = runPalpate({"explain", scene}).out;
+  EXPECT_NE(text.find("default wall (1000 N/m)  undecided"), std::string::npos) << text;
+}
+
 std::uint32_t bigEndian(const std::string& bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4; ++i) {

@@ -138,7 +138,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   how.changes = contentEvents(content_settings, *scene, motion.end);
   how.servo.realtime = options.realtime;
   how.servo.rate = options.rate;
-  how.servo.elevate = options.realtime;
+  if (options.realtime) how.servo.elevate = devices::Elevate::kPrefer;
   if (!options.record.empty()) how.checkpoint_every = static_cast<std::uint64_t>(options.states);
   if (const auto simulation = simulationOf(options.device, options.rate)) {
     how.loop = loopOf(*simulation);

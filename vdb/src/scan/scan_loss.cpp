@@ -9,6 +9,8 @@
 #include <sstream>
 #include <vector>
 
+#include "scan/single_walls.h"
+
 namespace palpate::vdb {
 namespace {
 
@@ -24,6 +26,24 @@ struct Found {
   double depth = 0.0;  ///< [m] of loss.place on the wrong side
 };
 
+/// Whether the grid has a hole where the voxel is a single wall: a straight way through it, from a center on one side to
+/// that on the other, meets nothing of it. `sign`: 1 for inside voxels, -1 for a gap's.
+bool isOpen(const Field& field, const Mask& mask, const Image& image, const std::array<int, 3>& at,
+            double sign) {
+  constexpr int kParts = 16;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!isSingleWall(mask, at, axis)) continue;
+    bool is_met = false;
+    for (int n = 1; n < kParts && !is_met; ++n) {
+      Vec3 place(mask.first[0] + at[0], mask.first[1] + at[1], mask.first[2] + at[2]);
+      place[static_cast<int>(axis)] += 2.0 * n / kParts - 1.0;
+      is_met = sign * field.value(image.toWorld(place)) < 0.0;
+    }
+    if (!is_met) return true;
+  }
+  return false;
+}
+
 std::uint64_t countAt(const LevelSetInfo& info, const char* key) {
   const auto at = info.metadata.find(key);
   return at == info.metadata.end() ? 0 : std::strtoull(at->second.c_str(), nullptr, 10);
@@ -36,31 +56,34 @@ ScanLoss findLoss(const LevelSet& grid, const Band& band, const Mask& mask, cons
   const FieldPtr field = gridField(grid, Sampler::kAccessor);
   const double enough = kLost * grid.info().voxel_size;
   std::vector<Found> found(band.blocks.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, found.size()),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t b = range.begin(); b != range.end(); ++b) {
-                        const BandBlock& block = band.blocks[b];
-                        for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
-                          if (std::isnan(block.value[n])) continue;
-                          const auto place = static_cast<int>(n);
-                          const int i = block.first[0] + (place >> 6);
-                          const int j = block.first[1] + (place >> 3 & 7);
-                          const int k = block.first[2] + (place & 7);
-                          const auto here = static_cast<std::size_t>(mask.at(i, j, k));
-                          if (!apart.inside.empty() && apart.inside[here] != 0) continue;
-                          const bool inside = mask.inside[here] != 0;
-                          const Vec3 p = image.toWorld(
-                              Vec3(mask.first[0] + i, mask.first[1] + j, mask.first[2] + k));
-                          const double depth = field->value(p) * (inside ? 1.0 : -1.0);
-                          if (!(depth > enough)) continue;
-                          Found& block_found = found[b];
-                          ++(inside ? block_found.loss.lost : block_found.loss.filled);
-                          if (depth <= block_found.depth) continue;
-                          block_found.depth = depth;
-                          block_found.loss.place = p;
-                        }
-                      }
-                    });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, found.size()),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t b = range.begin(); b != range.end(); ++b) {
+          const BandBlock& block = band.blocks[b];
+          for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+            if (std::isnan(block.value[n])) continue;
+            const auto place = static_cast<int>(n);
+            const int i = block.first[0] + (place >> 6);
+            const int j = block.first[1] + (place >> 3 & 7);
+            const int k = block.first[2] + (place & 7);
+            const auto here = static_cast<std::size_t>(mask.at(i, j, k));
+            if (!apart.inside.empty() && apart.inside[here] != 0) continue;
+            const bool inside = mask.inside[here] != 0;
+            const Vec3 p =
+                image.toWorld(Vec3(mask.first[0] + i, mask.first[1] + j, mask.first[2] + k));
+            const double depth = field->value(p) * (inside ? 1.0 : -1.0);
+            const bool is_open = depth > 0.0 && depth <= enough &&
+                                 isOpen(*field, mask, image, {i, j, k}, inside ? 1.0 : -1.0);
+            if (!(depth > enough) && !is_open) continue;
+            Found& block_found = found[b];
+            ++(inside ? block_found.loss.lost : block_found.loss.filled);
+            if (depth <= block_found.depth) continue;
+            block_found.depth = depth;
+            block_found.loss.place = p;
+          }
+        }
+      });
   Found all;
   for (const Found& one : found) {
     all.loss.lost += one.loss.lost;

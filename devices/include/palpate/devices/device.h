@@ -8,6 +8,9 @@
 #include <string>
 
 #include "palpate/core/math.h"
+#include "palpate/devices/latency_histogram.h"
+#include "palpate/devices/safety_limits.h"
+#include "palpate/devices/safety_state.h"
 #include "palpate/export.h"
 
 namespace palpate::devices {
@@ -18,6 +21,8 @@ struct DeviceState {
   Vec3 position{0.0, 0.0, 0.0};  ///< [m] in the frame that DeviceInfo says
   Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s] the same
   std::uint32_t buttons = 0;     ///< a bit each, 1: pressed
+  bool is_homed = true;          ///< the device knows its origin; until then it gets zero force
+  Mat3 orientation{1.0};         ///< of the handle: turns its axes into those of the frame
 };
 
 enum class DeviceStatus : std::uint8_t {
@@ -40,9 +45,14 @@ struct DeviceInfo {
   double max_force = 0.0;  ///< [N] continuous; the servo loop never writes a longer force
   Box3 workspace;          ///< [m] in the frame
   DeviceFrame frame = DeviceFrame::kDevice;  ///< of positions, velocities, forces and the workspace
+  double max_torque = 0.0;                   ///< [Nm] 0: it has no motors for one
+  int buttons = 0;                           ///< that it has
+  SafetyLimits limits = {};                  ///< that the servo loop keeps
+  /// read() waits for the device's next reply, so that the device is the loop's clock: a real-time loop then has no other.
+  bool is_clock = false;
 };
 
-/// open() and close() are called while no loop runs; read() and write() from the servo thread only.
+/// open() and close() are called while no loop runs; read() and write() from the servo thread only; cut() from any thread.
 /// A device at rest exerts no force: close() and the destructor zero it first.
 class PALPATE_EXPORT Device {
  public:
@@ -58,6 +68,13 @@ class PALPATE_EXPORT Device {
   [[nodiscard]] virtual DeviceStatus read(DeviceState& out) noexcept = 0;
   [[nodiscard]] virtual DeviceStatus write(
       const Vec3& force) noexcept = 0;  ///< [N] in the same frame
+  /// The same with a torque [Nm]. The default leaves the torque out: of devices whose max_torque is 0.
+  [[nodiscard]] virtual DeviceStatus writeWrench(const Vec3& force, const Vec3& torque) noexcept;
+
+  /// Zero force at once, because the servo thread stands still: called from another one, maybe while read() or write() runs,
+  /// and only between open() and close(). Bounded wait; never throws. Later writes count again. The default does nothing: of
+  /// devices that let go by themselves when nobody writes.
+  virtual void cut() noexcept;
 
  protected:
   Device() = default;
@@ -79,12 +96,18 @@ struct ServoTurn {
 /// Called for each tick once its force was written. Must not allocate, lock, throw or block; without `realtime` it may block.
 using ServoObserver = std::function<void(const ServoTurn&)>;
 
+/// What is asked of the operating system.
+enum class Elevate : std::uint8_t {
+  kOff,
+  kPrefer,   ///< try; what was refused is in the report
+  kRequire,  ///< no loop without it
+};
+
 struct ServoSettings {
   bool realtime = false;  ///< false: as fast as possible, one reading after the other
   double rate = 1000.0;   ///< [Hz] 1 to 1e5; without `realtime` only the watchdog asks for it
-  /// Try for a real-time priority of the calling thread (SCHED_FIFO) and for locked memory, for as
-  /// long as the loop runs; what was refused is in the report.
-  bool elevate = false;
+  /// A real-time priority of the calling thread (SCHED_FIFO) and locked memory, for as long as the loop runs.
+  Elevate elevate = Elevate::kOff;
   /// [s] without a new reading after which the force is zero; above 0. Without `realtime` a turn of
   /// the loop counts as 1 / rate. At least one turn may pass without a reading, however slow the
   /// loop is.
@@ -103,9 +126,17 @@ struct ServoReport {
   bool has_priority = false;       ///< ran with a real-time priority because of `elevate`
   bool has_locked_memory = false;  ///< ran with locked memory because of `elevate`
   bool elevated = false;           ///< both
+  int priority_error = 0;          ///< errno of a priority that was refused
+  int memory_error = 0;            ///< errno of locked memory that was refused
   std::uint64_t zeroed = 0;        ///< forces that were not finite and were written as zero
   std::uint64_t shortened = 0;  ///< forces longer than the device's maximum, written at that length
   std::uint64_t stale = 0;  ///< turns of the loop that wrote zero because no new reading had come
+  SafetyState state = SafetyState::kClosed;  ///< in which the loop ended
+  SafetyFault fault = SafetyFault::kNone;
+  SafetyCounts safety;        ///< jumps, hangs and heat
+  LatencyHistogram lateness;  ///< of each turn's start (realtime, unless the device is the clock)
+  LatencyHistogram interval;  ///< from turn to turn (realtime only)
+  LatencyHistogram work;      ///< from the reading to the end of the write (realtime only)
 };
 
 /// Runs the loop on the calling thread until the path ends, the device fails or `stop` becomes true.
@@ -119,12 +150,15 @@ struct ServoReport {
 ///   called, until a new reading comes; from then on forces grow from zero to their full length
 ///   within `recovery`.
 /// - A device whose maximum force is NaN, zero or below is written zero.
+/// - DeviceInfo::limits hold. A reading that is a jump counts as none. Until the device is homed, zero is written and the tick
+///   is not called. A SafetyFault ends the loop with kFault.
 /// - kTimeout, kDisconnected, kFault and kEnd, from read() or write(), end the loop.
 /// - realtime: tick k is due at start + k / rate by the monotonic clock. After an overrun the ticks
-///   that were missed are skipped, never made up for.
+///   that were missed are skipped, never made up for. If DeviceInfo::is_clock, a tick is due when the device replies instead.
+/// - realtime, and SafetyLimits::hang: a second thread writes zero force when the loop stands still.
 ///
 /// The loop itself never allocates, locks or throws.
-/// @throws Error (kDevice) from opening; Error (kUsage) for an empty `tick`, a bad rate (realtime),
+/// @throws Error (kDevice) from opening; Error (kOperation) where kRequire is refused; Error (kUsage) for an empty `tick`, a bad rate (realtime),
 /// watchdog or recovery.
 [[nodiscard]] PALPATE_EXPORT ServoReport runServo(Device& device, const ServoTick& tick,
                                                   const ServoSettings& settings,

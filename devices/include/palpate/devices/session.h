@@ -127,7 +127,20 @@ struct SessionTick {
   bool is_checkpoint = false;     ///< Session::checkpoint() is what was before this tick
 };
 
-/// Owns the renderer, the velocity tracker, the clutch, the guards of stability and all that they keep between ticks; the scene is shared and const.
+/// What another thread may see of a session while it runs.
+struct SessionView {
+  std::uint64_t number = 0;    ///< of the tick
+  double time = 0.0;           ///< [s] of the device
+  Vec3 hip{0.0, 0.0, 0.0};     ///< [m, world]
+  Vec3 proxy{0.0, 0.0, 0.0};   ///< [m, world]
+  Vec3 force{0.0, 0.0, 0.0};   ///< [N, world] after the limits
+  RegionId region = kOutside;  ///< of the proxy
+  std::uint32_t buttons = 0;
+  bool is_held = false;  ///< the clutch is
+};
+
+/// Owns the renderer, the velocity tracker, the clutch, the guards of stability and all that they keep between ticks; the
+/// scene is shared and const.
 /// Construction may throw and allocate; step() never allocates, locks, throws or blocks. One thread at a time.
 class PALPATE_EXPORT Session {
  public:
@@ -137,6 +150,9 @@ class PALPATE_EXPORT Session {
   /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a button, changes,
   /// passivity or a coupling that cannot be, and as sceneBudget() for a loop.
   explicit Session(ScenePtr scene, SessionSettings settings = {});
+  ~Session();
+  Session(Session&& other) noexcept;
+  Session& operator=(Session&& other) noexcept;
 
   /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld), velocity, clutch, coupling,
   /// renderer, and the force back through the coupling and the passivity controller. A reading that is not finite gives
@@ -164,6 +180,15 @@ class PALPATE_EXPORT Session {
     return passivity_ ? &passivity_->observer() : nullptr;
   }
 
+  /// From any thread: the hand goes on in another scene, with a renderer that is made here and now. From one tick to the next the
+  /// scene is another; the force begins at zero and comes back within kSwapFade. A scene that was offered before and not yet
+  /// taken is forgotten. Changes of contents that were asked for by time do not hold in it, and a record does not know of it.
+  /// Passivity and the coupling go on as they were asked for at first.
+  /// One thread at a time. @throws Error (kInput) as makeRenderer().
+  void offer(ScenePtr scene, const RendererSettings& settings);
+  /// From any thread: the last tick. None before the first.
+  [[nodiscard]] std::optional<SessionView> view() const noexcept;
+  static constexpr double kSwapFade = 0.1;  ///< [s]
   /// A warning of set-up: what of the scene is stiffer than SessionSettings::loop can hold. Empty
   /// without a loop. What is felt does not change for it.
   [[nodiscard]] const std::vector<BudgetItem>& overBudget() const noexcept { return over_budget_; }
@@ -173,6 +198,12 @@ class PALPATE_EXPORT Session {
   [[nodiscard]] const HapticRenderer& renderer() const noexcept { return *renderer_; }
 
  private:
+  struct Shared;
+
+  /// Takes the scene that was offered, if one was.
+  void swapScene() noexcept;
+
+  std::unique_ptr<Shared> shared_;
   ScenePtr scene_;
   SessionSettings settings_;
   std::unique_ptr<HapticRenderer> renderer_;
@@ -191,6 +222,7 @@ class PALPATE_EXPORT Session {
   std::uint64_t ticks_ = 0;
   std::size_t next_change_ = 0;
   bool has_begun_ = false;
+  double swap_fade_ = 1.0;  ///< [-] of the force since the scene was swapped
   double last_time_ = 0.0;
   SessionState checkpoint_;
   std::vector<BudgetItem> over_budget_;

@@ -47,6 +47,9 @@ class VirtualCoupling {
   /// [N] On the hand, for the scene's answer at what reach() said. It never pulls into `answer.normal`.
   [[nodiscard]] Vec3 push(const ToolForce& answer) noexcept;
 
+  /// The scene is another one: the next reach() begins anew, with the tool at the hand.
+  void letGo() noexcept { has_begun_ = false; }
+
   /// [m] The tool, after push().
   [[nodiscard]] const Vec3& tool() const noexcept { return tool_; }
 

@@ -96,8 +96,8 @@ class PALPATE_EXPORT LabelSurfaces {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Voxels of a scan whose centers a surface has on the wrong side by more than a fifth of the grid's voxel: where a
-/// part, or a gap, is too thin for the grid. None is silent: each surface above carries this in its metadata
+/// Voxels of a scan whose centers a surface has on the wrong side by more than a fifth of the grid's voxel, or at all
+/// where a single voxel is the wall and the grid has a hole through it: where a part, or a gap, is too thin for the grid. None is silent: each surface above carries this in its metadata
 /// ("lost_voxels", "filled_voxels", "lost_at" in [m]; absent where nothing is lost).
 struct ScanLoss {
   std::uint64_t lost = 0;     ///< inside voxels that are outside now

@@ -1,11 +1,11 @@
 #pragma once
-// How old the last reading is, and what of a force may be written because of that.
+/// ReadingWatch: how old the last reading is, and what of a force may be written because of that.
 
 #include <cstdint>
 
 namespace palpate::devices {
 
-/// Times are in [ns] of one clock.
+/// Times are in [ns] of one clock. A value; real-time safe.
 class ReadingWatch {
  public:
   ReadingWatch(std::int64_t longest, std::int64_t recovery) noexcept
@@ -26,6 +26,12 @@ class ReadingWatch {
     }
     now_ = now;
     if (is_recovering_ && now_ - recovered_from_ >= recovery_) is_recovering_ = false;
+  }
+
+  /// The share begins again at 0, at the time of the last turn.
+  void restart() noexcept {
+    is_recovering_ = recovery_ > 0;
+    recovered_from_ = now_;
   }
 
   /// Nothing new for too long: zero is to be written.

@@ -1,12 +1,13 @@
 #pragma once
 /// What stands between a renderer's force and the motors: finite, clamped, ramped, slewed.
 
+#include "palpate/export.h"
 #include "palpate/render/haptic_renderer.h"
 
 namespace palpate {
 
 /// Applies the limits tick by tick. A value; real-time safe.
-class ForceGuard {
+class PALPATE_EXPORT ForceGuard {
  public:
   ForceGuard() = default;
   explicit ForceGuard(const ForceLimits& limits) noexcept : limits_(limits) {}

@@ -1,0 +1,50 @@
+#pragma once
+/// The Novint Falcon, through libusb. Protocol from public sources, unverified on hardware.
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "palpate/devices/device.h"
+#include "palpate/export.h"
+
+namespace palpate::devices {
+
+constexpr std::uint16_t kFalconVendor = 0x0403;
+constexpr std::uint16_t kFalconProduct = 0xcb48;
+/// To be printed wherever the device is offered.
+constexpr const char* kFalconNotice = "protocol from public sources, unverified on hardware";
+
+/// What differs from device to device, or that nobody has measured. In a file: one `name value` a line, '#' begins a comment.
+struct FalconCalibration {
+  /// [counts/Nm] of a motor's command by the torque at the thigh, from libnifalcon, never measured: a real force may be two
+  /// or three times off. Negative: the command that turns an arm outward.
+  double counts_per_torque = -10000.0;
+  double radians_per_count = 0.000635905;  ///< [rad] of a thigh by encoder count
+  Vec3 zero_angles{0.610865, 0.610865,
+                   0.610865};     ///< [rad] of the thighs where the encoders say 0: 35 degrees
+  Vec3 origin{0.0, 0.0, 0.125};   ///< [m] of the device's frame, in that of its base
+  double max_force = 8.0;         ///< [N] the largest that is asked of the motors
+  double continuous_force = 4.0;  ///< [N] that they hold forever: an assumption, none is published
+};
+
+/// @throws Error (kInput): no such file, a name that is not known, a value that cannot be.
+[[nodiscard]] PALPATE_EXPORT FalconCalibration readFalconCalibration(const std::string& file);
+[[nodiscard]] PALPATE_EXPORT std::string textOf(const FalconCalibration& calibration);
+
+struct FalconSettings {
+  std::string serial;  ///< empty: the first one
+  /// 0 or more: an open file descriptor of its node. From then on libusb finds no devices by itself in this process.
+  int descriptor = -1;
+  std::string firmware;  ///< image for a device that runs none; empty: such a device is refused
+  FalconCalibration calibration = {};
+};
+
+/// The device's frame: x to the right, y up, z towards the hand, from FalconCalibration::origin. Its buttons: 1 plus, 2
+/// forward, 4 center, 8 minus. DeviceState::velocity is the backward difference of the positions.
+/// It replies once to each command, so it is the loop's clock (about 1 kHz). Until its encoders are homed (pull the grip out,
+/// then push it in) it gets zero force. libusb allocates a block of memory for each transfer.
+[[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeFalcon(const FalconSettings& settings);
+
+}  // namespace palpate::devices

@@ -1,0 +1,31 @@
+#pragma once
+/// Haply's Inverse3, through the service that its maker installs. Messages from public sources, unverified on hardware.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "palpate/devices/device.h"
+#include "palpate/export.h"
+
+namespace palpate::devices {
+
+/// To be printed wherever the device is offered.
+constexpr const char* kInverse3Notice = "messages from public sources, unverified on hardware";
+
+struct Inverse3Settings {
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 10001;
+  std::string id;  ///< of the device; empty: the first that the service names
+};
+
+/// WebSocket and JSON live in a thread of their own; read() and write() only exchange values with it. Each write() sends a
+/// force, each answer of the service is a reading; the service forgets a force that is not sent again. Frame: the service's.
+/// open() throws Error (kDevice) if nothing answers there, or if the service has no such device.
+/// @throws Error (kDevice) in a build without Boost.Beast and nlohmann-json.
+[[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeInverse3(const Inverse3Settings& settings);
+
+/// Whether something listens where the service should be.
+[[nodiscard]] PALPATE_EXPORT bool hasInverseService(const Inverse3Settings& settings) noexcept;
+
+}  // namespace palpate::devices

@@ -1,0 +1,34 @@
+#pragma once
+/// Devices whose makers give no protocol but a library, which is found when the device is opened: nothing of it is linked or
+/// shipped. Prototypes from public sources, unverified on hardware.
+
+#include <memory>
+#include <string>
+
+#include "palpate/devices/device.h"
+#include "palpate/export.h"
+
+namespace palpate::devices {
+
+/// To be printed wherever these devices are offered.
+constexpr const char* kPluginNotice = "prototypes from public sources, unverified on hardware";
+
+struct PluginSettings {
+  std::string library;  ///< a path, or a name as dlopen() takes it; empty: the maker's usual one
+};
+
+/// 3D Systems' Touch and Phantom devices, by OpenHaptics' HD library (libHD.so). Frame: x to the right, y up, z towards the hand.
+/// The library's own thread reads the device and writes the force, 1000 times a second; if no force came for 20 of its turns it
+/// writes zero.
+[[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeOpenHaptics(
+    const PluginSettings& settings);
+
+/// Force Dimension's devices, by the DHD library (libdhd.so). Frame: x towards the hand, y to the right, z up.
+[[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeForceDimension(
+    const PluginSettings& settings);
+
+/// Whether the library of either can be loaded; no device is opened.
+[[nodiscard]] PALPATE_EXPORT bool hasOpenHaptics(const PluginSettings& settings);
+[[nodiscard]] PALPATE_EXPORT bool hasForceDimension(const PluginSettings& settings);
+
+}  // namespace palpate::devices

@@ -1,0 +1,57 @@
+#pragma once
+/// A device that says again what a record has, and fails where it is told to.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "palpate/devices/device.h"
+#include "palpate/export.h"
+
+namespace palpate::devices {
+
+enum class InjectedKind : std::uint8_t {
+  kStale,        ///< nothing new; the hand's next row comes later
+  kShortPacket,  ///< a reply that was cut: its row is lost, and the driver says kStale
+  kTimeout,
+  kUnplug,  ///< gone until it is opened again
+  kNan,     ///< a position that is not a number
+  kJump,    ///< a position half a meter off
+};
+
+struct InjectedFault {
+  std::uint64_t read = 0;  ///< from 0: which call of read() it begins at
+  InjectedKind kind = InjectedKind::kStale;
+  std::uint64_t count = 1;  ///< of calls
+};
+
+/// One read() is one row of the record, with its time, velocity and buttons; after the last it answers kEnd. open() starts anew.
+/// While it is not open, read() and write() answer kDisconnected. Deterministic.
+class PALPATE_EXPORT ReplayDevice final : public Device {
+ public:
+  /// @throws Error (kInput) for no rows.
+  ReplayDevice(std::vector<DeviceState> rows, DeviceInfo info,
+               std::vector<InjectedFault> faults = {});
+
+  void open() override;
+  void close() noexcept override;
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] DeviceStatus read(DeviceState& out) noexcept override;
+  [[nodiscard]] DeviceStatus write(const Vec3& force) noexcept override;
+  /// The last force written [N].
+  [[nodiscard]] const Vec3& lastForce() const noexcept { return force_; }
+
+ private:
+  std::vector<DeviceState> rows_;
+  DeviceInfo info_;
+  std::vector<InjectedFault> faults_;
+  std::size_t next_ = 0;
+  std::uint64_t reads_ = 0;
+  bool is_open_ = false;
+  Vec3 force_{0.0, 0.0, 0.0};
+};
+
+/// What the device said at each tick of the record `file`. @throws Error (kInput) as RecordReader.
+[[nodiscard]] PALPATE_EXPORT std::vector<DeviceState> readingsOf(const std::string& file);
+
+}  // namespace palpate::devices

@@ -1,0 +1,111 @@
+#pragma once
+/// SafetyState: what a device may do at this moment, as a table of states and events; and what is counted on the way.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "palpate/export.h"
+
+namespace palpate::devices {
+
+enum class SafetyState : std::uint8_t {
+  kClosed,        ///< nothing is written
+  kOpen,          ///< no reply yet: zero force
+  kUncalibrated,  ///< replies, but its origin is not known: zero force
+  kIdle,          ///< ready: zero force until the next tick asks for one
+  kRamping,       ///< the force grows from zero to the one that is asked for
+  kActive,        ///< the force that is asked for, within the limits
+  kFault,         ///< latched: zero force until it is closed and opened again
+};
+inline constexpr std::size_t kSafetyStates = 7;
+
+enum class SafetyEvent : std::uint8_t {
+  kOpened,   ///< open() has succeeded
+  kReply,    ///< a valid reply came
+  kHomed,    ///< a valid reply came, and the device knows its origin
+  kAsked,    ///< a tick asks for a force
+  kRamped,   ///< the ramp is over
+  kBroken,   ///< silence, a hang, or a value that is not finite: shorter than a fault
+  kFailed,   ///< a fault: see SafetyFault
+  kClosing,  ///< close()
+};
+inline constexpr std::size_t kSafetyEvents = 8;
+
+/// Why a device is in kFault.
+enum class SafetyFault : std::uint8_t {
+  kNone,
+  kSilence,     ///< no valid reply for too long
+  kJump,        ///< readings that the hand cannot have made, one after the other
+  kNotFinite,   ///< readings or forces that are not numbers, one after the other
+  kSpeed,       ///< the hand was faster than is safe
+  kHomingLost,  ///< the device forgot its origin
+  kHung,        ///< the loop stood still for too long
+  kDevice,      ///< the device reported a fault, a timeout, or that it is gone
+};
+
+/// What a loop counted since its device was opened.
+struct SafetyCounts {
+  std::uint64_t jumps = 0;      ///< readings dropped
+  std::uint64_t zeroed = 0;     ///< forces that were not finite, or answered what was not
+  std::uint64_t shortened = 0;  ///< to the device's maximum
+  std::uint64_t warm = 0;       ///< held back because of the motors' heat
+  std::uint64_t hangs = 0;      ///< times the loop stood still for SafetyLimits::hang
+  double heat = 0.0;            ///< [-] the most; 1: as the continuous force makes forever
+};
+
+struct SafetyRule {
+  SafetyState from;
+  SafetyEvent event;
+  SafetyState to;
+};
+
+/// Every change of state there is. What is not in it leaves the state as it is.
+inline constexpr std::array<SafetyRule, 25> kSafetyRules = {{
+    {SafetyState::kClosed, SafetyEvent::kOpened, SafetyState::kOpen},
+    {SafetyState::kOpen, SafetyEvent::kReply, SafetyState::kUncalibrated},
+    {SafetyState::kOpen, SafetyEvent::kHomed, SafetyState::kIdle},
+    {SafetyState::kOpen, SafetyEvent::kFailed, SafetyState::kFault},
+    {SafetyState::kOpen, SafetyEvent::kClosing, SafetyState::kClosed},
+    {SafetyState::kUncalibrated, SafetyEvent::kHomed, SafetyState::kIdle},
+    {SafetyState::kUncalibrated, SafetyEvent::kBroken, SafetyState::kOpen},
+    {SafetyState::kUncalibrated, SafetyEvent::kFailed, SafetyState::kFault},
+    {SafetyState::kUncalibrated, SafetyEvent::kClosing, SafetyState::kClosed},
+    {SafetyState::kIdle, SafetyEvent::kAsked, SafetyState::kRamping},
+    {SafetyState::kIdle, SafetyEvent::kReply, SafetyState::kFault},
+    {SafetyState::kIdle, SafetyEvent::kFailed, SafetyState::kFault},
+    {SafetyState::kIdle, SafetyEvent::kClosing, SafetyState::kClosed},
+    {SafetyState::kRamping, SafetyEvent::kRamped, SafetyState::kActive},
+    {SafetyState::kRamping, SafetyEvent::kBroken, SafetyState::kIdle},
+    {SafetyState::kRamping, SafetyEvent::kReply, SafetyState::kFault},
+    {SafetyState::kRamping, SafetyEvent::kFailed, SafetyState::kFault},
+    {SafetyState::kRamping, SafetyEvent::kClosing, SafetyState::kClosed},
+    {SafetyState::kActive, SafetyEvent::kBroken, SafetyState::kIdle},
+    {SafetyState::kActive, SafetyEvent::kReply, SafetyState::kFault},
+    {SafetyState::kActive, SafetyEvent::kFailed, SafetyState::kFault},
+    {SafetyState::kActive, SafetyEvent::kClosing, SafetyState::kClosed},
+    {SafetyState::kFault, SafetyEvent::kClosing, SafetyState::kClosed},
+    {SafetyState::kClosed, SafetyEvent::kClosing, SafetyState::kClosed},
+    {SafetyState::kFault, SafetyEvent::kFailed, SafetyState::kFault},
+}};
+
+/// A pure function.
+[[nodiscard]] constexpr SafetyState after(SafetyState state, SafetyEvent event) noexcept {
+  for (const SafetyRule& rule : kSafetyRules) {
+    if (rule.from == state && rule.event == event) return rule.to;
+  }
+  return state;
+}
+
+/// Whether a force other than zero may be written.
+[[nodiscard]] constexpr bool permitsForce(SafetyState state) noexcept {
+  return state == SafetyState::kRamping || state == SafetyState::kActive;
+}
+
+[[nodiscard]] PALPATE_EXPORT std::string_view nameOf(SafetyState state) noexcept;
+[[nodiscard]] PALPATE_EXPORT std::string_view nameOf(SafetyEvent event) noexcept;
+/// What happened, for a message: "the hand was faster than is safe".
+[[nodiscard]] PALPATE_EXPORT std::string_view textOf(SafetyFault fault) noexcept;
+
+}  // namespace palpate::devices

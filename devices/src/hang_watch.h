@@ -1,0 +1,53 @@
+#pragma once
+// A thread that lets go of the hand when the servo thread stands still.
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+#include "palpate/devices/device.h"
+
+namespace palpate::devices {
+
+/// True if the last turn of the loop is `longest` [ns] old.
+[[nodiscard]] constexpr bool isHung(std::int64_t now, std::int64_t beat,
+                                    std::int64_t longest) noexcept {
+  return now - beat >= longest;
+}
+
+/// While it lives, and while the last beat() is too old, cut()s the device again and again: a device may forget. One thread
+/// calls beat() and cuts().
+class HangWatch {
+ public:
+  /// `longest` [ns] between two beats; the largest number there is: no thread is started. The device must be open and stay
+  /// so. `above` is a real-time priority that the thread tries for, 0 for none: a loop that spins must not starve it.
+  /// @throws Error (kOperation) if the thread cannot be started.
+  HangWatch(Device& device, std::int64_t longest, int above);
+  ~HangWatch();
+  HangWatch(const HangWatch&) = delete;
+  HangWatch& operator=(const HangWatch&) = delete;
+
+  // Real time.
+
+  /// A turn of the loop ended at `now` [ns, monotonic].
+  void beat(std::int64_t now) noexcept { beat_.store(now, std::memory_order_release); }
+  [[nodiscard]] std::int64_t lastBeat() const noexcept {
+    return beat_.load(std::memory_order_relaxed);
+  }
+  /// How often the device was cut.
+  [[nodiscard]] std::uint64_t cuts() const noexcept {
+    return cuts_.load(std::memory_order_acquire);
+  }
+
+ private:
+  void run(int priority) noexcept;
+
+  Device& device_;
+  std::int64_t longest_;
+  std::atomic<std::int64_t> beat_;
+  std::atomic<std::uint64_t> cuts_{0};
+  std::atomic<bool> is_over_{false};
+  std::thread thread_;
+};
+
+}  // namespace palpate::devices

@@ -1,0 +1,33 @@
+#pragma once
+// What libusb finds, and how one of it is opened. Needs PALPATE_LIBUSB.
+
+#include <libusb.h>
+
+#include <string>
+
+#include "palpate/core/error.h"
+#include "usb/transport.h"
+
+namespace palpate::devices::usb {
+
+/// libusb's own state.
+class Context {
+ public:
+  /// `is_blind`: does not look for devices, for one that is opened by its descriptor. @throws Error (kDevice).
+  explicit Context(bool is_blind);
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+  [[nodiscard]] libusb_context* get() const noexcept { return context_; }
+
+ private:
+  libusb_context* context_ = nullptr;
+};
+
+/// @throws Error (kDevice).
+[[nodiscard]] libusb_device_handle* openHandle(libusb_context* context, const Choice& choice);
+
+/// What to tell of an error of libusb at set-up, with its remedy.
+[[nodiscard]] Error openError(int error, const std::string& step);
+
+}  // namespace palpate::devices::usb

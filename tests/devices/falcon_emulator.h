@@ -1,0 +1,73 @@
+#pragma once
+// A Falcon that is not there: its serial chip, boot ROM, firmware, motors, arms and the mass of its grip.
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "palpate/core/math.h"
+
+namespace palpate::devices {
+
+/// A firmware image in the format of the processor's boot ROM, of nothing but zeros and counters.
+[[nodiscard]] std::vector<std::uint8_t> syntheticFirmware(std::size_t words = 4000);
+
+/// What is behind the USB cable. Each command that the firmware answers takes 1 ms of the world: time is virtual. Not for
+/// several threads.
+class FalconEmulator {
+ public:
+  // What the world does to it.
+  bool has_firmware = true;
+  unsigned homed = 7;
+  unsigned buttons = 0;
+  double mass = 0.2;                       ///< [kg]
+  double damping = 2.0;                    ///< [Ns/m] of the hand
+  double radians_per_count = 0.000635905;  ///< [rad] of the encoders
+  std::function<Vec3(const Vec3&)> hand;   ///< [N] on the grip at a place; empty: none
+  /// Once for each reply, before it is sent: may damage it.
+  std::function<void(std::vector<std::uint8_t>&)> damage;
+
+  // What the driver has done.
+  std::array<int, 3> motors{};        ///< [counts] the last command's
+  std::uint64_t commands = 0;         ///< that were answered
+  std::uint64_t moving_commands = 0;  ///< with a motor that is not zero
+  std::uint64_t loaded = 0;           ///< bytes of firmware
+  int latency = 16;                   ///< [ms]
+  unsigned lights = 0;
+  Vec3 felt{0.0};  ///< [N] that the motors gave to the grip in the last command
+
+  FalconEmulator();
+  void place(const Vec3& position);  ///< [m] of the base's frame, at rest
+  [[nodiscard]] const Vec3& position() const noexcept { return position_; }
+  [[nodiscard]] std::int64_t now() const noexcept { return now_; }  ///< [ns] of virtual time
+  void pass(std::int64_t ns) noexcept { now_ += ns; }
+
+  // The chip's side.
+  void control(std::uint8_t request, std::uint16_t value);
+  void out(std::span<const std::uint8_t> bytes);
+  /// One packet: two bytes of the modem's state, then at most 62 of the device.
+  [[nodiscard]] std::vector<std::uint8_t> in();
+
+ private:
+  void boot(std::uint8_t byte);
+  void firmware(std::uint8_t byte);
+  void answer();
+  void move(double seconds);
+  [[nodiscard]] std::array<int, 3> encoders() const;
+
+  enum class Boot { kCold, kHello, kAutobaud, kLoading };
+  Boot boot_ = Boot::kCold;
+  unsigned baud_ = 0;
+  std::vector<std::uint8_t> heard_;
+  std::vector<std::uint8_t> image_;
+  std::deque<std::uint8_t> to_host_;
+  Vec3 position_{0.0, 0.0, 0.125};
+  Vec3 velocity_{0.0};
+  std::atomic<std::int64_t> now_{0};
+};
+
+}  // namespace palpate::devices
