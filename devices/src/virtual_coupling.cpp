@@ -13,7 +13,8 @@ bool isZero(const Vec3& v) noexcept { return v.x == 0.0 && v.y == 0.0 && v.z == 
 
 }  // namespace
 
-VirtualCoupling::VirtualCoupling(const CouplingSettings& settings) : settings_(settings) {
+VirtualCoupling::VirtualCoupling(const CouplingSettings& settings)
+    : settings_(settings), slope_(settings.stiffness), give_(1.0 / settings.stiffness) {
   if (!(settings.stiffness > 0.0) || !std::isfinite(settings.stiffness)) {
     throw Error(ErrorKind::kUsage,
                 {"coupling.stiffness", "the stiffness of a coupling must be above 0 N/m, not " +

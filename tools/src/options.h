@@ -188,7 +188,7 @@ struct BenchOptions {
   std::vector<std::string> scenes;
   std::string renderer;  ///< empty: all
   // Of stability.
-  bool full = false;                 ///< where nothing else is said: all scenes, four devices, three rates
+  bool full = false;  ///< where nothing else is said: all scenes, four devices, three rates
   std::vector<std::string> devices;  ///< empty: Falcon and Touch
   std::vector<std::string> rates;    ///< [Hz] empty: 1000
   std::string curvature_svg;

@@ -131,8 +131,9 @@ void defineBench(CLI::App& app, Invocation& invocation) {
           "stability: only this device, may be repeated (default: falcon and touch)");
   addList(app, g, "--rate", "HZ", o.rates,
           "stability: ticks a second, may be repeated (default 1000)");
-  addFlag(app, g, "--full", o.full,
-          "stability: where nothing else is said all scenes, four devices, 1, 4 and 10 kHz (hours)");
+  addFlag(
+      app, g, "--full", o.full,
+      "stability: where nothing else is said all scenes, four devices, 1, 4 and 10 kHz (hours)");
   add(app, g, "--repeat", "N", o.repeats, "runs, of which the shortest time counts (default 10)")
       ->check(CLI::Range(1, 100000));
   add(app, g, "--paced", "N", o.paced,
