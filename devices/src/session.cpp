@@ -65,11 +65,14 @@ Session::Session(ScenePtr scene, SessionSettings settings)
       renderer_(makeRenderer(scene_, settings_.renderer)),
       tracker_(settings_.velocity) {
   check(*scene_, settings_);
-  const HandGuards guards = guardsOf(scene_->device(), settings_.loop, 1.0 / settings_.servo.rate);
-  const auto coupling = settings_.coupling ? settings_.coupling : guards.coupling;
-  const auto passivity = settings_.passivity ? settings_.passivity : guards.passivity;
-  if (coupling) coupling_.emplace(*coupling);
-  if (passivity) passivity_.emplace(*passivity);
+  DeviceMapping asked = scene_->device();
+  if (settings_.passivity) asked.passivity.reset();
+  if (settings_.coupling) asked.coupling.reset();
+  HandGuards guards = guardsOf(asked, settings_.loop, 1.0 / settings_.servo.rate);
+  if (settings_.passivity) guards.passivity = settings_.passivity;
+  if (settings_.coupling) guards.coupling = settings_.coupling;
+  if (guards.coupling) coupling_.emplace(*guards.coupling);
+  if (guards.passivity) passivity_.emplace(*guards.passivity);
   if (!settings_.loop) return;
   LoopModel loop = *settings_.loop;
   loop.period = 1.0 / settings_.servo.rate;

@@ -241,6 +241,17 @@ TEST(GuardedLoop, ACheckpointKeepsTheGuards) {
   EXPECT_FALSE(without.resume(state));
 }
 
+TEST(HandGuards, OfTheSettingsGoBeforeTheScenes) {
+  // The scene's need a device, which nobody named.
+  SessionSettings how;
+  how.passivity = PassivitySettings{.mass = 0.2};
+  how.coupling = CouplingSettings{800.0, 4.0};
+  const ScenePtr scene = sceneOf(kFlat, 1000.0, "device: {passivity: {}, coupling: {}}\n");
+  EXPECT_NE(Session(scene, how).observer(), nullptr);
+  EXPECT_THROW((void)Session(scene), Error);
+  EXPECT_EQ(Session(sceneOf(kFlat, 1000.0)).observer(), nullptr);
+}
+
 TEST(HandGuards, SayWhatIsMissing) {
   const auto asked = [](const std::string& device) {
     return sceneOf(kFlat, 1000.0, "device: {" + device + "}\n")->device();

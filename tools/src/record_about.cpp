@@ -1,9 +1,12 @@
 #include "record_about.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string_view>
 #include <type_traits>
 
 #include "palpate/core/error.h"
@@ -64,6 +67,7 @@ class Values {
       out.push_back(item.get<std::string>());
     }
   }
+  [[nodiscard]] bool has(const std::string& key) const { return object_->contains(key); }
   [[nodiscard]] Values part(const std::string& key) const {
     return {*find(key, &Json::is_object), file_};
   }
@@ -125,6 +129,13 @@ void eachValue(About& about, const Visit& visit) {
   visit("", "ports", about.ports);
 }
 
+/// Options that records of 0.1 may lack: they had none of them.
+bool isLater(std::string_view key) {
+  constexpr std::string_view kLater[] = {"device",    "hand",       "delay",
+                                         "passivity", "hand_force", "coupling"};
+  return std::find(std::begin(kLater), std::end(kLater), key) != std::end(kLater);
+}
+
 template <typename Value>
 Json jsonOf(const Value& value) {
   return value;
@@ -165,7 +176,9 @@ ReadAbout readAbout(const std::string& record) {
   RecordAbout& about = out.about;
   const Values all(json, file);
   eachValue(about, [&](const std::string& section, const char* key, auto& value) {
-    (section.empty() ? all : all.part(section)).take(key, value);
+    const Values part = section.empty() ? all : all.part(section);
+    if (section == "options" && isLater(key) && !part.has(key)) return;
+    part.take(key, value);
   });
   if (about.renderer != "paper" && about.renderer != "constraint") throw all.bad("renderer");
   if (!(about.rate >= 1.0 && about.rate <= 1e5)) throw all.bad("rate_Hz");

@@ -9,6 +9,7 @@
 #include "bench/machine_json.h"
 #include "output_files.h"
 #include "palpate/devices/device_presets.h"
+#include "palpate/scene/scene_file.h"
 #include "palpate/scene/units.h"
 #include "support/loops/loop_limit.h"
 #include "text.h"
