@@ -85,7 +85,7 @@ TEST(ContentLoops, ALatticeAtTheHandsResonanceSwingsAsItsClosedFormDoes) {
     const double slope = 0.8 * devices::budgetOf(loop).stiffness();
     const double force = std::min(1.0, slope * kWave / (2.0 * std::numbers::pi));
     const ScenePtr scene = sceneOf(
-        "materials:\n  wall: {stiffness: 1000 N/m}\n  grid: {stiffness: 1000 N/m, lattice: "
+        "materials:\n  wall: {stiffness: 1000 N/m}\n  grid: {stiffness: 1e5 N/m, lattice: "
         "{force: " +
         std::to_string(force) +
         " N, wavelength: [5, 5, 5]}}\nlayers:\n  - {name: tank, inside: {box: {center: [0, 0, 0], "
