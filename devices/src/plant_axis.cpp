@@ -18,6 +18,10 @@ constexpr double kStill = 1e-12;
 constexpr double kLetsGo = 1e-12;
 /// In one call. Physics has a few; beyond that friction holds until the next call.
 constexpr int kMostEvents = 64;
+/// Between two events as many looks that halve a step lead to one. Where friction and force are equal but for rounding
+/// more of them lead nowhere: then each lets one halving less pass, down to kLeastDepth, and what still seems to be an event is one.
+constexpr int kMostLooks = 96;
+constexpr int kLeastDepth = 8;
 
 double dot(const PlantState& row, const PlantState& state) noexcept {
   double sum = 0.0;
@@ -122,6 +126,7 @@ void PlantAxis::advance(const PlantTables& tables, const Inputs& inputs,
   if (has_friction && way_ == 0) setWay(tables);
 
   int events = 0;
+  int looks_in_vain = 0;  // since the last event
   int finest = 0;  // level of the longest step that is worth a try: a longer one had an event in it
   while (quanta > 0) {
     int level = finest;
@@ -131,7 +136,10 @@ void PlantAxis::advance(const PlantTables& tables, const Inputs& inputs,
     PlantState next = after(steps[static_cast<std::size_t>(level)], state_, length);
     const bool looks = has_friction && events < kMostEvents;
     bool is_event = looks && hasEvent(tables, next, length);
-    while (is_event && level < PlantTables::kDepth) {
+    if (is_event) ++looks_in_vain;
+    const int depth =
+        std::max(PlantTables::kDepth - std::max(looks_in_vain - kMostLooks, 0), kLeastDepth);
+    while (is_event && level < depth) {
       ++level;
       length *= 0.5;
       next = after(steps[static_cast<std::size_t>(level)], state_, length);
@@ -143,6 +151,7 @@ void PlantAxis::advance(const PlantTables& tables, const Inputs& inputs,
     finest = std::max(0, finest - 1);
     if (!is_event) continue;
     finest = 0;
+    looks_in_vain = 0;
     ++events;
     state_[plant::kV] = 0.0;
     setWay(tables);

@@ -175,6 +175,7 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
     }
     if (!permitsForce(safety.state())) force = Vec3(0.0);
     const DeviceStatus wrote = device.write(force);
+    safety.wrote(wrote);
     const std::uint64_t overruns = schedule.overruns();
     if (settings.realtime) {
       const std::int64_t end = monotonicNs();

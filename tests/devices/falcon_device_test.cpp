@@ -18,6 +18,7 @@
 #include "support/wait.h"
 #ifdef PALPATE_LIBUSB
 #include "devices/usbfs_emulation.h"
+#include "usb/libusb_list.h"
 #endif
 
 namespace palpate::devices {
@@ -245,6 +246,38 @@ TEST(FalconFaults, UnpluggedAtEveryStepOfOpenItSaysSoAndLeavesNothing) {
   }
 }
 
+TEST(FalconFaults, FirmwareThatIsLostOnTheWayIsLoadedAgainAndInTheEndGivenUp) {
+  for (const bool goes_on : {false, true}) {
+    Rig rig(syntheticFirmware(300));
+    rig.emulator.has_firmware = false;
+    int lost = 0;
+    rig.usb.fault = [&](UsbfsEmulation::Step step) {
+      // Once some of it was sent, a piece is lost: no echo comes.
+      const bool is_lost = step == UsbfsEmulation::Step::kReapOut && rig.emulator.loaded >= 200 &&
+                           (goes_on || lost == 0);
+      lost += is_lost ? 1 : 0;
+      return is_lost ? EPROTO : 0;
+    };
+    if (!goes_on) {
+      rig.device.open();
+      EXPECT_GT(rig.emulator.loaded, syntheticFirmware(300).size()) << "in part twice";
+      DeviceState state;
+      EXPECT_EQ(rig.turn(state), DeviceStatus::kOk);
+      continue;
+    }
+    EXPECT_EQ(errorOf([&] { rig.device.open(); }).problem().code, "device.usb");
+    EXPECT_GE(lost, 3) << "a piece at each of three starts";
+    EXPECT_EQ(rig.usb.pending(), 0);
+  }
+}
+
+TEST(FalconFaults, ADeviceThatThisUserMayNotOpenNamesTheRemedy) {
+  constexpr int kAccess = -3;  // LIBUSB_ERROR_ACCESS: no emulation of a descriptor leads there
+  const Problem problem = usb::openError(kAccess, "open the device").problem();
+  EXPECT_EQ(problem.code, "device.access");
+  EXPECT_NE(problem.hint.find("udev"), std::string::npos);
+}
+
 TEST(FalconFaults, AClaimThatIsRefusedNamesTheRemedy) {
   for (const auto& [error, code] :
        {std::pair{EBUSY, "device.busy"}, std::pair{EACCES, "device.usb"}}) {
@@ -279,12 +312,16 @@ FaultRun runWith(Rig& rig, const std::function<void(Rig&)>& prepare, std::uint64
 }
 
 TEST(FalconFaults, UnpluggedInTheMiddleOfATransferEndsTheLoop) {
-  for (const auto step : {UsbfsEmulation::Step::kSubmitIn, UsbfsEmulation::Step::kSubmitOut,
-                          UsbfsEmulation::Step::kReapIn, UsbfsEmulation::Step::kReapOut}) {
+  using Step = UsbfsEmulation::Step;
+  // A hub that is reset ends the transfers under way.
+  for (const auto& [step, error] :
+       {std::pair{Step::kSubmitIn, ENODEV}, std::pair{Step::kSubmitOut, ENODEV},
+        std::pair{Step::kReapIn, ENODEV}, std::pair{Step::kReapOut, ENODEV},
+        std::pair{Step::kReapIn, ESHUTDOWN}, std::pair{Step::kReapOut, ESHUTDOWN}}) {
     Rig rig;
-    const FaultRun run = runWith(rig, [step](Rig& r) {
-      r.usb.fault = [step, n = 0](UsbfsEmulation::Step now) mutable {
-        return now == step && ++n == 2000 ? ENODEV : 0;
+    const FaultRun run = runWith(rig, [step = step, error = error](Rig& r) {
+      r.usb.fault = [step, error, n = 0](Step now) mutable {
+        return now == step && ++n == 700 ? error : 0;
       };
     });
     EXPECT_EQ(run.report.exit, ServoExit::kDisconnected) << static_cast<int>(step);

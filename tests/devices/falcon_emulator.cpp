@@ -97,12 +97,11 @@ void FalconEmulator::move(double seconds) {
 void FalconEmulator::control(std::uint8_t request, std::uint16_t value) {
   if (request == 0 && value == 1) to_host_.clear();
   if (request == 0 && value == 2) heard_.clear();
-  if (request == 1 && value == 0x0101 && boot_ != Boot::kLoading) {
+  if (request == 1 && value == 0x0101) {
     boot_ = Boot::kHello;  // DTR resets the processor
     has_firmware = false;
     image_.clear();
   }
-  if (request == 1 && value == 0x0100 && boot_ == Boot::kHello && loaded > 0) boot_ = Boot::kHello;
   if (request == 3) baud_ = value;
   if (request == 9) latency = value;
 }

@@ -161,6 +161,24 @@ TEST(Safety, ADeviceThatNeverRepliesIsAFault) {
   EXPECT_EQ(safety.fault(), SafetyFault::kSilence);
 }
 
+TEST(Safety, AClockThatGoesBackCountsAsNoTimeAndOneThatJumpsAheadInSilenceIsAFault) {
+  Safety safety = opened(handLimits());
+  const DeviceState here = at(Vec3(0.0));
+  const Vec3 push(1.0, 0.0, 0.0);
+  for (int i = 2; i <= 600; ++i) {
+    (void)safety.read(i * kTurn, DeviceStatus::kOk, here);
+    (void)safety.ask(push, here);
+  }
+  for (const int i : {100, 101, 601}) {
+    EXPECT_EQ(safety.read(i * kTurn, DeviceStatus::kOk, here), ReadingVerdict::kSound);
+    EXPECT_EQ(safety.ask(push, here).force, push) << i;
+    EXPECT_EQ(safety.state(), SafetyState::kActive);
+  }
+  (void)safety.read(1'000'000 * kTurn, DeviceStatus::kStale, here);
+  EXPECT_EQ(safety.fault(), SafetyFault::kSilence);
+  EXPECT_EQ(safety.ask(push, here).force, Vec3(0.0));
+}
+
 TEST(Safety, OneJumpIsDroppedAndThreeAreAFault) {
   Safety safety = opened(handLimits());
   const DeviceState here = at(Vec3(0.0));

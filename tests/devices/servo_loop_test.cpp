@@ -65,6 +65,8 @@ TEST_P(RunServoLeaves, WhenReadingFails) {
   device.reads = {kOk, kOk, GetParam().first, kOk};
   const ServoReport report = runServo(device, push, {}, kNeverStop);
   EXPECT_EQ(report.exit, GetParam().second);
+  const bool is_fault = report.exit != ServoExit::kEnd;
+  EXPECT_EQ(report.fault, is_fault ? SafetyFault::kDevice : SafetyFault::kNone);
   EXPECT_EQ(report.ticks, 2U);
   EXPECT_EQ(device.written, (std::vector<Vec3>{kPush, kPush, Vec3(0.0)}));
   expectAtRest(device);

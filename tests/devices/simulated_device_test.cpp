@@ -304,6 +304,39 @@ TEST(SimulatedDevice, EnergyBalances) {
   EXPECT_GT(device.work().viscous, 0.1);
 }
 
+// A hand that presses slowly holds a device where friction and force are equal but for rounding: there each look found
+// what the next one did not, and reading went on for hours.
+TEST(SimulatedDevice, WhereFrictionAndForceAreEqualButForRoundingItGoesOn) {
+  std::mt19937 random(11);
+  const auto any = [&](double lo, double hi) {
+    return std::uniform_real_distribution<double>(lo, hi)(random);
+  };
+  for (int i = 0; i < 80; ++i) {
+    const auto presets = devicePresets();
+    const auto hands = handPresets();
+    SimulationSettings settings;
+    settings.device = presets[static_cast<std::size_t>(i) % presets.size()].model();
+    settings.hand = handPreset(hands[static_cast<std::size_t>(i) % hands.size()].name);
+    SCOPED_TRACE(std::to_string(i));
+    // Onto a bowl of 30 mm from within, at some height of it.
+    const double stiffness = any(200.0, 1500.0);
+    const Vec3 to(any(-0.05, 0.05), any(-0.05, 0.05), any(-0.05, 0.05));
+    SimulatedDevice device(settings, Path{{0.0, Vec3(0.0)}, {any(0.3, 1.0), to}, {1.1, to}});
+    device.open();
+    DeviceState reading;
+    int ticks = 0;
+    while (device.read(reading) == DeviceStatus::kOk) {
+      const double out = glm::length(reading.position) - 0.03;
+      Vec3 force(0.0);
+      if (out > 0.0) force = -(stiffness * out / (out + 0.03)) * reading.position;
+      ASSERT_EQ(device.write(force), DeviceStatus::kOk);
+      ASSERT_TRUE(isFinite(reading.position));
+      ++ticks;
+    }
+    EXPECT_GT(ticks, 1000);
+  }
+}
+
 TEST(SimulatedDevice, AHandBringsItWhereItIsToldToBe) {
   SimulationSettings settings;
   settings.device = devicePreset("omega_3").model();

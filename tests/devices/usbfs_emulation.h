@@ -19,6 +19,8 @@ class UsbfsEmulation {
   UsbfsEmulation& operator=(const UsbfsEmulation&) = delete;
 
   [[nodiscard]] int descriptor() const noexcept;
+  /// A copy of descriptor() that is to be the node instead.
+  void answerFor(int copy) noexcept;
 
   /// Which request of the kernel's comes next: counted from 0, for unplugging at each.
   enum class Step { kClaim, kControl, kSubmitIn, kSubmitOut, kReapIn, kReapOut, kRelease };

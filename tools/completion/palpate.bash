@@ -6,9 +6,9 @@ _palpate() {
   done
   local options= words=
   case $verb in
-    '') words='touch replay import bake convert info check query explain render bench accuracy help'; options='--help --version --json --quiet --force' ;;
+    '') words='touch replay import bake convert info check query explain render bench accuracy devices doctor help'; options='--help --version --json --quiet --force' ;;
     touch)
-      options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --device --hand --delay --realtime --set --epsilon --halvings --alpha --alpha-form --interior --passivity --hand-force --coupling --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --json --quiet --force -h --help'
+      options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --device --hand --delay --seconds --realtime --set --serial --descriptor --firmware --calibration --library --service --epsilon --halvings --alpha --alpha-form --interior --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --json --quiet --force -h --help'
       words=FILES
       case $last in
         --path) words=FILES ;;
@@ -29,15 +29,19 @@ _palpate() {
         --device) words=NONE ;;
         --hand) words=NONE ;;
         --delay) words=NONE ;;
+        --seconds) words=NONE ;;
         --set) words=NONE ;;
+        --serial) words=NONE ;;
+        --descriptor) words=NONE ;;
+        --firmware) words=FILES ;;
+        --calibration) words=FILES ;;
+        --library) words=FILES ;;
+        --service) words=NONE ;;
         --epsilon) words=NONE ;;
         --halvings) words=NONE ;;
         --alpha) words=NONE ;;
         --alpha-form) words='by_field newton printed' ;;
         --interior) words='together wall' ;;
-        --passivity) words='control observe' ;;
-        --hand-force) words=NONE ;;
-        --coupling) words=NONE ;;
         --max-force) words=NONE ;;
         --slew) words=NONE ;;
         --ramp) words=NONE ;;
@@ -196,19 +200,19 @@ _palpate() {
       esac
       ;;
     bench)
-      options='--scene --renderer --device --rate --full --repeat --paced --cold --csv --svg --curvature-svg --json --quiet --force -h --help'
+      options='--scene --renderer --repeat --paced --cold --rate --seconds --load --csv --svg --json --quiet --force -h --help'
       words=FILES
       case $last in
         --scene) words=NONE ;;
-        --renderer) words=NONE ;;
-        --device) words=NONE ;;
-        --rate) words=NONE ;;
+        --renderer) words='constraint paper' ;;
         --repeat) words=NONE ;;
         --paced) words=NONE ;;
         --cold) words=NONE ;;
+        --rate) words=NONE ;;
+        --seconds) words=NONE ;;
+        --load) words=NONE ;;
         --csv) words=FILES ;;
         --svg) words=FILES ;;
-        --curvature-svg) words=FILES ;;
       esac
       ;;
     accuracy)
@@ -226,10 +230,29 @@ _palpate() {
         --svg) words=FILES ;;
       esac
       ;;
+    devices)
+      options='--test --calibrate --states --seconds --serial --descriptor --firmware --calibration --library --service --json --quiet --force -h --help'
+      words=FILES
+      case $last in
+        --test) words=NONE ;;
+        --calibrate) words=FILES ;;
+        --seconds) words=NONE ;;
+        --serial) words=NONE ;;
+        --descriptor) words=NONE ;;
+        --firmware) words=FILES ;;
+        --calibration) words=FILES ;;
+        --library) words=FILES ;;
+        --service) words=NONE ;;
+      esac
+      ;;
+    doctor)
+      options='--json --quiet -h --help'
+      words=FILES
+      ;;
     help)
       options='--markdown --schema --man --completion -h --help'
-      if ((COMP_CWORD == i + 1)); then words='touch replay import bake convert info check query explain render bench accuracy help scene'
-      elif [[ ${COMP_WORDS[i+1]} == scene ]]; then words='above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width workspace x xx xy xz y yy yz z zz'; else words=NONE; fi
+      if ((COMP_CWORD == i + 1)); then words='touch replay import bake convert info check query explain render bench accuracy devices doctor help scene'
+      elif [[ ${COMP_WORDS[i+1]} == scene ]]; then words='above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid epsilon exponent factor fall_off felt_from field field_kind fields file fill flow force form frame friction from grid grids gyroid half_space half_width halvings heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before period point port ports quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width workspace x xx xy xz y yy yz z zz'; else words=NONE; fi
       case $last in
         --completion) words='bash fish zsh' ;;
       esac

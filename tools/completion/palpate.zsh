@@ -12,8 +12,10 @@ _palpate() {
     'query:Value, gradient, region and material at points; or an image'\''s intensity'
     'explain:Show what a scene means\: regions, walls, ports, what can be reached'
     'render:Draw a scene cut open (.png)'
-    'bench:Measure contact (time and error of a tick), or stability of a hand in the loop'
+    'bench:Measure contact (a tick'\''s time, its force'\''s error), or how late a servo loop wakes'
     'accuracy:Compare fields with their grids\: error, time and memory by voxel size'
+    'devices:List haptic devices, say what bars access to one, test it, calibrate it'
+    'doctor:Say whether this machine is fit for a haptic device, and what to do'
     'help:Print help\: all about a verb or a key of scene files, the manual, completion'
   )
   if ((CURRENT == 2)); then _describe verb verbs; return; fi
@@ -37,19 +39,23 @@ _palpate() {
         '*--back[insert\: come back the same way]' \
         '*--renderer[constraint or paper (default\: as the scene says)]:value:(constraint paper)' \
         '*--rate[ticks a second (default 1000)]:value:' \
-        '*--device[follow the motion with this simulated device, in a hand that feels the force (default\: a hand that goes where it is told)\: excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3 (virtual\:NAME means the same)]:value:' \
+        '*--device[follow the motion with a simulated device, in a hand that feels the force\: virtual\:NAME, NAME one of excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3; virtual\: may be left out unless NAME is falcon or inverse3. Or let a hand move a device\: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension). Default\: a hand that goes where it is told]:value:' \
         '*--hand[device\: how it is held\: none, relaxed (default) or firm]:value:' \
         '*--delay[device\: samples from a force to when the motors give it (default 0)]:value:' \
+        '*--seconds[a device that a hand holds\: for how long (default\: until Ctrl-C)]:value:' \
         '*--realtime[keep to the clock (default\: as fast as the machine goes)]' \
         '*--set[change a content while the hand moves, may be repeated\: syrup.viscosity=9@0.5 (N.s/m, s); also flow, lattice.force, cutting]:value:' \
+        '*--serial[falcon\: which one (default\: the first)]:value:' \
+        '*--descriptor[falcon\: the file descriptor of its node, which the caller has opened]:value:' \
+        '*--firmware[falcon\: image for a device that runs none; checked before a byte is sent]:value:_files' \
+        '*--calibration[falcon\: constants, as `palpate devices --calibrate` writes them]:value:_files' \
+        '*--library[hd, dhd\: the maker'\''s library (default\: libHD.so or libdhd.so, as the system finds it)]:value:_files' \
+        '*--service[inverse3\: its service (default 127.0.0.1\:10001)]:value:' \
         '*--epsilon[so near to the surface a contact point is on it (default 1 um)]:value:' \
         '*--halvings[of the way in which the surface is searched, at most (default 48)]:value:' \
         '*--alpha[of the step back onto the surface (default 1)]:value:' \
         '*--alpha-form[printed, newton, or by_field\: newton where the field is not a distance (default)]:value:(by_field newton printed)' \
         '*--interior[at a wall from within\: wall and content together (default), or the wall alone]:value:(together wall)' \
-        '*--passivity[observe the energy that the loop gives to the hand, or control it by damping]:value:(control observe)' \
-        '*--hand-force[passivity\: the hand'\''s largest force; no tick then gives more than there is\: 5 (N)]:value:' \
-        '*--coupling[a spring and a damper between hand and tool\: springs or any_scene (designed for --device), or STIFFNESS,DAMPING\: 800 N/m,4 N.s/m]:value:' \
         '*--max-force[shorten longer forces to this, direction kept\: 3 (N), 500mN]:value:' \
         '*--slew[let the force grow, in any direction, by no more than this a second\: 100 (N/s); it may drop at once]:value:' \
         '*--ramp[start without force, and reach all of it after this\: 0.2 (s), 200ms]:value:' \
@@ -252,16 +258,15 @@ _palpate() {
     bench)
       _arguments \
         '*--scene[only this scene, may be repeated (default\: all)]:value:' \
-        '*--renderer[only this renderer\: constraint or paper, for stability also a rival (default\: all)]:value:' \
-        '*--device[stability\: only this device, may be repeated (default\: falcon and touch)]:value:' \
-        '*--rate[stability\: ticks a second, may be repeated (default 1000)]:value:' \
-        '*--full[stability\: where nothing else is said all scenes, four devices, 1, 4 and 10 kHz (hours)]' \
+        '*--renderer[only constraint or only paper (default\: both)]:value:(constraint paper)' \
         '*--repeat[runs, of which the shortest time counts (default 10)]:value:' \
         '*--paced[ticks that are timed one a millisecond, the loop asleep in between (default 2000)]:value:' \
         '*--cold[ticks that are timed after other data went through the caches (default 30)]:value:' \
+        '*--rate[a rate, may be repeated (default 1000 and 4000)]:value:' \
+        '*--seconds[for how long at each rate (default 5)]:value:' \
+        '*--load[threads that compute meanwhile (default\: none, and then as many as there are cores)]:value:' \
         '*--csv[the table, one row for each scene and renderer]:value:_files' \
-        '*--svg[a plot of error against time; for stability of stiffness over rate]:value:_files' \
-        '*--curvature-svg[stability\: a plot of stiffness over curvature times depth]:value:_files' \
+        '*--svg[a plot of error against time]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
         '*--force[replace existing output files]' \
@@ -287,9 +292,36 @@ _palpate() {
         '*--help[print this]' \
         '*:file:_files'
       ;;
+    devices)
+      _arguments \
+        '*--test[open falcon, inverse3, dhd or hd, write zero force for a while, and tell what it says]:value:' \
+        '*--calibrate[falcon\: the origin where the grip is held; the constants go to FILE]:value:_files' \
+        '*--states[print the table of states that every device goes through]' \
+        '*--seconds[--test, --calibrate\: for how long (default 10)]:value:' \
+        '*--serial[falcon\: which one (default\: the first)]:value:' \
+        '*--descriptor[falcon\: the file descriptor of its node, which the caller has opened]:value:' \
+        '*--firmware[falcon\: image for a device that runs none; checked before a byte is sent]:value:_files' \
+        '*--calibration[falcon\: constants, as `palpate devices --calibrate` writes them]:value:_files' \
+        '*--library[hd, dhd\: the maker'\''s library (default\: libHD.so or libdhd.so, as the system finds it)]:value:_files' \
+        '*--service[inverse3\: its service (default 127.0.0.1\:10001)]:value:' \
+        '*--json[print one JSON object instead of text]' \
+        '*--quiet[no notes and no progress on stderr]' \
+        '*--force[replace existing output files]' \
+        '*-h[print this]' \
+        '*--help[print this]' \
+        '*:file:_files'
+      ;;
+    doctor)
+      _arguments \
+        '*--json[print one JSON object instead of text]' \
+        '*--quiet[no notes and no progress on stderr]' \
+        '*-h[print this]' \
+        '*--help[print this]' \
+        '*:file:_files'
+      ;;
     help)
-      if ((CURRENT == 3)); then compadd touch replay import bake convert info check query explain render bench accuracy help scene; fi
-      if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width workspace x xx xy xz y yy yz z zz; fi
+      if ((CURRENT == 3)); then compadd touch replay import bake convert info check query explain render bench accuracy devices doctor help scene; fi
+      if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid epsilon exponent factor fall_off felt_from field field_kind fields file fill flow force form frame friction from grid grids gyroid half_space half_width halvings heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before period point port ports quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width workspace x xx xy xz y yy yz z zz; fi
       _arguments \
         '*--markdown[everything, as the reference in tools/README.md; of a map of scene files the table of its keys]' \
         '*--schema[scene\: the JSON Schema of scene files]' \

@@ -8,6 +8,7 @@
 
 #include "output_files.h"
 #include "palpate/core/error.h"
+#include "real_device.h"
 
 namespace palpate::tools {
 namespace {
@@ -19,7 +20,8 @@ Error usageError(std::string message, std::string hint = {}) {
   return Error(ErrorKind::kUsage, {"usage.motion", std::move(message), std::move(hint)});
 }
 
-std::string_view chosenMotion(const TouchOptions& o) {
+/// The option that says how the hand moves.
+std::string chosenMotion(const TouchOptions& o) {
   std::string_view chosen;
   int count = 0;
   const auto look = [&](bool given, std::string_view name) {
@@ -32,12 +34,18 @@ std::string_view chosenMotion(const TouchOptions& o) {
   look(!o.stroke.empty(), "--stroke");
   look(!o.tap.empty(), "--tap");
   look(!o.insert.empty(), "--insert");
+  if (isRealDevice(o.device.name)) {
+    if (count == 0) return "--device " + o.device.name;
+    throw usageError(
+        std::string(chosen) + ": a hand moves the device " + o.device.name + ", not a motion",
+        "leave it out, or follow it with the simulated one: --device virtual:NAME");
+  }
   if (count != 1) {
     throw usageError(count == 0 ? "the hand's motion is missing" : "more than one motion was given",
                      "exactly one of --path FILE.csv, --press X,Y,Z, --stroke A B, --tap X,Y,Z, "
                      "--insert A B ...");
   }
-  return chosen;
+  return std::string(chosen);
 }
 
 double positive(double value, const char* what) {
@@ -70,7 +78,7 @@ void checkDuration(double seconds, double rate) {
 }  // namespace
 
 void checkMotion(const TouchOptions& o) {
-  const std::string_view motion = chosenMotion(o);
+  const std::string motion = chosenMotion(o);
   const auto only = [&](bool given, const char* name,
                         std::initializer_list<std::string_view> motions) {
     if (!given) return;
@@ -79,7 +87,7 @@ void checkMotion(const TouchOptions& o) {
       if (m == motion) return;
       list += (list.empty() ? "" : ", ") + std::string(m);
     }
-    throw usageError(std::string(name) + " does not apply to " + std::string(motion),
+    throw usageError(std::string(name) + " does not apply to " + motion,
                      "it is a parameter of " + list);
   };
   only(!o.normal.empty(), "--normal", {"--press", "--tap"});

@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/device_access.h"
 #include "palpate/devices/device_presets.h"
+#include "real_device.h"
 #include "text.h"
 
 namespace palpate::tools {
@@ -15,8 +17,19 @@ constexpr std::string_view kSimulated = "virtual:";
 
 /// The preset that a name of the command line means.
 const devices::DevicePreset& presetOf(const DeviceOptions& options) {
+  if (options.name == "hd" || options.name == "dhd") {
+    throw Error(ErrorKind::kUsage,
+                {"usage.device",
+                 options.name + " is whichever device its maker's library finds, not a model",
+                 "name the model: touch, premium_1_5, omega_3, ..."});
+  }
   const bool is_prefixed = options.name.rfind(kSimulated, 0) == 0;
   return devices::devicePreset(is_prefixed ? options.name.substr(kSimulated.size()) : options.name);
+}
+
+/// A model of the device is known, simulated or not.
+bool hasModel(const DeviceOptions& options) {
+  return !options.name.empty() && options.name != "hd" && options.name != "dhd";
 }
 
 std::string handName(const DeviceOptions& options) {
@@ -93,7 +106,26 @@ devices::LoopModel loopOf(const devices::SimulationSettings& simulation) {
   return loop;
 }
 
+std::optional<devices::LoopModel> touchLoop(const TouchOptions& options) {
+  if (!hasModel(options.device)) return std::nullopt;
+  return loopOf(*simulationOf(options.device, options.rate));
+}
+
 void checkDevice(const TouchOptions& options) {
+  if (isRealDevice(options.device.name)) {
+    if (!options.device.hand.empty() || options.device.delay) {
+      throw Error(ErrorKind::kUsage,
+                  {"usage.device", "--hand and --delay are of a simulated device",
+                   "a hand holds the device " + options.device.name +
+                       "; --device virtual:NAME is simulated"});
+    }
+    return;
+  }
+  const std::string given = options.seconds ? "--seconds" : givenOption(options.real);
+  if (!given.empty()) {
+    throw Error(ErrorKind::kUsage, {"usage.device", given + " is of a device that a hand holds",
+                                    "add --device falcon, inverse3, hd or dhd"});
+  }
   const bool is_simulated = simulationOf(options.device, options.rate).has_value();
   if (is_simulated && options.as_recorded) {
     throw Error(ErrorKind::kUsage,
@@ -127,6 +159,9 @@ std::unique_ptr<devices::Device> makeDevice(const TouchOptions& options, Motion 
 
 Json deviceJson(const DeviceOptions& options, double rate) {
   if (options.name.empty()) return {};
+  if (isRealDevice(options.name)) {
+    return {{"name", options.name}, {"simulated", false}, {"notice", devices::kUnverifiedNotice}};
+  }
   const devices::DevicePreset& preset = presetOf(options);
   Json json = {{"name", std::string(preset.name)},
                {"title", std::string(preset.title)},
@@ -155,6 +190,9 @@ Json deviceJson(const DeviceOptions& options, double rate) {
 
 std::string deviceText(const DeviceOptions& options) {
   if (options.name.empty()) return {};
+  if (isRealDevice(options.name)) {
+    return "Device      " + options.name + ": " + devices::kUnverifiedNotice + "\n";
+  }
   const devices::DevicePreset& preset = presetOf(options);
   std::string text = "Device      " + std::string(preset.title) +
                      ", simulated: " + quantityText(preset.mass, 1.0, "kg") + ", " +

@@ -16,9 +16,8 @@
 
 namespace palpate::tools {
 
-/// What --device, --hand and --delay of a simulated device mean, at `rate` [Hz]; none without
-/// --device.
-/// @throws Error (kUsage) for a name that there is not, or --hand or --delay without a device.
+/// The model that --device, --hand and --delay mean, at `rate` [Hz]: of falcon as of virtual:falcon; none without --device.
+/// @throws Error (kUsage) for a name that there is not, or that has no model; --hand or --delay without a device.
 [[nodiscard]] std::optional<devices::SimulationSettings> simulationOf(const DeviceOptions& options,
                                                                       double rate);
 
@@ -26,10 +25,13 @@ namespace palpate::tools {
 /// differences.
 [[nodiscard]] devices::LoopModel loopOf(const devices::SimulationSettings& simulation);
 
-/// @throws Error (kUsage) as simulationOf(), and for a motion that no device can follow.
+/// The loop of a touch, as far as a model of its device is known. @throws Error as simulationOf().
+[[nodiscard]] std::optional<devices::LoopModel> touchLoop(const TouchOptions& options);
+
+/// @throws Error (kUsage) as simulationOf(), and for a motion or options that the device has nothing to do with.
 void checkDevice(const TouchOptions& options);
 
-/// The device that a touch was asked for: a simulated one in a hand that is told to go along
+/// The device of a touch that has a motion: a simulated one in a hand that is told to go along
 /// `motion`, by `mapping` in the device's own space; or a hand that goes there whatever it feels.
 /// Warns of a motion that leaves the device's workspace.
 [[nodiscard]] std::unique_ptr<devices::Device> makeDevice(const TouchOptions& options,

@@ -32,6 +32,16 @@ struct DeviceOptions {
   std::optional<int> delay;  ///< [samples]
 };
 
+/// How a device that a hand holds is reached.
+struct RealDeviceOptions {
+  std::string serial;             ///< falcon; empty: the first
+  std::optional<int> descriptor;  ///< falcon: of its node, open
+  std::string firmware;           ///< falcon: image file
+  std::string calibration;        ///< falcon: file of constants
+  std::string library;            ///< hd, dhd: the maker's library
+  std::string service;            ///< inverse3: HOST:PORT
+};
+
 struct TouchOptions {
   std::string scene;
   // Exactly one of these five says how the hand moves.
@@ -68,6 +78,8 @@ struct TouchOptions {
   std::string hand_force;  ///< of `passivity`
   std::string
       coupling;  ///< "springs", "any_scene" or "STIFFNESS,DAMPING"; empty: as the scene says
+  RealDeviceOptions real;
+  std::optional<double> seconds;  ///< [s] of a device that a hand holds; none: until a stop
   std::string max_force;
   std::string slew;
   std::string ramp;
@@ -184,13 +196,12 @@ struct RenderOptions {
 };
 
 struct BenchOptions {
-  std::string what;  ///< "contact" or "stability"
+  std::string what;  ///< "contact", "stability" or "servo"
   std::vector<std::string> scenes;
   std::string renderer;  ///< empty: all
   // Of stability.
   bool full = false;  ///< where nothing else is said: all scenes, four devices, three rates
   std::vector<std::string> devices;  ///< empty: Falcon and Touch
-  std::vector<std::string> rates;    ///< [Hz] empty: 1000
   std::string curvature_svg;
   // Of contact.
   int repeats = 10;
@@ -198,7 +209,21 @@ struct BenchOptions {
   int cold = 30;
   std::string csv;
   std::string svg;
+  std::vector<double> rates;  ///< stability and servo: [Hz]; empty: 1000, of servo 4000 too
+  double seconds = 5.0;       ///< servo: of each
+  std::optional<int>
+      load;  ///< servo: busy threads; none: without, and then as many as there are cores
 };
+
+struct DevicesOptions {
+  std::string test;       ///< name of a device
+  std::string calibrate;  ///< file to write
+  bool states = false;
+  double seconds = 10.0;
+  RealDeviceOptions device;
+};
+
+struct DoctorOptions {};
 
 struct AccuracyOptions {
   std::string scene;
@@ -226,6 +251,6 @@ struct HelpOptions {
 using VerbOptions =
     std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions, ImportOptions, InfoOptions,
                  CheckOptions, QueryOptions, ExplainOptions, RenderOptions, BenchOptions,
-                 AccuracyOptions, ReplayOptions>;
+                 AccuracyOptions, ReplayOptions, DevicesOptions, DoctorOptions>;
 
 }  // namespace palpate::tools

@@ -13,12 +13,12 @@ namespace palpate::tools {
 namespace {
 
 /// None if the path was followed to its end.
-std::optional<Error> errorOf(devices::ServoExit exit, const std::string& kept) {
+std::optional<Error> errorOf(const devices::ServoReport& servo, const std::string& kept) {
   const std::string hint = kept.empty() ? "" : "what was felt until then is in " + kept;
-  const auto fault = [&](const char* code, const char* message) {
+  const auto fault = [&](const char* code, const std::string& message) {
     return Error(ErrorKind::kDevice, {code, message, hint});
   };
-  switch (exit) {
+  switch (servo.exit) {
     case devices::ServoExit::kEnd:
       return std::nullopt;
     case devices::ServoExit::kStopped:
@@ -30,7 +30,7 @@ std::optional<Error> errorOf(devices::ServoExit exit, const std::string& kept) {
     case devices::ServoExit::kFault:
       break;
   }
-  return fault("device.fault", "the device reported a fault");
+  return fault("device.fault", std::string(devices::textOf(servo.fault)));
 }
 
 /// A file that took no more: which, why, and what is there.
@@ -104,7 +104,7 @@ TouchRun runTouch(devices::Session& session, devices::Device& device, const Touc
   }
   std::string kept = options.record;
   if (!options.trace.empty()) kept += (kept.empty() ? "" : " and ") + options.trace;
-  std::optional<Error> error = errorOf(run.servo.exit, kept);
+  std::optional<Error> error = errorOf(run.servo, kept);
   if (!error && !report.failures.empty()) error = failureOf(report.failures.front());
   if (error) {
     files.keep(options.trace);

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <thread>
 
 #include "bench/contact_report.h"
 #include "bench/machine_json.h"
+#include "bench/servo_case.h"
 #include "bench/stability_bench.h"
 #include "input_kind.h"
 #include "output_files.h"
@@ -68,23 +70,51 @@ std::vector<BenchRow> measureAll(const BenchOptions& options, Console& console) 
   return rows;
 }
 
+Report servoReport(const BenchOptions& options, Console& console) {
+  std::vector<double> rates = options.rates;
+  if (rates.empty()) rates = {1000.0, 4000.0};
+  std::vector<int> loads = {0, static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
+  if (options.load) loads = {*options.load};
+  std::vector<ServoFigures> figures;
+  for (const int load : loads) {
+    for (const double rate : rates) {
+      console.note(formatNumber(rate) + " Hz for " + formatSeconds(options.seconds) + " beside " +
+                   std::to_string(load) + " busy threads");
+      figures.push_back(measureServo(rate, load, options.seconds));
+    }
+  }
+  const Machine machine = thisMachine();
+  Report out;
+  out.json = {{"schema", "palpate.bench/1"},
+              {"bench", "servo"},
+              {"machine", machineJson(machine)},
+              {"seconds", options.seconds},
+              {"results", servoJson(figures)}};
+  out.text = machineText(machine) + "\n" + servoText(figures);
+  for (const ServoFigures& f : figures) out.is_yes = out.is_yes && f.isGood();
+  return out;
+}
+
 }  // namespace
 
 Report run(const BenchOptions& options, const GeneralOptions& general, Console& console) {
   if (options.what == "stability") return runStabilityBench(options, general, console);
-  if (options.what != "contact") {
+  const bool is_servo = options.what == "servo";
+  if (options.what != "contact" && !is_servo) {
     throw usageError("there is no bench '" + options.what + "'",
-                     "write palpate bench contact or palpate bench stability");
+                     "write palpate bench contact, stability or servo");
   }
+  if (options.full || !options.devices.empty() || !options.curvature_svg.empty() ||
+      (!is_servo && !options.rates.empty())) {
+    throw usageError(
+        "--full, --device, --rate and --curvature-svg are not of bench " + options.what,
+        "write palpate bench stability");
+  }
+  if (is_servo) return servoReport(options, console);
   if (!options.renderer.empty() && options.renderer != "constraint" &&
       options.renderer != "paper") {
     throw usageError("the bench of contact has no renderer '" + options.renderer + "'",
                      "it has constraint and paper");
-  }
-  if (options.full || !options.devices.empty() || !options.rates.empty() ||
-      !options.curvature_svg.empty()) {
-    throw usageError("--full, --device, --rate and --curvature-svg are of the bench of stability",
-                     "write palpate bench stability");
   }
   (void)chosenCases(options.scenes);
   OutputFiles files(general);

@@ -11,10 +11,13 @@
 #include "motion.h"
 #include "open_device.h"
 #include "output_files.h"
+#include "palpate/devices/device_access.h"
 #include "palpate/devices/record.h"
 #include "palpate/devices/session.h"
 #include "palpate/version.h"
 #include "picture/picture.h"
+#include "real_device.h"
+#include "safety_report.h"
 #include "scene_hash.h"
 #include "shape_scene.h"
 #include "text.h"
@@ -68,8 +71,10 @@ void describe(RecordAbout& about, const TouchOptions& options, const devices::De
 
 Report run(const TouchOptions& asked, const GeneralOptions& general, Console& console) {
   TouchOptions options = asked;
+  const bool is_real = isRealDevice(options.device.name);
+  if (is_real) options.realtime = true;
   const bool is_shape = isShape(options.scene);
-  const bool finds_place = is_shape && !hasMotion(options);
+  const bool finds_place = is_shape && !is_real && !hasMotion(options);
   std::string scene_text;
   if (is_shape) {
     scene_text = shapeSceneText(options);
@@ -80,6 +85,8 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   checkMotion(options);
   checkDevice(options);
   (void)forceLimits(options);  // errors in them come before any work
+  std::unique_ptr<devices::Device> device;
+  if (is_real) device = makeRealDevice(options.device.name, options.real, options.seconds);
   const std::vector<ContentSetting> content_settings = readSettings(options.set);
   OutputFiles files(general);
   const std::vector<std::string> inputs = {options.scene, options.path};
@@ -123,7 +130,9 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   const bool wants_all = is_paper || !options.image.empty();
   const ScenePtr scene = loaded.compile(wants_all ? Purpose::kShow : Purpose::kTouch);
   if (finds_place) pressOnSurface(*scene, options, console);
-  Motion motion = makeMotion(options, loaded.unit());
+  Motion motion;
+  motion.end = options.seconds.value_or(kInfinity);
+  if (!is_real) motion = makeMotion(options, loaded.unit());
   ForceLimits& limits = settings.limits;
   limits.period = options.device.name.empty() ? motion.period : 1.0 / options.rate;
   for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
@@ -140,21 +149,21 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   how.servo.rate = options.rate;
   if (options.realtime) how.servo.elevate = devices::Elevate::kPrefer;
   if (!options.record.empty()) how.checkpoint_every = static_cast<std::uint64_t>(options.states);
-  if (const auto simulation = simulationOf(options.device, options.rate)) {
-    how.loop = loopOf(*simulation);
-  }
+  how.loop = touchLoop(options);
   const devices::HandGuards guards = guardsOf(options, scene->device(), how.loop);
   how.passivity = guards.passivity;
   how.coupling = guards.coupling;
   devices::Session session(scene, std::move(how));
   warnOfBudget(session.overBudget(), options.device, is_shape ? "" : options.scene, options.rate,
                console);
-  if (options.realtime) {
+  if (is_real) {
+    console.note(options.device.name + ": " + devices::kUnverifiedNotice + "; touching until " +
+                 (options.seconds ? formatSeconds(*options.seconds) + " are over" : "Ctrl-C"));
+  } else if (options.realtime) {
     console.note("following the hand's path for " + formatSeconds(motion.end - motion.begin) +
                  " in real time");
   }
-  const std::unique_ptr<devices::Device> device =
-      makeDevice(options, std::move(motion), scene->device(), console);
+  if (!device) device = makeDevice(options, std::move(motion), scene->device(), console);
   RecordAbout about;
   about.shows_all = wants_all;
   about.renderer = rendererName(*settings.kind);
@@ -192,6 +201,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
                                {"worst_lateness_s", servo_report.worst_lateness},
                                {"elevated", servo_report.elevated}};
   }
+  if (is_real) report.json["safety"] = safetyJson(servo_report);
   // A hand that presses on a point means to meet something there.
   const bool is_press = !options.press.empty() || !options.tap.empty();
   report.is_yes = !is_press || summary.met_something;
@@ -221,6 +231,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
                    " overruns, worst start " + formatSeconds(servo_report.worst_lateness) +
                    " late" + (servo_report.elevated ? "\n" : ", without real-time priority\n");
   }
+  if (is_real) report.text += safetyText(servo_report);
   const std::string grids = loaded.gridsText();
   if (!grids.empty()) report.text += "\nGrids\n" + grids;
   std::string written;

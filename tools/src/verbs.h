@@ -29,6 +29,10 @@ namespace palpate::tools {
                          Console& console);
 [[nodiscard]] Report run(const AccuracyOptions& options, const GeneralOptions& general,
                          Console& console);
+[[nodiscard]] Report run(const DevicesOptions& options, const GeneralOptions& general,
+                         Console& console);
+[[nodiscard]] Report run(const DoctorOptions& options, const GeneralOptions& general,
+                         Console& console);
 [[nodiscard]] Report run(const ReplayOptions& options, const GeneralOptions& general,
                          Console& console);
 

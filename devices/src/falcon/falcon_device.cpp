@@ -59,7 +59,8 @@ void FalconDevice::open() {
     } catch (const Error& error) {
       transport_.reset();
       // Loading the firmware is known to fail now and then; what is absent or not permitted stays so.
-      const bool may_help = error.problem().code == "falcon.boot";
+      const std::string& code = error.problem().code;
+      const bool may_help = code == "falcon.boot" || code == "device.usb";
       if (!may_help || attempt == kStarts) throw;
     }
   }

@@ -2,6 +2,8 @@
 
 #include "usb/libusb_list.h"
 
+#include <libusb.h>
+
 #include <array>
 #include <cstdio>
 #include <span>
@@ -60,7 +62,7 @@ Error openError(int error, const std::string& step) {
   std::string hint = "plug the device in";
   if (error == LIBUSB_ERROR_ACCESS) {
     code = "device.access";
-    hint = "a udev rule permits it: devices/README.md, Linux set-up";
+    hint = "`palpate devices` prints the udev rule that permits it";
   } else if (error == LIBUSB_ERROR_BUSY) {
     code = "device.busy";
     hint = "another program uses it: close that";

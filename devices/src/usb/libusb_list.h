@@ -1,12 +1,13 @@
 #pragma once
 // What libusb finds, and how one of it is opened. Needs PALPATE_LIBUSB.
 
-#include <libusb.h>
-
 #include <string>
 
 #include "palpate/core/error.h"
 #include "usb/transport.h"
+
+struct libusb_context;
+struct libusb_device_handle;
 
 namespace palpate::devices::usb {
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "palpate/contact/planes.h"
+#include "solver_limits.h"
 
 namespace palpate {
 namespace {
@@ -19,6 +21,8 @@ constexpr double kNearest = 1e-12;
 /// How deep a press is, over a wall's feature size: up to here the wall is felt as it bends, and from there on as a plane.
 constexpr double kBentBelow = 0.25;
 constexpr double kFlatAbove = 1.0;
+/// Of the leaves between the proxy and where two walls meet, those that are looked through.
+constexpr std::size_t kMostTurned = 24;
 
 bool holds(const ContactSet& contact, LeafId leaf) noexcept {
   const auto walls = contact.walls();
@@ -26,30 +30,31 @@ bool holds(const ContactSet& contact, LeafId leaf) noexcept {
                      [&](const WallContact& each) { return each.leaf == leaf; });
 }
 
-/// Whether two walls meet within `farthest` [m] of `x`: a wall that lies behind another one, as a bone does
+/// Where two walls meet within `farthest` [m] of `x`: a wall that lies behind another one, as a bone does
 /// under skin, does not bound where the proxy may be. Newton's steps towards both.
-bool meet(const Vec3& x, const HeldWall& a, const HeldWall& b, double farthest) noexcept {
+std::optional<Vec3> meetingOf(const Vec3& x, const HeldWall& a, const HeldWall& b,
+                              double farthest) noexcept {
   FieldSample at_a{a.jet.value, a.jet.gradient, a.jet.in_band};
   FieldSample at_b{b.jet.value, b.jet.gradient, b.jet.in_band};
   Vec3 p = x;
   for (int i = 0; i < kMeetingSteps; ++i) {
     const double slope_a = glm::length(at_a.gradient);
     const double slope_b = glm::length(at_b.gradient);
-    if (!at_a.in_band || !at_b.in_band || !(slope_a > 0.0) || !(slope_b > 0.0)) return false;
+    if (!at_a.in_band || !at_b.in_band || !(slope_a > 0.0) || !(slope_b > 0.0)) return std::nullopt;
     const Vec3 m = at_a.gradient / slope_a;
     const Vec3 n = at_b.gradient / slope_b;
     const double off_a = at_a.value / slope_a;
     const double off_b = at_b.value / slope_b;
-    if (std::fabs(off_a) + std::fabs(off_b) <= kMet * farthest) return true;
+    if (std::fabs(off_a) + std::fabs(off_b) <= kMet * farthest) return p;
     const double cosine = glm::dot(m, n);
     const double square = 1.0 - cosine * cosine;
-    if (square < kFlattest) return false;
+    if (square < kFlattest) return std::nullopt;
     p -= ((off_a - cosine * off_b) * m + (off_b - cosine * off_a) * n) / square;
-    if (!(glm::length(p - x) <= farthest)) return false;
+    if (!(glm::length(p - x) <= farthest)) return std::nullopt;
     at_a = a.field->sample(p);
     at_b = b.field->sample(p);
   }
-  return false;
+  return std::nullopt;
 }
 
 /// At a tip any normal may be found, the one to `place` [m] too: then the point is not the nearest one. Within a wall whose
@@ -137,6 +142,25 @@ bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
   return true;
 }
 
+/// Whether a wall bounds the region, or one that it leads to freely, where it meets that of the leaf `beside`: what covers
+/// both there, as skin does a bone and a ridge that crosses it, keeps the region off.
+bool FeltWalls::isWallAt(const Near& wall, LeafId beside, const Vec3& place) noexcept {
+  std::array<LeafId, kMostTurned> turned{};
+  std::size_t count = 0;
+  bool are_too_many = false;
+  walker_.forWithin(glm::length(place - walker_.position()), [&](LeafId id) {
+    if (id == wall.leaf || id == beside) return;
+    const Leaf& leaf = walker_.leaf(id);
+    const double value = leaf.field->value(place);
+    const double touched = limits::kTouch * limits::kOnSurface * leaf.feature * leaf.lipschitz;
+    if (!(std::fabs(value) > touched) || (value < 0.0) == (walker_.side(id) < 0.0)) return;
+    are_too_many = count == turned.size();
+    if (!are_too_many) turned[count++] = id;
+  });
+  if (are_too_many) return true;
+  return seams_.facetOf(wall.leaf, wall.held, place, {turned.data(), count}).isClosed();
+}
+
 void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
   count_ = 0;
   has_seam_ = false;
@@ -185,7 +209,9 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
                        : seams_.facetOf(leaf, near.held, footOn(near.held));
       if (isFeltAlready() || !isWall(near.facet)) continue;
       if (std::none_of(held.begin(), held.end(), [&](const WallContact& each) {
-            return meet(walker_.position(), each.held, near.held, kFarthestMeeting * reach);
+            const auto at =
+                meetingOf(walker_.position(), each.held, near.held, kFarthestMeeting * reach);
+            return at.has_value() && isWallAt(near, each.leaf, *at);
           })) {
         continue;
       }

@@ -94,6 +94,7 @@ class FeltWalls final : public SoftKinds {
   [[nodiscard]] int ownOf(const Near& wall) const noexcept;
   [[nodiscard]] bool feelsAlike(const Facet& a, const Facet& b) const noexcept;
   void findGroups(const ContactSet& contact, double reach) noexcept;
+  [[nodiscard]] bool isWallAt(const Near& wall, LeafId beside, const Vec3& place) noexcept;
   [[nodiscard]] Vec3 byProxy(const HeldWall& held, const Vec3& rise) const noexcept;
   [[nodiscard]] Vec3 footOn(const HeldWall& held) const noexcept;
   [[nodiscard]] bool isFeltAlready() const noexcept;

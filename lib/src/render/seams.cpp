@@ -111,11 +111,21 @@ void Seams::addSeam(const Seam& seam) noexcept {
   Seam& last = *std::max_element(seam_.begin(), seam_.end(), [](const Seam& a, const Seam& b) {
     return a.distance < b.distance;
   });
+  leaveOut(seam.distance < last.distance ? last : seam);
   if (seam.distance < last.distance) last = seam;
+}
+
+void Seams::leaveOut(const Seam& seam) noexcept {
+  if (!(seam.distance < patch_)) return;
+  patch_ = seam.distance;
+  patch_away_ = seam.away;
+  leaves_out_ = true;
 }
 
 void Seams::findSeams(const HeldWall& held, const Vec3& place, double radius) noexcept {
   seam_count_ = 0;
+  patch_ = radius;
+  leaves_out_ = false;
   for (std::size_t i = 0; i < count_; ++i) {
     const LeafId leaf = near_[i];
     if (isOnSurface(leaf)) continue;
@@ -137,8 +147,10 @@ void Seams::findSeams(const HeldWall& held, const Vec3& place, double radius) no
       const Vec3 along = seam.normal - glm::dot(seam.normal, held.normal) * held.normal;
       seam.away = unitOr(along, Vec3(0.0));
     }
-    seam.share = seamShare(seam.distance, radius);
     addSeam(seam);
+  }
+  for (std::size_t i = 0; i < seam_count_; ++i) {
+    seam_[i].share = seamShare(seam_[i].distance, patch_);
   }
 }
 
@@ -187,7 +199,10 @@ std::span<const Seams::Part> Seams::at(LeafId leaf, const HeldWall& held, const 
       const double sign = is_across ? -1.0 : 1.0;
       part.by_place =
           value * part.by_place + (sign * part.share * share.by_distance) * seam_[i].away;
-      part.by_press = value * part.by_press + (sign * part.share * share.by_radius) * deeper;
+      const double by_radius = sign * part.share * share.by_radius;
+      part.by_press = value * part.by_press;
+      (leaves_out_ ? part.by_place : part.by_press) +=
+          by_radius * (leaves_out_ ? patch_away_ : deeper);
       part.share *= value;
     }
     all += part.share;

@@ -32,9 +32,10 @@ struct SeamPoint {
 /// Scratch of one renderer: nothing in it is left for the next tick.
 class Seams {
  public:
-  /// Leaves near the patch that are looked at, and seams that count: the nearest ones.
-  static constexpr std::size_t kMostLeaves = 32;
-  static constexpr std::size_t kMostSeams = 4;
+  /// Leaves near the patch that are looked at, and seams that count: the nearest ones. Where there are more, the patch is
+  /// taken to end at the nearest of those that do not count, so that none comes or goes at once.
+  static constexpr std::size_t kMostLeaves = 64;
+  static constexpr std::size_t kMostSeams = 10;
   static constexpr std::size_t kMostParts = std::size_t{1} << kMostSeams;
 
   Seams(const Scene& scene, CellWalker& walker) : scene_(scene), walker_(walker) {}
@@ -49,10 +50,11 @@ class Seams {
     gather(leaf, held);
     return surface_count_ == 1;
   }
-  /// The facet at `place` [m] of all leaves that coincide there.
-  [[nodiscard]] Facet facetOf(LeafId leaf, const HeldWall& held, const Vec3& place) noexcept {
+  /// The facet at `place` [m], on the other side of the leaves `turned`, of all leaves that coincide there.
+  [[nodiscard]] Facet facetOf(LeafId leaf, const HeldWall& held, const Vec3& place,
+                              std::span<const LeafId> turned = {}) noexcept {
     gather(leaf, held);
-    return walker_.facetAside({}, {surface_.data(), surface_count_}, place);
+    return walker_.facetAside(turned, {surface_.data(), surface_count_}, place);
   }
   /// True if `leaf` is on the surface that was asked for last, or coincides with it.
   [[nodiscard]] bool isOnSurface(LeafId leaf) const noexcept;
@@ -85,6 +87,7 @@ class Seams {
   void gather(LeafId leaf, const HeldWall& held) noexcept;
   void findSeams(const HeldWall& held, const Vec3& place, double radius) noexcept;
   void addSeam(const Seam& seam) noexcept;
+  void leaveOut(const Seam& seam) noexcept;
   /// The wall behind the surface, on the far side of the seams whose bits are set; not closed where there is none.
   [[nodiscard]] Facet facetAcross(unsigned across, const Vec3& place) noexcept;
 
@@ -96,6 +99,10 @@ class Seams {
   std::size_t surface_count_ = 0;
   std::array<Seam, kMostSeams> seam_{};
   std::size_t seam_count_ = 0;
+  double patch_ =
+      0.0;  ///< [m] radius: that of the press, or up to the nearest seam that is left out
+  Vec3 patch_away_{0.0, 0.0, 0.0};  ///< gradient of that by the place, in the second case
+  bool leaves_out_ = false;
   std::array<Part, kMostParts> part_{};
 };
 

@@ -85,13 +85,16 @@ class LoopHand {
   double work_ = 0.0;  // [J]
 };
 
+/// Where a force steps within a step of the hand: so short are the last ones about it.
+inline constexpr int kHalvings = 20;
+
 /// [J] Done on the hand in the lap after `before` others, beyond counted sources. A lap takes `lap` [s].
 inline double workOfLap(const ScenePtr& scene, const Vec3& start, const EnergyLoop& loop, int steps,
                         double lap = 1.0, int before = 1) {
   LoopHand hand(scene, start, loop, steps, lap);
   for (int k = 0; k < before; ++k) hand.lap();
   const double work = hand.work();
-  hand.lap();
+  hand.lap(kHalvings);
   return hand.work() - work;
 }
 
@@ -134,7 +137,6 @@ inline EnergyGiven energyGiven(const ScenePtr& scene, const Vec3& start, const E
 /// in: what it holds less at the lap's end is the hand's own.
 inline EnergyGiven energyGivenAtLast(const ScenePtr& scene, const Vec3& start,
                                      const EnergyLoop& loop) {
-  constexpr int kHalvings = 20;
   const auto work = [&](int steps) {
     LoopHand hand(scene, start, loop, steps);
     for (int k = 0; k < 7; ++k) hand.lap();

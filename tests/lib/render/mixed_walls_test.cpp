@@ -240,6 +240,31 @@ start: {region: can}
   expectNothingGiven("rim and block", scene, Vec3(0.0), loop);
 }
 
+/// A ridge runs through a bone's plane where skin covers both: no wall of the bone bounds the outside.
+TEST(MixedWalls, AWallThatAnotherLayerCoversWhereItMeetsAThirdIsNotFelt) {
+  const auto scene_of = [](const std::string& bone) {
+    return sceneOf(R"(
+palpate: 1
+length: mm
+materials: {soft: {stiffness: 124 N/m}, stiff: {stiffness: 1640 N/m}}
+layers:
+)" + bone + R"(
+  - {name: skin, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: soft}
+  - {name: ridge, inside: {half_space: {point: [0, 0, 0], normal: [0, -1, 2]}}, wall: soft}
+)");
+  };
+  for (const char* depth : {"-0.01", "-0.1", "-0.5", "-1"}) {
+    Drive with(scene_of(std::string("  - {name: bone, inside: {half_space: {point: [0, 0, ") +
+                        depth + "], normal: [0, 0, 1]}}, wall: stiff}"));
+    Drive without(scene_of(""));
+    for (const Vec3& p : {mm(0, -1, 3), mm(0, -1, -2), mm(0, 3, -2), mm(0, 1.005, -2),
+                          mm(0, -1, -2), mm(2, 1, -1)}) {
+      const Vec3 felt = with.walk(p).force;
+      EXPECT_TRUE(isNear(felt, without.walk(p).force, 1e-9)) << depth;
+    }
+  }
+}
+
 TEST(MixedWalls, OneWallFarFromTheOthersFollowsItsOwnLaw) {
   const std::string hertz = "stiffness: 800 N/m, curve: {exponent: 1.5, reference: 1 mm}";
   Drive hand(sceneOf(grooveText(90, hertz, "stiffness: 3000 N/m")));

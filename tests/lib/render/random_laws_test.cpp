@@ -13,6 +13,20 @@
 namespace palpate::test {
 namespace {
 
+/// Of the scenes by number those that are asked for: PALPATE_PARTS_FIRST=100 PALPATE_PARTS_SCENES=1; else `usual` of them.
+struct Numbers {
+  std::uint64_t first = 0;
+  std::uint64_t count;
+
+  explicit Numbers(std::uint64_t usual) : count(usual) {
+    const auto ask = [](const char* name, std::uint64_t& value) {
+      if (const char* text = std::getenv(name)) value = std::strtoull(text, nullptr, 10);
+    };
+    ask("PALPATE_PARTS_FIRST", first);
+    ask("PALPATE_PARTS_SCENES", count);
+  }
+};
+
 /// Where the scene lies in space: turned by quarters, mirrored, scaled, moved.
 struct Pose {
   Mat3 turn{1.0};  // a signed permutation
@@ -116,10 +130,10 @@ std::vector<Vec3> wander(std::uint64_t seed, int ticks) {
 
 TEST(RandomParts, EachWallAlonePushesByItsOwnLaw) {
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
-  const std::uint64_t scenes = slow ? 500 : 60;
+  const Numbers scenes(slow ? 500 : 60);
   long judged = 0;
   long several = 0;
-  for (std::uint64_t number = 0; number < scenes; ++number) {
+  for (std::uint64_t number = scenes.first; number < scenes.first + scenes.count; ++number) {
     const Parts parts(number);
     SCOPED_TRACE(parts.text());
     const Scene& scene = *parts.scene();
@@ -157,13 +171,13 @@ TEST(RandomParts, EachWallAlonePushesByItsOwnLaw) {
     }
   }
   std::printf("  %ld ticks at one wall alone, %ld at several\n", judged, several);
-  EXPECT_GT(judged, static_cast<long>(scenes) * 200);
-  EXPECT_GT(several, static_cast<long>(scenes) * 200);
+  EXPECT_GT(judged, static_cast<long>(scenes.count) * 200);
+  EXPECT_GT(several, static_cast<long>(scenes.count) * 200);
 }
 
 TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
-  const std::uint64_t scenes = slow ? 300 : 15;
+  const Numbers scenes(slow ? 300 : 15);
   Pose turned;
   turned.turn = Mat3(Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 0, 0));
   Pose mirrored;
@@ -178,7 +192,7 @@ TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
     long ticks = 0;
     long off = 0;
     double worst = 0.0;
-    for (std::uint64_t number = 0; number < scenes; ++number) {
+    for (std::uint64_t number = scenes.first; number < scenes.first + scenes.count; ++number) {
       const Parts plain(number);
       const Parts posed(number, pose);
       const auto one = makeRenderer(plain.scene());
@@ -198,21 +212,22 @@ TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
         const double error =
             glm::length(b.force - pose.scale * (pose.turn * a.force)) / (pose.scale * size);
         // The proxy rests within 1e-9 of the feature size of where it should: 1e-11 m, of a press of 0.1 mm 1e-7.
-        off += error > 1e-7 ? 1 : 0;
+        if (error > 1e-7 && off++ == 0)
+          std::printf("  %s: first off in scene %d\n", name, static_cast<int>(number));
         worst = std::max(worst, error);
       }
     }
     std::printf("  %-9s %ld ticks in contact, %ld off, at most by %.2g\n", name, ticks, off, worst);
     EXPECT_EQ(off, 0) << name;
-    EXPECT_GT(ticks, static_cast<long>(scenes) * 400);
+    EXPECT_GT(ticks, static_cast<long>(scenes.count) * 400);
   }
 }
 
 TEST(RandomParts, GiveNoEnergy) {
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
-  const std::uint64_t scenes = slow ? 400 : 8;
+  const Numbers scenes(slow ? 400 : 8);
   double most = -kInfinity;
-  for (std::uint64_t number = 0; number < scenes; ++number) {
+  for (std::uint64_t number = scenes.first; number < scenes.first + scenes.count; ++number) {
     const Parts parts(number);
     Random random(number + 77);
     // About a place on the surface of the last part.

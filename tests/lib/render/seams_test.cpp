@@ -279,6 +279,33 @@ ports:
   }
 }
 
+// A circle within a union is no wall; nor is a line where one more seam comes within the patch.
+TEST(Seams, AcrossALineWithinAUnionNothingSteps) {
+  const ScenePtr scene = palpate::test::sceneOf(R"(
+palpate: 1
+length: mm
+materials: {m0: {stiffness: 1520 N/m}, m1: {stiffness: 354 N/m}, m2: {stiffness: 512 N/m}}
+layers:
+  - {name: a, inside: {union: [{box: {center: [3, -2, 0], size: [22.1, 15.05, 10]}},
+      {cylinder: {center: [-2, -5, 0], axis: [0, 0, 1], radius: 9.55, height: 10}}]}, wall: m2}
+  - {name: b, inside: {box: {center: [0, 0, 0], size: [14.54, 14.33, 10]}}, wall: m1}
+  - {name: c, inside: {box: {center: [-4, 2, 0], size: [19.1, 26.4, 10]}}, wall: m0}
+)");
+  EnergyLoop loop;
+  loop.center = mm(7.2, -7.867, -2.7);
+  loop.wave = {mm(0.4, 0, 0), mm(0, 0, 0.4), Vec3(0.0), Vec3(0.0)};
+  const EnergyGiven given = energyGiven(scene, mm(7.2, -7.867, -8), loop);
+  EXPECT_LE(std::fabs(given.work), 1e-9);
+  Drive hand(scene);
+  (void)hand.to(mm(7.2, -7.867, -8));
+  Vec3 last = hand.walk(mm(7.0, -7.867, -2.86)).force;
+  for (int i = 1; i <= 400; ++i) {
+    const Vec3 now = hand.to(mm(7.0 + 0.001 * i, -7.867, -2.86)).force;
+    ASSERT_LT(glm::length(now - last), 4.0 * 1520.0 * 1e-6) << i;
+    last = now;
+  }
+}
+
 TEST(Seams, NothingIsAllocatedLockedOrThrown) {
   for (const Place& place : kPlaces) {
     Drive hand(sceneOf(place, kPairs[2].soft, kPairs[3].stiff));

@@ -56,19 +56,6 @@ const HardScene& sceneNamed(const std::string& name) {
                        [&](const HardScene& scene) { return scene.name == name; });
 }
 
-std::vector<double> ratesOf(const std::vector<std::string>& asked) {
-  std::vector<double> rates;
-  for (const std::string& text : asked) {
-    const std::optional<double> rate = parseNumber(text);
-    if (!rate || *rate < 1.0 || *rate > 1e5) {
-      throw Error(ErrorKind::kUsage,
-                  {"usage.bench", "--rate is 1 to 100000 Hz, not '" + text + "'"});
-    }
-    rates.push_back(*rate);
-  }
-  return rates;
-}
-
 /// Rows of one scene share its compiled scene, and rows of one renderer that renderer.
 class Runner {
  public:
@@ -136,7 +123,7 @@ Report runStabilityBench(const BenchOptions& options, const GeneralOptions& gene
   auto names = options.devices;
   if (names.empty()) names = options.full ? kDevices : kFewDevices;
   for (const std::string& name : names) (void)devices::devicePreset(name);
-  std::vector<double> rates = ratesOf(options.rates);
+  std::vector<double> rates = options.rates;
   if (rates.empty()) rates.push_back(1000.0);
   if (options.rates.empty() && options.full) rates.insert(rates.end(), {4000.0, 10000.0});
   OutputFiles files(general);

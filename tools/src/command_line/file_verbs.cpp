@@ -129,8 +129,6 @@ void defineBench(CLI::App& app, Invocation& invocation) {
       "only this renderer: constraint or paper, for stability also a rival (default: all)");
   addList(app, g, "--device", "NAME", o.devices,
           "stability: only this device, may be repeated (default: falcon and touch)");
-  addList(app, g, "--rate", "HZ", o.rates,
-          "stability: ticks a second, may be repeated (default 1000)");
   addFlag(
       app, g, "--full", o.full,
       "stability: where nothing else is said all scenes, four devices, 1, 4 and 10 kHz (hours)");
@@ -142,6 +140,20 @@ void defineBench(CLI::App& app, Invocation& invocation) {
   add(app, g, "--cold", "N", o.cold,
       "ticks that are timed after other data went through the caches (default 30)")
       ->check(CLI::Range(0, 1000000));
+  g = "Of `bench servo`";
+  app.add_option("--rate", o.rates,
+                 "servo and stability: a rate, may be repeated (default 1000, servo 4000 too)")
+      ->group(g)
+      ->option_text("HZ")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false)
+      ->check(CLI::Range(1.0, 100000.0));
+  add(app, g, "--seconds", "S", o.seconds, "for how long at each rate (default 5)")
+      ->check(CLI::Range(0.1, 86400.0));
+  add(app, g, "--load", "N", o.load,
+      "threads that compute meanwhile (default: none, and then as many as there are cores)")
+      ->check(CLI::Range(0, 1024));
   g = "Output files";
   add(app, g, "--csv", "FILE.csv", o.csv, "the table, one row for each scene and renderer");
   add(app, g, "--svg", "FILE.svg", o.svg,
@@ -265,9 +277,9 @@ Verb checkVerb() {
 Verb benchVerb() {
   return {
       "bench",
-      "Measure contact (time and error of a tick), or stability of a hand in the loop",
+      "Measure contact (time and error of a tick), a hand in the loop, or how late a loop wakes",
       "palpate bench contact --scene sphere --scene torus --svg contact.svg",
-      "palpate bench contact|stability [OPTIONS]",
+      "palpate bench contact|stability|servo [OPTIONS]",
       "`stability` lets a relaxed hand press on hard cases through simulated devices, with our "
       "renderers and\n"
       "published ones, and finds the stiffest wall on which it comes to rest, beside the device's "
@@ -290,11 +302,14 @@ Verb benchVerb() {
       "cone-tip,\n"
       "cone-wide, csg-nested, crease, groove, saddle, container, ports-10, ports-100, ports-1000, "
       "balls-1,\n"
-      "balls-1000, balls-10000, five-layers and lump (not judged).",
+      "balls-1000, balls-10000, five-layers and lump (not judged).\n"
+      "`palpate bench servo` runs an empty loop in real time, and says whether this machine is "
+      "good\n"
+      "enough for each rate: how late turns began, and how many were missed.",
       {},
       defineBench,
       [](const Invocation& i) {
-        need(!chosen<BenchOptions>(i).what.empty(), "contact or stability");
+        need(!chosen<BenchOptions>(i).what.empty(), "contact, stability or servo");
       },
       true};
 }

@@ -65,7 +65,7 @@ const std::vector<Verb>& verbs() {
   static const std::vector<Verb> all = {touchVerb(),   replayVerb(), importVerb(), bakeVerb(),
                                         convertVerb(), infoVerb(),   checkVerb(),  queryVerb(),
                                         explainVerb(), renderVerb(), benchVerb(),  accuracyVerb(),
-                                        helpVerb()};
+                                        devicesVerb(), doctorVerb(), helpVerb()};
   return all;
 }
 

@@ -6,13 +6,12 @@
 namespace palpate::tools {
 namespace {
 
+constexpr const char* kModels =
+    "excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3";
+
 /// What the hand holds.
-void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const char* what) {
-  const std::string text =
-      std::string(what) +
-      ": excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3 "
-      "(virtual:NAME means the same)";
-  add(app, group, "--device", "NAME", o.name, text.c_str());
+void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::string& what) {
+  add(app, group, "--device", "NAME", o.name, what.c_str());
   add(app, group, "--hand", "HAND", o.hand,
       "device: how it is held: none, relaxed (default) or firm");
   add(app, group, "--delay", "N", o.delay,
@@ -55,14 +54,22 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1.0, 100000.0));
   addDevice(
       app, g, o.device,
-      "follow the motion with this simulated device, in a hand that feels the force (default: "
-      "a hand that goes where it is told)");
+      std::string("follow the motion with a simulated device, in a hand that feels the force: "
+                  "virtual:NAME, NAME one of ") +
+          kModels +
+          "; virtual: may be left out unless NAME is falcon or inverse3. Or let a hand move "
+          "a device: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension). Default: a "
+          "hand that goes where it is told");
+  add(app, g, "--seconds", "S", o.seconds,
+      "a device that a hand holds: for how long (default: until Ctrl-C)")
+      ->check(CLI::Range(0.1, 86400.0));
   addFlag(app, g, "--realtime", o.realtime,
           "keep to the clock (default: as fast as the machine goes)");
   addList(
       app, g, "--set", "MATERIAL.KEY=VALUE@TIME", o.set,
       "change a content while the hand moves, may be repeated: syrup.viscosity=9@0.5 (N.s/m, s); "
       "also flow, lattice.force, cutting");
+  addRealDevice(app, o.real);
   g = "The paper's renderer (default: as the scene's `paper` says)";
   add(app, g, "--epsilon", "LENGTH", o.epsilon,
       "so near to the surface a contact point is on it (default 1 um)");
@@ -176,7 +183,9 @@ void defineExplain(CLI::App& app, Invocation& invocation) {
           "make all of it, and what is needed, and tell memory and time");
   g = "The device that the scene is for";
   addDevice(app, g, o.device,
-            "list what is felt beside what this device can hold, and what cures what it cannot");
+            std::string("list what is felt beside what this device can hold, and what cures what "
+                        "it cannot: ") +
+                kModels + " (virtual:NAME means the same)");
   add(app, g, "--rate", "HZ", o.rate, "device: ticks a second (default 1000)")
       ->check(CLI::Range(1.0, 100000.0));
   add(app, "Output files", "--svg", "FILE.svg", o.svg,

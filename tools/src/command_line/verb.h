@@ -57,6 +57,12 @@ void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes);
 // accuracy_verb.cpp
 [[nodiscard]] Verb accuracyVerb();
 
+// device_verbs.cpp
+[[nodiscard]] Verb devicesVerb();
+[[nodiscard]] Verb doctorVerb();
+/// How a device that a hand holds is reached.
+void addRealDevice(CLI::App& app, RealDeviceOptions& o);
+
 // help.cpp
 [[nodiscard]] std::string verbHelp(const Verb& verb);
 [[nodiscard]] std::string overview();

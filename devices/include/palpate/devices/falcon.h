@@ -13,8 +13,6 @@ namespace palpate::devices {
 
 constexpr std::uint16_t kFalconVendor = 0x0403;
 constexpr std::uint16_t kFalconProduct = 0xcb48;
-/// To be printed wherever the device is offered.
-constexpr const char* kFalconNotice = "protocol from public sources, unverified on hardware";
 
 /// What differs from device to device, or that nobody has measured. In a file: one `name value` a line, '#' begins a comment.
 struct FalconCalibration {

@@ -1,5 +1,5 @@
 #pragma once
-/// Haply's Inverse3, through the service that its maker installs. Messages from public sources, unverified on hardware.
+/// Haply's Inverse3, through the service that its maker installs. Protocol from public sources, unverified on hardware.
 
 #include <cstdint>
 #include <memory>
@@ -9,9 +9,6 @@
 #include "palpate/export.h"
 
 namespace palpate::devices {
-
-/// To be printed wherever the device is offered.
-constexpr const char* kInverse3Notice = "messages from public sources, unverified on hardware";
 
 struct Inverse3Settings {
   std::string host = "127.0.0.1";

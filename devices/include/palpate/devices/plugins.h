@@ -1,6 +1,6 @@
 #pragma once
 /// Devices whose makers give no protocol but a library, which is found when the device is opened: nothing of it is linked or
-/// shipped. Prototypes from public sources, unverified on hardware.
+/// shipped. Protocol from public sources, unverified on hardware.
 
 #include <memory>
 #include <string>
@@ -9,9 +9,6 @@
 #include "palpate/export.h"
 
 namespace palpate::devices {
-
-/// To be printed wherever these devices are offered.
-constexpr const char* kPluginNotice = "prototypes from public sources, unverified on hardware";
 
 struct PluginSettings {
   std::string library;  ///< a path, or a name as dlopen() takes it; empty: the maker's usual one

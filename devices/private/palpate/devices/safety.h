@@ -25,7 +25,7 @@ struct SafeForce {
   bool is_shortened = false;  ///< to the device's maximum
 };
 
-/// A value without a clock of its own; real-time safe. For each turn of a loop: read(), and if ticks() then ask(). Times are in
+/// A value without a clock of its own; real-time safe. For each turn of a loop: read(), ask() and wrote(). Times are in
 /// [ns] of one clock and never go back; one that does counts as no time.
 class Safety {
  public:
@@ -49,6 +49,11 @@ class Safety {
   [[nodiscard]] bool isSilent() const noexcept { return has_reading_ && watch_.hasExpired(); }
   /// The force that may be written for `wanted` [N]. `answers` is the reading that it answers.
   [[nodiscard]] SafeForce ask(const Vec3& wanted, const DeviceState& answers) noexcept;
+
+  /// What the device answered to the force.
+  void wrote(DeviceStatus status) noexcept {
+    if (status >= DeviceStatus::kTimeout) fail(SafetyFault::kDevice);
+  }
 
   [[nodiscard]] SafetyState state() const noexcept { return state_; }
   [[nodiscard]] SafetyFault fault() const noexcept { return fault_; }

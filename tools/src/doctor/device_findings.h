@@ -1,0 +1,24 @@
+#pragma once
+/// Which haptic devices can be reached from here, and what is in the way.
+
+#include <string>
+#include <vector>
+
+#include "report.h"
+
+namespace palpate::tools {
+
+/// One way to a device.
+struct DeviceFinding {
+  std::string name;   ///< of --device
+  std::string title;  ///< "Novint Falcon, USB 0403:cb48"
+  std::string found;  ///< "none plugged in", "bus 1 address 4, serial X", ...
+  bool is_ready = false;
+  std::string remedy;  ///< empty if there is none
+};
+
+[[nodiscard]] std::vector<DeviceFinding> deviceFindings();
+[[nodiscard]] Json findingsJson(const std::vector<DeviceFinding>& findings);
+[[nodiscard]] std::string findingsText(const std::vector<DeviceFinding>& findings);
+
+}  // namespace palpate::tools
