@@ -48,15 +48,16 @@ class Recorder::Work {
       dropped_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    RecordedTick made{.tick = tick, .turn = turn};
+    RecordedTick made{
+        .tick = tick, .turn = turn, .entry_count = static_cast<std::uint32_t>(entries.size())};
     wait(entries_, std::min(entries.size(), entries_.capacity()));
     for (const RegionEntry& entry : entries) {
       if (entries_.room() == 0) {
         dropped_entries_.fetch_add(1, std::memory_order_relaxed);
+        ++made.dropped_entries;
         continue;
       }
       entries_.put(entry);
-      ++made.entry_count;
     }
     if (state != nullptr) {
       wait(states_, 1);
@@ -106,7 +107,7 @@ class Recorder::Work {
   void handOn() {
     const RecordedTick tick = ticks_.front();
     taken_entries_.clear();
-    for (std::uint32_t i = 0; i < tick.entry_count; ++i) {
+    for (std::uint32_t i = 0; i < tick.entry_count - tick.dropped_entries; ++i) {
       taken_entries_.push_back(entries_.front());
       entries_.pop();
     }

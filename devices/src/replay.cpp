@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -37,10 +38,12 @@ std::string differences(const TickRecord& a, const TickRecord& b) {
   look(a.device_force, b.device_force, "device_force");
   look(a.region, b.region, "region");
   look(a.event_count, b.event_count, "event_count");
+  look(a.entry_count, b.entry_count, "entry_count");
   look(a.events, b.events, "events");
   look(a.contact, b.contact, "contact");
   look(a.settled, b.settled, "settled");
   look(a.clutch, b.clutch, "clutch");
+  look(a.checkpoint, b.checkpoint, "checkpoint");
   return names;
 }
 
@@ -51,11 +54,53 @@ double apart(const TickRecord::Vector& a, const TickRecord::Vector& b) {
   return std::isfinite(length) ? length : std::numeric_limits<double>::infinity();
 }
 
+/// Numbers of a record in the terms of a scene.
+class Numbers {
+ public:
+  Numbers(const std::optional<RecordNames>& names, const Scene& scene) {
+    if (!names) return;
+    regions_ = numbersOf(names->regions, scene.regions());
+    ports_ = numbersOf(names->ports, scene.ports());
+  }
+
+  void translate(TickRecord& row) const {
+    if (regions_) row.region = numberOf(*regions_, row.region);
+    if (!ports_) return;
+    for (std::size_t n = 0; n < std::min<std::size_t>(row.event_count, row.events.size()); ++n) {
+      row.events[n] = numberOf(*ports_, row.events[n]);
+    }
+  }
+
+ private:
+  using List = std::vector<std::uint16_t>;
+  /// That of nothing: compile() refuses so many.
+  static constexpr std::uint16_t kNone = 0xffff;
+
+  template <typename Named>
+  [[nodiscard]] static List numbersOf(const std::vector<std::string>& names,
+                                      std::span<const Named> there) {
+    List out;
+    for (const std::string& name : names) {
+      const auto at = std::find_if(there.begin(), there.end(),
+                                   [&](const Named& one) { return one.name == name; });
+      out.push_back(at == there.end() ? kNone : static_cast<std::uint16_t>(at - there.begin()));
+    }
+    return out;
+  }
+  [[nodiscard]] static std::uint16_t numberOf(const List& list, std::uint16_t number) {
+    return number < list.size() ? list[number] : kNone;
+  }
+
+  std::optional<List> regions_;
+  std::optional<List> ports_;
+};
+
 }  // namespace
 
 ReplayReport replay(RecordReader& record, Session& session, DeviceFrame frame, std::uint64_t from,
-                    const std::function<bool()>& stops) {
+                    const std::function<bool()>& stops, const std::optional<RecordNames>& names) {
   constexpr std::uint64_t kAskEvery = 1024;
+  const Numbers numbers(names, session.scene());
   ReplayReport report;
   TickRecord then;
   while (record.next(then)) {
@@ -65,9 +110,12 @@ ReplayReport replay(RecordReader& record, Session& session, DeviceFrame frame, s
       report.gap = expected;
       break;
     }
-    const TickRecord now = rowOf({.tick = session.step(readingOf(then), frame), .turn = {}});
+    RecordedTick made{.tick = session.step(readingOf(then), frame), .turn = {}};
+    made.entry_count = static_cast<std::uint32_t>(session.renderer().entries().size());
+    const TickRecord now = rowOf(made);
     ++report.ticks;
     if (then.tick < from) continue;
+    numbers.translate(then);
     ++report.compared;
     const std::string what = differences(then, now);
     if (what.empty()) continue;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNanosecond = 1e-9;  // [s]
 
-/// [ns]; what is longer than any loop runs is the most there is. A time that is NaN or below 0 is none.
+/// [ns], the largest number if that is too long to count. NaN and times below 0 count as 0.
 std::int64_t nanoseconds(double seconds) noexcept {
   constexpr double kLongest = 9e9;  // [s] 285 years
   if (seconds >= kLongest) return std::numeric_limits<std::int64_t>::max();
@@ -18,7 +18,7 @@ std::int64_t nanoseconds(double seconds) noexcept {
 
 double seconds(std::int64_t ns) noexcept { return kNanosecond * static_cast<double>(ns); }
 
-/// NaN and what is below 0 permit nothing.
+/// NaN and numbers below 0 permit nothing.
 double permitted(double limit) noexcept { return limit > 0.0 ? limit : 0.0; }
 
 }  // namespace

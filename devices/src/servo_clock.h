@@ -24,7 +24,7 @@ class Elevation {
 
   [[nodiscard]] bool hasPriority() const noexcept { return has_priority_; }
   [[nodiscard]] bool hasLockedMemory() const noexcept { return has_locked_memory_; }
-  /// errno of what was refused, 0 if nothing was.
+  /// errno of the refusal; 0: granted.
   [[nodiscard]] int priorityError() const noexcept { return priority_error_; }
   [[nodiscard]] int memoryError() const noexcept { return memory_error_; }
 

@@ -8,10 +8,35 @@
 #include "palpate/core/error.h"
 #include "palpate/devices/device.h"
 #include "palpate/devices/safety.h"
+#include "servo_check.h"
 #include "servo_clock.h"
 #include "servo_schedule.h"
 
 namespace palpate::devices {
+
+void checkServo(const ServoSettings& settings, bool has_rate) {
+  if (has_rate && !(settings.rate >= 1.0 && settings.rate <= 1e5)) {
+    throw Error(ErrorKind::kUsage, {"servo.rate", "the servo rate must be 1 to 1e5 Hz, not " +
+                                                      std::to_string(settings.rate)});
+  }
+  if (settings.elevate > Elevate::kRequire) {
+    throw Error(ErrorKind::kUsage,
+                {"servo.elevate", "the servo loop cannot be elevated by " +
+                                      std::to_string(static_cast<int>(settings.elevate))});
+  }
+  constexpr double kLongest = 1e6;  // [s] far beyond use, well within a clock's nanoseconds
+  if (!(settings.watchdog > 0.0 && settings.watchdog <= kLongest)) {
+    throw Error(ErrorKind::kUsage,
+                {"servo.watchdog", "the servo watchdog must be above 0 s and at most 1e6 s, not " +
+                                       std::to_string(settings.watchdog)});
+  }
+  if (!(settings.recovery >= 0.0 && settings.recovery <= kLongest)) {
+    throw Error(ErrorKind::kUsage,
+                {"servo.recovery", "the servo recovery must be from 0 s to 1e6 s, not " +
+                                       std::to_string(settings.recovery)});
+  }
+}
+
 namespace {
 
 /// Zero force, then closed, however the loop is left.
@@ -52,25 +77,6 @@ bool ends(DeviceStatus status, ServoExit& exit) noexcept {
   return true;
 }
 
-void check(const ServoTick& tick, const ServoSettings& settings) {
-  if (!tick) throw Error(ErrorKind::kUsage, {"servo.tick", "the servo loop needs a tick function"});
-  if (settings.realtime && !(settings.rate >= 1.0 && settings.rate <= 1e5)) {
-    throw Error(ErrorKind::kUsage, {"servo.rate", "the servo rate must be 1 to 1e5 Hz, not " +
-                                                      std::to_string(settings.rate)});
-  }
-  constexpr double kLongest = 1e6;  // [s] far beyond use, well within a clock's nanoseconds
-  if (!(settings.watchdog > 0.0 && settings.watchdog <= kLongest)) {
-    throw Error(ErrorKind::kUsage,
-                {"servo.watchdog", "the servo watchdog must be above 0 s and at most 1e6 s, not " +
-                                       std::to_string(settings.watchdog)});
-  }
-  if (!(settings.recovery >= 0.0 && settings.recovery <= kLongest)) {
-    throw Error(ErrorKind::kUsage,
-                {"servo.recovery", "the servo recovery must be from 0 s to 1e6 s, not " +
-                                       std::to_string(settings.recovery)});
-  }
-}
-
 /// [ns]
 std::int64_t nanoseconds(double seconds) noexcept { return std::llround(1e9 * seconds); }
 
@@ -88,7 +94,7 @@ std::int64_t longestTurn(const SafetyLimits& limits, std::int64_t turn) noexcept
   return std::max(nanoseconds(limits.hang), 2 * turn);
 }
 
-/// What the operating system has granted. @throws Error (kOperation) if less than what is required.
+/// Reports what the operating system granted. @throws Error (kOperation) if `wanted` requires more.
 void noteElevation(const Elevation& elevation, Elevate wanted, ServoReport& report) {
   report.has_priority = elevation.hasPriority();
   report.has_locked_memory = elevation.hasLockedMemory();
@@ -110,7 +116,8 @@ void noteElevation(const Elevation& elevation, Elevate wanted, ServoReport& repo
 
 ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings& settings,
                      const std::atomic<bool>& stop, const ServoObserver& observer) {
-  check(tick, settings);
+  if (!tick) throw Error(ErrorKind::kUsage, {"servo.tick", "the servo loop needs a tick function"});
+  checkServo(settings, settings.realtime);
   ServoReport report;
   const OpenDevice open(device);
   const Elevation elevation(settings.elevate != Elevate::kOff, settings.realtime);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "palpate/devices/record.h"
 #include "palpate/devices/scene_swap.h"
 #include "palpate/devices/seq_lock.h"
+#include "servo_check.h"
 
 namespace palpate::devices {
 namespace {
@@ -22,7 +24,21 @@ ToolForce toolForce(const HapticRenderer& renderer, const SessionTick& tick) noe
           slope.sideways,    slope.damping, slope.drag};
 }
 
+const Vec3 kBroken(std::numeric_limits<double>::quiet_NaN());
+
+void checkLimit(double value, bool may_be, const char* name) {
+  if (may_be) return;
+  throw Error(ErrorKind::kUsage, {"session.limits", std::string(name) + " of the force cannot be " +
+                                                        std::to_string(value)});
+}
+
 void check(const Scene& scene, const SessionSettings& settings) {
+  checkServo(settings.servo, true);
+  const ForceLimits& limits = settings.renderer.limits;
+  checkLimit(limits.max_force, limits.max_force >= 0.0, "the largest length");
+  checkLimit(limits.max_growth, limits.max_growth >= 0.0, "the growth");
+  checkLimit(limits.ramp, limits.ramp >= 0.0 && std::isfinite(limits.ramp), "the ramp");
+  checkLimit(limits.period, limits.period > 0.0 && std::isfinite(limits.period), "the period");
   if (settings.clutch_button < 0 || settings.clutch_button > 31) {
     throw Error(ErrorKind::kUsage, {"session.button", "a clutch button is 0 to 31, not " +
                                                           std::to_string(settings.clutch_button)});
@@ -99,12 +115,14 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
 
   const DeviceMapping& mapping = scene_->device();
   const bool is_mapped = frame == DeviceFrame::kDevice;
-  // Of the device's positions: a clutch that is let go must not look like a leap of the hand.
-  const Vec3 velocity = tracker_.add(reading.time, reading.position).value;
   const Vec3 position = is_mapped ? mapping.toWorld(reading.position) : reading.position;
+  // Of the device's positions: a clutch that is let go must not look like a leap of the hand. Nor must a broken reading.
+  const Vec3 velocity =
+      tracker_.add(reading.time, HapticRenderer::isInReach(position) ? reading.position : kBroken)
+          .value;
   tick.is_held = mapping.clutch &&
                  (reading.buttons >> static_cast<unsigned>(settings_.clutch_button) & 1U) != 0;
-  const bool is_sound = isFinite(position) && isFinite(velocity);
+  const bool is_sound = HapticRenderer::isInReach(position) && isFinite(velocity);
   // A broken reading neither engages the clutch nor lets it go.
   const Clutched now =
       is_sound ? clutch_.step(position, is_mapped ? mapping.velocityToWorld(velocity) : velocity,
@@ -118,7 +136,8 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
     const double work = renderer_->sourceWork();
     const double source = (is_mapped ? mapping.workAtHand() : 1.0) * (work - source_work_);
     source_work_ = work;
-    const PassivityTick guarded = passivity_->step(reading.position, tick.dt, tick.force, source);
+    const PassivityTick guarded =
+        passivity_->step(is_sound ? reading.position : kBroken, tick.dt, tick.force, source);
     tick.force = guarded.force;
     tick.added = guarded.added;
   }
@@ -129,7 +148,8 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
 }
 
 Vec3 Session::feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept {
-  const bool is_coupled = coupling_ && isFinite(probe.position) && isFinite(probe.velocity);
+  const bool is_coupled =
+      coupling_ && HapticRenderer::isInReach(probe.position) && isFinite(probe.velocity);
   // The coupling is as stiff as it says at the hand, and works in the hand's own measure.
   const DeviceMapping& mapping = scene_->device();
   const bool is_mapped = frame == DeviceFrame::kDevice;
@@ -197,6 +217,7 @@ bool Session::resume(const SessionState& state) noexcept {
       state.passivity.has_value() != passivity_.has_value()) {
     return false;
   }
+  if (!state.tracker.isSound() || (state.passivity && !state.passivity->isSound())) return false;
   if (!renderer_->setState(state.renderer)) return false;
   for (; next_change_ < state.next_change; ++next_change_) {
     const ContentEvent& event = settings_.changes[next_change_];

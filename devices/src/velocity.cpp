@@ -4,12 +4,18 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "palpate/core/error.h"
 
 namespace palpate::devices {
 
 VelocityTracker::VelocityTracker(const VelocitySettings& settings) : settings_(settings) {
+  if (settings.estimator > VelocityEstimator::kAdaptiveWindow) {
+    throw Error(ErrorKind::kUsage,
+                {"velocity.estimator", "unknown velocity estimator: number " +
+                                           std::to_string(static_cast<int>(settings.estimator))});
+  }
   if (!(settings.window > 0.0) || !std::isfinite(settings.window)) {
     throw Error(ErrorKind::kUsage,
                 {"velocity.window", "the window of a velocity estimator must be above 0 s, not " +
@@ -27,7 +33,12 @@ Velocity VelocityTracker::add(double time, const Vec3& position) noexcept {
     reset();
     return {Vec3(std::numeric_limits<double>::quiet_NaN()), Vec3(0.0)};
   }
-  if (count_ > 0 && !(time > at(0).time)) return last_;
+  const double before = std::exchange(latest_, time);
+  if (count_ > 0 && !(time > at(0).time)) {
+    if (!(time > before)) return last_;
+    reset();
+  }
+  if (count_ > 0 && time - at(0).time > kLongestGap) reset();
   newest_ = (newest_ + 1) % kCapacity;
   readings_[newest_] = {time, position};
   count_ = std::min(count_ + 1, kCapacity);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "palpate/devices/session.h"
@@ -114,6 +115,29 @@ TEST(Clutch, AHandThatIsHeldForLongLetsGoOfNothingAndTakesHoldOfTheSame) {
   // And moves by the scale from there.
   tick = hand.to(device + Vec3(0.0, 0.0, 1e-4), false);
   EXPECT_LT(glm::length(tick.hip.position - before.hip.position - Vec3(0.0, 0.0, 2e-4)), 1e-15);
+}
+
+TEST(Clutch, AReadingThatNoHandCanGiveNeitherEngagesNorLetsGo) {
+  const ScenePtr scene = wallUnderOil();
+  for (const double far : {1.01e4, 2e4, 1e300}) {
+    for (const int when : {500, 600}) {
+      Hand hand(scene);
+      Hand other(scene);
+      SessionTick tick;
+      SessionTick wanted;
+      for (int n = 0; n < 900; ++n) {
+        const bool held = n >= 500 && n < 600;
+        const Vec3 rests = stroke(std::min(n, 400));
+        tick = hand.to(n == when ? Vec3(0.0, 0.0, far) : rests, held);
+        wanted = other.to(rests, held);
+        EXPECT_LT(glm::length(tick.force), 3.0);
+      }
+      EXPECT_GT(glm::length(wanted.force), 0.5);
+      EXPECT_LT(glm::length(tick.hip.position - wanted.hip.position), 1e-15);
+      EXPECT_EQ(tick.hip.velocity, Vec3(0.0));
+      EXPECT_LT(glm::length(tick.force - wanted.force), 1e-9) << far << " at " << when;
+    }
+  }
 }
 
 }  // namespace

@@ -126,7 +126,8 @@ TEST(FalconPacket, TenMillionBytesOfGarbageLoseNoWholePacketAndInventNone) {
       piece = replyBytes({1, 2, 3}, 0);
       piece[random() % 16] = static_cast<std::uint8_t>(random());
     } else if (kind == 2) {
-      for (auto n = random() % 20; n > 0; --n) piece.push_back("<>AP@Q"[random() % 6]);
+      for (auto n = random() % 20; n > 0; --n)
+        piece.push_back(static_cast<std::uint8_t>("<>AP@Q"[random() % 6]));
     } else {
       for (auto n = random() % 20; n > 0; --n) piece.push_back(static_cast<std::uint8_t>(random()));
     }

@@ -35,6 +35,7 @@ class MockService {
   /// What it says first; and what it answers to message `n` (from 0), empty: hangs up.
   std::function<std::string(int)> answer = [](int n) { return state(n); };
   std::string greeting = state(0);
+  bool is_silent = false;  // it does not greet
 
   MockService()
       : acceptor_(context_, asio::ip::tcp::endpoint(asio::ip::address_v4::loopback(), 0)) {}
@@ -84,7 +85,7 @@ class MockService {
     beast::websocket::stream<asio::ip::tcp::socket> stream(std::move(socket));
     stream.accept(bad);
     if (bad) return;
-    stream.write(asio::buffer(greeting), bad);
+    if (!is_silent) stream.write(asio::buffer(greeting), bad);
     for (int n = 1; !bad; ++n) {
       beast::flat_buffer buffer;
       stream.read(buffer, bad);
@@ -236,6 +237,16 @@ TEST(Inverse3, NobodyThereOrNoSuchDeviceIsToldWithTheRemedy) {
   EXPECT_EQ(errorOf([&] { makeInverse3(other)->open(); }).problem().code, "device.service");
   other.host = "no host";
   EXPECT_EQ(errorOf([&] { makeInverse3(other)->open(); }).problem().code, "device.service");
+}
+
+TEST(Inverse3, AServiceThatSaysNothingIsGivenUp) {
+  MockService service;
+  service.is_silent = true;
+  service.start();
+  const Error error = errorOf([&] { makeInverse3(service.settings())->open(); });
+  EXPECT_EQ(error.problem().code, "device.service");
+  EXPECT_NE(error.problem().message.find("it does not answer"), std::string::npos);
+  EXPECT_EQ(service.messages(), 0);
 }
 
 TEST(Inverse3, ReadingAndWritingNeitherAllocateNorLock) {

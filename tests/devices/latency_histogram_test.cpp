@@ -16,7 +16,7 @@ TEST(LatencyHistogram, QuantilesAreThoseOfTheSortedTimesToAnEighth) {
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> exponent(0.0, 10.0);
-  for (const std::size_t count : {1, 2, 10, 1000, 20'000}) {
+  for (const std::size_t count : {1U, 2U, 10U, 1000U, 20'000U}) {
     LatencyHistogram histogram;
     std::vector<std::int64_t> times;
     for (std::size_t i = 0; i < count; ++i) {

@@ -119,7 +119,7 @@ TEST(Safety, ZeroUntilHomedAndAFaultWhenTheOriginIsLost) {
   EXPECT_EQ(safety.state(), SafetyState::kUncalibrated);
   EXPECT_FALSE(safety.ticks());
   EXPECT_EQ(safety.ask(Vec3(1.0), lost).force, Vec3(0.0));
-  // The origin that is found moves the position by more than a hand can: that is no jump.
+  // The origin that is found moves the position by more than a hand can: that is not a jump.
   const DeviceState homed = at(Vec3(0.05));
   EXPECT_EQ(safety.read(2 * kTurn, DeviceStatus::kOk, homed), ReadingVerdict::kSound);
   EXPECT_EQ(safety.state(), SafetyState::kIdle);

@@ -208,5 +208,41 @@ TEST(Session, RunGoesThroughTheWholePathAndStepNeverAllocates) {
   EXPECT_EQ(guard.violations(), 0);
 }
 
+TEST(Session, SettingsThatCannotBeAreRefused) {
+  const ScenePtr scene = compile(parseScene(
+      "{palpate: 1, length: mm, materials: {g: {stiffness: 1 N/mm}}, layers: [{name: ball, inside: "
+      "{sphere: {center: [0, 0, 0], radius: 40}}, wall: g}]}",
+      "settings.yaml"));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto is_refused = [&](const auto& change) {
+    SessionSettings settings;
+    change(settings);
+    try {
+      const Session session(scene, settings);
+    } catch (const Error&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(is_refused([](SessionSettings&) {}));
+  for (const double rate : {0.0, -5.0, nan, 1e6}) {
+    EXPECT_TRUE(is_refused([&](SessionSettings& s) { s.servo.rate = rate; })) << rate;
+  }
+  for (const double bad : {-1.0, nan}) {
+    EXPECT_TRUE(is_refused([&](SessionSettings& s) { s.servo.watchdog = bad; }));
+    EXPECT_TRUE(is_refused([&](SessionSettings& s) { s.servo.recovery = bad; }));
+    EXPECT_TRUE(is_refused([&](SessionSettings& s) { s.renderer.limits.max_force = bad; }));
+    EXPECT_TRUE(is_refused([&](SessionSettings& s) { s.renderer.limits.max_growth = bad; }));
+    EXPECT_TRUE(is_refused([&](SessionSettings& s) { s.renderer.limits.ramp = bad; }));
+    EXPECT_TRUE(is_refused([&](SessionSettings& s) { s.renderer.limits.period = bad; }));
+  }
+  EXPECT_TRUE(is_refused([](SessionSettings& s) { s.renderer.limits.period = 0.0; }));
+  EXPECT_TRUE(
+      is_refused([](SessionSettings& s) { s.renderer.kind = static_cast<RendererKind>(7); }));
+  EXPECT_TRUE(is_refused(
+      [](SessionSettings& s) { s.velocity.estimator = static_cast<VelocityEstimator>(7); }));
+  EXPECT_TRUE(is_refused([](SessionSettings& s) { s.servo.elevate = static_cast<Elevate>(7); }));
+}
+
 }  // namespace
 }  // namespace palpate::devices

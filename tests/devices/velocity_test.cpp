@@ -108,6 +108,31 @@ TEST(VelocityTracker, GapsRepeatedTimesAndBrokenReadings) {
   }
 }
 
+TEST(VelocityTracker, AWrongTimeStampIsForgottenWhateverItIs) {
+  // A hand moves at 0.1 m/s until one stamp is wrong, or the clock is set for good, and then rests. The window is over 10 ms later.
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const VelocityEstimator estimator : kAll) {
+    for (const double wrong : {-inf, -1e300, -5.0, 0.1, 0.3, 3.0, 1000.0, 1e300, inf}) {
+      for (const bool is_for_good : {false, true}) {
+        if (is_for_good && std::fabs(wrong) > 1e6) continue;
+        VelocityTracker tracker = trackerOf(estimator, 0.01, 1e-9);
+        for (int n = 0; n < 200; ++n) (void)tracker.add(n * kTick, Vec3(1e-4 * n, 0.0, 0.0));
+        Velocity now;
+        for (int n = 200; n < 220; ++n) {
+          const double set = is_for_good ? wrong + (n - 200) * kTick : n == 200 ? wrong : n * kTick;
+          now = tracker.add(set, Vec3(0.02, 0.0, 0.0));
+        }
+        EXPECT_EQ(now.value, Vec3(0.0)) << wrong << (is_for_good ? " for good" : " once");
+      }
+    }
+    // A gap that no hand's way is known across makes a first reading.
+    VelocityTracker tracker = trackerOf(estimator, 100.0);
+    (void)tracker.add(0.0, Vec3(0.0));
+    EXPECT_GT(tracker.add(VelocityTracker::kLongestGap, Vec3(1.0)).value.x, 0.0);
+    EXPECT_EQ(tracker.add(2.001 * VelocityTracker::kLongestGap, Vec3(2.0)).value, Vec3(0.0));
+  }
+}
+
 TEST(VelocityTracker, LeastSquaresIsTheLineThatNormalEquationsGive) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(0.0, 1.0);
@@ -151,6 +176,7 @@ TEST(VelocityTracker, NeverAllocatesAndRefusesWhatCannotBe) {
   for (const double window : {0.0, -1.0, nan}) {
     EXPECT_THROW(trackerOf(VelocityEstimator::kLeastSquares, window), Error);
   }
+  EXPECT_THROW(trackerOf(static_cast<VelocityEstimator>(7)), Error);
   for (const double noise : {-1e-9, nan}) {
     EXPECT_THROW(trackerOf(VelocityEstimator::kAdaptiveWindow, 0.01, noise), Error);
   }

@@ -1,4 +1,4 @@
-// Stands for Force Dimension's libdhd.so: what a test says it reads, and remembers what it is told.
+// Stands for Force Dimension's libdhd.so: it reads what a test sets, and remembers the calls.
 
 #include <algorithm>
 #include <array>

@@ -87,7 +87,7 @@ PluggedFalcon& plugged() {
 }
 
 /// Before main(), so that the descriptor is open.
-[[maybe_unused]] const bool is_plugged = (plugged(), true);
+[[maybe_unused]] const bool kIsPlugged = (plugged(), true);
 
 }  // namespace
 }  // namespace palpate::devices

@@ -1,4 +1,4 @@
-// Stands for OpenHaptics' libHD.so: what a test says it reads, and remembers what it is told. It has no thread: a turn of its
+// Stands for OpenHaptics' libHD.so: it reads what a test sets, and remembers the calls. It has no thread: a turn of its
 // scheduler is fakeTurn().
 
 #include <algorithm>

@@ -1,9 +1,10 @@
-// palpate_damage_sweep [MUTANTS] [SEED] [COMMAND]: damages files of every format in every way, MUTANTS
+// palpate_damage_sweep [MUTANTS] [SEED] [COMMAND] [FORMAT...]: damages files of every format in every way, MUTANTS
 // times each, and gives each to the command with 4 GB of address space and 20 s more than the sound file
 // takes (a scene may be one of a whole head). It reports signals, hangs, exit codes that are not documented, and runs that
 // took more than 1 GB for an input of less than 10 MB, and keeps such inputs beside. Exit 1 if there are any. The command runs
 // in forks of this process, which have loaded its libraries already, as many formats at a time as there are processors;
-// with COMMAND, another build of palpate, it is started anew each time.
+// with COMMAND, another build of palpate ("-": this one), it is started anew each time. Formats that are named are the
+// only ones.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -200,9 +201,19 @@ int main(int argc, char** argv) {
   Sweep sweep;
   sweep.mutants = argc > 1 ? std::atoi(argv[1]) : sweep.mutants;
   if (argc > 2) sweep.seed = static_cast<std::uint64_t>(std::atoll(argv[2]));
-  if (argc > 3) sweep.program = argv[3];
-  if (sweep.mutants <= 0) {
-    std::fprintf(stderr, "usage: palpate_damage_sweep [MUTANTS, 1 or more] [SEED] [COMMAND]\n");
+  if (argc > 3 && std::string(argv[3]) != "-") sweep.program = argv[3];
+  std::vector<Reader> chosen;
+  for (const Reader& reader : palpate::fuzz::readers()) {
+    if (argc < 5 || std::count(argv + 4, argv + argc, std::string(reader.name)) > 0) {
+      chosen.push_back(reader);
+    }
+  }
+  if (sweep.mutants <= 0 || (argc > 4 && chosen.size() + 4 != static_cast<std::size_t>(argc))) {
+    std::fprintf(stderr,
+                 "usage: palpate_damage_sweep [MUTANTS, 1 or more] [SEED] [COMMAND] [FORMAT...]\n"
+                 "formats:");
+    for (const Reader& reader : palpate::fuzz::readers()) std::fprintf(stderr, " %s", reader.name);
+    std::fprintf(stderr, "\n");
     return 2;
   }
   sweep.folder = fs::current_path() / "damage_sweep";
@@ -216,7 +227,7 @@ int main(int argc, char** argv) {
   if (pipe(ends) != 0) return 2;
   Totals all;
   unsigned running = 0;
-  for (const Reader& reader : palpate::fuzz::readers()) {
+  for (const Reader& reader : chosen) {
     if (running == std::max(1U, std::thread::hardware_concurrency())) {
       await(ends[0], all);
       --running;
@@ -230,6 +241,6 @@ int main(int argc, char** argv) {
   }
   for (; running > 0; --running) await(ends[0], all);
   std::printf("%d runs, %zu kinds of damage, %zu formats: %d faults\n", all.runs,
-              palpate::fuzz::damages().size(), palpate::fuzz::readers().size(), all.faults);
+              palpate::fuzz::damages().size(), chosen.size(), all.faults);
   return all.faults == 0 ? 0 : 1;
 }

@@ -12,7 +12,9 @@
 #include <string>
 #ifdef WITH_devices
 #include <palpate/devices/falcon.h>
+#include <palpate/devices/passivity.h>
 #include <palpate/devices/path.h>
+#include <palpate/devices/virtual_coupling.h>
 #endif
 #ifdef WITH_vdb
 #include <palpate/vdb/bake.h>
@@ -85,6 +87,11 @@ int main() {
   require(std::abs(state.position.z - 0.025) < 1e-12, "devices: it starts at its clearance");
   require(palpate::devices::makeFalcon({})->info().name == "Novint Falcon",
           "devices: a driver is linked with all that it needs");
+  palpate::devices::VirtualCoupling coupling({.stiffness = 1000.0, .damping = 1.0});
+  require(coupling.reach(above, 1e-3).position == above, "devices: a coupling begins at the hand");
+  palpate::devices::PassivityController passivity({.mass = 0.1});
+  require(passivity.step(above, 1e-3, {0.0, 0.0, 1.0}, 0.0).force.z == 1.0,
+          "devices: a first force is nothing to damp");
 #endif
 
 #ifdef WITH_vdb

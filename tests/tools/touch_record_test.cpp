@@ -3,17 +3,16 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "helpers.h"
 #include "support/run_command.h"
 #include "support/temp_file.h"
+#include "support/wait.h"
 #include "vdb/python_oracle.h"
 
 namespace palpate::testing {
@@ -129,6 +128,55 @@ TEST_F(TouchRecord, NumPyFindsWhatTheTraceSaysAndItIsFeltAnew) {
   EXPECT_NE(changed.err.find("is not what it was"), std::string::npos) << changed.err;
 }
 
+TEST_F(TouchRecord, StatesAreOnlyForTheSceneThatWasFelt) {
+  // Two balls; the record has a state inside the one with the syrup.
+  const auto scene = [](bool is_swapped) {
+    const std::string one =
+        "  - {name: one, inside: {sphere: {center: [0, 0, 0], radius: 20}}, wall: a, content: s}\n";
+    const std::string two =
+        "  - {name: two, inside: {sphere: {center: [100, 0, 0], radius: 20}}, wall: a}\n";
+    return "palpate: 1\nlength: mm\nmaterials: {a: {stiffness: 500 N/m}, s: {viscosity: 4 "
+           "N.s/m}}\nlayers:\n" +
+           (is_swapped ? two + one : one + two) +
+           "ports:\n  - {name: p, between: [outside, one]}\n";
+  };
+  (void)folder_.file("two.yaml", scene(false));
+  ASSERT_EQ(palpate({"touch", "two.yaml", "--insert", "0,0,40", "0,0,0", "--record", "r.npy",
+                     "--states", "100"})
+                .exit_code,
+            0);
+  EXPECT_EQ(parseOnly(palpate({"replay", "r.npy", "--from", "300", "--json"}))["begun_at_tick"],
+            300);
+  // The same file elsewhere has the states, too.
+  (void)folder_.file("copy.yaml", scene(false));
+  EXPECT_EQ(parseOnly(palpate({"replay", "r.npy", "--from", "300", "--scene", "copy.yaml",
+                               "--json"}))["begun_at_tick"],
+            300);
+  (void)folder_.file("two.yaml", scene(true));
+  const CommandResult anew = palpate({"replay", "r.npy", "--from", "300", "--json"});
+  EXPECT_EQ(anew.exit_code, 0) << anew.err << anew.out;
+  EXPECT_EQ(parseOnly(anew)["begun_at_tick"], 0);
+  EXPECT_NE(anew.err.find("is not what it was"), std::string::npos) << anew.err;
+  EXPECT_NE(anew.err.find("begins at the first tick"), std::string::npos) << anew.err;
+}
+
+TEST_F(TouchRecord, RegionsAreComparedByTheNamesInTheRecord) {
+  ASSERT_EQ(
+      palpate({"touch", "ball.yaml", "--press", "0,0,20", "--depth", "4", "--record", "r.npy"})
+          .exit_code,
+      0);
+  std::string renamed = kBall;
+  for (auto at = renamed.find("ball"); at != std::string::npos; at = renamed.find("ball")) {
+    renamed.replace(at, 4, "bead");
+  }
+  (void)folder_.file("renamed.yaml", renamed);
+  const CommandResult other = palpate({"replay", "r.npy", "--scene", "renamed.yaml", "--json"});
+  EXPECT_EQ(other.exit_code, 1) << other.err;
+  const Json json = parseOnly(other);
+  EXPECT_GT(json["other_regions"], 10);
+  EXPECT_EQ(json["largest_force_N"], 0.0);
+}
+
 TEST_F(TouchRecord, AnInterruptKeepsWhatWasFelt) {
   const CommandResult result =
       runInterrupted({"touch", "ball.yaml", "--press", "0,0,20", "--depth", "1", "--hold", "3600",
@@ -136,6 +184,9 @@ TEST_F(TouchRecord, AnInterruptKeepsWhatWasFelt) {
                      folder_.path(), SIGINT);
   EXPECT_EQ(result.out, "");
   EXPECT_NE(result.err.find("r.npy and t.csv"), std::string::npos) << result.err;
+  // It may come before the first tick, and then nothing was felt.
+  const char* told = facts("r.npy").at(0) == 0.0 ? "no tick was felt" : "what was felt until then";
+  EXPECT_NE(result.err.find(told), std::string::npos) << result.err;
   EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"ball.yaml", "r.npy", "r.npy.json",
                                                                "r.npy.states", "t.csv"}));
   EXPECT_EQ(linesOf(textOf(folder_.path("t.csv"))).size(), facts("r.npy").at(0) + 1.0);
@@ -152,10 +203,10 @@ TEST_F(TouchRecord, AKillInTheMiddleLeavesARecordThatIsWhole) {
         sent = true;
         // Once some hundred ticks are there.
         std::error_code failed;
-        while (kill(process, 0) == 0 && !(std::filesystem::exists(record, failed) &&
-                                          std::filesystem::file_size(record, failed) > 100000)) {
-          std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
+        EXPECT_TRUE(waitUntil([&] {
+          return kill(process, 0) != 0 || (std::filesystem::exists(record, failed) &&
+                                           std::filesystem::file_size(record, failed) > 100000);
+        }));
         kill(process, SIGKILL);
       });
   EXPECT_TRUE(sent);
@@ -261,6 +312,80 @@ TEST_F(TouchRecord, ARecordThatCannotBeReadIsOneErrorWithItsFile) {
   EXPECT_EQ(there.exit_code, 1);
   EXPECT_NE(there.err.find("--force"), std::string::npos) << there.err;
   EXPECT_EQ(textOf(folder_.path("r.npy")), good[0]);
+}
+
+TEST_F(TouchRecord, AnOutputThatIsALinkToAnotherIsRefused) {
+  const std::vector<std::string> press = {"touch", "ball.yaml", "--press", "0,0,20"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), press.begin(), press.end());
+    return palpate(more);
+  };
+  ASSERT_EQ(with({"--record", "r.npy"}).exit_code, 0);
+  const std::string good = textOf(folder_.path("r.npy"));
+  std::filesystem::create_symlink("r.npy", folder_.path("link.csv"));
+  std::filesystem::create_symlink("r.npy.json", folder_.path("about.csv"));
+  std::filesystem::create_directory(folder_.path("sub"));
+  std::filesystem::create_directory_symlink("sub", folder_.path("same"));
+  const std::vector<std::vector<std::string>> wrong = {
+      {"--record", "r.npy", "--trace", "link.csv", "--force"},
+      {"--record", "r.npy", "--trace", "about.csv", "--force"},
+      {"--record", "r.npy", "--trace", "./sub/../r.npy", "--force"},
+      {"--record", "sub/n.npy", "--trace", "same/n.npy"},
+  };
+  for (const std::vector<std::string>& more : wrong) {
+    const CommandResult result = with(more);
+    EXPECT_EQ(result.exit_code, 2) << more.at(3) << result.err;
+    EXPECT_NE(result.err.find("two outputs are the same file"), std::string::npos) << result.err;
+    EXPECT_EQ(textOf(folder_.path("r.npy")), good);
+  }
+  EXPECT_TRUE(filesIn(folder_.path("sub")).empty());
+  EXPECT_EQ(with({"--record", "sub/n.npy", "--trace", "same/t.csv"}).exit_code, 0);
+}
+
+TEST_F(TouchRecord, OptionsThatARecordCannotHaveAreAFaultOfItsFile) {
+  ASSERT_EQ(palpate({"touch", "ball.yaml", "--press", "0,0,20", "--record", "r.npy"}).exit_code, 0);
+  const Json good = Json::parse(textOf(folder_.path("r.npy.json")));
+  const std::vector<std::pair<const char*, Json>> wrong = {
+      {"ramp", "nan"},
+      {"epsilon", "1e999"},
+      {"max_force", "3 mm"},
+      {"set", Json::array({"zz"})},
+      {"set", Json::array({"jelly.viscosity=-7@0.3"})},
+      {"set", Json::array({"honey.viscosity=7@0.3"})},
+      {"alpha", -1.0},
+      {"alpha_form", "none"},
+      {"interior", "both"},
+      {"halvings", 0},
+      {"halvings", 2.5},
+      {"halvings", 1001},
+  };
+  for (const auto& [key, value] : wrong) {
+    Json about = good;
+    about["options"][key] = value;
+    (void)folder_.file("r.npy.json", about.dump());
+    const CommandResult result = palpate({"replay", "r.npy"});
+    EXPECT_EQ(result.exit_code, 3) << key << value << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_NE(result.err.find("r.npy.json: error: "), std::string::npos) << result.err;
+  }
+  (void)folder_.file("r.npy.json", good.dump());
+  EXPECT_EQ(palpate({"replay", "r.npy"}).exit_code, 0);
+}
+
+TEST_F(TouchRecord, WhatCannotBeAskedForIsUsage) {
+  ASSERT_EQ(palpate({"touch", "ball.yaml", "--press", "0,0,20", "--record", "r.npy"}).exit_code, 0);
+  for (const char* from : {"-1", "-18446744073709551615", "99999999999999999999", "1.5", "x", ""}) {
+    const CommandResult result = palpate({"replay", "r.npy", "--from", from});
+    EXPECT_EQ(result.exit_code, 2) << from << result.err;
+  }
+  for (const char* output : {"--record", "--trace", "--image", "--plot"}) {
+    EXPECT_EQ(palpate({"touch", "ball.yaml", "--press", "0,0,20", output, ""}).exit_code, 2)
+        << output;
+  }
+  const CommandResult states =
+      palpate({"touch", "ball.yaml", "--press", "0,0,20", "--states", "5"});
+  EXPECT_EQ(states.exit_code, 2) << states.err;
+  EXPECT_NE(states.err.find("--record"), std::string::npos) << states.err;
 }
 
 TEST_F(TouchRecord, ATouchedShapeIsFeltAnewWithoutItsOptions) {

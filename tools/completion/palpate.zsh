@@ -39,7 +39,7 @@ _palpate() {
         '*--back[insert\: come back the same way]' \
         '*--renderer[constraint or paper (default\: as the scene says)]:value:(constraint paper)' \
         '*--rate[ticks a second (default 1000)]:value:' \
-        '*--device[follow the motion with a simulated device, in a hand that feels the force\: virtual\:NAME, NAME one of excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3; virtual\: may be left out unless NAME is falcon or inverse3. Or let a hand move a device\: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension). Default\: a hand that goes where it is told]:value:' \
+        '*--device[follow the motion with a simulated device, in a hand that feels the force\: virtual\:NAME, NAME one of excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3; virtual\: may be left out unless NAME is falcon or inverse3. Or let a hand move a device\: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension). Default\: a hand that follows the motion whatever it feels]:value:' \
         '*--hand[device\: how it is held\: none, relaxed (default) or firm]:value:' \
         '*--delay[device\: samples from a force to when the motors give it (default 0)]:value:' \
         '*--seconds[a device that a hand holds\: for how long (default\: until Ctrl-C)]:value:' \

@@ -17,7 +17,7 @@
 namespace palpate::tools {
 
 /// The model that --device, --hand and --delay mean, at `rate` [Hz]: of falcon as of virtual:falcon; none without --device.
-/// @throws Error (kUsage) for a name that there is not, or that has no model; --hand or --delay without a device.
+/// @throws Error (kUsage) for an unknown name, or one without a model; --hand or --delay without a device.
 [[nodiscard]] std::optional<devices::SimulationSettings> simulationOf(const DeviceOptions& options,
                                                                       double rate);
 
@@ -31,7 +31,7 @@ namespace palpate::tools {
 /// @throws Error (kUsage) as simulationOf(), and for a motion or options that the device has nothing to do with.
 void checkDevice(const TouchOptions& options);
 
-/// The device of a touch that has a motion: a simulated one in a hand that is told to go along
+/// The device of a touch that has a motion: a simulated one in a hand that means to go along
 /// `motion`, by `mapping` in the device's own space; or a hand that goes there whatever it feels.
 /// Warns of a motion that leaves the device's workspace.
 [[nodiscard]] std::unique_ptr<devices::Device> makeDevice(const TouchOptions& options,

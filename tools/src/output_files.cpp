@@ -95,6 +95,17 @@ std::string behindLink(const std::string& path) {
   return failed ? path : target.string();
 }
 
+/// Whether two names mean the same file, be it there or not: links and folders are looked through.
+bool isSameFile(const std::string& a, const std::string& b) {
+  std::error_code failed;
+  const auto real = [&](const std::string& path) {
+    const fs::path whole = fs::absolute(path, failed).lexically_normal();
+    const fs::path out = fs::weakly_canonical(whole, failed);
+    return failed ? whole : out;
+  };
+  return real(a) == real(b);
+}
+
 /// Gives `file` the mode of the one it will replace, and its owner where that is allowed.
 void keepMode(const std::string& file, const std::string& replaced) {
   struct stat old = {};
@@ -180,9 +191,11 @@ void OutputFiles::announce(const std::string& path, const std::vector<std::strin
     }
   }
   for (const File& other : files_) {
-    if (fs::path(path).lexically_normal() == fs::path(other.path).lexically_normal() &&
-        (is_standard || !fs::is_character_file(status))) {
-      throw Error(ErrorKind::kUsage, {"usage.output_twice", "two outputs have the same name",
+    const bool is_other_standard = other.path == kStandardOutput;
+    const bool is_same = is_standard || is_other_standard ? is_standard && is_other_standard
+                                                          : isSameFile(path, other.path);
+    if (is_same && (is_standard || !fs::is_character_file(status))) {
+      throw Error(ErrorKind::kUsage, {"usage.output_twice", "two outputs are the same file",
                                       "choose another name", path});
     }
   }

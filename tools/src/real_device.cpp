@@ -115,8 +115,9 @@ std::unique_ptr<devices::Device> makeRealDevice(const std::string& name,
                                                 const RealDeviceOptions& options,
                                                 std::optional<double> seconds) {
   if (!isRealDevice(name)) {
-    throw Error(ErrorKind::kUsage, {"usage.device", "there is no driver of a device '" + name + "'",
-                                    "the devices are falcon, inverse3, dhd and hd"});
+    throw Error(ErrorKind::kUsage,
+                {"usage.device", "no driver is known for a device '" + name + "'",
+                 "the devices are falcon, inverse3, dhd and hd"});
   }
   for (const GivenOption& option : optionsOf(options)) {
     const auto& of = option.devices;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -57,7 +58,7 @@ class Values {
     double number = 0.0;
     take(key, number);
     constexpr double kMost = 1e6;
-    if (!(std::fabs(number) <= kMost)) throw bad(key);
+    if (!(std::fabs(number) <= kMost) || number != std::floor(number)) throw bad(key);
     out = static_cast<int>(number);
   }
   void take(const char* key, std::vector<std::string>& out) const {
@@ -148,6 +149,23 @@ Json jsonOf(devices::DeviceFrame frame) {
   return frame == devices::DeviceFrame::kDevice ? "device" : "world";
 }
 
+/// Refuses what the command line would refuse; quantities are read later, for the scene that they are of.
+void checkOptions(const TouchOptions& options, const Values& all) {
+  const auto need = [&](bool may_be, const char* key) {
+    if (!may_be) throw all.bad(key);
+  };
+  const auto is_one_of = [](const std::string& word, std::initializer_list<const char*> words) {
+    return word.empty() || std::find(words.begin(), words.end(), word) != words.end();
+  };
+  const int halvings = options.halvings.value_or(1);
+  const double alpha = options.alpha.value_or(0.0);
+  need(halvings >= 1 && halvings <= 1000, "halvings");
+  need(alpha >= 0.0 && alpha <= 1e6, "alpha");
+  need(is_one_of(options.alpha_form, {"by_field", "printed", "newton"}), "alpha_form");
+  need(is_one_of(options.interior, {"together", "wall"}), "interior");
+  need(is_one_of(options.passivity, {"observe", "control"}), "passivity");
+}
+
 }  // namespace
 
 std::string aboutFile(const std::string& record) { return record + ".json"; }
@@ -183,6 +201,7 @@ ReadAbout readAbout(const std::string& record) {
   if (about.renderer != "paper" && about.renderer != "constraint") throw all.bad("renderer");
   if (!(about.rate >= 1.0 && about.rate <= 1e5)) throw all.bad("rate_Hz");
   if (!(about.period > 0.0)) throw all.bad("period_s");
+  checkOptions(about.options, all);
   about.options.renderer = about.renderer;
   return out;
 }

@@ -12,9 +12,15 @@
 namespace palpate::tools {
 namespace {
 
+/// Says what the files `kept` hold after so many ticks.
+std::string hintOf(const std::string& kept, std::uint64_t ticks) {
+  if (kept.empty()) return {};
+  if (ticks == 0) return "no tick was felt yet, and none is in " + kept;
+  return "what was felt until then is in " + kept;
+}
+
 /// None if the path was followed to its end.
-std::optional<Error> errorOf(const devices::ServoReport& servo, const std::string& kept) {
-  const std::string hint = kept.empty() ? "" : "what was felt until then is in " + kept;
+std::optional<Error> errorOf(const devices::ServoReport& servo, const std::string& hint) {
   const auto fault = [&](const char* code, const std::string& message) {
     return Error(ErrorKind::kDevice, {code, message, hint});
   };
@@ -104,7 +110,7 @@ TouchRun runTouch(devices::Session& session, devices::Device& device, const Touc
   }
   std::string kept = options.record;
   if (!options.trace.empty()) kept += (kept.empty() ? "" : " and ") + options.trace;
-  std::optional<Error> error = errorOf(run.servo, kept);
+  std::optional<Error> error = errorOf(run.servo, hintOf(kept, report.ticks));
   if (!error && !report.failures.empty()) error = failureOf(report.failures.front());
   if (error) {
     files.keep(options.trace);

@@ -70,7 +70,7 @@ Watched watch(devices::Device& device, double seconds, Console& console) {
   return out;
 }
 
-/// Why what was watched is of no use; empty if it is.
+/// Why the readings are of no use; empty if they are.
 std::string failureOf(const Watched& w) {
   if (w.servo.fault != devices::SafetyFault::kNone) {
     return std::string(devices::textOf(w.servo.fault));

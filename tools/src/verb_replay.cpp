@@ -20,7 +20,8 @@ namespace {
 /// The scene of the record, or the one that was asked for instead.
 struct ReplayScene {
   std::string file;
-  std::string text;  ///< of a mesh, image or grid
+  std::string text;         ///< of a mesh, image or grid
+  bool is_as_felt = false;  ///< it and the files that it names are what they were
 };
 
 ReplayScene sceneOf(const ReplayOptions& options, const RecordAbout& about, Console& console) {
@@ -30,25 +31,39 @@ ReplayScene sceneOf(const ReplayOptions& options, const RecordAbout& about, Cons
                   {"usage.replay", "--scene takes a scene, not a mesh, an image or a grid",
                    "write one with palpate touch ... --write-scene FILE.yaml", options.scene});
     }
-    return {options.scene, {}};
+    return {options.scene, {}, sceneHash(options.scene, {}) == about.scene_hash};
   }
   std::error_code failed;
   if (!std::filesystem::exists(about.scene, failed)) {
     throw inputError("record.scene", "the scene that was felt is not there: " + about.scene,
                      "say where it is now: --scene SCENE", aboutFile(options.record));
   }
-  if (sceneHash(about.scene, about.scene_text) != about.scene_hash) {
+  const bool is_as_felt = sceneHash(about.scene, about.scene_text) == about.scene_hash;
+  if (!is_as_felt) {
     console.warn("the scene " + about.scene + " is not what it was when it was felt");
   }
-  return {about.scene, about.scene_text};
+  return {about.scene, about.scene_text, is_as_felt};
+}
+
+/// What `read` makes of the options in FILE.npy.json, whose faults are that file's, not of a command line.
+template <typename Read>
+auto fromOptions(const std::string& record, const Read& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    throw inputError("record.about", "its options: " + error.problem().message,
+                     error.problem().hint, aboutFile(record));
+  }
 }
 
 /// Where the session begins: at a state, if there is a good one.
 std::optional<devices::SessionState> stateFor(const ReplayOptions& options, const ReadAbout& read,
-                                              Console& console) {
+                                              const ReplayScene& scene, Console& console) {
   const std::uint64_t every = read.about.states_every;
   if (options.from == 0 || every == 0 || options.from < every) return std::nullopt;
-  if (!options.scene.empty() || !options.renderer.empty()) {
+  const bool is_other_renderer =
+      !options.renderer.empty() && options.renderer != read.about.renderer;
+  if (!scene.is_as_felt || is_other_renderer) {
     console.note(
         "another scene or renderer begins at the first tick: states are for those that "
         "they were saved of");
@@ -134,34 +149,34 @@ Report run(const ReplayOptions& options, const GeneralOptions&, Console& console
   if (!options.renderer.empty()) asked.renderer = options.renderer;
   const bool shows_all = about.shows_all || asked.renderer == "paper";
   const ScenePtr scene = loaded.compile(shows_all ? Purpose::kShow : Purpose::kTouch);
-  devices::SessionSettings how{.renderer = rendererSettings(asked, loaded.unit())};
+  devices::SessionSettings how;
+  how.renderer =
+      fromOptions(options.record, [&] { return rendererSettings(asked, loaded.unit()); });
   how.renderer.limits.period = about.period;
-  how.changes = contentEvents(readSettings(asked.set), *scene, kInfinity);
+  how.changes = fromOptions(
+      options.record, [&] { return contentEvents(readSettings(asked.set), *scene, kInfinity); });
   how.servo.rate = about.rate;
   how.checkpoint_every = about.states_every;
-  std::optional<devices::LoopModel> loop;
-  if (const auto simulation = simulationOf(asked.device, about.rate)) {
-    loop = loopOf(*simulation);
-  }
   asked.rate = about.rate;
-  const devices::HandGuards guards = guardsOf(asked, scene->device(), loop);
+  const devices::HandGuards guards = fromOptions(
+      options.record, [&] { return guardsOf(asked, scene->device(), touchLoop(asked)); });
   how.passivity = guards.passivity;
   how.coupling = guards.coupling;
   devices::Session session(scene, std::move(how));
 
-  const std::optional<devices::SessionState> state = stateFor(options, read, console);
+  const std::optional<devices::SessionState> state = stateFor(options, read, chosen, console);
   if (state && !session.resume(*state)) {
-    throw inputError("record.states",
-                     "the state before tick " + std::to_string(state->ticks) +
-                         " cannot be one of this scene: it is not what it was",
-                     "replay from the first tick, or give the scene that was felt: --scene SCENE",
-                     statesFile(options.record));
+    throw inputError(
+        "record.states",
+        "the state before tick " + std::to_string(state->ticks) + " cannot be one of this scene",
+        "replay from the first tick", statesFile(options.record));
   }
   const std::uint64_t begun_at = session.ticks();
   record.seek(begun_at);
-  const devices::ReplayReport done =
-      devices::replay(record, session, about.frame, options.from,
-                      [] { return stopRequested().load(std::memory_order_relaxed); });
+  const devices::ReplayReport done = devices::replay(
+      record, session, about.frame, options.from,
+      [] { return stopRequested().load(std::memory_order_relaxed); },
+      devices::RecordNames{about.regions, about.ports});
   checkStop();
   if (done.compared == 0) {
     throw inputError("record.gap",

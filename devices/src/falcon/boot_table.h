@@ -16,7 +16,7 @@ struct BootTable {
 };
 
 /// Reads the table without using it: key 0x08AA, 8 words, entry, blocks of {count, address, words}, count 0, and nothing after.
-/// @throws Error (kInput), naming `file`, if it is no such table.
+/// @throws Error (kInput), naming `file`, if it is not a boot table.
 [[nodiscard]] BootTable readBootTable(std::span<const std::uint8_t> image, const std::string& file);
 
 /// The bytes of `file`, checked. @throws Error (kInput).

@@ -76,7 +76,7 @@ void readLine(const std::string& text, const std::string& file, int number,
     valueOf(into, entry) = read;
     return;
   }
-  throw lineError(file, number, "'" + name + "' is no constant of a Falcon");
+  throw lineError(file, number, "'" + name + "' is not a constant of a Falcon");
 }
 
 }  // namespace
@@ -92,7 +92,8 @@ FalconCalibration readFalconCalibration(const std::string& file) {
 
 std::string textOf(const FalconCalibration& calibration) {
   FalconCalibration copy = calibration;
-  std::string out = "# Constants of a Novint Falcon. What is not listed is as Palpate has it.\n";
+  std::string out =
+      "# Constants of a Novint Falcon. Constants that are not listed keep their default.\n";
   for (const Entry& entry : kEntries) {
     out += std::string(entry.name) + " " + numberText(valueOf(copy, entry)) + "  # " + entry.unit +
            "\n";

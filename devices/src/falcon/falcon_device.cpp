@@ -58,7 +58,7 @@ void FalconDevice::open() {
       start();
     } catch (const Error& error) {
       transport_.reset();
-      // Loading the firmware is known to fail now and then; what is absent or not permitted stays so.
+      // Loading the firmware is known to fail now and then; an absent device, or one without permission, stays so.
       const std::string& code = error.problem().code;
       const bool may_help = code == "falcon.boot" || code == "device.usb";
       if (!may_help || attempt == kStarts) throw;

@@ -62,7 +62,7 @@ Reply Parser::decode() const noexcept {
 
 std::optional<Reply> Parser::push(std::uint8_t byte) noexcept {
   if (!fits(byte)) {
-    // What was begun is garbage; a packet may begin with this very byte.
+    // The bytes so far are garbage; a packet may begin with this very byte.
     dropped_ += size_;
     size_ = 0;
     if (byte != kBegin) {

@@ -9,6 +9,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
@@ -44,6 +45,7 @@ class Link::Work {
         id_(settings.id),
         event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
         wakes_(context_),
+        deadline_(context_),
         socket_(context_) {
     if (event_ >= 0) wakes_.assign(event_);
   }
@@ -99,9 +101,19 @@ class Link::Work {
 
   void hangUp() noexcept {
     error_code ignored;
+    deadline_.cancel(ignored);
     wakes_.cancel(ignored);
     beast::get_lowest_layer(socket_).cancel();
     beast::get_lowest_layer(socket_).socket().close(ignored);
+  }
+
+  /// Hangs up in kConnectTime, unless it is set again or canceled. It is a timer of its own: the stream's may not be set
+  /// while the stream reads or writes.
+  void setDeadline() {
+    deadline_.expires_after(kConnectTime);
+    deadline_.async_wait([this](const error_code& canceled) {
+      if (!canceled) fail("it does not answer");
+    });
   }
 
   void connect() {
@@ -111,7 +123,7 @@ class Link::Work {
       fail("the host must be an address such as 127.0.0.1");
       return;
     }
-    beast::get_lowest_layer(socket_).expires_after(kConnectTime);
+    setDeadline();
     beast::get_lowest_layer(socket_).async_connect(
         asio::ip::tcp::endpoint(address, settings_.port), [this](const error_code& error) {
           if (error) return fail(error.message());
@@ -128,7 +140,6 @@ class Link::Work {
   }
 
   void readNext() {
-    if (is_up_) beast::get_lowest_layer(socket_).expires_never();
     socket_.async_read(buffer_, [this](const error_code& error, std::size_t /*size*/) {
       if (error) return fail(error.message());
       take(beast::buffers_to_string(buffer_.data()));
@@ -148,9 +159,10 @@ class Link::Work {
     mail_.say(DeviceStatus::kOk, message->state);
     if (is_up_) return;
     id_ = message->id;
+    deadline_.cancel();
+    send();  // The service answers only messages. This one goes before any that write() asks for.
     is_up_ = true;
     first_.set_value();
-    send();  // the service answers what it is sent
   }
 
   void waitForWake() {
@@ -187,7 +199,7 @@ class Link::Work {
   void finish() {
     is_ending_ = true;
     if (!beast::get_lowest_layer(socket_).socket().is_open() || id_.empty()) return hangUp();
-    beast::get_lowest_layer(socket_).expires_after(kConnectTime);
+    setDeadline();
     send();
   }
 
@@ -197,6 +209,7 @@ class Link::Work {
   asio::io_context context_;
   int event_;
   asio::posix::stream_descriptor wakes_;
+  asio::steady_timer deadline_;
   Socket socket_;
   beast::flat_buffer buffer_;
   std::string out_;

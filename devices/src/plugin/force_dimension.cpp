@@ -109,7 +109,7 @@ class ForceDimensionDevice final : public Device {
 
   [[nodiscard]] DeviceStatus write(const Vec3& force) noexcept override {
     if (!dhd_) return DeviceStatus::kDisconnected;
-    // Above 0: the motors are at their limit, which is no fault.
+    // Above 0: the motors are at their limit, which is not a fault.
     return dhd_->set_force(force.x, force.y, force.z, device_) < 0 ? DeviceStatus::kFault
                                                                    : DeviceStatus::kOk;
   }
@@ -135,12 +135,7 @@ std::unique_ptr<Device> makeForceDimension(const PluginSettings& settings) {
 }
 
 bool hasForceDimension(const PluginSettings& settings) {
-  try {
-    const SharedLibrary library(namesOf(settings), kHint);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
+  return SharedLibrary::isThere(namesOf(settings));
 }
 
 }  // namespace palpate::devices

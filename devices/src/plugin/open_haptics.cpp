@@ -73,7 +73,7 @@ struct Functions {
 constexpr int kPatience = 20;         // turns of 1 ms without a new force
 constexpr double kMillimeter = 1e-3;  // [m]
 
-/// What is done within the library's thread.
+/// Runs in the library's thread.
 struct Work {
   const Functions* hd = nullptr;
   Handle device = kNoDevice;
@@ -200,12 +200,7 @@ std::unique_ptr<Device> makeOpenHaptics(const PluginSettings& settings) {
 }
 
 bool hasOpenHaptics(const PluginSettings& settings) {
-  try {
-    const SharedLibrary library(namesOf(settings), kHint);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
+  return SharedLibrary::isThere(namesOf(settings));
 }
 
 }  // namespace palpate::devices

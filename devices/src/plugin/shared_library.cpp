@@ -21,6 +21,15 @@ SharedLibrary::SharedLibrary(const std::vector<std::string>& names, const std::s
               {"device.library", "the maker's library cannot be loaded: " + reasons, hint});
 }
 
+bool SharedLibrary::isThere(const std::vector<std::string>& names) {
+  try {
+    const SharedLibrary library(names, "");
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 SharedLibrary::~SharedLibrary() {
   if (handle_ != nullptr) dlclose(handle_);
 }

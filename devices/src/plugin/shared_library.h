@@ -9,11 +9,14 @@ namespace palpate::devices::plugin {
 /// Stays loaded while this lives.
 class SharedLibrary {
  public:
-  /// The first of `names` that there is. @throws Error (kDevice), with `hint`, if there is none.
+  /// Loads the first of `names` that is found. @throws Error (kDevice), with `hint`, if none is.
   SharedLibrary(const std::vector<std::string>& names, const std::string& hint);
   ~SharedLibrary();
   SharedLibrary(const SharedLibrary&) = delete;
   SharedLibrary& operator=(const SharedLibrary&) = delete;
+
+  /// Whether one of `names` can be loaded.
+  [[nodiscard]] static bool isThere(const std::vector<std::string>& names);
 
   /// Fills in the function's address. @throws Error (kDevice) if the library has none of that name.
   template <typename Function>

@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-Vec3 FeltWall::rise(double depth) const noexcept {
+Vec3 SharedWall::rise(double depth) const noexcept {
   Vec3 out(0.0);
   if (height_rise != Vec3(0.0)) out += law.energyPerHeight(depth) * height_rise;
   if (stiffness_rise != Vec3(0.0)) out += law.energyPerStiffness(depth) * stiffness_rise;
@@ -14,7 +14,7 @@ Vec3 FeltWall::rise(double depth) const noexcept {
   return out;
 }
 
-void SharedWalls::add(const FeltWall& felt, double share, const Vec3& by_place,
+void SharedWalls::add(const SharedWall& felt, double share, const Vec3& by_place,
                       const Vec3& by_press) noexcept {
   std::size_t at = count_;
   if (count_ == kMost) {

@@ -254,6 +254,13 @@ Partition::Sides Partition::sidesOf(const Program& program) {
   return std::move(stack.front());
 }
 
+bool Signs::isOf(std::size_t leaves) const noexcept {
+  if (leaves_ != leaves || leaves > kMaxLeaves || used_ != (leaves + 63) / 64) return false;
+  // Bits beyond the last leaf do not stand for leaves.
+  const std::size_t rest = leaves % 64;
+  return rest == 0 || words_[used_ - 1] >> rest == 0;
+}
+
 std::size_t Signs::countInside(LeafId first, std::size_t count) const noexcept {
   std::size_t inside = 0;
   (void)anyWord(words_, first, count, [&](std::uint64_t word, std::uint64_t mask) {

@@ -22,7 +22,11 @@ void Punctures::puncture(PortId id, const Port& port, const Vec3& point) noexcep
       next_hole_ = static_cast<std::uint8_t>((next_hole_ + 1) % kMaxHoles);
     }
   }
-  if (port.rearm <= 0.0) return;
+  rest(id, point, port.rearm);
+}
+
+void Punctures::rest(PortId id, const Vec3& point, double rearm) noexcept {
+  if (!(rearm > 0.0)) return;
   Resting* const end = resting_.data() + resting_count_;
   Resting* at = std::find_if(resting_.data(), end, [&](const Resting& r) { return r.port == id; });
   if (at == end && resting_count_ == kMaxResting) {
@@ -31,7 +35,7 @@ void Punctures::puncture(PortId id, const Port& port, const Vec3& point) noexcep
   } else if (at == end) {
     ++resting_count_;
   }
-  *at = {id, point, port.rearm};
+  *at = {id, point, rearm};
 }
 
 void Punctures::visit(const Vec3& p) noexcept {
@@ -47,7 +51,9 @@ bool Punctures::isOf(std::size_t ports) const noexcept {
   if (hole_count_ > kMaxHoles || next_hole_ >= kMaxHoles || resting_count_ > kMaxResting) {
     return false;
   }
-  const auto is_port = [&](const auto& entry) { return entry.port < ports; };
+  const auto is_port = [&](const auto& entry) {
+    return entry.port < ports && isFinite(entry.point);
+  };
   return std::all_of(holes_.begin(), holes_.begin() + hole_count_, is_port) &&
          std::all_of(resting_.begin(), resting_.begin() + resting_count_, is_port);
 }

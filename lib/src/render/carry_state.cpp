@@ -7,6 +7,7 @@
 #include "palpate/interior/partition.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/render/tick_state.h"
+#include "state_check.h"
 
 namespace palpate {
 namespace {
@@ -48,10 +49,8 @@ PassedPorts carried(const PassedPorts& passed, const Scene& from, const Scene& t
     const auto there = portThere(static_cast<PortId>(id), from, to, lost);
     // One that no `after` names any more is not asked for.
     if (!there || to.ports()[*there].slot < 0) continue;
-    const bool inward = passed.turn(static_cast<std::size_t>(slot)) > 0;
-    for (std::int64_t n = passed.times(static_cast<std::size_t>(slot)); n > 0; --n) {
-      out.pass(static_cast<std::size_t>(to.ports()[*there].slot), inward, false);
-    }
+    out.take(static_cast<std::size_t>(to.ports()[*there].slot), passed,
+             static_cast<std::size_t>(slot));
   }
   return out;
 }
@@ -61,10 +60,36 @@ Punctures carried(const Punctures& punctures, const Scene& from, const Scene& to
   Punctures out;
   for (const Hole& hole : punctures.holes()) {
     if (const auto there = portThere(hole.port, from, to, lost)) {
-      out.puncture(*there, to.ports()[*there], hole.point);
+      Port port = to.ports()[*there];
+      port.rearm = 0.0;  // whether it rests is not known by its hole
+      out.puncture(*there, port, hole.point);
+    }
+  }
+  for (const Punctures::Resting& resting : punctures.resting()) {
+    if (const auto there = portThere(resting.port, from, to, lost)) {
+      out.rest(*there, resting.point, to.ports()[*there].rearm);
     }
   }
   return out;
+}
+
+/// The leaf of `to` that is what `leaf` is in `from`, as far as it can be seen from `p` [m]; -1: there is none. Leaves have no
+/// names, but one that was not edited has the same value and slope there, and the same box.
+int leafThere(LeafId leaf, const Vec3& p, const Scene& from, const Scene& to) {
+  const Leaf& old = from.partition().leaves()[leaf];
+  const FieldSample was = old.field->sample(p);
+  const Box3 box = old.field->bounds();
+  const auto is_same = [&](const Leaf& one) {
+    const FieldSample is = one.field->sample(p);
+    const Box3 bounds = one.field->bounds();
+    return was.in_band == is.in_band && was.value == is.value && was.gradient == is.gradient &&
+           box.lo == bounds.lo && box.hi == bounds.hi;
+  };
+  const auto leaves = to.partition().leaves();
+  // Where several look the same from there, the one that kept its number.
+  if (leaf < leaves.size() && is_same(leaves[leaf])) return leaf;
+  const auto at = std::find_if(leaves.begin(), leaves.end(), is_same);
+  return at == leaves.end() ? -1 : static_cast<int>(at - leaves.begin());
 }
 
 }  // namespace
@@ -74,6 +99,15 @@ CarriedState carryState(const RendererState& sealed, RendererKind kind, const Sc
   const TickState state = TickState::of(sealed);
   CarriedState out;
   TickState after;
+  after.kind = kind;
+  if (!isStateOf(state, kind, from)) {
+    out.lost.emplace_back("all: this is not a state of such a renderer of that scene");
+    after.guard = state.guard;
+    after.guard.reset();
+    after.last.region = to.startRegion();
+    out.state = after.sealed();
+    return out;
+  }
   const std::string& name = from.regions()[state.place.region].name;
   const auto region = placeOf(to.regions(), name);
   const PassedPorts passed = carried(state.place.passed, from, to, out.lost);
@@ -107,6 +141,14 @@ CarriedState carryState(const RendererState& sealed, RendererKind kind, const Sc
   place.punctures = punctures;
   after.friction = state.friction;
   after.fade.region = there;
+  if (state.place.mouth >= 0) {
+    place.mouth = leafThere(static_cast<LeafId>(state.place.mouth), place.point, from, to);
+    if (place.mouth >= 0) {
+      after.fade.share = state.fade.share;
+    } else if (to.regions()[there].content >= 0) {
+      out.lost.push_back("the opening into region " + inQuotes(name));
+    }
+  }
   after.pressed = materialThere(state.pressed, from, to);
   const RelaxationState& relaxed = state.relaxation;
   const auto pressed_from = placeOf(to.regions(), from.regions()[relaxed.region].name);

@@ -49,6 +49,14 @@ void CellWalker::place(const Vec3& p) noexcept {
   here_.mouth = -1;
 }
 
+void CellWalker::standWith(const CellWalker& other) noexcept {
+  here_.point = other.here_.point;
+  here_.sides.assign(other.here_.sides);
+  here_.region = other.here_.region;
+  here_.mouth = -1;
+  resume();
+}
+
 void CellWalker::resume() noexcept {
   // So far on that no leaf counts as one that held the point a slide ago.
   stay_ += limits::kStaysOfSlide + 1;

@@ -31,6 +31,8 @@ class CellWalker {
 
   /// Puts the point at `p` [m] as if it had always been there: signs and region are taken from `p`.
   void place(const Vec3& p) noexcept;
+  /// Puts the point where `other`'s is, on the sides where that one is.
+  void standWith(const CellWalker& other) noexcept;
   /// The state was replaced: goes on from there.
   void resume() noexcept;
   /// While sealed, whatever leads out of the region is a wall.

@@ -7,7 +7,7 @@
 namespace palpate {
 
 ConstraintRenderer::ConstraintRenderer(ScenePtr scene, const RendererSettings& settings)
-    : RendererBase(std::move(scene), settings.limits),
+    : RendererBase(std::move(scene), RendererKind::kConstraint, settings.limits),
       walker_(*scene_, state_.place),
       solver_(*scene_, walker_),
       feel_(*scene_, walker_, state_) {}

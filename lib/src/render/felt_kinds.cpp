@@ -34,7 +34,11 @@ bool feelAlike(const Material& a, const Material& b) noexcept {
 }  // namespace
 
 FeltWalls::FeltWalls(const Scene& scene, CellWalker& walker)
-    : scene_(scene), walker_(walker), near_(scene, walker), beneath_(scene), seams_(scene, walker) {
+    : scene_(scene),
+      walker_(walker),
+      near_(scene, walker),
+      beneath_(scene, walker),
+      seams_(scene, walker) {
   sortKinds();
   if (std::find(may_differ_.begin(), may_differ_.end(), true) != may_differ_.end()) {
     findConvexLeaves();

@@ -17,9 +17,9 @@ MaterialMap::Sample FeltWalls::stiffness(LeafId leaf, const Facet& facet, const 
   return wall.stiffness.sample(x);
 }
 
-FeltWall FeltWalls::felt(LeafId leaf, const Facet& facet, const HeldWall& held, const Vec3& x,
-                         SmoothedField& smoothed) noexcept {
-  FeltWall out;
+SharedWall FeltWalls::felt(LeafId leaf, const Facet& facet, const HeldWall& held, const Vec3& x,
+                           SmoothedField& smoothed) noexcept {
+  SharedWall out;
   const Material& wall = material(facet);
   MaterialMap::Sample linear;
   const double contrast = contrast_[static_cast<std::size_t>(facet.material)];

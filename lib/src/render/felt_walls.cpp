@@ -142,8 +142,8 @@ bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
   return true;
 }
 
-/// Whether a wall bounds the region, or one that it leads to freely, where it meets that of the leaf `beside`: what covers
-/// both there, as skin does a bone and a ridge that crosses it, keeps the region off.
+/// Whether a wall bounds the region, or one that it leads to freely, at the place where it meets that of the leaf `beside`.
+/// It does not where a third layer covers both, as skin covers a bone and a ridge that crosses it.
 bool FeltWalls::isWallAt(const Near& wall, LeafId beside, const Vec3& place) noexcept {
   std::array<LeafId, kMostTurned> turned{};
   std::size_t count = 0;

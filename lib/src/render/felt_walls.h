@@ -24,8 +24,8 @@ class FeltWalls final : public SoftKinds {
   [[nodiscard]] MaterialMap::Sample stiffness(LeafId leaf, const Facet& facet, const HeldWall& held,
                                               const Vec3& x) noexcept;
   /// What that wall pushes with there.
-  [[nodiscard]] FeltWall felt(LeafId leaf, const Facet& facet, const HeldWall& held, const Vec3& x,
-                              SmoothedField& smoothed) noexcept;
+  [[nodiscard]] SharedWall felt(LeafId leaf, const Facet& facet, const HeldWall& held,
+                                const Vec3& x, SmoothedField& smoothed) noexcept;
   /// What that wall and those beside it on the same surface push with there; press() and differ() come first.
   [[nodiscard]] SharedWalls shared(LeafId leaf, const Facet& facet, const HeldWall& held,
                                    const Vec3& x, SmoothedField& smoothed) noexcept;

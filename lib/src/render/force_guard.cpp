@@ -39,6 +39,8 @@ Vec3 ForceGuard::slewed(const Vec3& wanted, double step) const noexcept {
   return length <= reach ? wanted : kept + more * (reach / length);
 }
 
+bool ForceGuard::isSound() const noexcept { return isFinite(last_) && age_ >= 0.0; }
+
 void ForceGuard::reset() noexcept {
   age_ = 0.0;
   last_ = Vec3(0.0);

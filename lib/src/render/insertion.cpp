@@ -1,6 +1,7 @@
 #include "palpate/render/insertion.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace palpate {
@@ -32,10 +33,21 @@ Vec3 cutForce(const Contents& contents, RegionId region, Cut& cut, const Vec3& t
 
 bool Insertion::isOf(std::size_t regions) const noexcept {
   if (count_ > kMaxLayers || cut_count_ > kMaxCuts || next_cut_ >= kMaxCuts) return false;
-  return region_ < regions &&
-         std::all_of(
-             layers_.begin(), layers_.begin() + static_cast<std::ptrdiff_t>(count_),
-             [&](const Layer& layer) { return layer.from < regions && layer.region < regions; });
+  const auto is_layer = [&](const Layer& layer) {
+    return layer.from < regions && layer.region < regions && isFinite(layer.normal) &&
+           isFinite(layer.cut.entry()) && isFinite(layer.cut.end()) &&
+           std::isfinite(layer.slip.stretch()) && isFinite(layer.channel.direction()) &&
+           std::isfinite(layer.channel.moment());
+  };
+  const auto is_cut = [&](const Remembered& cut) {
+    return cut.region < regions && isFinite(cut.cut.entry()) && isFinite(cut.cut.end());
+  };
+  return region_ < regions && isFinite(tip_) && isFinite(velocity_) && isFinite(felt_) &&
+         isFinite(beyond_) && std::isfinite(stored_) && std::isfinite(reach_) &&
+         std::all_of(layers_.begin(), layers_.begin() + static_cast<std::ptrdiff_t>(count_),
+                     is_layer) &&
+         std::all_of(cuts_.begin(), cuts_.begin() + static_cast<std::ptrdiff_t>(cut_count_),
+                     is_cut);
 }
 
 Insertion::Force Insertion::step(const Contents& contents, const Tick& tick) noexcept {

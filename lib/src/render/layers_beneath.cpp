@@ -6,10 +6,12 @@
 namespace palpate {
 namespace {
 
-/// Of the depth: where the ray begins behind the wall. A layer thinner than that is not felt.
-constexpr double kBehind = 1e-6;
+/// Of the depth: so near to the wall the ray counts as at it.
+constexpr double kAtWall = 1e-6;
 /// Of the depth, at its end: where what differs from the layer before fades out.
 constexpr double kFade = 0.25;
+/// Cosine of two normals from which on two surfaces at one place are one.
+constexpr double kParallel = 1.0 - 1e-12;
 /// Facets that one ray crosses, sheets and openings included.
 constexpr int kMostCrossings = 12;
 /// Cosine of the ray and an interface's normal below which the interface's depth has no slope: the ray grazes it.
@@ -48,7 +50,7 @@ MaterialMap::Sample LayersBeneath::stiffness(LeafId leaf, const Vec3& x, const H
   found_.rise[0] = alongWall(own.gradient, held.normal);
   found_.slope[0] = Vec3(0.0);
   found_.top[0] = 0.0;
-  look(x, held, material);
+  look(x, held, facet.beyond, material.composite.depth);
 
   const std::span<StackLayer> layers(found_.layers.data(), found_.count);
   for (std::size_t i = 0; i + 1 < layers.size(); ++i) {
@@ -63,13 +65,16 @@ MaterialMap::Sample LayersBeneath::stiffness(LeafId leaf, const Vec3& x, const H
   return last_;
 }
 
-void LayersBeneath::look(const Vec3& x, const HeldWall& held, const Material& material) noexcept {
-  const double depth = material.composite.depth;
+/// The ray begins at the proxy, so that what covers the wall is met as well.
+void LayersBeneath::look(const Vec3& x, const HeldWall& held, RegionId beyond,
+                         double depth) noexcept {
   const Vec3 end = x - depth * held.normal;
   place_.passed.clear();
   place_.punctures.clear();
-  probe_.place(x - kBehind * depth * held.normal);
+  probe_.standWith(proxy_);
   probe_.beginTick();
+  const RegionId front = probe_.region();
+  bool is_behind = false;
   for (int i = 0; i < kMostCrossings && found_.count < kMostStackLayers; ++i) {
     const RegionId before = probe_.region();
     const CellWalker::Stop stop = probe_.move(end, true);
@@ -81,12 +86,32 @@ void LayersBeneath::look(const Vec3& x, const HeldWall& held, const Material& ma
     } else {
       probe_.cross(leaf, probe_.facetAt(leaf));
     }
-    if (probe_.region() == kOutside) return;
-    if (probe_.region() != before) add(before, leaf, x, held, depth);
+    const RegionId region = probe_.region();
+    if (region == before) continue;
+    is_behind = is_behind || glm::dot(x - probe_.position(), held.normal) > kAtWall * depth;
+    const RegionId from = is_behind ? before : beyond;
+    if (!is_behind) {
+      // Of what lies before the wall the last counts, which covers it.
+      found_.count = 1;
+      is_behind = region == beyond || isFlush(leaf, x, held, depth);
+      if (is_behind || region == front) continue;
+    }
+    if (region == kOutside) return;
+    add(from, leaf, x, held, depth);
   }
 }
 
-/// The layer that the probe has just come to out of the region `from`, through a facet of `leaf`.
+/// Whether the leaf that the probe has just crossed goes on where the wall does: what lies behind it beside the wall is not
+/// seen through the wall.
+bool LayersBeneath::isFlush(LeafId leaf, const Vec3& x, const HeldWall& held,
+                            double depth) noexcept {
+  if (std::fabs(glm::dot(x - probe_.position(), held.normal)) > kAtWall * depth) return false;
+  const Vec3 gradient = probe_.jetHere(leaf).gradient;
+  return std::fabs(glm::dot(gradient, held.normal)) >= kParallel * glm::length(gradient);
+}
+
+/// The layer that the probe has just come to out of the region `from`, through a facet of `leaf`. One that covers the wall
+/// begins where the wall is.
 void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWall& held,
                         double depth) noexcept {
   const RegionId region = probe_.region();
@@ -105,6 +130,7 @@ void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWal
   };
   const MaterialMap::Sample own =
       scene_.materials()[static_cast<std::size_t>(wall)].stiffness.sample(at);
+  const bool covers = s < 0.0;
   const double left = std::clamp((depth - s) / (kFade * depth), 0.0, 1.0);
   double share = left * left * (3.0 - 2.0 * left);
   Vec3 share_rise = -6.0 * left * (1.0 - left) / (kFade * depth) * slope;
@@ -128,8 +154,8 @@ void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWal
   found_.layers[i] = {before + share * (own.value - before), 0.0};
   found_.rise[i] =
       (1.0 - share) * found_.rise[i - 1] + share * own_rise + (own.value - before) * share_rise;
-  found_.slope[i] = slope;
-  found_.top[i] = s;
+  found_.slope[i] = covers ? Vec3(0.0) : slope;
+  found_.top[i] = covers ? 0.0 : s;
 }
 
 }  // namespace palpate

@@ -10,7 +10,9 @@ namespace palpate {
 /// Belongs to one renderer; const scene, scratch of its own.
 class LayersBeneath {
  public:
-  explicit LayersBeneath(const Scene& scene) : scene_(scene), probe_(scene, place_) {}
+  /// `proxy` stands where the walls are felt from, and outlives this.
+  LayersBeneath(const Scene& scene, const CellWalker& proxy)
+      : scene_(scene), proxy_(proxy), probe_(scene, place_) {}
   LayersBeneath(const LayersBeneath&) = delete;  // the probe works on this one's place
   LayersBeneath& operator=(const LayersBeneath&) = delete;
 
@@ -20,7 +22,8 @@ class LayersBeneath {
   ///
   /// A layer is as stiff as its region's own wall; one without a wall, and what is outside, are not looked
   /// into: there the layer before goes on. Towards the end of the depth what differs fades out over its last
-  /// quarter, and a layer counts the less the flatter the normal meets it, so that nothing appears at once.
+  /// quarter, and a layer counts the less the flatter the normal meets it, so that nothing appears at once. A layer that
+  /// covers the wall at `x`, as beside a crease, is felt as one that begins right behind it.
   [[nodiscard]] MaterialMap::Sample stiffness(LeafId leaf, const Vec3& x, const HeldWall& held,
                                               const Facet& facet,
                                               const Material& material) noexcept;
@@ -35,10 +38,13 @@ class LayersBeneath {
     std::size_t count = 0;
   };
 
-  void look(const Vec3& x, const HeldWall& held, const Material& material) noexcept;
+  void look(const Vec3& x, const HeldWall& held, RegionId beyond, double depth) noexcept;
+  [[nodiscard]] bool isFlush(LeafId leaf, const Vec3& x, const HeldWall& held,
+                             double depth) noexcept;
   void add(RegionId from, LeafId leaf, const Vec3& x, const HeldWall& held, double depth) noexcept;
 
   const Scene& scene_;
+  const CellWalker& proxy_;
   PlaceState place_;
   CellWalker probe_;
   Found found_;

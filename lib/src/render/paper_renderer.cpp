@@ -48,7 +48,7 @@ bool isOn(const Port& port, const PaperFace& face) {
 }  // namespace
 
 PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
-    : RendererBase(std::move(scene), settings.limits),
+    : RendererBase(std::move(scene), RendererKind::kPaper, settings.limits),
       parameters_(settings.paper.over(scene_->paper())),
       now_(scene_->partition().leaves().size()),
       cell_(now_),

@@ -1,6 +1,7 @@
 #include "renderer_base.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "constraint_renderer.h"
@@ -9,21 +10,12 @@
 #include "palpate/interior/partition.h"
 #include "palpate/interior/port_machine.h"
 #include "paper_renderer.h"
+#include "state_check.h"
 
 namespace palpate {
-namespace {
-
-/// False for NaN too.
-bool isNear(const Vec3& p) noexcept {
-  constexpr double kFarthest = HapticRenderer::kFarthest;
-  return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest;
-}
-
-}  // namespace
-
 TickResult RendererBase::update(const HipState& hip) noexcept {
   SourceState& source = state_.source;
-  if (!isNear(hip.position) || !isFinite(hip.velocity)) {
+  if (!isInReach(hip.position) || !isFinite(hip.velocity)) {
     source.flow_push = Vec3(0.0);
     state_.last.event_count = 0;
     crossing_count_ = 0;
@@ -79,6 +71,7 @@ void RendererBase::reset() noexcept {
   ForceGuard guard = state_.guard;
   guard.reset();
   state_ = {};
+  state_.kind = kind_;
   state_.guard = guard;
   state_.last.region = scene_->startRegion();
   crossing_count_ = 0;
@@ -89,23 +82,9 @@ void RendererBase::reset() noexcept {
 
 bool RendererBase::setState(const RendererState& sealed) noexcept {
   const TickState state = TickState::of(sealed);
-  const auto regions = scene_->regions().size();
-  const auto leaves = scene_->partition().leaves().size();
-  const auto is_region = [&](std::size_t region) { return region < regions; };
-  const auto is_material = [&](int material) {
-    return material >= -1 && material < static_cast<int>(scene_->materials().size());
-  };
-  const PlaceState& place = state.place;
-  const bool fits = isNear(state.hip) && isNear(place.point) && is_region(place.region) &&
-                    is_region(state.last.region) && is_region(state.fade.region) &&
-                    is_region(state.relaxation.region) && is_region(state.source.lattice_region) &&
-                    is_region(state.paper.layer) && is_material(state.pressed) &&
-                    is_material(state.relaxation.material) && place.mouth >= -1 &&
-                    place.mouth < static_cast<int>(leaves) &&
-                    (!state.has_begun || place.sides.size() == leaves) &&
-                    place.punctures.isOf(scene_->ports().size()) && state.needle.isOf(regions);
-  if (!fits) return false;
+  if (!isStateOf(state, kind_, *scene_)) return false;
   state_ = state;
+  state_.kind = kind_;
   crossing_count_ = 0;
   entry_count_ = 0;
   unlimited_ = Vec3(0.0);
@@ -140,7 +119,12 @@ Vec3 RendererBase::latticeForce(RegionId region, const Vec3& p) noexcept {
 
 std::unique_ptr<HapticRenderer> makeRenderer(ScenePtr scene, RendererSettings settings) {
   if (!scene) throw inputError("render.no_scene", "makeRenderer() was given no scene");
-  if (settings.kind.value_or(scene->renderer()) == RendererKind::kPaper) {
+  const RendererKind kind = settings.kind.value_or(scene->renderer());
+  if (kind != RendererKind::kConstraint && kind != RendererKind::kPaper) {
+    throw inputError("render.kind",
+                     "unknown kind of renderer: " + std::to_string(static_cast<int>(kind)));
+  }
+  if (kind == RendererKind::kPaper) {
     return std::make_unique<PaperRenderer>(std::move(scene), settings);
   }
   return std::make_unique<ConstraintRenderer>(std::move(scene), settings);

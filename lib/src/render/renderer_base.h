@@ -35,8 +35,9 @@ class RendererBase : public HapticRenderer {
   [[nodiscard]] bool setState(const RendererState& sealed) noexcept final;
 
  protected:
-  RendererBase(ScenePtr scene, const ForceLimits& limits)
-      : scene_(std::move(scene)), contents_(*scene_) {
+  RendererBase(ScenePtr scene, RendererKind kind, const ForceLimits& limits)
+      : scene_(std::move(scene)), contents_(*scene_), kind_(kind) {
+    state_.kind = kind;
     state_.guard = ForceGuard(limits);
     state_.last.region = scene_->startRegion();  // reported until the first good tick
   }
@@ -62,6 +63,7 @@ class RendererBase : public HapticRenderer {
   /// The entries of the last step().
   [[nodiscard]] virtual std::span<const RegionEntry> entered() const noexcept = 0;
 
+  RendererKind kind_;
   Vec3 unlimited_{0.0, 0.0, 0.0};   ///< [N] of the last tick
   std::size_t crossing_count_ = 0;  ///< of the last tick
   std::size_t entry_count_ = 0;     ///< of the last tick

@@ -24,7 +24,7 @@ class Kinds final : public SoftKinds {
   /// The laws are those where the proxy is: bumps and a stiffness that differ from place to place.
   void putProxy(const Vec3& p) {
     for (std::size_t i = 0; i < walls_.size(); ++i) {
-      FeltWall felt;
+      SharedWall felt;
       felt.law = laws_[i];
       felt.law.height = 0.1e-3 * std::sin(900.0 * p.x + 0.3) * std::cos(700.0 * p.y);
       felt.height_rise =

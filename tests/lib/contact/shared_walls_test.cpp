@@ -11,8 +11,8 @@
 namespace palpate::test {
 namespace {
 
-FeltWall feltOf(const WallLaw& law) {
-  FeltWall out;
+SharedWall feltOf(const WallLaw& law) {
+  SharedWall out;
   out.law = law;
   return out;
 }
@@ -60,7 +60,7 @@ TEST(SharedWalls, RiseByWhatTheirSharesAndLawsChangeBy) {
   const Vec3 steeper = 3e4 * random.direction();
   const auto at = [&](const Vec3& place, const Vec3& press) {
     SharedWalls walls;
-    FeltWall second = feltOf(kHertz);
+    SharedWall second = feltOf(kHertz);
     second.law.spring.stiffness += glm::dot(steeper, place);
     second.stiffness_rise = steeper;
     const double share = 0.4 + glm::dot(to_second, place) + glm::dot(by_press, press);

@@ -40,11 +40,11 @@ TEST(WallLaw, ForceIsTheSlopeOfTheEnergyAndTangentThatOfTheForce) {
   }
 }
 
-TEST(FeltWall, RisesByAllThatChangesFromPlaceToPlace) {
+TEST(SharedWall, RisesByAllThatChangesFromPlaceToPlace) {
   Random random(9);
   for (const WallLaw& law : laws()) {
     for (const double depth : {0.05e-3, 0.6e-3, 1.5e-3, 2.7e-3}) {
-      FeltWall felt;
+      SharedWall felt;
       felt.law = law;
       if (law.height != 0.0) felt.height_rise = 0.2 * random.direction();
       felt.stiffness_rise = 3e4 * random.direction();

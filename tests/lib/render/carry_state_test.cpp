@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "lib/render/drive.h"
 #include "palpate/render/haptic_renderer.h"
@@ -164,6 +165,113 @@ TEST(CarriedState, IntoTheSameSceneEveryExampleGoesOn) {
       // As states go on but for rounding.
       ASSERT_TRUE(isNear(now.proxy, then.proxy, 1e-12)) << ticks;
     }
+  }
+}
+
+/// Whether two renderers feel the same on the way to `goal` [m], from `from` at 0.1 m/s.
+void expectTheSameOnTheWay(HapticRenderer& one, HapticRenderer& other, const Vec3& from,
+                           const Vec3& goal) {
+  const int ticks = static_cast<int>(std::ceil(glm::distance(from, goal) / 1e-4));
+  const Vec3 velocity = 0.1 * unitOr(goal - from, Vec3(0.0));
+  for (int i = 1; i <= ticks; ++i) {
+    const Vec3 p = from + (i / static_cast<double>(ticks)) * (goal - from);
+    const TickResult now = one.update({p, velocity});
+    const TickResult then = other.update({p, velocity});
+    ASSERT_EQ(now.region, then.region) << i;
+    // As states go on but for rounding.
+    ASSERT_TRUE(isNear(now.force, then.force, 1e-9)) << i;
+  }
+}
+
+TEST(CarriedState, TheContentBehindAnOpenMouthFadesAsItDid) {
+  const auto text = [](const std::string& layer_before) {
+    return "palpate: 1\nlength: mm\n"
+           "materials: {skin: {stiffness: 500 N/m}, syrup: {viscosity: 3 N.s/m}}\nlayers:\n" +
+           layer_before +
+           "  - {name: side, inside: {sphere: {center: [0, 0, 0], radius: 25}}, wall: skin, "
+           "content: syrup}\nports:\n  - {name: mouth, between: [outside, side]}\n";
+  };
+  const ScenePtr before = sceneOf(text(""));
+  const ScenePtr after = sceneOf(
+      text("  - {name: wart, inside: {sphere: {center: [90, 0, 0], radius: 5}}, wall: skin}\n"));
+  for (const ScenePtr& to : {before, after}) {
+    // Within the fade, and far behind it.
+    for (const double depth : {0.05, 0.15, 15.0}) {
+      SCOPED_TRACE(depth);
+      Drive hand(before);
+      Vec3 at = mm(0, 0, 35);
+      (void)hand.walk(at);
+      (void)hand.walk(mm(0, 0, 25.0 - depth));
+      at = mm(0, 0, 25.0 - depth);
+      ASSERT_EQ(hand.region(), "side");
+      const CarriedState carried =
+          carryState(hand.renderer().state(), RendererKind::kConstraint, *before, *to);
+      ASSERT_TRUE(carried.goes_on);
+      EXPECT_TRUE(carried.lost.empty());
+      const auto edited = makeRenderer(to);
+      ASSERT_TRUE(edited->setState(carried.state));
+      // The numbers of the regions differ: so do not compare them there.
+      if (to == before) expectTheSameOnTheWay(*edited, hand.renderer(), at, mm(0, 0, 35));
+      for (int i = 0; to != before && i < 300; ++i) {
+        at.z += 1e-4;
+        const HipState hip{at, Vec3(0.0, 0.0, 0.1)};
+        ASSERT_TRUE(isNear(edited->update(hip).force, hand.renderer().update(hip).force, 1e-9));
+      }
+    }
+  }
+  // A mouth that is elsewhere is not known again, and that is said.
+  std::string other = text("");
+  other.replace(other.find("radius: 25"), 10, "radius: 26");
+  Drive hand(before);
+  (void)hand.walk(mm(0, 0, 35));
+  (void)hand.walk(mm(0, 0, 20));
+  const CarriedState carried =
+      carryState(hand.renderer().state(), RendererKind::kConstraint, *before, *sceneOf(other));
+  EXPECT_TRUE(carried.goes_on);
+  EXPECT_EQ(carried.lost, std::vector<std::string>{"the opening into region 'side'"});
+}
+
+TEST(CarriedState, APortThatRestsGoesOnResting) {
+  const ScenePtr scene = sceneOf(R"(
+palpate: 1
+length: mm
+materials: {skin: {stiffness: 500 N/m}}
+layers: [{name: side, inside: {sphere: {center: [0, 0, 0], radius: 25}}, wall: skin}]
+ports: [{name: c, between: [outside, side], opens_at: 0.5 N, rearm: 30}]
+)");
+  Drive hand(scene);
+  (void)hand.walk(mm(0, 0, 30));
+  (void)hand.walk(mm(0, 0, 22.5));
+  ASSERT_EQ(hand.region(), "side");
+  const CarriedState carried =
+      carryState(hand.renderer().state(), RendererKind::kConstraint, *scene, *scene);
+  EXPECT_TRUE(carried.lost.empty());
+  const auto edited = makeRenderer(scene);
+  ASSERT_TRUE(edited->setState(carried.state));
+  // Out again: 5 mm of 500 N/m, where a port that does not rest gives way to 0.5 N.
+  expectTheSameOnTheWay(*edited, hand.renderer(), mm(0, 0, 22.5), mm(0, 0, 30));
+  EXPECT_NEAR(edited->update({mm(0, 0, 30), Vec3(0.0)}).force.z, -2.5, 1e-6);
+}
+
+TEST(CarriedState, OfAnotherKindOfRendererItStartsAnew) {
+  const ScenePtr scene = sceneNamed("container");
+  for (const RendererKind kind : {RendererKind::kConstraint, RendererKind::kPaper}) {
+    const RendererKind wrong =
+        kind == RendererKind::kPaper ? RendererKind::kConstraint : RendererKind::kPaper;
+    Drive hand(scene, kind);
+    (void)hand.walk(mm(0, 0, 30));
+    (void)hand.walk(mm(0, 0, 0));
+    const RendererState state = hand.renderer().state();
+    EXPECT_TRUE(carryState(state, kind, *scene, *scene).goes_on);
+    const CarriedState carried = carryState(state, wrong, *scene, *scene);
+    EXPECT_FALSE(carried.goes_on);
+    EXPECT_EQ(carried.lost.size(), 1U);
+    RendererSettings settings;
+    settings.kind = wrong;
+    const auto other = makeRenderer(scene, settings);
+    EXPECT_FALSE(other->setState(state)) << "the other kind's";
+    EXPECT_TRUE(other->setState(carried.state));
+    EXPECT_TRUE(other->setState(RendererState())) << "that of no tick is of both";
   }
 }
 

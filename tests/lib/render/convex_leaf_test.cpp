@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-// A box off the center of what is asked, so that no place is one without a normal.
+// Off the centers of the shapes below, so that every place has a normal.
 const Box3 kBox{Vec3(-0.031, -0.029, -0.033), Vec3(0.027, 0.031, 0.03)};
 const Vec3 kTilted = glm::normalize(Vec3(0.3, -0.5, 0.8));
 
@@ -25,22 +25,22 @@ TEST(ConvexLeaf, BallsCylindersAndConesAre) {
 TEST(ConvexLeaf, WhatBendsInwardOneWayOrTwoIsNot) {
   EXPECT_FALSE(isConvex(*complement(sphere(Vec3(0.0), 0.02)), kBox));
   EXPECT_FALSE(isConvex(*complement(cylinder(Vec3(0.0), kTilted, 0.01, 1.0)), kBox));
-  const auto isQuadricConvex = [](double xx, double yy, double zz, double xy, double yz,
-                                  double xz) {
+  const auto is_quadric_convex = [](double xx, double yy, double zz, double xy, double yz,
+                                    double xz) {
     return isConvex(
         *quadric(Vec3(0.0),
                  {.xx = xx, .yy = yy, .zz = zz, .xy = xy, .xz = xz, .yz = yz, .constant = -0.01}),
         kBox);
   };
-  EXPECT_TRUE(isQuadricConvex(1, 2, 3, 0, 0, 0));
-  EXPECT_FALSE(isQuadricConvex(1, -1, -1, 0, 0, 0));
-  EXPECT_FALSE(isQuadricConvex(-1, 1, -1, 0, 0, 0));
-  EXPECT_FALSE(isQuadricConvex(-1, -1, 1, 0, 0, 0));
-  EXPECT_FALSE(isQuadricConvex(-1, 1, 1, 0, 0, 0));
+  EXPECT_TRUE(is_quadric_convex(1, 2, 3, 0, 0, 0));
+  EXPECT_FALSE(is_quadric_convex(1, -1, -1, 0, 0, 0));
+  EXPECT_FALSE(is_quadric_convex(-1, 1, -1, 0, 0, 0));
+  EXPECT_FALSE(is_quadric_convex(-1, -1, 1, 0, 0, 0));
+  EXPECT_FALSE(is_quadric_convex(-1, 1, 1, 0, 0, 0));
   // No diagonal is negative, and one minor is; the determinant is zero.
-  EXPECT_FALSE(isQuadricConvex(1, 1, 0, 4, 0, 0));
-  EXPECT_FALSE(isQuadricConvex(0, 1, 1, 0, 4, 0));
-  EXPECT_FALSE(isQuadricConvex(1, 0, 1, 0, 0, 4));
+  EXPECT_FALSE(is_quadric_convex(1, 1, 0, 4, 0, 0));
+  EXPECT_FALSE(is_quadric_convex(0, 1, 1, 0, 4, 0));
+  EXPECT_FALSE(is_quadric_convex(1, 0, 1, 0, 0, 4));
   EXPECT_FALSE(isConvex(*torus(Vec3(0.0), kTilted, 0.02, 0.005), kBox));
 }
 

@@ -72,6 +72,12 @@ const Place kPlaces[] = {
      "{name: b, inside: {half_space: {point: [0, 0, 0], normal: [-1, 0, 0.8]}}, wall: other, "
      "content: c}]",
      mm(0, 0, 10), mm(0, 0, -0.4)},
+    {"floor into which another wall dips",
+     "[{name: a, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: m, content: "
+     "c}, "
+     "{name: b, inside: {half_space: {point: [0, 0, 0], normal: [-1, 0, 1]}}, wall: other, "
+     "content: c}]",
+     mm(0, 0, 10), mm(-0.3, 0, -0.5)},
     {"hollow ball beside another wall",
      "[{name: b, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: other}, "
      "{name: a, inside: {sphere: {center: [0, 0, 6], radius: 8}}, wall: m, content: c}]",
@@ -131,6 +137,45 @@ std::string nameOf(const ::testing::TestParamInfo<std::tuple<std::size_t, std::s
   std::replace(out.begin(), out.end(), ' ', '_');
   out.erase(std::remove(out.begin(), out.end(), ','), out.end());
   return out;
+}
+
+/// A layer that dips below a wall under any angle, or a ball in it: as far as the crease with it, and beyond, the wall is as
+/// stiff as both.
+TEST(EnergyGatesOfComposite, WallsAtACreaseWithWhatLiesBehindThemGiveNoEnergy) {
+  const int scenes = std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 300 : kSanitized ? 2 : 12;
+  for (int i = 0; i < scenes; ++i) {
+    Random random(400 + static_cast<std::uint64_t>(i));
+    const double angle = random.uniform(0.1, 3.0);  // of the crease, within the hand's region
+    const Vec3 along = random.direction();
+    const Vec3 up = glm::normalize(glm::cross(along, random.direction()));
+    const Vec3 other = -std::cos(angle) * up + std::sin(angle) * glm::cross(along, up);
+    const double radius = random.uniform(4.0, 30.0);
+    const auto text = [](const Vec3& v) {
+      return "[" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
+             "]";
+    };
+    const std::string second = random.uniform(0.0, 1.0) < 0.5
+                                   ? "half_space: {point: [0, 0, 0], normal: " + text(other) + "}"
+                                   : "sphere: {center: " + text(-radius * other) +
+                                         ", radius: " + std::to_string(radius) + "}";
+    const ScenePtr scene = test::sceneOf(
+        "palpate: 1\nlength: mm\nmaterials:\n  a: {stiffness: " +
+        std::to_string(random.uniform(100.0, 1000.0)) +
+        " N/m, composite: {radius: " + std::to_string(random.uniform(1.0, 6.0)) +
+        ", depth: " + std::to_string(random.uniform(4.0, 20.0)) +
+        "}}\n  b: {stiffness: " + std::to_string(random.uniform(100.0, 3000.0)) +
+        " N/m}\nlayers:\n  - {name: a, inside: {half_space: {point: [0, 0, 0], normal: " +
+        text(up) + "}}, wall: a}\n  - {name: b, inside: {" + second + "}, wall: b}\n");
+    // Into the crease, along the middle of what is open there.
+    const Vec3 out = glm::normalize(up + other);
+    const Vec3 center = random.uniform(-1.2e-3, -0.2e-3) * out;
+    const EnergyLoop loop = randomLoop(random, center, 0.05e-3, 0.7e-3);
+    EnergyGiven given = energyGiven(scene, 10e-3 * out, loop);
+    // Two numbers of steps may be off by the same.
+    if (given.work > 1e-9 + given.change) given = energyGivenAtLast(scene, 10e-3 * out, loop);
+    EXPECT_LE(given.work, 1e-9 + given.change)
+        << "scene " << i << ", open by " << angle << " rad: " << second;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryKey, EnergyGates,

@@ -279,7 +279,7 @@ ports:
   }
 }
 
-// A circle within a union is no wall; nor is a line where one more seam comes within the patch.
+// Neither a circle within a union nor the line where one more seam comes within the patch is a wall.
 TEST(Seams, AcrossALineWithinAUnionNothingSteps) {
   const ScenePtr scene = palpate::test::sceneOf(R"(
 palpate: 1

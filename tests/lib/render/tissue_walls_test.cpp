@@ -82,6 +82,24 @@ TEST(TissueWalls, AMaxwellBranchIsARampAndARelaxation) {
   }
 }
 
+// Lifted fast, the branch slackens where it would pull as hard as the wall's own spring pushes: it takes up from there.
+TEST(TissueWalls, AMaxwellBranchSlackensRatherThanPull) {
+  constexpr double kOwn = 500.0;      // [N/m]
+  constexpr double kBranch = 2000.0;  // [N/m]
+  const auto renderer = makeRenderer(
+      sceneOf(floorOf("stiffness: 500 N/m, maxwell: {stiffness: 2000 N/m, time: 1000 s}")));
+  const auto press = [&](double depth, double dt) {
+    return renderer->update({Vec3(0.0, 0.0, -depth), Vec3(0.0), dt}).force.z;
+  };
+  (void)press(-1e-3, 1e-3);
+  (void)press(2e-3, 1e-3);
+  // Relaxed: its dashpot gave way by all of the depth.
+  EXPECT_NEAR(press(2e-3, 1e6), kOwn * 2e-3, 1e-9);
+  EXPECT_NEAR(press(0.1e-3, 1e-6), 0.0, 1e-9);
+  // From where both were in balance, kBranch x -0.025 mm, by 0.9 mm.
+  EXPECT_NEAR(press(1e-3, 1e-6), kOwn * 1e-3 + kBranch * (0.9e-3 - kOwn * 0.1e-3 / kBranch), 1e-6);
+}
+
 TEST(TissueWalls, AMaxwellBranchTakesEnergyAndGivesNone) {
   Drive hand(sceneOf(floorOf("stiffness: 500 N/m, maxwell: {stiffness: 300 N/m, time: 20 ms}")));
   EnergyMeter meter;

@@ -1,13 +1,20 @@
 // The verbs that look at a scene or feel it.
 
 #include "command_line/verb.h"
+#include "palpate/devices/device_presets.h"
 #include "palpate/devices/simulated_device.h"
 
 namespace palpate::tools {
 namespace {
 
-constexpr const char* kModels =
-    "excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3";
+/// The names of the simulated devices.
+std::string models() {
+  std::string text;
+  for (const devices::DevicePreset& preset : devices::devicePresets()) {
+    text += (text.empty() ? "" : ", ") + std::string(preset.name);
+  }
+  return text;
+}
 
 /// What the hand holds.
 void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::string& what) {
@@ -17,6 +24,17 @@ void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::st
   add(app, group, "--delay", "N", o.delay,
       "device: samples from a force to when the motors give it (default 0)")
       ->check(CLI::Range(0, devices::SimulatedDevice::kMostDelay));
+}
+
+/// "" for a file that has a name.
+std::string named(const std::string& text) { return text.empty() ? "a name is missing" : ""; }
+
+/// "" for the number of a tick.
+std::string tickNumber(const std::string& text) {
+  constexpr std::size_t kMostDigits = 15;
+  const bool is_number = !text.empty() && text.size() <= kMostDigits &&
+                         text.find_first_not_of("0123456789") == std::string::npos;
+  return is_number ? "" : "'" + text + "' is not the number of a tick, which is 0 or more";
 }
 
 void defineTouch(CLI::App& app, Invocation& invocation) {
@@ -56,10 +74,10 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       app, g, o.device,
       std::string("follow the motion with a simulated device, in a hand that feels the force: "
                   "virtual:NAME, NAME one of ") +
-          kModels +
+          models() +
           "; virtual: may be left out unless NAME is falcon or inverse3. Or let a hand move "
           "a device: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension). Default: a "
-          "hand that goes where it is told");
+          "hand that follows the motion whatever it feels");
   add(app, g, "--seconds", "S", o.seconds,
       "a device that a hand holds: for how long (default: until Ctrl-C)")
       ->check(CLI::Range(0.1, 86400.0));
@@ -103,18 +121,23 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       "start without force, and reach all of it after this: "
       "0.2 (s), 200ms");
   g = "Output files";
-  add(app, g, "--trace", "FILE.csv", o.trace, "write one row a tick (SI units)");
-  add(app, g, "--record", "FILE.npy", o.record,
-      "write all that goes into each tick and comes out, for replay and NumPy; beside it "
-      "FILE.npy.json and FILE.npy.states");
+  add(app, g, "--trace", "FILE.csv", o.trace, "write one row a tick (SI units)")->check(named);
+  auto* record = add(app, g, "--record", "FILE.npy", o.record,
+                     "write all that goes into each tick and comes out, for replay and NumPy; "
+                     "beside it FILE.npy.json and FILE.npy.states")
+                     ->check(named);
   add(app, g, "--states", "N", o.states,
       "record: keep a state every N ticks, from which a replay can begin; 0: none (default 10000)")
-      ->check(CLI::Range(0, 1000000000));
+      ->check(CLI::Range(0, 1000000000))
+      ->needs(record);
   add(app, g, "--image", "FILE.png", o.image,
-      "draw the scene cut open, with the path and the forces");
-  add(app, g, "--plot", "FILE.svg", o.plot, "draw the force over the depth of the hand");
+      "draw the scene cut open, with the path and the forces")
+      ->check(named);
+  add(app, g, "--plot", "FILE.svg", o.plot, "draw the force over the depth of the hand")
+      ->check(named);
   add(app, g, "--write-scene", "FILE.yaml", o.write_scene,
-      "a mesh, image or grid: the scene that it is touched as");
+      "a mesh, image or grid: the scene that it is touched as")
+      ->check(named);
   g = "A mesh, an image or a grid instead of a scene (without a motion: pressed on from above)";
   add(app, g, "--above", "VALUE", o.above,
       "image, grid of densities: the surface around what is greater");
@@ -139,12 +162,13 @@ void defineReplay(CLI::App& app, Invocation& invocation) {
   auto& o = choose<ReplayOptions>(invocation);
   app.add_option("record", o.record);
   const char* g = "Options";
-  add(app, g, "--scene", "SCENE", o.scene, "feel this scene instead of the record's");
+  add(app, g, "--scene", "SCENE", o.scene, "feel this scene instead of the record's")->check(named);
   add(app, g, "--renderer", "NAME", o.renderer,
       "constraint or paper (default: the one of the record)")
       ->check(CLI::IsMember({"constraint", "paper"}));
   add(app, g, "--from", "TICK", o.from,
-      "compare from this tick on, and begin at the last state saved before it (default 0)");
+      "compare from this tick on, and begin at the last state saved before it (default 0)")
+      ->check(tickNumber);
 }
 
 void defineQuery(CLI::App& app, Invocation& invocation) {
@@ -185,7 +209,7 @@ void defineExplain(CLI::App& app, Invocation& invocation) {
   addDevice(app, g, o.device,
             std::string("list what is felt beside what this device can hold, and what cures what "
                         "it cannot: ") +
-                kModels + " (virtual:NAME means the same)");
+                models() + " (virtual:NAME means the same)");
   add(app, g, "--rate", "HZ", o.rate, "device: ticks a second (default 1000)")
       ->check(CLI::Range(1.0, 100000.0));
   add(app, "Output files", "--svg", "FILE.svg", o.svg,

@@ -96,16 +96,17 @@ struct ServoTurn {
 /// Called for each tick once its force was written. Must not allocate, lock, throw or block; without `realtime` it may block.
 using ServoObserver = std::function<void(const ServoTurn&)>;
 
-/// What is asked of the operating system.
+/// How much the loop asks of the operating system.
 enum class Elevate : std::uint8_t {
   kOff,
-  kPrefer,   ///< try; what was refused is in the report
+  kPrefer,   ///< try; the report has the refusals
   kRequire,  ///< no loop without it
 };
 
 struct ServoSettings {
   bool realtime = false;  ///< false: as fast as possible, one reading after the other
-  double rate = 1000.0;   ///< [Hz] 1 to 1e5; without `realtime` only the watchdog asks for it
+  double rate =
+      1000.0;  ///< [Hz] 1 to 1e5; without `realtime` the watchdog and the first tick ask for it
   /// A real-time priority of the calling thread (SCHED_FIFO) and locked memory, for as long as the loop runs.
   Elevate elevate = Elevate::kOff;
   /// [s] without a new reading after which the force is zero; above 0. Without `realtime` a turn of

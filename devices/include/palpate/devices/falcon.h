@@ -27,7 +27,7 @@ struct FalconCalibration {
   double continuous_force = 4.0;  ///< [N] that they hold forever: an assumption, none is published
 };
 
-/// @throws Error (kInput): no such file, a name that is not known, a value that cannot be.
+/// @throws Error (kInput) if the file cannot be read, a name is unknown or a value is out of range.
 [[nodiscard]] PALPATE_EXPORT FalconCalibration readFalconCalibration(const std::string& file);
 [[nodiscard]] PALPATE_EXPORT std::string textOf(const FalconCalibration& calibration);
 

@@ -18,7 +18,7 @@ struct Inverse3Settings {
 
 /// WebSocket and JSON live in a thread of their own; read() and write() only exchange values with it. Each write() sends a
 /// force, each answer of the service is a reading; the service forgets a force that is not sent again. Frame: the service's.
-/// open() throws Error (kDevice) if nothing answers there, or if the service has no such device.
+/// open() throws Error (kDevice) if nothing answers there, or if the service does not know the device.
 /// @throws Error (kDevice) in a build without Boost.Beast and nlohmann-json.
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeInverse3(const Inverse3Settings& settings);
 

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "palpate/core/math.h"
+#include "palpate/export.h"
 
 namespace palpate::devices {
 
@@ -34,7 +35,7 @@ struct PassivitySettings {
 /// in between. (f_k . v_k T, with the velocity of the tick that computes f_k, is off by K times the sum of the squared
 /// steps, and calls a loop passive that gives energy away.) Against that count two incomes that a real device surely has:
 /// viscous damping b takes b |x_k - x_{k-1}|^2 / T or more, friction f_c takes f_c |x_k - x_{k-1}| or more.
-class PassivityObserver {
+class PALPATE_EXPORT PassivityObserver {
  public:
   static constexpr int kMostDelay = 64;
   /// [J] With so much the account begins, and it has no more than that while no force is held.
@@ -48,6 +49,11 @@ class PassivityObserver {
   void add(const Vec3& position, double dt, double source) noexcept;
   /// `force` [N] is written. Shortened to max_force, it is held `delay` ticks later.
   void hold(const Vec3& force) noexcept;
+
+  /// What is not so cannot have come from add() and hold().
+  [[nodiscard]] bool isSound() const noexcept {
+    return delay_ >= 0 && delay_ <= kMostDelay && next_ <= static_cast<std::size_t>(delay_);
+  }
 
   /// [J] Work of the held forces on the tip since the first tick, sources left out.
   [[nodiscard]] double given() const noexcept { return given_; }
@@ -101,7 +107,7 @@ struct PassivityTick {
 ///   (and the encoder's step), n = f / |f|, gives no more than the reserve.
 ///
 /// Both are felt: a stiff wall is softer where it is first touched, and a fast tap gets a kick against it.
-class PassivityController {
+class PALPATE_EXPORT PassivityController {
  public:
   static constexpr double kDampingShare = 0.25;  ///< [-]
 
@@ -114,6 +120,8 @@ class PassivityController {
                                    double source) noexcept;
 
   [[nodiscard]] const PassivityObserver& observer() const noexcept { return observer_; }
+  /// What is not so cannot have come from step().
+  [[nodiscard]] bool isSound() const noexcept { return observer_.isSound(); }
 
  private:
   [[nodiscard]] Vec3 damped(const Vec3& force) const noexcept;

@@ -26,8 +26,9 @@ namespace palpate::devices {
 struct RecordedTick {
   SessionTick tick;
   ServoTurn turn;
-  std::uint32_t entry_count = 0;  ///< regions that the proxy came into
-  bool has_state = false;         ///< RecordSink::addState() has brought what was before it
+  std::uint32_t entry_count = 0;      ///< regions that the proxy came into
+  std::uint32_t dropped_entries = 0;  ///< of these, that the recorder had no room for
+  bool has_state = false;             ///< RecordSink::addState() has brought what was before it
 };
 
 /// Who uses the ticks: a file, a summary, a plot. Called in the recorder's thread only, where it may allocate, wait and throw:
@@ -257,12 +258,20 @@ struct ReplayReport {
   std::optional<std::uint64_t> gap;  ///< a tick that the record has not: the replay ended before it
 };
 
+/// What the regions and ports of a record were called, by their numbers in it.
+struct RecordNames {
+  std::vector<std::string> regions;
+  std::vector<std::string> ports;
+};
+
 /// Feeds the record's readings to `session`, from its next row on, and compares each tick that is not below `from`. The record's next row must
 /// be the tick that the session is to make: 0, or that of the state which it resumed from. Ends at the record's end, before a
-/// gap, or when `stops` says so.
+/// gap, or when `stops` says so. With `names`, a region or port of the record is the one of the session's scene that is called the
+/// same, whatever its number, and one without a name there is another one; without, numbers are compared.
 /// @throws Error (kInput) as RecordReader::next().
 [[nodiscard]] PALPATE_EXPORT ReplayReport replay(RecordReader& record, Session& session,
                                                  DeviceFrame frame, std::uint64_t from = 0,
-                                                 const std::function<bool()>& stops = {});
+                                                 const std::function<bool()>& stops = {},
+                                                 const std::optional<RecordNames>& names = {});
 
 }  // namespace palpate::devices

@@ -1,5 +1,5 @@
 #pragma once
-/// A device that says again what a record has, and fails where it is told to.
+/// A device that repeats the readings of a record, and fails where a test asks it to.
 
 #include <cstdint>
 #include <string>
@@ -51,7 +51,7 @@ class PALPATE_EXPORT ReplayDevice final : public Device {
   Vec3 force_{0.0, 0.0, 0.0};
 };
 
-/// What the device said at each tick of the record `file`. @throws Error (kInput) as RecordReader.
+/// The readings of the record `file`, one for each tick. @throws Error (kInput) as RecordReader.
 [[nodiscard]] PALPATE_EXPORT std::vector<DeviceState> readingsOf(const std::string& file);
 
 }  // namespace palpate::devices

@@ -61,7 +61,7 @@ struct SafetyRule {
   SafetyState to;
 };
 
-/// Every change of state there is. What is not in it leaves the state as it is.
+/// All changes of state. Any other event leaves the state as it is.
 inline constexpr std::array<SafetyRule, 25> kSafetyRules = {{
     {SafetyState::kClosed, SafetyEvent::kOpened, SafetyState::kOpen},
     {SafetyState::kOpen, SafetyEvent::kReply, SafetyState::kUncalibrated},

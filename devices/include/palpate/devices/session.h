@@ -147,8 +147,9 @@ class PALPATE_EXPORT Session {
   /// Called after each tick of run(), in the servo thread: it must not allocate, lock, throw or block.
   using Listener = std::function<void(const SessionTick&, const HapticRenderer&)>;
 
-  /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a button, changes,
-  /// passivity or a coupling that cannot be, and as sceneBudget() for a loop.
+  /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a servo loop, limits
+  /// of the force, a button, changes, passivity or a coupling that cannot be, and as sceneBudget()
+  /// for a loop.
   explicit Session(ScenePtr scene, SessionSettings settings = {});
   ~Session();
   Session(Session&& other) noexcept;

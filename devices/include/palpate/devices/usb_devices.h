@@ -1,5 +1,5 @@
 #pragma once
-/// What is plugged in.
+/// The USB devices that are plugged in.
 
 #include <cstdint>
 #include <string>

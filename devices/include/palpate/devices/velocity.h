@@ -17,8 +17,9 @@ enum class VelocityEstimator : std::uint8_t {
   /// half the window: it is exact for a motion that accelerates evenly, half a window ago.
   kLeastSquares,
   /// First-order adaptive windowing (Janabi-Sharifi, Hayward and Chen, IEEE Transactions on Control Systems Technology 8(6), 2000), of each axis by itself: the
-  /// slope over the longest window whose chord no reading in it leaves by more than `noise`. Long where the hand is slow,
-  /// short where it turns; its delay is half of what it took.
+  /// slope over a window whose chord no reading in it leaves by more than `noise`. The window grows reading by reading and stops
+  /// before the first chord that some reading leaves, as the paper's does: a longer one may keep again. Long where the hand is
+  /// slow, short where it turns; its delay is half of what it took.
   kAdaptiveWindow,
 };
 
@@ -40,16 +41,23 @@ class PALPATE_EXPORT VelocityTracker {
  public:
   /// Readings that are kept: a window that holds more of them is that much shorter.
   static constexpr std::size_t kCapacity = 64;
+  /// [s] No hand's way is known across a longer gap: the reading behind it is a first one. A time stamp that leaps ahead by more
+  /// is broken, and so no velocity comes of it.
+  static constexpr double kLongestGap = 10.0;
 
-  /// @throws Error (kUsage, velocity.window, velocity.noise) for a window that is not above 0 or noise that is below 0, or
-  /// either that is not a number.
+  /// @throws Error (kUsage, velocity.window, velocity.noise, velocity.estimator) for a window that is not above 0 or noise that is
+  /// below 0, or either that is not a number; for an unknown estimator.
   explicit VelocityTracker(const VelocitySettings& settings = {});
 
   /// The velocity at the reading at `position` [m] and `time` [s]. Zero at the first. A time that does not rise repeats the
-  /// last answer, and the reading is left out. A position that is not finite gives NaN, and the next one is a first one.
+  /// last answer, and the reading is left out; if the time after it rises again, but not above the last that was taken, the clock
+  /// was set back, and that reading is a first one. A position or a time that is not finite gives NaN, and the next one is a
+  /// first one.
   [[nodiscard]] Velocity add(double time, const Vec3& position) noexcept;
   /// The next reading is a first one.
   void reset() noexcept { count_ = 0; }
+  /// Of a value out of a file: what it counts is there.
+  [[nodiscard]] bool isSound() const noexcept { return newest_ < kCapacity && count_ <= kCapacity; }
 
  private:
   struct Reading {
@@ -70,6 +78,7 @@ class PALPATE_EXPORT VelocityTracker {
   std::array<Reading, kCapacity> readings_{};
   std::size_t newest_ = 0;
   std::size_t count_ = 0;
+  double latest_ = 0.0;  ///< [s] the time of the last reading, taken or not
   Velocity last_;
 };
 

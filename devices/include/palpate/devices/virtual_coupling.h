@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "palpate/core/math.h"
+#include "palpate/export.h"
 
 namespace palpate::devices {
 
@@ -37,7 +38,7 @@ struct ToolMotion {
 /// for anything at rest. In free motion the tool is at the hand, and no force is felt.
 ///
 /// A wall K is felt as 1 / (1 / K + 1 / K_c): that is the price. A value; real-time safe.
-class VirtualCoupling {
+class PALPATE_EXPORT VirtualCoupling {
  public:
   /// @throws Error (kUsage, coupling.*) for a value out of its range.
   explicit VirtualCoupling(const CouplingSettings& settings);

@@ -27,9 +27,9 @@ class SceneSwap {
     delete offered_.exchange(pair.release(), std::memory_order_acq_rel);
   }
 
-  /// Real-time safe. True if what was offered took the place of what was there; that is freed later, by the other thread.
+  /// Real-time safe. True if the offered one took the place of the old one, which the other thread frees later.
   [[nodiscard]] bool take(ScenePtr& scene, std::unique_ptr<HapticRenderer>& renderer) noexcept {
-    // Nothing is taken while there is no room for what it replaces.
+    // A scene is taken only when there is room to put the old one away.
     if (offered_.load(std::memory_order_relaxed) == nullptr ||
         retired_.load(std::memory_order_acquire) != nullptr) {
       return false;

@@ -3,6 +3,7 @@
 /// to tick is the RendererState that a renderer owns, and what was changed of the contents.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -147,6 +148,11 @@ class PALPATE_EXPORT HapticRenderer {
   /// [m] No hand is that far away: such a position is a broken one. Beyond it double precision no longer
   /// tells one side of a wall from the other along the way there.
   static constexpr double kFarthest = 1e4;
+  /// False beyond it, and for NaN.
+  [[nodiscard]] static bool isInReach(const Vec3& p) noexcept {
+    return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest &&
+           std::fabs(p.z) <= kFarthest;
+  }
 
   virtual ~HapticRenderer() = default;
   HapticRenderer(const HapticRenderer&) = delete;
@@ -192,16 +198,17 @@ class PALPATE_EXPORT HapticRenderer {
   /// leaves around the proxy it finds anew in the next tick.
   [[nodiscard]] virtual RendererState checkpoint() noexcept = 0;
   /// Goes on from `state` as the renderer that it was taken from would: bit for bit if that gave it by checkpoint(), else
-  /// but for rounding, since what a renderer knows of the leaves around the proxy, which is not in the state, decides
-  /// which of them it looks at once more. False, and nothing is changed, if it cannot be a state of this scene. What
-  /// setContent() changed is not part of it. Until the next tick crossings() and entries() are empty.
+  /// but for rounding, since its knowledge of the leaves around the proxy, which is not in the state, decides
+  /// which of them it looks at once more. False, and nothing is changed, if it cannot be a state of this scene and of this kind of
+  /// renderer; every number in it that stands for a part of the scene is looked at, and update() is safe with what is taken. Changes
+  /// by setContent() are not part of it. Until the next tick crossings() and entries() are empty.
   [[nodiscard]] virtual bool setState(const RendererState& state) noexcept = 0;
 
  protected:
   HapticRenderer() = default;
 };
 
-/// @throws Error (kInput) if the scene is null or asks the paper's renderer for what it cannot do.
+/// @throws Error (kInput) if the scene is null, the kind of renderer is unknown, or it asks the paper's renderer for what it cannot do.
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<HapticRenderer> makeRenderer(
     ScenePtr scene, RendererSettings settings = {});
 
@@ -211,14 +218,15 @@ struct CarriedState {
   /// The probe is where it was. False: it starts anew, in the start region, with no port passed and with the ramp of its limits.
   bool goes_on = false;
   /// What the other scene does not have, in words: the probe's region, or its place in that; ports that were passed, and
-  /// those whose walls have holes.
+  /// those whose walls have holes or that rest; a state that is not one of `from` and of that kind of renderer.
   std::vector<std::string> lost;
 };
 
 /// What `state`, of a renderer of `kind` of the scene `from`, comes to in the scene `to`. The proxy goes on if its region is
 /// there by name and holds its place still (the paper's renderer asks for the region only: its state is not where the HIP is).
-/// With it goes what was passed, how often and which way; the holes made; what friction holds; how far the wall that is
-/// pressed has relaxed; and the work of sources. What a needle has cut and what holds it begin anew, and what is felt may
+/// With it goes what was passed, how often and which way; the holes made, and the ports that rest; what friction holds; how far the
+/// wall that is pressed has relaxed; how much of the content behind the opening that the proxy came by is felt, where that opening's
+/// surface is there by its place; and the work of sources. What a needle has cut and what holds it begin anew, and what is felt may
 /// jump: limits of the force see to that. For set-up, between two ticks: it allocates.
 [[nodiscard]] PALPATE_EXPORT CarriedState carryState(const RendererState& state, RendererKind kind,
                                                      const Scene& from, const Scene& to);

@@ -8,7 +8,7 @@
 namespace palpate {
 
 /// A wall's law at one place, and how it changes with the place.
-struct FeltWall {
+struct SharedWall {
   WallLaw law;
   Vec3 height_rise{0.0, 0.0, 0.0};      ///< [-] gradient of its height by the place, ...
   Vec3 stiffness_rise{0.0, 0.0, 0.0};   ///< [N/m^2] ... of its stiffness ...
@@ -39,7 +39,7 @@ class SharedWalls {
 
   /// Adds a wall that bears `share` [-] of the press; `by_place` [1/m] is the gradient of the share where the place moves
   /// and the press stays as it is, `by_press` [1/m] the other way round.
-  void add(const FeltWall& felt, double share = 1.0, const Vec3& by_place = Vec3(0.0),
+  void add(const SharedWall& felt, double share = 1.0, const Vec3& by_place = Vec3(0.0),
            const Vec3& by_press = Vec3(0.0)) noexcept;
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
@@ -55,7 +55,7 @@ class SharedWalls {
 
  private:
   struct Part {
-    FeltWall felt;
+    SharedWall felt;
     double share = 1.0;
     Vec3 by_place{0.0, 0.0, 0.0};
     Vec3 by_press{0.0, 0.0, 0.0};

@@ -50,6 +50,8 @@ class Signs {
         used_(static_cast<std::uint32_t>((leaves + 63) / 64)) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return leaves_; }
+  /// Whether these can be signs of so many leaves: a value out of a file need not be.
+  [[nodiscard]] bool isOf(std::size_t leaves) const noexcept;
 
   /// As the defaulted copy, without the words that are not used.
   void assign(const Signs& other) noexcept {

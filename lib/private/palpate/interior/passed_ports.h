@@ -33,6 +33,10 @@ class PassedPorts {
   void takeBack(std::size_t slot, bool inward) noexcept {
     if (turn(slot) == (inward ? 1 : -1)) net_[slot] -= inward ? 1 : -1;
   }
+  /// As often, and the same way, as the port `from` was passed in `other`.
+  void take(std::size_t slot, const PassedPorts& other, std::size_t from) noexcept {
+    net_[slot] = other.net_[from];
+  }
   void clear() noexcept { net_ = {}; }
 
   friend bool operator==(const PassedPorts&, const PassedPorts&) = default;

@@ -34,11 +34,22 @@ class Punctures {
   void visit(const Vec3& p) noexcept;
   void clear() noexcept { *this = {}; }
 
+  /// `port`, opened by force at `point` [m], rests until the proxy is `rearm` [m] from there; not if that is 0 or less.
+  void rest(PortId id, const Vec3& point, double rearm) noexcept;
   /// Whether these can be punctures in a scene of so many ports.
   [[nodiscard]] bool isOf(std::size_t ports) const noexcept;
 
   [[nodiscard]] std::span<const Hole> holes() const noexcept {
     return {holes_.data(), hole_count_};
+  }
+  struct Resting {
+    PortId port = 0;
+    Vec3 point{0.0, 0.0, 0.0};  ///< [m, world] where it was opened
+    double rearm = 0.0;         ///< [m] Port::rearm
+  };
+  /// The ports that rest, the one that began first in front.
+  [[nodiscard]] std::span<const Resting> resting() const noexcept {
+    return {resting_.data(), resting_count_};
   }
   /// Whether any hole reaches `p` [m].
   [[nodiscard]] bool anyAt(const Vec3& p) const noexcept;
@@ -49,11 +60,6 @@ class Punctures {
   [[nodiscard]] double restOf(PortId port) const noexcept;
 
  private:
-  struct Resting {
-    PortId port = 0;
-    Vec3 point{0.0, 0.0, 0.0};
-    double rearm = 0.0;  ///< [m]
-  };
   std::array<Hole, kMaxHoles> holes_{};
   std::array<Resting, kMaxResting> resting_{};
   std::uint8_t hole_count_ = 0;

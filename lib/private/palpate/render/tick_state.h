@@ -105,9 +105,10 @@ struct SourceState {
 /// that needs more leaves (Signs::kMaxLeaves) or counted ports (PassedPorts::kCapacity) than there is room for
 /// is refused when it is compiled.
 struct TickState {
-  bool has_begun = false;   ///< false: the next tick is a first one
-  Vec3 hip{0.0, 0.0, 0.0};  ///< [m] of the last good tick
-  TickResult last;          ///< of the last good tick
+  RendererKind kind = RendererKind::kConstraint;  ///< of the renderer that it is of
+  bool has_begun = false;                         ///< false: the next tick is a first one
+  Vec3 hip{0.0, 0.0, 0.0};                        ///< [m] of the last good tick
+  TickResult last;                                ///< of the last good tick
   PlaceState place;
   FrictionState friction;
   int pressed = -1;  ///< material of the wall pressed last, in this contact; -1: none
