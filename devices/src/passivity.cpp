@@ -90,40 +90,75 @@ void PassivityObserver::hold(const Vec3& force) noexcept {
   next_ = next_ == static_cast<std::size_t>(delay_) ? 0 : next_ + 1;
 }
 
+/// [N s/m]
+double mostDamping(const PassivitySettings& s) {
+  return std::min(PassivityController::kDampingShare, halfOfStableDamping(s.delay)) * s.mass /
+         s.period;
+}
+
+/// [N/m]
+double mostStiffnessOf(const PassivitySettings& s) {
+  if (!s.controls) return kInfinity;
+  const double late = (0.5 + s.delay) * s.period;  // [s]
+  const double linear = 0.5 * (mostDamping(s) + s.damping) / late;
+  if (!(s.friction > 0.0) || !(s.encoder > 0.0)) return linear;
+  return std::min(linear, PassivityController::kFrictionShare * 2.0 * s.friction / s.encoder);
+}
+
 PassivityController::PassivityController(const PassivitySettings& settings)
     : observer_(settings),
       per_period_(1.0 / settings.period),
-      most_damping_(std::min(kDampingShare, halfOfStableDamping(settings.delay)) * settings.mass /
-                    settings.period),
-      least_step_(std::max(kAtRest * settings.period, settings.encoder)),
+      most_damping_(mostDamping(settings)),
+      most_stiffness_(mostStiffnessOf(settings)),
+      encoder_(settings.encoder),
+      least_step_(kAtRest * settings.period),
       travel_(0.5 * settings.period * settings.period / settings.mass),
       margin_(2.0 * travel_ * settings.hand_force.value_or(0.0) + settings.encoder),
       controls_(settings.controls),
       bounds_(settings.controls && settings.hand_force.has_value()) {}
 
 PassivityTick PassivityController::step(const Vec3& position, double dt, const Vec3& force,
-                                        double source) noexcept {
+                                        double stiffness, double source) noexcept {
   PassivityTick out;
   if (!isFinite(position) || !isFinite(force)) {
     observer_.hold(Vec3(0.0));
+    scale_ = 1.0;
     return out;
   }
-  observer_.add(position, dt, source);
-  out.force = force;
-  if (controls_ && observer_.reserve() < 0.0) out.force = damped(force);
+  observer_.add(position, dt, scale_ * source);
+  scale_ = stiffness > most_stiffness_ ? most_stiffness_ / stiffness : 1.0;
+  out.force = scale_ * force;
+  if (controls_) {
+    const bool is_wanted = force.x != 0.0 || force.y != 0.0 || force.z != 0.0;
+    is_damping_ = is_wanted && (is_damping_ || observer_.reserve() < 0.0);
+    if (is_damping_ || observer_.reserve() < 0.0) out.force = damped(out.force);
+  }
   if (bounds_) out.force = bounded(out.force);
   out.added = out.force - force;
   observer_.hold(out.force);
   return out;
 }
 
-Vec3 PassivityController::damped(const Vec3& force) const noexcept {
+Vec3 PassivityController::sureStep() const noexcept {
   const Vec3& moved = observer_.moved();
+  const double way = glm::length(moved);
+  if (way < least_step_ || way <= encoder_) return Vec3(0.0);
+  return (1.0 - encoder_ / way) * moved;
+}
+
+Vec3 PassivityController::damped(const Vec3& force) const noexcept {
+  const Vec3 moved = sureStep();
   const double square = glm::dot(moved, moved);
-  if (square < least_step_ * least_step_) return force;
+  if (!(square > 0.0)) return force;
   // alpha / T, with alpha = -reserve / (T |v|^2).
-  const double damping = std::min(-observer_.reserve() / square, most_damping_ * per_period_);
-  return force - damping * moved;
+  const double most = most_damping_ * per_period_;
+  const double need = std::clamp(-observer_.reserve() / square, 0.0, most);
+  const Vec3 damped = force - need * moved;
+  const double size = glm::length(force);
+  if (!is_damping_ || !(size > 0.0) || !std::isfinite(size)) return damped;
+  const double along = glm::dot(force, moved) / size;
+  const double more = std::min((most - need) * along, std::max(0.0, size - need * along));
+  return damped - (more / size) * force;
 }
 
 Vec3 PassivityController::bounded(const Vec3& force) const noexcept {

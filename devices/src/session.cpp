@@ -130,14 +130,15 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
                : Clutched{position, velocity, 0.0};
 
   changeUntil(reading.time);
-  const Vec3 felt = swap_fade_ * now.share * feel(now, frame, tick);
-  tick.force = is_mapped ? mapping.forceToDevice(felt) : felt;
+  const double share = swap_fade_ * now.share;
+  const Felt felt = feel(now, frame, tick);
+  tick.force = is_mapped ? mapping.forceToDevice(share * felt.force) : share * felt.force;
   if (passivity_) {
     const double work = renderer_->sourceWork();
     const double source = (is_mapped ? mapping.workAtHand() : 1.0) * (work - source_work_);
     source_work_ = work;
-    const PassivityTick guarded =
-        passivity_->step(is_sound ? reading.position : kBroken, tick.dt, tick.force, source);
+    const PassivityTick guarded = passivity_->step(is_sound ? reading.position : kBroken, tick.dt,
+                                                   tick.force, share * felt.stiffness, source);
     tick.force = guarded.force;
     tick.added = guarded.added;
   }
@@ -147,7 +148,7 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
   return tick;
 }
 
-Vec3 Session::feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept {
+Session::Felt Session::feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept {
   const bool is_coupled =
       coupling_ && HapticRenderer::isInReach(probe.position) && isFinite(probe.velocity);
   // The coupling is as stiff as it says at the hand, and works in the hand's own measure.
@@ -166,13 +167,14 @@ Vec3 Session::feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) 
   const auto after = std::chrono::steady_clock::now();
   tick.unlimited = renderer_->unlimitedForce();
   tick.renderer_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count();
-  if (!is_coupled) return tick.result.force;
+  if (!is_coupled && !passivity_) return {tick.result.force, 0.0};
   ToolForce answer = toolForce(*renderer_, tick);
   answer.force *= force;
   for (double* slope : {&answer.stiffness, &answer.sideways, &answer.damping, &answer.drag}) {
     *slope *= force * scale;
   }
-  return coupling_->push(answer) / force;
+  if (!is_coupled) return {tick.result.force, answer.stiffness};
+  return {coupling_->push(answer) / force, coupling_->felt(answer.stiffness)};
 }
 
 std::optional<SessionView> Session::view() const noexcept { return shared_->view.load(); }

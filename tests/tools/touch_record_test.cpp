@@ -160,6 +160,57 @@ TEST_F(TouchRecord, StatesAreOnlyForTheSceneThatWasFelt) {
   EXPECT_NE(anew.err.find("begins at the first tick"), std::string::npos) << anew.err;
 }
 
+TEST_F(TouchRecord, WhatGuardedTheLoopIsPartOfTheRecord) {
+  std::string stiff = kBall;
+  stiff.replace(stiff.find("700 N/m"), 7, "30000 N/m");
+  (void)folder_.file("stiff.yaml", stiff);
+  (void)folder_.file("own.yaml", stiff +
+                                     "device: {passivity: {mass: 0.2 kg}, coupling: {stiffness: "
+                                     "9000 N/m, damping: 4 N.s/m}}\n");
+  const std::vector<std::vector<std::string>> all = {
+      {"stiff.yaml"},
+      {"stiff.yaml", "--device", "virtual:falcon"},
+      {"stiff.yaml", "--coupling", "800,4"},
+      {"stiff.yaml", "--device", "virtual:falcon", "--passivity", "observe"},
+      {"stiff.yaml", "--device", "virtual:falcon", "--passivity", "control"},
+      {"stiff.yaml", "--device", "virtual:falcon", "--passivity", "control", "--hand-force", "5"},
+      {"stiff.yaml", "--device", "touch", "--hand", "firm", "--delay", "1", "--passivity",
+       "control", "--coupling", "any_scene"},
+      {"own.yaml"},
+      {"own.yaml", "--device", "omega_3", "--coupling", "springs"}};
+  for (const std::vector<std::string>& how : all) {
+    std::vector<std::string> touch = {"touch",    "--press", "0,0,20",  "--depth",  "3",
+                                      "--record", "r.npy",   "--force", "--states", "100"};
+    touch.insert(touch.begin() + 1, how.begin(), how.end());
+    const CommandResult felt = palpate(touch);
+    ASSERT_EQ(felt.exit_code, 0) << how.back() << felt.err;
+    for (const std::string from : {"0", "99", "333"}) {
+      const CommandResult anew = palpate({"replay", "r.npy", "--from", from, "--json"});
+      ASSERT_EQ(anew.exit_code, 0) << how.back() << ", from " << from << anew.err << anew.out;
+      EXPECT_EQ(parseOnly(anew)["begun_at_tick"], std::stoi(from) / 100 * 100);
+    }
+    // Without what guarded it, or with another device, the loop is another.
+    const std::string good = textOf(folder_.path("r.npy.json"));
+    Json about = Json::parse(good);
+    for (const char* key : {"coupling", "passivity"}) {
+      if (about["options"][key] == "" || about["options"][key] == "observe") continue;
+      Json other = about;
+      other["options"][key] = "";
+      (void)folder_.file("r.npy.json", other.dump());
+      if (how.front() == "own.yaml") continue;  // the scene then guards it as it says
+      EXPECT_EQ(palpate({"replay", "r.npy"}).exit_code, 1) << how.back() << ", " << key;
+      EXPECT_EQ(palpate({"replay", "r.npy", "--from", "333"}).exit_code, 3);
+    }
+    for (const char* key : {"coupling", "passivity", "device", "hand_force"}) {
+      Json other = about;
+      other["options"][key] = "none such";
+      (void)folder_.file("r.npy.json", other.dump());
+      const CommandResult refused = palpate({"replay", "r.npy"});
+      EXPECT_EQ(refused.exit_code, 3) << how.back() << ", " << key << refused.err;
+    }
+  }
+}
+
 TEST_F(TouchRecord, RegionsAreComparedByTheNamesInTheRecord) {
   ASSERT_EQ(
       palpate({"touch", "ball.yaml", "--press", "0,0,20", "--depth", "4", "--record", "r.npy"})

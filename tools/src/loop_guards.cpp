@@ -55,10 +55,15 @@ Json guardsJson(const devices::HandGuards& guards, const devices::Session& sessi
   if (guards.passivity) {
     const devices::PassivityObserver& seen = *session.observer();
     json["passivity"] = {{"control", guards.passivity->controls},
+                         {"most_stiffness_N_per_m", Json()},
                          {"given_J", seen.given()},
                          {"reserve_J", seen.reserve()},
                          {"lowest_reserve_J", seen.lowest()},
                          {"doubt_J", seen.doubt()}};
+    if (guards.passivity->controls) {
+      json["passivity"]["most_stiffness_N_per_m"] =
+          devices::PassivityController(*guards.passivity).mostStiffness();
+    }
   }
   if (guards.coupling) {
     json["coupling"] = {{"stiffness_N_per_m", guards.coupling->stiffness},
@@ -81,6 +86,10 @@ std::string guardsText(const devices::HandGuards& guards, const devices::Session
             " J went from the motors to the tip; at most " +
             formatNumber(std::max(0.0, -seen.lowest()), 3) + " J more than the device took" +
             (guards.passivity->controls ? ", and damped away\n" : "\n");
+    if (guards.passivity->controls) {
+      const double most = devices::PassivityController(*guards.passivity).mostStiffness();
+      text += "            a wall of more than " + formatNumber(most, 3) + " N/m feels like that\n";
+    }
   }
   return text;
 }

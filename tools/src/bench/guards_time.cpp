@@ -32,7 +32,8 @@ double run(const std::vector<Vec3>& path) {
       answer.stiffness = 5000.0;
       answer.force.z = -5000.0 * tool.position.z;
     }
-    sum += guard.step(hand, dt, coupling.push(answer), 0.0).force.z;
+    sum +=
+        guard.step(hand, dt, coupling.push(answer), coupling.felt(answer.stiffness), 0.0).force.z;
   }
   return sum;
 }

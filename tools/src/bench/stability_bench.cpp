@@ -72,7 +72,7 @@ class Runner {
     }
     std::unique_ptr<HapticRenderer>& renderer = renderers_[what.renderer];
     if (!renderer) renderer = makeLoopRenderer(what.renderer, scene_);
-    return findLimit(what, scene, *renderer);
+    return findLimit(what, scene, *renderer, checkStop);
   }
 
  private:

@@ -70,7 +70,8 @@ devices::LoopModel loopModelOf(const LoopCase& what) {
   return loop;
 }
 
-LoopLimit findLimit(const LoopCase& what, const HardScene& scene, HapticRenderer& renderer) {
+LoopLimit findLimit(const LoopCase& what, const HardScene& scene, HapticRenderer& renderer,
+                    const std::function<void()>& poll) {
   LoopLimit out;
   out.what = what;
   const devices::LoopModel loop = loopModelOf(what);
@@ -82,6 +83,7 @@ LoopLimit findLimit(const LoopCase& what, const HardScene& scene, HapticRenderer
     const double depth = depthOfForce(loop, stiffness, kForce);
     LoopSetting setting{.loop = loop, .hand = pressOn(scene.at, scene.out, depth, 1.3)};
     setting.gain = stiffness / kHardStiffness;
+    setting.poll = poll;
     return runLoop(renderer, setting, kHardStiffness);
   };
   out.found = largestGain(
@@ -94,7 +96,8 @@ LoopLimit findLimit(const LoopCase& what, const HardScene& scene, HapticRenderer
   out.cycle = above.chatter;
   out.frequency = above.frequency;
   const double used = out.found > 0.0 ? std::min(out.budget, out.found) : out.budget;
-  const LoopOutcome at = run(used);
+  // A budget may be nothing, or without an end: no hand presses on such a wall.
+  const LoopOutcome at = run(std::clamp(used, LoopLimit::kLeast, LoopLimit::kMost));
   out.to_hand = at.to_hand;
   out.largest_step = at.largest_step;
   out.tick_ns = at.tick_ns;

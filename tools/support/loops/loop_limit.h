@@ -1,6 +1,7 @@
 #pragma once
 /// How stiff a wall one renderer can give one device, found in the loop.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,7 +34,7 @@ struct LoopLimit {
   double found = 0.0;
   double cycle = 0.0;      ///< [N] peak to peak of the force, 15 % above
   double frequency = 0.0;  ///< [Hz] of it
-  // On a wall of the budget, or of `found` if that is less:
+  // On a wall of the budget, or of `found` if that is less, between kLeast and kMost:
   double to_hand = 0.0;       ///< [J] most that came out at the hand
   double largest_step = 0.0;  ///< [N] of the force from tick to tick
   double tick_ns = 0.0;       ///< [ns] of the renderer, median
@@ -50,7 +51,8 @@ struct LoopLimit {
 
 /// @throws Error (kUsage) for a device or hand that there is not.
 [[nodiscard]] devices::LoopModel loopModelOf(const LoopCase& what);
+/// At most 24 runs of less than 3 s each, in the device's time. `poll` as in LoopSetting.
 [[nodiscard]] LoopLimit findLimit(const LoopCase& what, const HardScene& scene,
-                                  HapticRenderer& renderer);
+                                  HapticRenderer& renderer, const std::function<void()>& poll = {});
 
 }  // namespace palpate::loops

@@ -78,7 +78,9 @@ LoopOutcome runLoop(HapticRenderer& renderer, const LoopSetting& setting, double
   double strongest = 0.0;
   device.open();
   devices::DeviceState state;
+  std::uint64_t ticks = 0;
   while (device.read(state) == devices::DeviceStatus::kOk) {
+    if (setting.poll && ticks++ % LoopSetting::kPollTicks == 0) setting.poll();
     const HipState hip{state.position, velocity.add(state.time, state.position).value, loop.period};
     const auto begin = std::chrono::steady_clock::now();
     const TickResult result = renderer.update(hip);

@@ -214,8 +214,12 @@ class PALPATE_EXPORT Session {
   std::optional<PassivityController> passivity_;
   double source_work_ = 0.0;  ///< [J] of the renderer, up to the last tick
 
-  /// [N, world] The renderer's answer for the probe at `probe`, through the coupling if there is one, and before the clutch.
-  [[nodiscard]] Vec3 feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept;
+  struct Felt {
+    Vec3 force{0.0, 0.0, 0.0};  ///< [N, world]
+    double stiffness = 0.0;     ///< [N/m] of the wall, at the hand; 0: not known
+  };
+  /// The renderer's answer for the probe at `probe`, through the coupling if there is one, and before the clutch.
+  [[nodiscard]] Felt feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept;
   /// Changes the contents whose time has come.
   void changeUntil(double time) noexcept;
   void saveCheckpoint() noexcept;

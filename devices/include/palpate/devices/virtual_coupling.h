@@ -48,6 +48,11 @@ class PALPATE_EXPORT VirtualCoupling {
   /// [N] On the hand, for the scene's answer at what reach() said. It never pulls into `answer.normal`.
   [[nodiscard]] Vec3 push(const ToolForce& answer) noexcept;
 
+  /// [N/m] What the hand feels of a wall of `stiffness` [N/m] at rest.
+  [[nodiscard]] double felt(double stiffness) const noexcept {
+    return stiffness * settings_.stiffness / (stiffness + settings_.stiffness);
+  }
+
   /// The scene is another one: the next reach() begins anew, with the tool at the hand.
   void letGo() noexcept { has_begun_ = false; }
 
