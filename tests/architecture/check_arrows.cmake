@@ -26,7 +26,7 @@ set(layers_render scene ${layers_scene})
 set(common palpate/export.h palpate/version.h own_vocabulary.h)
 
 # Libraries that live in one place only: regular expression of the include, then where it may stand.
-set(confined_names openvdb tbb imath assimp nifti gdcm boost yaml eigen libusb)
+set(confined_names openvdb tbb imath assimp nifti gdcm boost yaml eigen libusb evdev)
 set(confined_openvdb "^openvdb/" "^vdb/")
 set(confined_tbb "^(tbb|oneapi)/" "^vdb/")
 set(confined_imath "^(Imath|OpenEXR)/" "^vdb/")
@@ -35,6 +35,7 @@ set(confined_nifti "^(nifti/.*|nifti[12]?(_io)?|nifticdf|znzlib)[.]h$|^nifti/" "
 set(confined_gdcm "^gdcm" "^vdb/src/image/")
 set(confined_boost "^boost/" "^(vdb/|devices/src/inverse3/)")
 set(confined_libusb "^libusb(-1[.]0/libusb)?[.]h$" "^devices/src/usb/")
+set(confined_evdev "^linux/input" "^devices/src/evdev/")
 set(confined_yaml "^yaml-cpp/" "^lib/src/scene/")
 set(confined_eigen "^(unsupported/)?Eigen/" "^devices/src/")
 

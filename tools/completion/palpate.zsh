@@ -14,7 +14,7 @@ _palpate() {
     'render:Draw a scene cut open (.png)'
     'bench:Measure contact (time and error of a tick), a hand in the loop, or how late a loop wakes'
     'accuracy:Compare fields with their grids\: error, time and memory by voxel size'
-    'devices:List haptic devices, say what bars access to one, test it, calibrate it'
+    'devices:List haptic and input devices, say what bars access to one, test it, calibrate it'
     'doctor:Say whether this machine is fit for a haptic device, and what to do'
     'help:Print help\: all about a verb or a key of scene files, the manual, completion'
   )
@@ -39,7 +39,7 @@ _palpate() {
         '*--back[insert\: come back the same way]' \
         '*--renderer[constraint or paper (default\: as the scene says)]:value:(constraint paper)' \
         '*--rate[ticks a second (default 1000)]:value:' \
-        '*--device[follow the motion with a simulated device, in a hand that feels the force\: virtual\:NAME, NAME one of excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3; virtual\: may be left out unless NAME is falcon or inverse3. Or let a hand move a device\: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension). Default\: a hand that follows the motion whatever it feels]:value:' \
+        '*--device[follow the motion with a simulated device, in a hand that feels the force\: virtual\:NAME, NAME one of excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3; virtual\: may be left out unless NAME is falcon or inverse3. Or let a hand move a device\: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension), evdev (SpaceMouse, gamepad or mouse, whose force is shown, not felt; evdev\:/dev/input/eventN\: that one). Default\: a hand that follows the motion whatever it feels]:value:' \
         '*--hand[device\: how it is held\: none, relaxed (default) or firm]:value:' \
         '*--delay[device\: samples from a force to when the motors give it (default 0)]:value:' \
         '*--seconds[a device that a hand holds\: for how long (default\: until Ctrl-C)]:value:' \
@@ -300,7 +300,7 @@ _palpate() {
       ;;
     devices)
       _arguments \
-        '*--test[open falcon, inverse3, dhd or hd, write zero force for a while, and tell what it says]:value:' \
+        '*--test[open falcon, inverse3, dhd, hd, evdev or evdev\:/dev/input/eventN, write zero force for a while, and tell what it says]:value:' \
         '*--calibrate[falcon\: the origin where the grip is held; the constants go to FILE]:value:_files' \
         '*--states[print the table of states that every device goes through]' \
         '*--seconds[--test, --calibrate\: for how long (default 10)]:value:' \

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "palpate/core/error.h"
-#include "palpate/devices/device_access.h"
 #include "palpate/devices/device_presets.h"
 #include "real_device.h"
 #include "text.h"
@@ -17,6 +16,10 @@ constexpr std::string_view kSimulated = "virtual:";
 
 /// The preset that a name of the command line means.
 const devices::DevicePreset& presetOf(const DeviceOptions& options) {
+  if (isInputDevice(options.name)) {
+    throw Error(ErrorKind::kUsage, {"usage.device", options.name + " has no motors, and no model",
+                                    "name a model: touch, premium_1_5, omega_3, ..."});
+  }
   if (options.name == "hd" || options.name == "dhd") {
     throw Error(ErrorKind::kUsage,
                 {"usage.device",
@@ -29,7 +32,8 @@ const devices::DevicePreset& presetOf(const DeviceOptions& options) {
 
 /// A model of the device is known, simulated or not.
 bool hasModel(const DeviceOptions& options) {
-  return !options.name.empty() && options.name != "hd" && options.name != "dhd";
+  const std::string& name = options.name;
+  return !name.empty() && name != "hd" && name != "dhd" && !isInputDevice(name);
 }
 
 std::string handName(const DeviceOptions& options) {
@@ -124,7 +128,7 @@ void checkDevice(const TouchOptions& options) {
   const std::string given = options.seconds ? "--seconds" : givenOption(options.real);
   if (!given.empty()) {
     throw Error(ErrorKind::kUsage, {"usage.device", given + " is of a device that a hand holds",
-                                    "add --device falcon, inverse3, hd or dhd"});
+                                    "add --device falcon, inverse3, hd, dhd or evdev"});
   }
   const bool is_simulated = simulationOf(options.device, options.rate).has_value();
   if (is_simulated && options.as_recorded) {
@@ -160,7 +164,7 @@ std::unique_ptr<devices::Device> makeDevice(const TouchOptions& options, Motion 
 Json deviceJson(const DeviceOptions& options, double rate) {
   if (options.name.empty()) return {};
   if (isRealDevice(options.name)) {
-    return {{"name", options.name}, {"simulated", false}, {"notice", devices::kUnverifiedNotice}};
+    return {{"name", options.name}, {"simulated", false}, {"notice", noticeOf(options.name)}};
   }
   const devices::DevicePreset& preset = presetOf(options);
   Json json = {{"name", std::string(preset.name)},
@@ -191,7 +195,7 @@ Json deviceJson(const DeviceOptions& options, double rate) {
 std::string deviceText(const DeviceOptions& options) {
   if (options.name.empty()) return {};
   if (isRealDevice(options.name)) {
-    return "Device      " + options.name + ": " + devices::kUnverifiedNotice + "\n";
+    return "Device      " + options.name + ": " + noticeOf(options.name) + "\n";
   }
   const devices::DevicePreset& preset = presetOf(options);
   std::string text = "Device      " + std::string(preset.title) +

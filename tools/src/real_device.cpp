@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/device_access.h"
+#include "palpate/devices/evdev.h"
 #include "palpate/devices/falcon.h"
 #include "palpate/devices/inverse3.h"
 #include "palpate/devices/plugins.h"
@@ -16,6 +18,7 @@ namespace palpate::tools {
 namespace {
 
 constexpr std::array<std::string_view, 4> kNames = {"falcon", "inverse3", "dhd", "hd"};
+constexpr std::string_view kInput = "evdev";
 
 /// An option, whether it is given, and the devices that have it.
 struct GivenOption {
@@ -91,7 +94,14 @@ devices::Inverse3Settings serviceOf(const std::string& text) {
   return settings;
 }
 
+std::unique_ptr<devices::Device> inputDevice(const std::string& name) {
+  devices::EvdevSettings settings;
+  if (name.size() > kInput.size()) settings.node = name.substr(kInput.size() + 1);
+  return devices::makeEvdev(settings);
+}
+
 std::unique_ptr<devices::Device> driverOf(const std::string& name, const RealDeviceOptions& o) {
+  if (isInputDevice(name)) return inputDevice(name);
   if (name == "hd") return devices::makeOpenHaptics({o.library});
   if (name == "dhd") return devices::makeForceDimension({o.library});
   if (name == "inverse3") return devices::makeInverse3(serviceOf(o.service));
@@ -100,8 +110,17 @@ std::unique_ptr<devices::Device> driverOf(const std::string& name, const RealDev
 
 }  // namespace
 
+bool isInputDevice(std::string_view name) {
+  const bool has_node = name.size() > kInput.size() + 1 && name[kInput.size()] == ':';
+  return name == kInput || (name.substr(0, kInput.size()) == kInput && has_node);
+}
+
 bool isRealDevice(std::string_view name) {
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+  return isInputDevice(name) || std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
+const char* noticeOf(std::string_view name) {
+  return isInputDevice(name) ? devices::kEvdevNotice : devices::kUnverifiedNotice;
 }
 
 std::string givenOption(const RealDeviceOptions& options) {
@@ -117,7 +136,7 @@ std::unique_ptr<devices::Device> makeRealDevice(const std::string& name,
   if (!isRealDevice(name)) {
     throw Error(ErrorKind::kUsage,
                 {"usage.device", "no driver is known for a device '" + name + "'",
-                 "the devices are falcon, inverse3, dhd and hd"});
+                 "the devices are falcon, inverse3, dhd, hd, evdev and evdev:/dev/input/eventN"});
   }
   for (const GivenOption& option : optionsOf(options)) {
     const auto& of = option.devices;

@@ -11,8 +11,14 @@
 
 namespace palpate::tools {
 
-/// falcon, inverse3, dhd or hd.
+/// falcon, inverse3, dhd, hd, or evdev, which may have its node behind it: evdev:/dev/input/event5.
 [[nodiscard]] bool isRealDevice(std::string_view name);
+
+/// An input device, which has no motors.
+[[nodiscard]] bool isInputDevice(std::string_view name);
+
+/// What has to be said wherever the device `name` is offered or used.
+[[nodiscard]] const char* noticeOf(std::string_view name);
 
 /// The first option that is given, such as "--serial"; empty: none is.
 [[nodiscard]] std::string givenOption(const RealDeviceOptions& options);

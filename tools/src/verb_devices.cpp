@@ -5,7 +5,6 @@
 #include "doctor/device_findings.h"
 #include "output_files.h"
 #include "palpate/devices/device.h"
-#include "palpate/devices/device_access.h"
 #include "palpate/devices/falcon.h"
 #include "palpate/devices/safety_state.h"
 #include "real_device.h"
@@ -96,22 +95,21 @@ Report testReport(const DevicesOptions& options, Console& console) {
   const Watched w = watch(*device, options.seconds, console);
   Report report;
   report.json = {{"schema", "palpate.devices/1"}, {"test", options.test}};
-  report.json["notice"] = devices::kUnverifiedNotice;
+  report.json["notice"] = noticeOf(options.test);
   report.json["result"] = watchedJson(w);
   const Vec3 size = w.range.isEmpty() ? Vec3(0.0) : 1e3 * w.range.size();
   const std::string failure = failureOf(w);
   report.is_yes = failure.empty();
-  report.text = device->info().name + ": " + std::to_string(w.servo.ticks) +
-                " readings, one every " +
-                formatSeconds(1e-9 * static_cast<double>(w.servo.interval.quantile(0.5))) +
-                " (99 %: within " +
-                formatSeconds(1e-9 * static_cast<double>(w.servo.interval.quantile(0.99))) + ")\n" +
-                "Moved within " + formatVector(size, 3) +
-                " mm; buttons pressed: " + std::to_string(w.buttons) +
-                "; jumps dropped: " + std::to_string(w.servo.safety.jumps) + "\nEnded " +
-                std::string(devices::nameOf(w.servo.state)) + ": " +
-                (failure.empty() ? "no fault" : failure) +
-                "\nThe driver: " + devices::kUnverifiedNotice + "\n";
+  report.text =
+      device->info().name + ": " + std::to_string(w.servo.ticks) + " readings, one every " +
+      formatSeconds(1e-9 * static_cast<double>(w.servo.interval.quantile(0.5))) +
+      " (99 %: within " +
+      formatSeconds(1e-9 * static_cast<double>(w.servo.interval.quantile(0.99))) + ")\n" +
+      "Moved within " + formatVector(size, 3) +
+      " mm; buttons pressed: " + std::to_string(w.buttons) +
+      "; jumps dropped: " + std::to_string(w.servo.safety.jumps) + "\nEnded " +
+      std::string(devices::nameOf(w.servo.state)) + ": " +
+      (failure.empty() ? "no fault" : failure) + "\nThe driver: " + noticeOf(options.test) + "\n";
   return report;
 }
 

@@ -11,7 +11,6 @@
 #include "motion.h"
 #include "open_device.h"
 #include "output_files.h"
-#include "palpate/devices/device_access.h"
 #include "palpate/devices/record.h"
 #include "palpate/devices/session.h"
 #include "palpate/version.h"
@@ -157,7 +156,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   warnOfBudget(session.overBudget(), options.device, is_shape ? "" : options.scene, options.rate,
                console);
   if (is_real) {
-    console.note(options.device.name + ": " + devices::kUnverifiedNotice + "; touching until " +
+    console.note(options.device.name + ": " + noticeOf(options.device.name) + "; touching until " +
                  (options.seconds ? formatSeconds(*options.seconds) + " are over" : "Ctrl-C"));
   } else if (options.realtime) {
     console.note("following the hand's path for " + formatSeconds(motion.end - motion.begin) +
@@ -231,7 +230,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
                    " overruns, worst start " + formatSeconds(servo_report.worst_lateness) +
                    " late" + (servo_report.elevated ? "\n" : ", without real-time priority\n");
   }
-  if (is_real) report.text += safetyText(servo_report);
+  if (is_real && !isInputDevice(options.device.name)) report.text += safetyText(servo_report);
   const std::string grids = loaded.gridsText();
   if (!grids.empty()) report.text += "\nGrids\n" + grids;
   std::string written;

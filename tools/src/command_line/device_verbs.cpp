@@ -27,7 +27,8 @@ void defineDevices(CLI::App& app, Invocation& invocation) {
   auto& o = choose<DevicesOptions>(invocation);
   const char* g = "What to do (default: list)";
   add(app, g, "--test", "NAME", o.test,
-      "open falcon, inverse3, dhd or hd, write zero force for a while, and tell what it says");
+      "open falcon, inverse3, dhd, hd, evdev or evdev:/dev/input/eventN, write zero force for a "
+      "while, and tell what it says");
   add(app, g, "--calibrate", "FILE", o.calibrate,
       "falcon: the origin where the grip is held; the constants go to FILE");
   addFlag(app, g, "--states", o.states, "print the table of states that every device goes through");
@@ -45,7 +46,7 @@ void defineDoctor(CLI::App& /*app*/, Invocation& invocation) {
 Verb devicesVerb() {
   return {
       "devices",
-      "List haptic devices, say what bars access to one, test it, calibrate it",
+      "List haptic and input devices, say what bars access to one, test it, calibrate it",
       "palpate devices --states",
       "palpate devices [OPTIONS]",
       "Where access to a USB device is denied, the udev rule that permits it is printed. Drivers\n"

@@ -76,8 +76,9 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
                   "virtual:NAME, NAME one of ") +
           models() +
           "; virtual: may be left out unless NAME is falcon or inverse3. Or let a hand move "
-          "a device: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension). Default: a "
-          "hand that follows the motion whatever it feels");
+          "a device: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension), evdev (SpaceMouse, "
+          "gamepad or mouse, whose force is shown, not felt; evdev:/dev/input/eventN: that one). "
+          "Default: a hand that follows the motion whatever it feels");
   add(app, g, "--seconds", "S", o.seconds,
       "a device that a hand holds: for how long (default: until Ctrl-C)")
       ->check(CLI::Range(0.1, 86400.0));

@@ -2,6 +2,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/devices/device_access.h"
+#include "palpate/devices/evdev.h"
 #include "palpate/devices/falcon.h"
 #include "palpate/devices/inverse3.h"
 #include "palpate/devices/plugins.h"
@@ -46,6 +47,35 @@ std::vector<DeviceFinding> falcons() {
   return {none};
 }
 
+/// Those that fit, and one finding for all that this user may not open.
+std::vector<DeviceFinding> inputs() {
+  const DeviceFinding none{"evdev", "SpaceMouse, gamepad or mouse, /dev/input/event*",
+                           "",      false,
+                           "",      devices::kEvdevNotice};
+  std::vector<DeviceFinding> out;
+  int denied = 0;
+  for (const devices::InputDevice& each : devices::listInputDevices()) {
+    if (!each.is_accessible) ++denied;
+    if (!each.kind) continue;
+    DeviceFinding one = none;
+    one.name = "evdev:" + each.node;
+    one.title = std::string(devices::nameOf(*each.kind)) + ", " + each.name;
+    one.found = each.node;
+    one.is_ready = true;
+    out.push_back(std::move(one));
+  }
+  if (denied > 0) {
+    DeviceFinding one = none;
+    one.found = std::to_string(denied) + " input devices of any kind, access denied";
+    one.remedy = devices::inputAccessRemedy();
+    out.push_back(std::move(one));
+  }
+  if (!out.empty()) return out;
+  out.push_back(none);
+  out.back().found = "none plugged in";
+  return out;
+}
+
 }  // namespace
 
 std::vector<DeviceFinding> deviceFindings() {
@@ -62,6 +92,7 @@ std::vector<DeviceFinding> deviceFindings() {
           "install OpenHaptics from 3D Systems, or give --library FILE");
   library("dhd", "Force Dimension; libdhd.so", devices::hasForceDimension({}),
           "install Force Dimension's SDK, or give --library FILE");
+  for (DeviceFinding& each : inputs()) out.push_back(std::move(each));
   return out;
 }
 
@@ -73,7 +104,7 @@ Json findingsJson(const std::vector<DeviceFinding>& findings) {
                    {"found", f.found},
                    {"ready", f.is_ready},
                    {"remedy", f.remedy.empty() ? Json() : Json(f.remedy)},
-                   {"notice", devices::kUnverifiedNotice}});
+                   {"notice", f.notice}});
   }
   return out;
 }
@@ -83,7 +114,7 @@ std::string findingsText(const std::vector<DeviceFinding>& findings) {
   for (const DeviceFinding& f : findings) {
     text += f.name + std::string(f.name.size() < 12 ? 12 - f.name.size() : 1, ' ') + f.title +
             "\n" + "            " + f.found + (f.is_ready ? ": ready" : "") + "\n" +
-            "            " + devices::kUnverifiedNotice + "\n";
+            "            " + f.notice + "\n";
     if (!f.remedy.empty()) text += "  " + f.remedy + "\n";
   }
   return text;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/devices/device_access.h"
 #include "report.h"
 
 namespace palpate::tools {
@@ -15,6 +16,7 @@ struct DeviceFinding {
   std::string found;  ///< "none plugged in", "bus 1 address 4, serial X", ...
   bool is_ready = false;
   std::string remedy;  ///< empty if there is none
+  std::string notice = devices::kUnverifiedNotice;
 };
 
 [[nodiscard]] std::vector<DeviceFinding> deviceFindings();

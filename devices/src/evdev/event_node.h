@@ -1,0 +1,43 @@
+#pragma once
+// An event node of the kernel, and what can be asked of it.
+
+#include <linux/input.h>
+
+#include <bitset>
+#include <optional>
+#include <string>
+
+#include "evdev/input_map.h"
+
+namespace palpate::devices::evdev {
+
+/// A file descriptor; closed at the end. No call here blocks.
+class EventNode {
+ public:
+  EventNode() = default;
+  ~EventNode() { close(); }
+  EventNode(const EventNode&) = delete;
+  EventNode& operator=(const EventNode&) = delete;
+
+  /// 0, or the errno of what went wrong.
+  [[nodiscard]] int open(const std::string& path) noexcept;
+  void close() noexcept;
+  [[nodiscard]] bool isOpen() const noexcept { return descriptor_ >= 0; }
+
+  [[nodiscard]] std::string name() const;  ///< empty: it has none
+  /// None: this is not an event node.
+  [[nodiscard]] std::optional<Capabilities> capabilities() const;
+  /// From now on its events have times of the monotonic clock; false: refused.
+  [[nodiscard]] bool setMonotonic() const noexcept;
+
+  // Real time.
+  [[nodiscard]] bool value(std::uint16_t absolute_code, std::int32_t& out) const noexcept;
+  [[nodiscard]] bool keys(std::bitset<KEY_CNT>& out) const noexcept;
+  /// As read(): the bytes of whole events, or -1 and errno.
+  [[nodiscard]] ssize_t read(input_event* out, std::size_t count) const noexcept;
+
+ private:
+  int descriptor_ = -1;
+};
+
+}  // namespace palpate::devices::evdev
