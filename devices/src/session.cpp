@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/hand_guards.h"
 #include "palpate/devices/record.h"
 #include "palpate/devices/scene_swap.h"
 #include "palpate/devices/seq_lock.h"
@@ -15,6 +16,13 @@
 
 namespace palpate::devices {
 namespace {
+
+/// [world] What a coupling needs to know of the renderer's tick.
+ToolForce toolForce(const HapticRenderer& renderer, const SessionTick& tick) noexcept {
+  const ForceSlope slope = renderer.slope(tick.hip);
+  return {tick.result.force, slope.normal,  slope.stiffness,
+          slope.sideways,    slope.damping, slope.drag};
+}
 
 const Vec3 kBroken(std::numeric_limits<double>::quiet_NaN());
 
@@ -73,6 +81,14 @@ Session::Session(ScenePtr scene, SessionSettings settings)
       renderer_(makeRenderer(scene_, settings_.renderer)),
       tracker_(settings_.velocity) {
   check(*scene_, settings_);
+  DeviceMapping asked = scene_->device();
+  if (settings_.passivity) asked.passivity.reset();
+  if (settings_.coupling) asked.coupling.reset();
+  HandGuards guards = guardsOf(asked, settings_.loop, 1.0 / settings_.servo.rate);
+  if (settings_.passivity) guards.passivity = settings_.passivity;
+  if (settings_.coupling) guards.coupling = settings_.coupling;
+  if (guards.coupling) coupling_.emplace(*guards.coupling);
+  if (guards.passivity) passivity_.emplace(*guards.passivity);
   if (!settings_.loop) return;
   LoopModel loop = *settings_.loop;
   loop.period = 1.0 / settings_.servo.rate;
@@ -114,18 +130,51 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
                : Clutched{position, velocity, 0.0};
 
   changeUntil(reading.time);
-  tick.hip = {now.position, now.velocity, tick.dt};
+  const double share = swap_fade_ * now.share;
+  const Felt felt = feel(now, frame, tick);
+  tick.force = is_mapped ? mapping.forceToDevice(share * felt.force) : share * felt.force;
+  if (passivity_) {
+    const double work = renderer_->sourceWork();
+    const double source = (is_mapped ? mapping.workAtHand() : 1.0) * (work - source_work_);
+    source_work_ = work;
+    const PassivityTick guarded = passivity_->step(is_sound ? reading.position : kBroken, tick.dt,
+                                                   tick.force, share * felt.stiffness, source);
+    tick.force = guarded.force;
+    tick.added = guarded.added;
+  }
+  swap_fade_ = std::min(1.0, swap_fade_ + tick.dt / kSwapFade);
+  shared_->view.store({tick.number, reading.time, now.position, tick.result.proxy,
+                       tick.result.force, tick.result.region, reading.buttons, tick.is_held});
+  return tick;
+}
+
+Session::Felt Session::feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept {
+  const bool is_coupled =
+      coupling_ && HapticRenderer::isInReach(probe.position) && isFinite(probe.velocity);
+  // The coupling is as stiff as it says at the hand, and works in the hand's own measure.
+  const DeviceMapping& mapping = scene_->device();
+  const bool is_mapped = frame == DeviceFrame::kDevice;
+  const double scale = is_mapped ? mapping.scale : 1.0;
+  const double force = is_mapped ? mapping.force : 1.0;
+  tick.hip = {probe.position, probe.velocity, tick.dt};
+  if (is_coupled) {
+    const ToolMotion tool = coupling_->reach(probe.position / scale, tick.dt);
+    tick.hip.position = scale * tool.position;
+    tick.hip.velocity = scale * tool.velocity;
+  }
   const auto before = std::chrono::steady_clock::now();
   tick.result = renderer_->update(tick.hip);
   const auto after = std::chrono::steady_clock::now();
   tick.unlimited = renderer_->unlimitedForce();
   tick.renderer_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count();
-  const Vec3 felt = swap_fade_ * now.share * tick.result.force;
-  tick.force = is_mapped ? mapping.forceToDevice(felt) : felt;
-  swap_fade_ = std::min(1.0, swap_fade_ + tick.dt / kSwapFade);
-  shared_->view.store({tick.number, reading.time, now.position, tick.result.proxy,
-                       tick.result.force, tick.result.region, reading.buttons, tick.is_held});
-  return tick;
+  if (!is_coupled && !passivity_) return {tick.result.force, 0.0};
+  ToolForce answer = toolForce(*renderer_, tick);
+  answer.force *= force;
+  for (double* slope : {&answer.stiffness, &answer.sideways, &answer.damping, &answer.drag}) {
+    *slope *= force * scale;
+  }
+  if (!is_coupled) return {tick.result.force, answer.stiffness};
+  return {coupling_->push(answer) / force, coupling_->felt(answer.stiffness)};
 }
 
 std::optional<SessionView> Session::view() const noexcept { return shared_->view.load(); }
@@ -139,6 +188,8 @@ void Session::swapScene() noexcept {
   if (!shared_->swap.take(scene_, renderer_)) return;
   swap_fade_ = 0.0;
   next_change_ = settings_.changes.size();
+  if (coupling_) coupling_->letGo();
+  source_work_ = 0.0;
 }
 
 void Session::changeUntil(double time) noexcept {
@@ -153,6 +204,9 @@ void Session::saveCheckpoint() noexcept {
   checkpoint_.renderer = renderer_->checkpoint();
   checkpoint_.tracker = tracker_;
   checkpoint_.clutch = clutch_;
+  checkpoint_.coupling = coupling_;
+  checkpoint_.passivity = passivity_;
+  checkpoint_.source_work = source_work_;
   checkpoint_.ticks = ticks_;
   checkpoint_.next_change = next_change_;
   checkpoint_.last_time = last_time_;
@@ -161,7 +215,11 @@ void Session::saveCheckpoint() noexcept {
 
 bool Session::resume(const SessionState& state) noexcept {
   if (ticks_ > 0 || state.next_change > settings_.changes.size()) return false;
-  if (!state.tracker.isSound()) return false;
+  if (state.coupling.has_value() != coupling_.has_value() ||
+      state.passivity.has_value() != passivity_.has_value()) {
+    return false;
+  }
+  if (!state.tracker.isSound() || (state.passivity && !state.passivity->isSound())) return false;
   if (!renderer_->setState(state.renderer)) return false;
   for (; next_change_ < state.next_change; ++next_change_) {
     const ContentEvent& event = settings_.changes[next_change_];
@@ -169,6 +227,9 @@ bool Session::resume(const SessionState& state) noexcept {
   }
   tracker_ = state.tracker;
   clutch_ = state.clutch;
+  coupling_ = state.coupling;
+  passivity_ = state.passivity;
+  source_work_ = state.source_work;
   ticks_ = state.ticks;
   last_time_ = state.last_time;
   has_begun_ = state.has_begun;

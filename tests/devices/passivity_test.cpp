@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <random>
 #include <vector>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/stability.h"
 #include "support/alloc_guard.h"
 #include "support/tiny_plant.h"
 
@@ -175,7 +177,8 @@ Felt press(const Pressed& how) {
     longest = std::max(longest, std::fabs(x - last_x));
     last_x = x;
     if (guard) {
-      const PassivityTick tick = guard->step(Vec3(0.0, 0.0, x), kTick, Vec3(0.0, 0.0, force), 0.0);
+      const PassivityTick tick = guard->step(Vec3(0.0, 0.0, x), kTick, Vec3(0.0, 0.0, force),
+                                             x < 0.0 ? how.wall : 0.0, 0.0);
       force = tick.force.z;
       out.most_added = std::max(out.most_added, glm::length(tick.added));
     }
@@ -262,7 +265,7 @@ TEST(PassivityController, ItsDamperCalmsAMassWithAnyDelay) {
     double source = -1e6;
     for (int k = 0; k < 2000; ++k) {
       const Vec3 at(0.0, plant.position(), 0.0);
-      line.push_back(guard.step(at, kTick, Vec3(0.0), source).force.y);
+      line.push_back(guard.step(at, kTick, Vec3(0.0), 0.0, source).force.y);
       source = 0.0;
       plant.step(line.front(), 0.0);
       line.erase(line.begin());
@@ -295,6 +298,61 @@ TEST(PassivityController, TheBoundGivesNothingBeforeItIsThere) {
   }
 }
 
+TEST(PassivityController, WhatItsDamperCannotHoldIsSoftened) {
+  // Below the exact limit of the sampled loop with the most damping, nobody holding the device.
+  for (int delay = 0; delay <= 8; ++delay) {
+    PassivitySettings how = settings();
+    how.delay = delay;
+    const PassivityController guard(how);
+    LoopModel loop;
+    loop.device.mass = how.mass;
+    loop.device.damping = how.damping;
+    loop.period = how.period;
+    loop.delay = delay;
+    const double damping =
+        std::min(0.25, std::tan(std::numbers::pi / (4.0 * (delay + 1)))) * how.mass / how.period;
+    const double limit = largestStiffness(loop, damping);
+    EXPECT_LT(guard.mostStiffness(), 0.9 * limit) << delay;
+    EXPECT_GT(guard.mostStiffness(), 0.5 * limit) << delay;
+  }
+  PassivitySettings how = settings();
+  how.friction = 0.4;
+  how.encoder = 40e-6;
+  PassivityController guard(how);
+  EXPECT_NEAR(guard.mostStiffness(), 0.8 * 2.0 * 0.4 / 40e-6, 1e-9);
+  const double wall = 4.0 * guard.mostStiffness();
+  const Vec3 force(0.0, 3.0, 0.0);
+  EXPECT_EQ(guard.step(Vec3(0.0), kTick, force, wall, 0.0).force, 0.25 * force);
+  // A source's work is as much less: all of it was given, so that nothing counts.
+  (void)guard.step(Vec3(0.0, 2e-5, 0.0), kTick, force, 0.0, 3.0 * 2e-5);
+  EXPECT_NEAR(guard.observer().given(), 0.0, 1e-18);
+  // Of an unknown stiffness, and one that may be.
+  EXPECT_EQ(guard.step(Vec3(0.0, 2e-5, 0.0), kTick, force, 0.0, 0.0).force, force);
+  EXPECT_EQ(guard.step(Vec3(0.0, 2e-5, 0.0), kTick, force, 1000.0, 0.0).force, force);
+}
+
+TEST(PassivityController, OnceItDampedItDampsUntilTheForceEnds) {
+  PassivitySettings how = settings();
+  how.encoder = 1e-5;
+  PassivityController guard(how);
+  const double most = 0.25 * how.mass / kTick;  // [N s/m]
+  const auto step = [&](double z, double force) {
+    return guard.step(Vec3(0.0, 0.0, z), kTick, Vec3(0.0, 0.0, force), 1000.0, 0.0).added.z;
+  };
+  EXPECT_EQ(step(-1e-3, 100.0), 0.0);
+  EXPECT_NEAR(step(-0.9e-3, 100.0), -most * 0.09, 1e-9);  // 10 mJ was given
+  for (int k = 1; k <= 40; ++k) {
+    EXPECT_NEAR(step(-0.9e-3 - 1e-4 * k, 100.0), most * 0.09, 1e-9);  // more than that was taken
+  }
+  EXPECT_GT(guard.observer().reserve(), 0.3);
+  EXPECT_NEAR(step(-4.8e-3, 100.0), -most * 0.09, 1e-9);
+  EXPECT_EQ(step(-4.791e-3, 100.0), 0.0);     // less than a step of the encoder
+  EXPECT_EQ(step(-1.791e-3, 100.0), -100.0);  // never turned around
+  EXPECT_GT(guard.observer().reserve(), 0.0);
+  EXPECT_EQ(step(-1.9e-3, 0.0), 0.0);
+  EXPECT_EQ(step(-1.8e-3, 100.0), 0.0);
+}
+
 TEST(PassivityController, AForceThatGivesNothingIsLeftAsItIs) {
   // Random hands on a wall far below what the device's own damping covers, 2 b / T.
   std::mt19937 random(3);
@@ -305,7 +363,8 @@ TEST(PassivityController, AForceThatGivesNothingIsLeftAsItIs) {
   for (int k = 0; k < 20000; ++k) {
     const double x = plant.position();
     const double wanted = x < 0.0 ? -400.0 * x : 0.0;
-    const PassivityTick tick = guard.step(Vec3(0.0, x, 0.0), kTick, Vec3(0.0, wanted, 0.0), 0.0);
+    const PassivityTick tick =
+        guard.step(Vec3(0.0, x, 0.0), kTick, Vec3(0.0, wanted, 0.0), 400.0, 0.0);
     EXPECT_EQ(tick.force.y, wanted);
     EXPECT_EQ(tick.added, Vec3(0.0));
     if (k % 50 == 0) aim = 0.01 * push(random);
@@ -318,19 +377,19 @@ TEST(PassivityController, ObservingOnlyLeavesEveryForce) {
   how.controls = false;
   how.hand_force = 0.0;
   PassivityController guard(how);
-  (void)guard.step(Vec3(0.0), kTick, Vec3(3.0, 0.0, 0.0), 0.0);
-  const PassivityTick tick = guard.step(Vec3(1e-3, 0.0, 0.0), kTick, Vec3(7.0, 1.0, 0.0), 0.0);
+  (void)guard.step(Vec3(0.0), kTick, Vec3(3.0, 0.0, 0.0), 0.0, 0.0);
+  const PassivityTick tick = guard.step(Vec3(1e-3, 0.0, 0.0), kTick, Vec3(7.0, 1.0, 0.0), 0.0, 0.0);
   EXPECT_EQ(tick.force, Vec3(7.0, 1.0, 0.0));
   EXPECT_LT(guard.observer().reserve(), 0.0);
 }
 
 TEST(PassivityController, ABrokenReadingGivesZeroAndCountsForNothing) {
   PassivityController guard(settings());
-  (void)guard.step(Vec3(0.0), kTick, Vec3(1.0, 0.0, 0.0), 0.0);
+  (void)guard.step(Vec3(0.0), kTick, Vec3(1.0, 0.0, 0.0), 0.0, 0.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(guard.step(Vec3(nan, 0.0, 0.0), kTick, Vec3(1.0, 0.0, 0.0), 0.0).force, Vec3(0.0));
-  EXPECT_EQ(guard.step(Vec3(0.0), kTick, Vec3(nan), 0.0).force, Vec3(0.0));
-  (void)guard.step(Vec3(1.0, 0.0, 0.0), kTick, Vec3(0.0), 0.0);
+  EXPECT_EQ(guard.step(Vec3(nan, 0.0, 0.0), kTick, Vec3(1.0, 0.0, 0.0), 0.0, 0.0).force, Vec3(0.0));
+  EXPECT_EQ(guard.step(Vec3(0.0), kTick, Vec3(nan), 0.0, 0.0).force, Vec3(0.0));
+  (void)guard.step(Vec3(1.0, 0.0, 0.0), kTick, Vec3(0.0), 0.0, 0.0);
   EXPECT_EQ(guard.observer().given(), 0.0);
 }
 
@@ -340,7 +399,7 @@ TEST(PassivityController, NeverAllocates) {
   PassivityController guard(how);
   const testing::AllocGuard allocations;
   for (int k = 0; k < 100; ++k) {
-    (void)guard.step(Vec3(1e-4 * k, 0.0, 0.0), kTick, Vec3(5.0, 0.0, 0.0), 0.0);
+    (void)guard.step(Vec3(1e-4 * k, 0.0, 0.0), kTick, Vec3(5.0, 0.0, 0.0), 0.0, 0.0);
   }
   EXPECT_EQ(allocations.violations(), 0);
 }

@@ -160,6 +160,59 @@ TEST_F(TouchRecord, StatesAreOnlyForTheSceneThatWasFelt) {
   EXPECT_NE(anew.err.find("begins at the first tick"), std::string::npos) << anew.err;
 }
 
+TEST_F(TouchRecord, WhatGuardedTheLoopIsPartOfTheRecord) {
+  std::string stiff = kBall;
+  stiff.replace(stiff.find("700 N/m"), 7, "30000 N/m");
+  stiff.replace(stiff.find("opens_at: 1 N"), 13, "opens_at: 90 N");
+  (void)folder_.file("stiff.yaml", stiff);
+  (void)folder_.file("own.yaml", stiff +
+                                     "device: {passivity: {mass: 0.2 kg}, coupling: {stiffness: "
+                                     "9000 N/m, damping: 4 N.s/m}}\n");
+  const std::vector<std::vector<std::string>> all = {
+      {"stiff.yaml"},
+      {"stiff.yaml", "--device", "virtual:falcon"},
+      {"stiff.yaml", "--coupling", "800,4"},
+      {"stiff.yaml", "--device", "virtual:falcon", "--passivity", "observe"},
+      {"stiff.yaml", "--device", "virtual:falcon", "--passivity", "control"},
+      {"stiff.yaml", "--device", "virtual:falcon", "--passivity", "control", "--hand-force", "5"},
+      {"stiff.yaml", "--device", "touch", "--hand", "firm", "--delay", "1", "--passivity",
+       "control", "--coupling", "any_scene"},
+      {"own.yaml"},
+      {"own.yaml", "--device", "omega_3", "--coupling", "springs"}};
+  for (const std::vector<std::string>& how : all) {
+    std::vector<std::string> touch = {"touch",    "--press", "0,0,20",  "--depth",  "3",
+                                      "--record", "r.npy",   "--force", "--states", "100"};
+    touch.insert(touch.begin() + 1, how.begin(), how.end());
+    const CommandResult felt = palpate(touch);
+    ASSERT_EQ(felt.exit_code, 0) << how.back() << felt.err;
+    for (const std::string from : {"0", "99", "333"}) {
+      const CommandResult anew = palpate({"replay", "r.npy", "--from", from, "--json"});
+      ASSERT_EQ(anew.exit_code, 0) << how.back() << ", from " << from << anew.err << anew.out;
+      EXPECT_EQ(parseOnly(anew)["begun_at_tick"], std::stoi(from) / 100 * 100);
+    }
+    // Without what guarded it the loop is another.
+    const Json about = Json::parse(textOf(folder_.path("r.npy.json")));
+    // Not tried: guards that change no force, and scenes that then guard the loop as they say.
+    const char* key = about["options"]["coupling"] != "" ? "coupling" : "passivity";
+    const std::string guard = about["options"][key];
+    if (guard != "" && guard != "observe" && how.front() != "own.yaml") {
+      Json other = about;
+      other["options"][key] = "";
+      other["options"]["hand_force"] = "";
+      (void)folder_.file("r.npy.json", other.dump());
+      EXPECT_EQ(palpate({"replay", "r.npy"}).exit_code, 1) << how.back() << ", " << key;
+      EXPECT_EQ(palpate({"replay", "r.npy", "--from", "333"}).exit_code, 3);
+    }
+    for (const char* wrong : {"coupling", "passivity", "device", "hand_force"}) {
+      Json other = about;
+      other["options"][wrong] = "none such";
+      (void)folder_.file("r.npy.json", other.dump());
+      const CommandResult refused = palpate({"replay", "r.npy"});
+      EXPECT_EQ(refused.exit_code, 3) << how.back() << ", " << wrong << refused.err;
+    }
+  }
+}
+
 TEST_F(TouchRecord, RegionsAreComparedByTheNamesInTheRecord) {
   ASSERT_EQ(
       palpate({"touch", "ball.yaml", "--press", "0,0,20", "--depth", "4", "--record", "r.npy"})

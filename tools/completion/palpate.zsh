@@ -12,7 +12,7 @@ _palpate() {
     'query:Value, gradient, region and material at points; or an image'\''s intensity'
     'explain:Show what a scene means\: regions, walls, ports, what can be reached'
     'render:Draw a scene cut open (.png)'
-    'bench:Measure contact (a tick'\''s time, its force'\''s error), or how late a servo loop wakes'
+    'bench:Measure contact (time and error of a tick), a hand in the loop, or how late a loop wakes'
     'accuracy:Compare fields with their grids\: error, time and memory by voxel size'
     'devices:List haptic and input devices, say what bars access to one, test it, calibrate it'
     'doctor:Say whether this machine is fit for a haptic device, and what to do'
@@ -56,6 +56,9 @@ _palpate() {
         '*--alpha[of the step back onto the surface (default 1)]:value:' \
         '*--alpha-form[printed, newton, or by_field\: newton where the field is not a distance (default)]:value:(by_field newton printed)' \
         '*--interior[at a wall from within\: wall and content together (default), or the wall alone]:value:(together wall)' \
+        '*--passivity[observe the energy that the loop gives to the hand, or control it by damping]:value:(control observe)' \
+        '*--hand-force[passivity\: the hand'\''s largest force; no tick then gives more than there is\: 5 (N)]:value:' \
+        '*--coupling[a spring and a damper between hand and tool\: springs or any_scene (designed for --device), or STIFFNESS,DAMPING\: 800 N/m,4 N.s/m]:value:' \
         '*--max-force[shorten longer forces to this, direction kept\: 3 (N), 500mN]:value:' \
         '*--slew[let the force grow, in any direction, by no more than this a second\: 100 (N/s); it may drop at once]:value:' \
         '*--ramp[start without force, and reach all of it after this\: 0.2 (s), 200ms]:value:' \
@@ -258,15 +261,18 @@ _palpate() {
     bench)
       _arguments \
         '*--scene[only this scene, may be repeated (default\: all)]:value:' \
-        '*--renderer[only constraint or only paper (default\: both)]:value:(constraint paper)' \
+        '*--renderer[only this renderer\: constraint or paper, for stability also a rival (default\: all)]:value:' \
+        '*--device[stability\: only this device, may be repeated (default\: falcon and touch)]:value:' \
+        '*--full[stability\: where nothing else is said all scenes, four devices, 1, 4 and 10 kHz (hours)]' \
         '*--repeat[runs, of which the shortest time counts (default 10)]:value:' \
         '*--paced[ticks that are timed one a millisecond, the loop asleep in between (default 2000)]:value:' \
         '*--cold[ticks that are timed after other data went through the caches (default 30)]:value:' \
-        '*--rate[a rate, may be repeated (default 1000 and 4000)]:value:' \
+        '*--rate[servo and stability\: a rate, may be repeated (default 1000, servo 4000 too)]:value:' \
         '*--seconds[for how long at each rate (default 5)]:value:' \
         '*--load[threads that compute meanwhile (default\: none, and then as many as there are cores)]:value:' \
         '*--csv[the table, one row for each scene and renderer]:value:_files' \
-        '*--svg[a plot of error against time]:value:_files' \
+        '*--svg[a plot of error against time; for stability of stiffness over rate]:value:_files' \
+        '*--curvature-svg[stability\: a plot of stiffness over curvature times depth]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
         '*--force[replace existing output files]' \
@@ -321,7 +327,7 @@ _palpate() {
       ;;
     help)
       if ((CURRENT == 3)); then compadd touch replay import bake convert info check query explain render bench accuracy devices doctor help scene; fi
-      if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid epsilon exponent factor fall_off felt_from field field_kind fields file fill flow force form frame friction from grid grids gyroid half_space half_width halvings heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before period point port ports quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width workspace x xx xy xz y yy yz z zz; fi
+      if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width workspace x xx xy xz y yy yz z zz; fi
       _arguments \
         '*--markdown[everything, as the reference in tools/README.md; of a map of scene files the table of its keys]' \
         '*--schema[scene\: the JSON Schema of scene files]' \

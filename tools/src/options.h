@@ -74,6 +74,10 @@ struct TouchOptions {
   int states = 10000;        ///< [ticks] record: from state to state; 0: none
   double rate = 1000.0;      ///< [Hz]
   DeviceOptions device;
+  std::string passivity;   ///< "observe" or "control"; empty: as the scene says
+  std::string hand_force;  ///< of `passivity`
+  std::string
+      coupling;  ///< "springs", "any_scene" or "STIFFNESS,DAMPING"; empty: as the scene says
   RealDeviceOptions real;
   std::optional<double> seconds;  ///< [s] of a device that a hand holds; none: until a stop
   std::string max_force;
@@ -192,15 +196,20 @@ struct RenderOptions {
 };
 
 struct BenchOptions {
-  std::string what;  ///< "contact" or "servo"
+  std::string what;  ///< "contact", "stability" or "servo"
   std::vector<std::string> scenes;
-  std::string renderer;  ///< empty: both
+  std::string renderer;  ///< empty: all
+  // Of stability.
+  bool full = false;  ///< where nothing else is said: all scenes, four devices, three rates
+  std::vector<std::string> devices;  ///< empty: Falcon and Touch
+  std::string curvature_svg;
+  // Of contact.
   int repeats = 10;
   int paced = 2000;
   int cold = 30;
   std::string csv;
   std::string svg;
-  std::vector<double> rates;  ///< servo: [Hz]; empty: 1000 and 4000
+  std::vector<double> rates;  ///< stability and servo: [Hz]; empty: 1000, of servo 4000 too
   double seconds = 5.0;       ///< servo: of each
   std::optional<int>
       load;  ///< servo: busy threads; none: without, and then as many as there are cores

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string_view>
 #include <type_traits>
 
 #include "palpate/core/error.h"
@@ -66,6 +68,7 @@ class Values {
       out.push_back(item.get<std::string>());
     }
   }
+  [[nodiscard]] bool has(const std::string& key) const { return object_->contains(key); }
   [[nodiscard]] Values part(const std::string& key) const {
     return {*find(key, &Json::is_object), file_};
   }
@@ -117,8 +120,21 @@ void eachValue(About& about, const Visit& visit) {
   visit("options", "slew", options.slew);
   visit("options", "ramp", options.ramp);
   visit("options", "set", options.set);
+  visit("options", "device", options.device.name);
+  visit("options", "hand", options.device.hand);
+  visit("options", "delay", options.device.delay);
+  visit("options", "passivity", options.passivity);
+  visit("options", "hand_force", options.hand_force);
+  visit("options", "coupling", options.coupling);
   visit("", "regions", about.regions);
   visit("", "ports", about.ports);
+}
+
+/// Options that records of 0.1 may lack: they had none of them.
+bool isLater(std::string_view key) {
+  constexpr std::string_view kLater[] = {"device",    "hand",       "delay",
+                                         "passivity", "hand_force", "coupling"};
+  return std::find(std::begin(kLater), std::end(kLater), key) != std::end(kLater);
 }
 
 template <typename Value>
@@ -147,6 +163,7 @@ void checkOptions(const TouchOptions& options, const Values& all) {
   need(alpha >= 0.0 && alpha <= 1e6, "alpha");
   need(is_one_of(options.alpha_form, {"by_field", "printed", "newton"}), "alpha_form");
   need(is_one_of(options.interior, {"together", "wall"}), "interior");
+  need(is_one_of(options.passivity, {"observe", "control"}), "passivity");
 }
 
 }  // namespace
@@ -177,7 +194,9 @@ ReadAbout readAbout(const std::string& record) {
   RecordAbout& about = out.about;
   const Values all(json, file);
   eachValue(about, [&](const std::string& section, const char* key, auto& value) {
-    (section.empty() ? all : all.part(section)).take(key, value);
+    const Values part = section.empty() ? all : all.part(section);
+    if (section == "options" && isLater(key) && !part.has(key)) return;
+    part.take(key, value);
   });
   if (about.renderer != "paper" && about.renderer != "constraint") throw all.bad("renderer");
   if (!(about.rate >= 1.0 && about.rate <= 1e5)) throw all.bad("rate_Hz");

@@ -61,6 +61,10 @@ double parseForce(std::string_view text, const char* what) {
   return parseWithUnit(trimmed(text), Dimension::kForce, 1.0, "N", what);
 }
 
+double parseStiffness(std::string_view text, const char* what) {
+  return parseWithUnit(trimmed(text), Dimension::kStiffness, 1.0, "N/m", what);
+}
+
 double parseDamping(std::string_view text, const char* what) {
   return parseWithUnit(trimmed(text), Dimension::kDamping, 1.0, "N.s/m", what);
 }

@@ -22,8 +22,9 @@ struct LengthUnit {
 // From text. `what` names the option in the message. @throws Error (kUsage).
 [[nodiscard]] double parseLength(std::string_view text, const LengthUnit& unit, const char* what);
 [[nodiscard]] double parseSpeed(std::string_view text, const LengthUnit& unit, const char* what);
-/// A plain number is in N, N.s/m, N/s and s.
+/// A plain number is in N, N/m, N.s/m, N/s and s.
 [[nodiscard]] double parseForce(std::string_view text, const char* what);
+[[nodiscard]] double parseStiffness(std::string_view text, const char* what);
 [[nodiscard]] double parseDamping(std::string_view text, const char* what);
 [[nodiscard]] double parseForceRate(std::string_view text, const char* what);
 [[nodiscard]] double parseTime(std::string_view text, const char* what);

@@ -4,6 +4,7 @@
 #include "bench/contact_report.h"
 #include "bench/machine_json.h"
 #include "bench/servo_case.h"
+#include "bench/stability_bench.h"
 #include "input_kind.h"
 #include "output_files.h"
 #include "palpate/scene/scene_file.h"
@@ -97,10 +98,23 @@ Report servoReport(const BenchOptions& options, Console& console) {
 }  // namespace
 
 Report run(const BenchOptions& options, const GeneralOptions& general, Console& console) {
-  if (options.what == "servo") return servoReport(options, console);
-  if (options.what != "contact") {
+  if (options.what == "stability") return runStabilityBench(options, general, console);
+  const bool is_servo = options.what == "servo";
+  if (options.what != "contact" && !is_servo) {
     throw usageError("there is no bench '" + options.what + "'",
-                     "write palpate bench contact or palpate bench servo");
+                     "write palpate bench contact, stability or servo");
+  }
+  if (options.full || !options.devices.empty() || !options.curvature_svg.empty() ||
+      (!is_servo && !options.rates.empty())) {
+    throw usageError(
+        "--full, --device, --rate and --curvature-svg are not of bench " + options.what,
+        "write palpate bench stability");
+  }
+  if (is_servo) return servoReport(options, console);
+  if (!options.renderer.empty() && options.renderer != "constraint" &&
+      options.renderer != "paper") {
+    throw usageError("the bench of contact has no renderer '" + options.renderer + "'",
+                     "it has constraint and paper");
   }
   (void)chosenCases(options.scenes);
   OutputFiles files(general);

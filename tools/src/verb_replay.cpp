@@ -3,6 +3,8 @@
 #include "content_changes.h"
 #include "input_kind.h"
 #include "loaded_scene.h"
+#include "loop_guards.h"
+#include "open_device.h"
 #include "palpate/devices/record.h"
 #include "record_about.h"
 #include "scene_hash.h"
@@ -155,6 +157,11 @@ Report run(const ReplayOptions& options, const GeneralOptions&, Console& console
       options.record, [&] { return contentEvents(readSettings(asked.set), *scene, kInfinity); });
   how.servo.rate = about.rate;
   how.checkpoint_every = about.states_every;
+  asked.rate = about.rate;
+  const devices::HandGuards guards = fromOptions(
+      options.record, [&] { return guardsOf(asked, scene->device(), touchLoop(asked)); });
+  how.passivity = guards.passivity;
+  how.coupling = guards.coupling;
   devices::Session session(scene, std::move(how));
 
   const std::optional<devices::SessionState> state = stateFor(options, read, chosen, console);

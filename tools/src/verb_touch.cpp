@@ -6,6 +6,7 @@
 #include "content_changes.h"
 #include "input_kind.h"
 #include "loaded_scene.h"
+#include "loop_guards.h"
 #include "map_coverage.h"
 #include "motion.h"
 #include "open_device.h"
@@ -148,6 +149,9 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   if (options.realtime) how.servo.elevate = devices::Elevate::kPrefer;
   if (!options.record.empty()) how.checkpoint_every = static_cast<std::uint64_t>(options.states);
   how.loop = touchLoop(options);
+  const devices::HandGuards guards = guardsOf(options, scene->device(), how.loop);
+  how.passivity = guards.passivity;
+  how.coupling = guards.coupling;
   devices::Session session(scene, std::move(how));
   warnOfBudget(session.overBudget(), options.device, is_shape ? "" : options.scene, options.rate,
                console);
@@ -204,6 +208,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   report.json["set"] = settingsJson(content_settings);
   report.json["limits"] = limitsJson(limits);
   report.json["device"] = deviceJson(options.device, options.rate);
+  report.json.update(guardsJson(guards, session));
   report.json["over_budget"] = budgetJson(session.overBudget());
   report.json["grids"] = loaded.gridsJson();
   report.json["trace"] = options.trace.empty() ? Json() : Json(options.trace);
@@ -212,7 +217,8 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   report.json["written_scene"] = options.write_scene.empty() ? Json() : Json(options.write_scene);
   report.json["plot"] = options.plot.empty() ? Json() : Json(options.plot);
 
-  report.text = summaryText(summary, *scene) + limitsText(limits) + deviceText(options.device);
+  report.text = summaryText(summary, *scene) + limitsText(limits) + deviceText(options.device) +
+                guardsText(guards, session);
   if (!report.is_yes) {
     report.text = std::string(options.press.empty() ? "The tap" : "The press") +
                   " met nothing: no wall, no port and no content. Is the point on a surface, and "

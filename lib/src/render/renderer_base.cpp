@@ -1,5 +1,6 @@
 #include "renderer_base.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -39,6 +40,30 @@ TickResult RendererBase::update(const HipState& hip) noexcept {
   state_.last = out;
   crossing_count_ = out.event_count;
   entry_count_ = entered().size();
+  return out;
+}
+
+ForceSlope HapticRenderer::slope(const HipState& /*hip*/) const noexcept { return {}; }
+
+ForceSlope RendererBase::slope(const HipState& hip) const noexcept {
+  const TickResult& answer = state_.last;
+  ForceSlope out;
+  out.drag = contents_.viscosity(answer.region, hip.position);
+  if (!answer.contact) return out;
+  const Vec3 spring = answer.proxy - hip.position;
+  const double depth = glm::length(spring);
+  if (!(depth > 0.0)) return out;
+  out.normal = spring / depth;
+  double bend = 1.0;
+  if (state_.pressed >= 0) {
+    const Material& material = scene_->materials()[static_cast<std::size_t>(state_.pressed)];
+    out.damping = material.damping.at(answer.proxy);
+    const bool stiffens = material.curve.stiffening.range().most > 0.0;
+    bend = std::max(material.curve.exponent, stiffens ? 2.0 : 1.0);
+  }
+  const double elastic = glm::dot(out.normal, answer.force + out.damping * hip.velocity);
+  out.stiffness = bend * std::max(0.0, elastic) / depth;
+  if (state_.friction.sticks) out.sideways = out.stiffness;
   return out;
 }
 

@@ -24,6 +24,7 @@ class RendererBase : public HapticRenderer {
     return contents_.change(region, change);
   }
   [[nodiscard]] const Vec3& unlimitedForce() const noexcept final { return unlimited_; }
+  [[nodiscard]] ForceSlope slope(const HipState& hip) const noexcept final;
   [[nodiscard]] double sourceWork() const noexcept final { return state_.source.work; }
   void reset() noexcept final;
   [[nodiscard]] RendererState state() const noexcept final { return state_.sealed(); }

@@ -3,6 +3,42 @@
 #include "scene/values.h"
 
 namespace palpate {
+namespace {
+
+std::optional<double> given(const MapReader& reader, std::string_view key) {
+  if (!reader.has(key)) return std::nullopt;
+  return reader.value(key);
+}
+
+PassivityRequest readPassivity(const MapReader& reader) {
+  PassivityRequest passivity;
+  passivity.controls = reader.flag("control");
+  passivity.mass = given(reader, "mass");
+  passivity.damping = given(reader, "damping");
+  passivity.friction = given(reader, "friction");
+  passivity.encoder = given(reader, "encoder");
+  passivity.hand_force = given(reader, "hand_force");
+  return passivity;
+}
+
+CouplingRequest readCoupling(const MapReader& reader) {
+  CouplingRequest coupling;
+  coupling.stiffness = given(reader, "stiffness");
+  if (reader.has("damping") && !coupling.stiffness) {
+    throw reader.errorAt("damping", "scene.coupling", "a 'damping' goes beside a 'stiffness'",
+                         "give both, or neither: the coupling is then designed for the device");
+  }
+  if (reader.has("for") && coupling.stiffness) {
+    throw reader.errorAt("for", "scene.coupling",
+                         "a coupling with a 'stiffness' is not designed for anything",
+                         "leave out 'for' or 'stiffness'");
+  }
+  coupling.damping = reader.value("damping");
+  if (reader.choice("for") == 1) coupling.design = CouplingRequest::For::kAnyScene;
+  return coupling;
+}
+
+}  // namespace
 
 DeviceMapping readDevice(const MapReader& reader) {
   DeviceMapping device;
@@ -18,6 +54,8 @@ DeviceMapping readDevice(const MapReader& reader) {
                            "give a box or a sphere, in the device's own coordinates");
     }
   }
+  if (reader.has("passivity")) device.passivity = readPassivity(reader.map("passivity"));
+  if (reader.has("coupling")) device.coupling = readCoupling(reader.map("coupling"));
   return device;
 }
 

@@ -40,6 +40,7 @@ constexpr Type kTypes[] = {
     {"time", Form::kQuantity, Dimension::kTime, 0.0},
     {"stiffness_per_length", Form::kQuantity, Dimension::kStiffness2, 0.0},
     {"damping_per_length", Form::kQuantity, Dimension::kDamping2, 0.0},
+    {"mass", Form::kQuantity, Dimension::kMass, 0.0},
     {"field", Form::kField},
     {"any", Form::kAny},
 };

@@ -92,6 +92,8 @@ const std::vector<Probe>& probes() {
       {"port", layers + "ports:\n  - {name: p, between: [a, outside], @}\n"},
       {"device", "device: {scale: 1, @}\n"},
       {"start", "start: {region: outside, @}\n"},
+      {"passivity", "device: {passivity: {mass: 1 kg, @}}\n"},
+      {"coupling", "device: {coupling: {stiffness: 1 N/m, @}}\n"},
       {"paper", "paper: {alpha: 1, @}\n"},
       {"passed_before", layers +
                             "ports:\n  - {name: q, between: [a, outside]}\n  - {name: p, between: "
@@ -165,7 +167,8 @@ TEST(Vocabulary, TheSchemasQuantitiesAreTheReaders) {
       {"velocity", Dimension::kVelocity},
       {"time", Dimension::kTime},
       {"stiffness_per_length", Dimension::kStiffness2},
-      {"damping_per_length", Dimension::kDamping2}};
+      {"damping_per_length", Dimension::kDamping2},
+      {"mass", Dimension::kMass}};
   const std::vector<std::string> numbers = {"0",  "1",   "15",  "1.5", ".5",  "5.",  "1e3",  "1E-3",
                                             "+2", "010", "00",  "1_0", "1,5", "0x1", "e3",   "1e",
                                             ".",  "",    "inf", "nan", "1 2", "--1", "1.2.3"};
@@ -230,7 +233,8 @@ TEST(Vocabulary, TheReferenceNamesEveryKeyAndUnit) {
   }
   for (const Dimension dimension :
        {Dimension::kLength, Dimension::kForce, Dimension::kStiffness, Dimension::kDamping,
-        Dimension::kVelocity, Dimension::kTime, Dimension::kStiffness2, Dimension::kDamping2}) {
+        Dimension::kVelocity, Dimension::kTime, Dimension::kStiffness2, Dimension::kDamping2,
+        Dimension::kMass}) {
     EXPECT_NE(page.find(unitHelp(dimension)), std::string::npos) << unitHelp(dimension);
   }
 }

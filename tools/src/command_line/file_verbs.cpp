@@ -125,8 +125,13 @@ void defineBench(CLI::App& app, Invocation& invocation) {
   app.add_option("what", o.what);
   const char* g = "What to run";
   addList(app, g, "--scene", "NAME", o.scenes, "only this scene, may be repeated (default: all)");
-  add(app, g, "--renderer", "NAME", o.renderer, "only constraint or only paper (default: both)")
-      ->check(CLI::IsMember({"constraint", "paper"}));
+  add(app, g, "--renderer", "NAME", o.renderer,
+      "only this renderer: constraint or paper, for stability also a rival (default: all)");
+  addList(app, g, "--device", "NAME", o.devices,
+          "stability: only this device, may be repeated (default: falcon and touch)");
+  addFlag(
+      app, g, "--full", o.full,
+      "stability: where nothing else is said all scenes, four devices, 1, 4 and 10 kHz (hours)");
   add(app, g, "--repeat", "N", o.repeats, "runs, of which the shortest time counts (default 10)")
       ->check(CLI::Range(1, 100000));
   add(app, g, "--paced", "N", o.paced,
@@ -136,7 +141,8 @@ void defineBench(CLI::App& app, Invocation& invocation) {
       "ticks that are timed after other data went through the caches (default 30)")
       ->check(CLI::Range(0, 1000000));
   g = "Of `bench servo`";
-  app.add_option("--rate", o.rates, "a rate, may be repeated (default 1000 and 4000)")
+  app.add_option("--rate", o.rates,
+                 "servo and stability: a rate, may be repeated (default 1000, servo 4000 too)")
       ->group(g)
       ->option_text("HZ")
       ->expected(1)
@@ -150,7 +156,10 @@ void defineBench(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(0, 1024));
   g = "Output files";
   add(app, g, "--csv", "FILE.csv", o.csv, "the table, one row for each scene and renderer");
-  add(app, g, "--svg", "FILE.svg", o.svg, "a plot of error against time");
+  add(app, g, "--svg", "FILE.svg", o.svg,
+      "a plot of error against time; for stability of stiffness over rate");
+  add(app, g, "--curvature-svg", "FILE.svg", o.curvature_svg,
+      "stability: a plot of stiffness over curvature times depth");
 }
 
 void defineHelp(CLI::App& app, Invocation& invocation) {
@@ -268,10 +277,16 @@ Verb checkVerb() {
 Verb benchVerb() {
   return {
       "bench",
-      "Measure contact (a tick's time, its force's error), or how late a servo loop wakes",
+      "Measure contact (time and error of a tick), a hand in the loop, or how late a loop wakes",
       "palpate bench contact --scene sphere --scene torus --svg contact.svg",
-      "palpate bench contact|servo [OPTIONS]",
-      "Runs both renderers along the same paths on scenes of known truth and compares the forces "
+      "palpate bench contact|stability|servo [OPTIONS]",
+      "`stability` lets a relaxed hand press on hard cases through simulated devices, with our "
+      "renderers and\n"
+      "published ones, and finds the stiffest wall on which it comes to rest, beside the device's "
+      "budget\n"
+      "(tools/docs/stability.md).\n"
+      "`contact` runs both renderers along the same paths on scenes of known truth and compares "
+      "the forces "
       "with\n"
       "closed forms, or with a slow oracle where there is none: `judged` is the number of ticks "
       "compared.\n"
@@ -293,7 +308,9 @@ Verb benchVerb() {
       "enough for each rate: how late turns began, and how many were missed.",
       {},
       defineBench,
-      [](const Invocation& i) { need(!chosen<BenchOptions>(i).what.empty(), "contact or servo"); },
+      [](const Invocation& i) {
+        need(!chosen<BenchOptions>(i).what.empty(), "contact, stability or servo");
+      },
       true};
 }
 

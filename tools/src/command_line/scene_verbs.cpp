@@ -103,6 +103,15 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   add(app, g, "--interior", "HOW", o.interior,
       "at a wall from within: wall and content together (default), or the wall alone")
       ->check(CLI::IsMember({"together", "wall"}));
+  g = "What keeps a device stable (default: as the scene's `device` says, or nothing)";
+  add(app, g, "--passivity", "WHAT", o.passivity,
+      "observe the energy that the loop gives to the hand, or control it by damping")
+      ->check(CLI::IsMember({"observe", "control"}));
+  add(app, g, "--hand-force", "FORCE", o.hand_force,
+      "passivity: the hand's largest force; no tick then gives more than there is: 5 (N)");
+  add(app, g, "--coupling", "WHAT", o.coupling,
+      "a spring and a damper between hand and tool: springs or any_scene (designed for --device), "
+      "or STIFFNESS,DAMPING: 800 N/m,4 N.s/m");
   g = "Limits of the force, in this order (default: none)";
   add(app, g, "--max-force", "FORCE", o.max_force,
       "shorten longer forces to this, direction kept: 3 (N), 500mN");

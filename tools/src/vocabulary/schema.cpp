@@ -80,7 +80,8 @@ void addValues(const Vocabulary& vocabulary, Json& definitions) {
                                         {"velocity", Dimension::kVelocity},
                                         {"time", Dimension::kTime},
                                         {"stiffness_per_length", Dimension::kStiffness2},
-                                        {"damping_per_length", Dimension::kDamping2}}) {
+                                        {"damping_per_length", Dimension::kDamping2},
+                                        {"mass", Dimension::kMass}}) {
     definitions[name] = quantity(dimension, dimension == Dimension::kVelocity);
   }
   for (const KeyWords& value : vocabulary.values()) {

@@ -50,6 +50,11 @@ class PALPATE_EXPORT PassivityObserver {
   /// `force` [N] is written. Shortened to max_force, it is held `delay` ticks later.
   void hold(const Vec3& force) noexcept;
 
+  /// What is not so cannot have come from add() and hold().
+  [[nodiscard]] bool isSound() const noexcept {
+    return delay_ >= 0 && delay_ <= kMostDelay && next_ <= static_cast<std::size_t>(delay_);
+  }
+
   /// [J] Work of the held forces on the tip since the first tick, sources left out.
   [[nodiscard]] double given() const noexcept { return given_; }
   /// [J] What may still be given: the seed and the incomes less what was given. Below 0: the loop gave energy away.
@@ -67,11 +72,12 @@ class PALPATE_EXPORT PassivityObserver {
  private:
   double damping_ = 0.0;
   double friction_ = 0.0;
-  double encoder_ = 0.0;
+  double unsure_ = 0.0;     ///< [m] of a step, by the encoder
+  double half_step_ = 0.0;  ///< [m] of the encoder
   double max_force_ = 0.0;
   int delay_ = 0;
 
-  std::array<Vec3, kMostDelay + 1> written_{};  ///< [N] a ring
+  std::array<Vec3, kMostDelay + 1> written_{};  ///< [N] a ring of delay + 1, the oldest at next_
   std::size_t next_ = 0;
   Vec3 held_{0.0, 0.0, 0.0};
   Vec3 position_{0.0, 0.0, 0.0};
@@ -95,38 +101,56 @@ struct PassivityTick {
 /// - While the reserve is below 0 it damps: -alpha v, alpha = -reserve / (T |v|^2), but kDampingShare mass / T and
 ///   tan(pi / (4 (d + 1))) mass / T at most, with d ticks of delay. A damper that is sampled and held gives energy itself: on a mass
 ///   alone it is stable below twice the latter. The controller acts once energy was given.
+/// - From then on until the force wanted is zero it damps along that force with all it may: a damper that came and went with the
+///   reserve would leave a limit cycle. It never turns the force around. Steps as short as the encoder's count for no motion.
+/// - What that damper cannot hold it softens: a force that grows with more than mostStiffness() is scaled down to it. At most
+///   alpha of damping holds alpha / (T / 2 + d T) by first order; half of that is below the exact limit with any delay.
+///   And no friction f_c stills what an encoder of step D sets going above 2 f_c / D: kFrictionShare of that, if both are known.
 /// - With `hand_force` F_H it acts before that, without delay. Until the next tick the tip goes
 ///   x_k - x_{k-1} + T^2 / (2 m) (f_{k-1} + f_k + 2 F) with |F| <= F_H along the force at most, so
 ///   |f| <= (-s + sqrt(s^2 + 4 c reserve)) / (2 c), c = T^2 / (2 m), s = n . (x_k - x_{k-1}) + c n . f_{k-1} + 2 c F_H
 ///   (and the encoder's step), n = f / |f|, gives no more than the reserve.
 ///
-/// Both are felt: a stiff wall is softer where it is first touched, and a fast tap gets a kick against it.
+/// All are felt: a wall that is too stiff has mostStiffness(), is softer where it is first touched, and a fast tap gets a kick
+/// against it.
 class PALPATE_EXPORT PassivityController {
  public:
   static constexpr double kDampingShare = 0.25;  ///< [-]
+  static constexpr double kFrictionShare = 0.8;  ///< [-]
 
   /// @throws Error (kUsage, passivity.*) for a value out of its range, and for hand_force with a delay.
   explicit PassivityController(const PassivitySettings& settings);
 
-  /// The tip is at `position` [m], `dt` [s] after the last time, and `force` [N] is wanted. `source` as in
-  /// PassivityObserver::add(). A position that is not finite gives zero force, and counts for nothing.
+  /// The tip is at `position` [m], `dt` [s] after the last time, and `force` [N] is wanted, which grows with `stiffness` [N/m]
+  /// at most where the tip goes against it; 0: not known. `source` is as in PassivityObserver::add(), of the forces as
+  /// they were wanted. A position that is not finite gives zero force, and counts for nothing.
   [[nodiscard]] PassivityTick step(const Vec3& position, double dt, const Vec3& force,
-                                   double source) noexcept;
+                                   double stiffness, double source) noexcept;
 
   [[nodiscard]] const PassivityObserver& observer() const noexcept { return observer_; }
+  /// [N/m] A stiffer wall is felt as one of this; infinite if nothing is controlled.
+  [[nodiscard]] double mostStiffness() const noexcept { return most_stiffness_; }
+  /// What is not so cannot have come from step().
+  [[nodiscard]] bool isSound() const noexcept { return observer_.isSound(); }
 
  private:
+  /// [m] The last step, less the encoder's.
+  [[nodiscard]] Vec3 sureStep() const noexcept;
   [[nodiscard]] Vec3 damped(const Vec3& force) const noexcept;
   [[nodiscard]] Vec3 bounded(const Vec3& force) const noexcept;
 
   PassivityObserver observer_;
-  double period_ = 1e-3;
-  double most_damping_ = 0.0;  ///< [N s/m]
-  double travel_ = 0.0;        ///< [m/N] T^2 / (2 m)
-  double hand_force_ = 0.0;    ///< [N]
-  double encoder_ = 0.0;       ///< [m]
+  double per_period_ = 1e3;      ///< [1/s]
+  double most_damping_ = 0.0;    ///< [N s/m]
+  double most_stiffness_ = 0.0;  ///< [N/m]
+  double encoder_ = 0.0;         ///< [m] one step
+  double least_step_ = 0.0;      ///< [m] shorter is at rest
+  double travel_ = 0.0;          ///< [m/N] c = T^2 / (2 m)
+  double margin_ = 0.0;          ///< [m] 2 c F_H and the encoder's step
+  double scale_ = 1.0;           ///< [-] of the force that was wanted last
   bool controls_ = false;
   bool bounds_ = false;
+  bool is_damping_ = false;  ///< energy was given since a force was first wanted
 };
 
 static_assert(std::is_trivially_copyable_v<PassivityController>);

@@ -12,8 +12,10 @@
 
 #include "palpate/core/math.h"
 #include "palpate/devices/device.h"
+#include "palpate/devices/passivity.h"
 #include "palpate/devices/scene_budget.h"
 #include "palpate/devices/velocity.h"
+#include "palpate/devices/virtual_coupling.h"
 #include "palpate/export.h"
 #include "palpate/render/haptic_renderer.h"
 
@@ -81,6 +83,10 @@ struct SessionSettings {
   int clutch_button =
       0;  ///< bit of DeviceState::buttons, 0 to 31, that holds the clutch, where the scene allows one
   std::vector<ContentEvent> changes = {};  ///< by time
+  /// Both are at the hand, in the device's frame. Not given: as the scene's `device` asks for, with what it does not say from
+  /// `loop` (hand_guards.h); off if it does not.
+  std::optional<PassivitySettings> passivity = {};
+  std::optional<CouplingSettings> coupling = {};
   /// [ticks] Before each tick whose number is a multiple of this, but 0, Session::checkpoint() is taken; 0: never. Two sessions
   /// feel the same bit for bit only if theirs is the same: see HapticRenderer::checkpoint().
   std::uint64_t checkpoint_every = 0;
@@ -95,6 +101,9 @@ struct SessionState {
   RendererState renderer;
   VelocityTracker tracker;
   Clutch clutch;
+  std::optional<VirtualCoupling> coupling;
+  std::optional<PassivityController> passivity;
+  double source_work = 0.0;       ///< [J] of the renderer, up to the last tick
   std::uint64_t ticks = 0;        ///< that were made
   std::uint64_t next_change = 0;  ///< of SessionSettings::changes, the first that has not come yet
   double last_time = 0.0;         ///< [s]
@@ -108,10 +117,11 @@ struct SessionTick {
   DeviceState reading;       ///< as it came
   /// [s] since the last reading: the servo's period at the first, 0 where the time did not rise or is not a number
   double dt = 0.0;
-  HipState hip;                   ///< [world] what the renderer got
+  HipState hip;                   ///< [world] what the renderer got; with a coupling the tool
   TickResult result;              ///< [world] what it answered
   Vec3 unlimited{0.0, 0.0, 0.0};  ///< [N, world] its force before the limits
   Vec3 force{0.0, 0.0, 0.0};      ///< [N] in the device's frame: for the device
+  Vec3 added{0.0, 0.0, 0.0};      ///< [N] of it by the passivity controller
   std::int64_t renderer_ns = 0;   ///< [ns] of the renderer's update alone
   bool is_held = false;           ///< the clutch is
   bool is_checkpoint = false;     ///< Session::checkpoint() is what was before this tick
@@ -129,7 +139,8 @@ struct SessionView {
   bool is_held = false;  ///< the clutch is
 };
 
-/// Owns the renderer, the velocity tracker, the clutch and all that they keep between ticks; the scene is shared and const.
+/// Owns the renderer, the velocity tracker, the clutch, the guards of stability and all that they keep between ticks; the
+/// scene is shared and const.
 /// Construction may throw and allocate; step() never allocates, locks, throws or blocks. One thread at a time.
 class PALPATE_EXPORT Session {
  public:
@@ -137,14 +148,16 @@ class PALPATE_EXPORT Session {
   using Listener = std::function<void(const SessionTick&, const HapticRenderer&)>;
 
   /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a servo loop, limits
-  /// of the force, a button or changes that cannot be, and as sceneBudget() for a loop.
+  /// of the force, a button, changes, passivity or a coupling that cannot be, and as sceneBudget()
+  /// for a loop.
   explicit Session(ScenePtr scene, SessionSettings settings = {});
   ~Session();
   Session(Session&& other) noexcept;
   Session& operator=(Session&& other) noexcept;
 
-  /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld), velocity, clutch, renderer, and
-  /// the force back. A reading that is not finite gives zero force.
+  /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld), velocity, clutch, coupling,
+  /// renderer, and the force back through the coupling and the passivity controller. A reading that is not finite gives
+  /// zero force.
   [[nodiscard]] SessionTick step(const DeviceState& reading, DeviceFrame frame) noexcept;
 
   /// step() for each reading of `device`, by runServo(), until that ends or `stop` is set. @throws Error as runServo().
@@ -163,9 +176,15 @@ class PALPATE_EXPORT Session {
   /// The number of the next tick.
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
 
+  /// The energy that the loop gave to the hand; null unless SessionSettings::passivity is given.
+  [[nodiscard]] const PassivityObserver* observer() const noexcept {
+    return passivity_ ? &passivity_->observer() : nullptr;
+  }
+
   /// From any thread: the hand goes on in another scene, with a renderer that is made here and now. From one tick to the next the
   /// scene is another; the force begins at zero and comes back within kSwapFade. A scene that was offered before and not yet
   /// taken is forgotten. Changes of contents that were asked for by time do not hold in it, and a record does not know of it.
+  /// Passivity and the coupling go on as they were asked for at first.
   /// One thread at a time. @throws Error (kInput) as makeRenderer().
   void offer(ScenePtr scene, const RendererSettings& settings);
   /// From any thread: the last tick. None before the first.
@@ -191,6 +210,16 @@ class PALPATE_EXPORT Session {
   std::unique_ptr<HapticRenderer> renderer_;
   VelocityTracker tracker_;
   Clutch clutch_;
+  std::optional<VirtualCoupling> coupling_;
+  std::optional<PassivityController> passivity_;
+  double source_work_ = 0.0;  ///< [J] of the renderer, up to the last tick
+
+  struct Felt {
+    Vec3 force{0.0, 0.0, 0.0};  ///< [N, world]
+    double stiffness = 0.0;     ///< [N/m] of the wall, at the hand; 0: not known
+  };
+  /// The renderer's answer for the probe at `probe`, through the coupling if there is one, and before the clutch.
+  [[nodiscard]] Felt feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept;
   /// Changes the contents whose time has come.
   void changeUntil(double time) noexcept;
   void saveCheckpoint() noexcept;

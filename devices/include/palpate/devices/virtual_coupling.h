@@ -48,6 +48,14 @@ class PALPATE_EXPORT VirtualCoupling {
   /// [N] On the hand, for the scene's answer at what reach() said. It never pulls into `answer.normal`.
   [[nodiscard]] Vec3 push(const ToolForce& answer) noexcept;
 
+  /// [N/m] What the hand feels of a wall of `stiffness` [N/m] at rest.
+  [[nodiscard]] double felt(double stiffness) const noexcept {
+    return stiffness * settings_.stiffness / (stiffness + settings_.stiffness);
+  }
+
+  /// The scene is another one: the next reach() begins anew, with the tool at the hand.
+  void letGo() noexcept { has_begun_ = false; }
+
   /// [m] The tool, after push().
   [[nodiscard]] const Vec3& tool() const noexcept { return tool_; }
 
@@ -56,6 +64,8 @@ class PALPATE_EXPORT VirtualCoupling {
   bool has_begun_ = false;
   double per_time_ = 0.0;     ///< [1/s] 1 / T of this tick
   double slope_ = 0.0;        ///< [N/m] K_c + B_c / T
+  double give_ = 0.0;         ///< [m/N] 1 / slope_
+  double share_ = 0.0;        ///< [-] of the slope that is the damper's
   Vec3 hand_{0.0, 0.0, 0.0};  ///< [m]
   Vec3 free_{0.0, 0.0, 0.0};  ///< [m] where the tool would be without a force of the scene
   Vec3 tool_{0.0, 0.0, 0.0};  ///< [m] after the last tick

@@ -79,6 +79,15 @@ struct TickResult {
   std::array<PortId, kMaxEvents> events{};
 };
 
+/// How the force of a tick changes when the hand does. What is not known is 0.
+struct ForceSlope {
+  Vec3 normal{0.0, 0.0, 0.0};  ///< [-] unit, out of the wall that is pressed; zero: none is
+  double stiffness = 0.0;      ///< [N/m] against a motion along `normal`
+  double sideways = 0.0;       ///< [N/m] against one across it: of a wall that sticks
+  double damping = 0.0;        ///< [N s/m] along `normal`
+  double drag = 0.0;           ///< [N s/m] along any direction
+};
+
 /// A limit that is NaN or below 0 permits nothing: the force is then zero, or cannot grow.
 struct ForceLimits {
   double max_force = kInfinity;   ///< [N] longer forces are shortened to it, direction kept
@@ -168,6 +177,11 @@ class PALPATE_EXPORT HapticRenderer {
 
   /// [N, world] The force of the last update() before its limits; zero if that held the last state.
   [[nodiscard]] virtual const Vec3& unlimitedForce() const noexcept = 0;
+
+  /// Of the last update(), which was asked for `hip`: for a coupling between the hand and the tool. Springs that bend count at
+  /// the highest slope that they can have for what they push with; lattices and needles count as if their force did not
+  /// change. By default nothing is known.
+  [[nodiscard]] virtual ForceSlope slope(const HipState& hip) const noexcept;
 
   /// [J] Work on the hand since the first tick, up to the last, of what is a source of energy by its nature: flows,
   /// lattices whose potential differs where a region is entered and left, and walls that give way while the hand is so

@@ -19,6 +19,30 @@
 
 namespace palpate {
 
+/// How the energy of the loop is counted and controlled (devices/passivity.h). What is not given is as the device has it.
+struct PassivityRequest {
+  bool controls = true;                   ///< false: the energy is counted only
+  std::optional<double> mass = {};        ///< [kg] the device's least
+  std::optional<double> damping = {};     ///< [N s/m] the device's least
+  std::optional<double> friction = {};    ///< [N] the device's least
+  std::optional<double> encoder = {};     ///< [m] one step
+  std::optional<double> hand_force = {};  ///< [N] the hand's largest
+  friend bool operator==(const PassivityRequest&, const PassivityRequest&) = default;
+};
+
+/// A spring and a damper between the hand and the tool (devices/virtual_coupling.h).
+struct CouplingRequest {
+  /// What the coupling is designed for, where it has no stiffness of its own.
+  enum class For : std::uint8_t {
+    kSprings,   ///< walls that stand still
+    kAnyScene,  ///< whatever is passive
+  };
+  For design = For::kSprings;
+  std::optional<double> stiffness = {};  ///< [N/m] at the hand
+  double damping = 0.0;                  ///< [N s/m] beside `stiffness`
+  friend bool operator==(const CouplingRequest&, const CouplingRequest&) = default;
+};
+
 /// World = offset + scale * rotation * device, in [m]; forces go back by the rotation, `force` times as large. So the hand does
 /// force / scale times the work that is done in the world, and a stiffness is felt scale * force times as stiff.
 /// The workspace is what the device's tip can be brought to.
@@ -29,6 +53,8 @@ struct DeviceMapping {
   double force = 1.0;          ///< [-] force at the hand per force in the world, more than 0
   bool clutch = false;  ///< the hand can let go and take hold elsewhere: all the world is in reach
   Box3 workspace{Vec3(-kInfinity), Vec3(kInfinity)};  ///< [m, device] around it
+  std::optional<PassivityRequest> passivity = {};     ///< not given: off
+  std::optional<CouplingRequest> coupling = {};       ///< not given: off
 
   [[nodiscard]] Vec3 toWorld(const Vec3& device) const noexcept {
     return offset + scale * (rotation * device);

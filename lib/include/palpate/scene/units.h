@@ -18,6 +18,7 @@ enum class Dimension {
   kFrequency,   ///< Hz
   kStiffness2,  ///< N/m^2
   kDamping2,    ///< N.s/m^2
+  kMass,        ///< kg
 };
 
 /// Metres in one `unit` ("mm", "cm", "m", "um", "in"); nothing if the unit is not known.
