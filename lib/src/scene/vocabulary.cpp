@@ -19,8 +19,8 @@ struct Type {
   std::string_view name;
   Form form;
   std::optional<Dimension> dimension = {};
-  std::optional<double> least = {};
   bool is_above = false;
+  std::optional<double> least = {};
 };
 
 constexpr Type kTypes[] = {
@@ -31,16 +31,16 @@ constexpr Type kTypes[] = {
     {"length_unit", Form::kLengthUnit},
     {"length", Form::kQuantity, Dimension::kLength},
     {"point", Form::kPoint, Dimension::kLength},
-    {"size", Form::kPoint, Dimension::kLength, 0.0, true},
+    {"size", Form::kPoint, Dimension::kLength, true, 0.0},
     {"direction", Form::kDirection},
-    {"force", Form::kQuantity, Dimension::kForce, 0.0},
-    {"stiffness", Form::kQuantity, Dimension::kStiffness, 0.0},
-    {"damping", Form::kQuantity, Dimension::kDamping, 0.0},
+    {"force", Form::kQuantity, Dimension::kForce, false, 0.0},
+    {"stiffness", Form::kQuantity, Dimension::kStiffness, false, 0.0},
+    {"damping", Form::kQuantity, Dimension::kDamping, false, 0.0},
     {"velocity", Form::kQuantity, Dimension::kVelocity},
-    {"time", Form::kQuantity, Dimension::kTime, 0.0},
-    {"stiffness_per_length", Form::kQuantity, Dimension::kStiffness2, 0.0},
-    {"damping_per_length", Form::kQuantity, Dimension::kDamping2, 0.0},
-    {"mass", Form::kQuantity, Dimension::kMass, 0.0},
+    {"time", Form::kQuantity, Dimension::kTime, false, 0.0},
+    {"stiffness_per_length", Form::kQuantity, Dimension::kStiffness2, false, 0.0},
+    {"damping_per_length", Form::kQuantity, Dimension::kDamping2, false, 0.0},
+    {"mass", Form::kQuantity, Dimension::kMass, false, 0.0},
     {"field", Form::kField},
     {"any", Form::kAny},
 };

@@ -59,7 +59,7 @@ const HardScene& sceneNamed(const std::string& name) {
 /// Rows of one scene share its compiled scene, and rows of one renderer that renderer.
 class Runner {
  public:
-  explicit Runner(const Progress& progress) : progress_(progress) {}
+  explicit Runner(Progress progress) : progress_(std::move(progress)) {}
 
   std::optional<LoopLimit> run(const LoopCase& what, const HardScene& scene, double fraction) {
     checkStop();
@@ -137,7 +137,7 @@ Report runStabilityBench(const BenchOptions& options, const GeneralOptions& gene
 
   Runner runner(console.progress());
   std::vector<LoopLimit> rows;
-  const double total = static_cast<double>(scenes.size() * renderers.size() * names.size());
+  const auto total = static_cast<double>(scenes.size() * renderers.size() * names.size());
   double done = 0.0;
   for (const std::string& scene : scenes) {
     for (const std::string& renderer : renderers) {
