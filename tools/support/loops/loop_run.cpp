@@ -157,14 +157,12 @@ double largestGain(const std::function<bool(double)>& is_stable, double low, dou
   if (!is_stable(low)) return 0.0;
   // Upward by steps first: a limit cycle may come and go.
   double good = low;
-  double bad = high;
-  for (double gain = 1.5 * low; gain < high; gain *= 1.5) {
-    if (!is_stable(gain)) {
-      bad = gain;
-      break;
-    }
-    good = gain;
+  double next = 1.5 * low;
+  while (next < high && is_stable(next)) {
+    good = next;
+    next *= 1.5;
   }
+  double bad = std::min(next, high);
   while (bad > 1.01 * good) {
     const double middle = std::sqrt(good * bad);
     (is_stable(middle) ? good : bad) = middle;
