@@ -23,6 +23,13 @@ int numberOf(std::vector<std::string>& names, const std::string& name) {
   return static_cast<int>(names.size());
 }
 
+/// [N/m] The axis begins in its decade.
+double leastOf(const std::vector<PlotPoint>& points) {
+  double least = points.empty() ? 1.0 : points.front().y;
+  for (const PlotPoint& point : points) least = std::min(least, point.y);
+  return least;
+}
+
 }  // namespace
 
 Json limitJson(const LoopLimit& row) {
@@ -83,8 +90,9 @@ std::string rateMap(const std::vector<LoopLimit>& rows, const Machine& machine) 
   for (const LoopLimit& row : rows) {
     const int number = numberOf(plot.key, row.what.device);
     if (row.found > 0.0) plot.points.push_back({row.what.rate, row.found, number, 0});
-    plot.points.push_back({row.what.rate, row.budget, number, 1});
+    if (row.budget > 0.0) plot.points.push_back({row.what.rate, row.budget, number, 1});
   }
+  plot.least_y = leastOf(plot.points);
   return plotSvg(plot);
 }
 
@@ -103,6 +111,7 @@ std::string curvatureMap(const std::vector<CurvedLimit>& rows, const Machine& ma
                            numberOf(plot.key, row.limit.what.renderer),
                            row.is_hollow ? std::size_t{1} : std::size_t{0}});
   }
+  plot.least_y = leastOf(plot.points);
   return plotSvg(plot);
 }
 
