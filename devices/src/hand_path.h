@@ -1,5 +1,5 @@
 #pragma once
-// Where a hand is told to be at any time, by rows or by a formula.
+// Where a hand wants to be at any time, by rows or by a formula.
 
 #include <algorithm>
 #include <cstddef>

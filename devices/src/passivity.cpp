@@ -52,6 +52,21 @@ void check(const PassivitySettings& s) {
   }
 }
 
+/// [N s/m]
+double mostDamping(const PassivitySettings& s) {
+  return std::min(PassivityController::kDampingShare, halfOfStableDamping(s.delay)) * s.mass /
+         s.period;
+}
+
+/// [N/m]
+double mostStiffnessOf(const PassivitySettings& s) {
+  if (!s.controls) return kInfinity;
+  const double late = (0.5 + s.delay) * s.period;  // [s]
+  const double linear = 0.5 * (mostDamping(s) + s.damping) / late;
+  if (!(s.friction > 0.0) || !(s.encoder > 0.0)) return linear;
+  return std::min(linear, PassivityController::kFrictionShare * 2.0 * s.friction / s.encoder);
+}
+
 }  // namespace
 
 PassivityObserver::PassivityObserver(const PassivitySettings& settings)
@@ -88,21 +103,6 @@ void PassivityObserver::hold(const Vec3& force) noexcept {
                         ? force * (max_force_ / glm::length(force))
                         : force;
   next_ = next_ == static_cast<std::size_t>(delay_) ? 0 : next_ + 1;
-}
-
-/// [N s/m]
-double mostDamping(const PassivitySettings& s) {
-  return std::min(PassivityController::kDampingShare, halfOfStableDamping(s.delay)) * s.mass /
-         s.period;
-}
-
-/// [N/m]
-double mostStiffnessOf(const PassivitySettings& s) {
-  if (!s.controls) return kInfinity;
-  const double late = (0.5 + s.delay) * s.period;  // [s]
-  const double linear = 0.5 * (mostDamping(s) + s.damping) / late;
-  if (!(s.friction > 0.0) || !(s.encoder > 0.0)) return linear;
-  return std::min(linear, PassivityController::kFrictionShare * 2.0 * s.friction / s.encoder);
 }
 
 PassivityController::PassivityController(const PassivitySettings& settings)

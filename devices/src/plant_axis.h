@@ -23,7 +23,7 @@ class PlantAxis {
 
   struct Inputs {
     double force = 0.0;      ///< [N] the motor's command
-    double path = 0.0;       ///< [m] where the hand is told to be now,
+    double path = 0.0;       ///< [m] where the hand wants to be now,
     double path_rate = 0.0;  ///< [m/s] and how that goes on
   };
   /// Goes on for `quanta` of `tables`, 0 or more.

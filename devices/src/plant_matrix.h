@@ -15,7 +15,7 @@ enum : int {
   kHandX,     ///< [m] of the hand, where it has a grip
   kHandV,     ///< [m/s]
   kForce,     ///< [N] of the motor
-  kPath,      ///< [m] where the hand is told to be
+  kPath,      ///< [m] where the hand wants to be
   kPathRate,  ///< [m/s] constant
   kConstant,  ///< [N] constant on the device: a push, less the friction that acts
   kCommand,   ///< [N] constant: what the amplifier was told; without a lag kForce is that itself

@@ -97,11 +97,7 @@ class TouchWithADevice : public ::testing::Test {
  protected:
   TouchWithADevice() {
     // The device's origin is 1 mm above a wall.
-    (void)folder_.file(
-        "wall.yaml",
-        "palpate: 1\nlength: mm\nmaterials:\n  wall: {stiffness: 1000 N/m}\nlayers:\n"
-        "  - {name: wall, wall: wall,\n     inside: {half_space: {point: [0, 0, -1], "
-        "normal: [0, 0, 1]}}}\n");
+    (void)folder_.file("wall.yaml", kWallBelow);
   }
   CommandResult run(const std::vector<std::string>& arguments) {
     return runPalpate(arguments, folder_.path());

@@ -20,6 +20,12 @@ namespace palpate::testing {
 
 using Json = nlohmann::json;
 
+/// A scene: a wall of 1000 N/m, 1 mm below the device's origin.
+constexpr const char* kWallBelow =
+    "palpate: 1\nlength: mm\nmaterials:\n  wall: {stiffness: 1000 N/m}\nlayers:\n"
+    "  - {name: wall, wall: wall,\n     inside: {half_space: {point: [0, 0, -1], "
+    "normal: [0, 0, 1]}}}\n";
+
 /// The whole of stdout as one JSON object; anything else fails the test.
 inline Json parseOnly(const CommandResult& result) {
   Json json = Json::parse(result.out, nullptr, false);

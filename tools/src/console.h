@@ -17,7 +17,7 @@ class Console {
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// Something assumed or worth knowing; the same note is told once. Silent with --quiet.
+  /// Something assumed or worth knowing; the same note is printed once. Silent with --quiet.
   void note(const std::string& text);
   /// Something that went wrong without stopping the work; told even with --quiet.
   void warn(const std::string& text);

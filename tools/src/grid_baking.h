@@ -7,7 +7,7 @@
 
 namespace palpate::tools {
 
-/// The level set of a .vdb file that the options name, its inside marked where it was not, which is told.
+/// The level set of a .vdb file that the options name, its inside marked where it was not; a note says so.
 /// @throws Error as vdb::readVdb() and vdb::withInsideMarked() do.
 [[nodiscard]] vdb::MarkedInside readLevelSet(const BakeOptions& options, Console& console);
 

@@ -42,7 +42,7 @@ std::vector<std::vector<int>> labelsOf(const RegionPlan& plan) {
   return labels;
 }
 
-/// Stiffness from an image that does not hold what it should is told, not refused: a crop of bone may be
+/// Stiffness from an image that does not hold what it should is noted, not refused: a crop of bone may be
 /// bright all over.
 void tellOfStiffness(const vdb::Image& image, const vdb::Image& labels,
                      const ImportOptions& options, Console& console) {
@@ -87,7 +87,7 @@ vdb::VoxelMask bodyOf(const ImportOptions& options, const vdb::Image* image, Imp
   return vdb::bodyMask(*image, *options.skin, scan.labels, console.progress());
 }
 
-/// A body that lies elsewhere is a mistake; one that some labels stick out of is told of.
+/// A body that lies elsewhere is a mistake; one that some labels stick out of gets a note.
 void checkBody(const ImportOptions& options, const vdb::Image& labels, const vdb::VoxelMask& body,
                Console& console) {
   std::uint64_t labelled = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// What all that becomes a grid shares in a scene: its keys, and where its errors are told.
+/// What all that becomes a grid shares in a scene: its keys, and where its errors are placed.
 
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/level_set.h"

@@ -112,11 +112,10 @@ void EvdevDevice::openNode(const std::string& path) {
   const auto has = node_.capabilities();
   const auto map = has ? evdev::mapOf(*has) : std::nullopt;
   if (!map) {
-    throw Error(
-        ErrorKind::kDevice,
-        {"evdev.kind",
-         path + (has ? " is neither a SpaceMouse nor a gamepad nor a mouse" : " is no event node"),
-         "`palpate devices` lists the input devices that fit"});
+    throw Error(ErrorKind::kDevice, {"evdev.kind",
+                                     path + (has ? " is not a SpaceMouse, a gamepad or a mouse"
+                                                 : " is not an event node"),
+                                     "`palpate devices` lists the input devices that fit"});
   }
   info_.name = "evdev, " + std::string(nameOf(map->kind)) + ": " + node_.name();
   info_.buttons = static_cast<int>(map->buttons.size());

@@ -35,7 +35,7 @@ struct FileCheck {
 [[nodiscard]] FileCheck checkGridFile(const std::string& file, const CheckOptions& options,
                                       Console& console);
 
-/// Makes all of it; what its grids could not hold of meshes and scans is told, and is no no. @throws Error, if it
+/// Makes all of it; what its grids could not hold of meshes and scans is a note, and does not make the answer no. @throws Error, if it
 /// cannot be made.
 [[nodiscard]] FileCheck checkSceneFile(const std::string& file, Console& console);
 

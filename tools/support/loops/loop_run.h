@@ -12,7 +12,7 @@ namespace palpate::loops {
 
 struct LoopSetting {
   devices::LoopModel loop;
-  devices::Path hand;  ///< [m, world] where the hand is told to go
+  devices::Path hand;  ///< [m, world] where the hand wants to go
   double gain =
       1.0;  ///< [-] force at the device per force of the renderer: makes every wall that much stiffer
   double window = 0.5;  ///< [s] at the end, that is judged
@@ -50,7 +50,7 @@ struct LoopOutcome {
 [[nodiscard]] LoopOutcome runLoop(HapticRenderer& renderer, const LoopSetting& setting,
                                   double wall);
 
-/// [m] How far behind the surface a hand is told to go that presses with `force` [N] on a wall of `stiffness` [N/m], by its
+/// [m] How far behind the surface a hand wants to go that presses with `force` [N] on a wall of `stiffness` [N/m], by its
 /// own spring and that of its grip.
 [[nodiscard]] double depthOfForce(const devices::LoopModel& loop, double stiffness, double force);
 

@@ -21,8 +21,8 @@ struct DeviceModel {
   Box3 workspace{Vec3(-kInfinity), Vec3(kInfinity)};  ///< [m, device] what the tip can get to
 };
 
-/// A hand: a mass on a spring and a damper, whose other end goes along the path that the hand is
-/// told to go. It holds the device by a grip, another spring and damper, or is one with it.
+/// A hand: a mass on a spring and a damper, whose other end goes along the path that the hand
+/// wants to go. It holds the device by a grip, another spring and damper, or is one with it.
 struct HandModel {
   std::string name = {};
   double mass = 0.0;            ///< [kg] 0 or more; with a grip more than 0

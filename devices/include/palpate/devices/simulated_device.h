@@ -51,7 +51,7 @@ class PALPATE_EXPORT SimulatedDevice final : public Device {
  public:
   static constexpr int kMostDelay = 64;
 
-  /// `path`: where the hand is told to go, in `frame`, at times that rise.
+  /// `path`: where the hand wants to go, in `frame`, at times that rise.
   /// @throws Error (kUsage, device.model, device.rate, device.delay, device.push) for settings out
   /// of range; (kInput, path.empty, path.time, path.not_finite) for the path.
   SimulatedDevice(const SimulationSettings& settings, Path path,
