@@ -46,7 +46,7 @@ TEST_F(DeviceInTheLoop, ATouchMovesTheDeviceByTheHandAndTheWall) {
   EXPECT_EQ(json["over_budget"].size(), 0U);
   const std::vector<std::string> rows = linesOf(textOf(folder_.path() + "/trace.csv"));
   // The last tick of the hold; the way there takes 0.18 s.
-  const std::string row = rows[2100];
+  const std::string& row = rows[2100];
   double t = 0.0;
   double x = 0.0;
   double y = 0.0;
