@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -128,6 +129,131 @@ TEST(ContentLoops, ANeedleHeldByItsShaftComesToRest) {
       EXPECT_TRUE(out.isQuiet()) << device << ": " << out.chatter << " N, before " << out.before;
       EXPECT_TRUE(out.touches) << device;
     }
+  }
+}
+
+/// A hand that is dictated goes round once a second, and what it met may change on the way.
+struct Round {
+  std::string name;
+  std::string text;     ///< of the scene
+  Vec3 center{0.0};     ///< [m]
+  Vec3 radii{0.0};      ///< [m] along x and z; it begins at center + radii.z along z
+  double steepest = 0;  ///< [N/m] of all that pushes by place
+  double drag = 0;      ///< [N s/m] of all that pushes by speed
+  /// At a quarter and at three quarters of the way.
+  ContentChange first = {};
+  ContentChange second = {};
+  /// [J] that a change puts in, a change `index` with the hand at `p` [m].
+  std::function<double(int index, const Vec3& p)> given = {};
+};
+
+std::vector<Round> rounds() {
+  const std::string block =
+      "layers:\n  - {name: block, inside: {box: {center: [0, 0, -25], size: [100, 100, 50]}}, "
+      "wall: wall";
+  const std::string hole =
+      "ports:\n  - {name: hole, between: [outside, block], where: {cylinder: {center: [0, 0, 0], "
+      "axis: [0, 0, 1], radius: 5, height: 20}}";
+  const std::string plain = "materials:\n  wall: {stiffness: 1000 N/m}\n";
+  const std::string room =
+      "layers:\n  - {name: block, inside: {box: {center: [0, 0, 0], size: [100, 100, 100]}}, wall: "
+      "wall, content: content}\nstart: {region: block}\n";
+  constexpr double kWave = 5e-3;
+  std::vector<Round> all;
+  // In by the port, over its rim within the block, and out through it again; and the other way about.
+  for (const double side : {1.0, -1.0}) {
+    all.push_back({side > 0.0 ? "round a rim" : "round a rim, the other way",
+                   plain + block + "}\n" + hole + "}\n", Vec3(5e-3, 0.0, 0.0),
+                   Vec3(side * 2e-3, 0.0, 2e-3), 1000.0});
+  }
+  all.push_back({"across a rim, pressed", plain + block + "}\n" + hole + "}\n",
+                 Vec3(4e-3, 0.0, 0.5e-3), Vec3(3e-3, 0.0, 1.5e-3), 1000.0});
+  all.push_back({"by a port that opens at what is pressed",
+                 plain + block + "}\n" + hole + ", opens_at: 1 N}\n", Vec3(0.0),
+                 Vec3(2e-3, 0.0, 2e-3), 1000.0});
+  all.push_back({"by a port that gives way once and for all",
+                 plain + block + "}\n" + hole +
+                     ", opens_at: 1 N, hole: {radius: 1, reopens_at: 0.5 N}, rearm: 0.5}\n",
+                 Vec3(0.0), Vec3(-2e-3, 0.0, 2e-3), 1000.0});
+  Round drag{"viscosity changes", plain + "  content: {viscosity: 2 N.s/m}\n" + room, Vec3(0.0),
+             Vec3(5e-3, 0.0, 5e-3)};
+  drag.drag = 8.0;
+  drag.first.viscosity = 8.0;
+  drag.second.viscosity = 0.5;
+  all.push_back(drag);
+  Round lattice{
+      "a lattice changes",
+      plain + "  content: {stiffness: 1e5 N/m, lattice: {force: 1 N, wavelength: [5, 5, 5]}}\n" +
+          room,
+      Vec3(0.0), Vec3(7e-3, 0.0, 6e-3)};
+  lattice.steepest = 2.0 * std::numbers::pi / kWave;
+  lattice.first.lattice_force = 0.4;
+  lattice.second.lattice_force = 1.0;
+  lattice.given = [](int index, const Vec3& p) {
+    double cosines = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      cosines += std::cos(2.0 * std::numbers::pi * p[axis] / kWave);
+    }
+    const double more = index == 0 ? -0.6 : 0.6;  // [N]
+    return -more * kWave / (2.0 * std::numbers::pi) * cosines;
+  };
+  all.push_back(lattice);
+  return all;
+}
+
+TEST(ContentLoops, WhatADictatedHandGetsByPortsAndContentsFallsWithThePeriod) {
+  // A force that is held for a tick gives at most K |dx|^2 / 2 more than the continuous one; what drags never gives. In the limit
+  // nothing is given but what a change of the content puts in.
+  for (const Round& round : rounds()) {
+    const ScenePtr scene = sceneOf(round.text);
+    const auto renderer = makeLoopRenderer("constraint", scene);
+    std::vector<double> got;
+    std::vector<double> most;
+    for (const double period : {1e-3, 5e-4, 2.5e-4, 1.25e-4}) {
+      renderer->reset();
+      double work = 0.0;
+      double squares = 0.0;
+      double given = 0.0;
+      Vec3 before(0.0);
+      Vec3 force(0.0);
+      const int ticks = static_cast<int>(std::lround(1.0 / period));
+      // What was changed in the last round is as it was.
+      for (RegionId region = 0; region < scene->regions().size(); ++region) {
+        (void)renderer->setContent(region, {});
+      }
+      for (int k = 0; k <= ticks; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / ticks;
+        const Vec3 p = round.center +
+                       Vec3(round.radii.x * std::sin(angle), 0.0, round.radii.z * std::cos(angle));
+        Vec3 velocity(0.0);
+        if (k > 0) {
+          work += glm::dot(force, p - before);
+          squares += glm::dot(p - before, p - before);
+          velocity = (p - before) / period;
+        }
+        for (const int index : {0, 1}) {
+          const ContentChange& change = index == 0 ? round.first : round.second;
+          if (k != (2 * index + 1) * ticks / 4) continue;
+          if (!change.viscosity && !change.lattice_force) continue;
+          ASSERT_TRUE(renderer->setContent(scene->regionNamed("block"), change)) << round.name;
+          if (round.given) given += round.given(index, p);
+        }
+        before = p;
+        force = renderer->update({p, velocity, period}).force;
+      }
+      // The renderer counts what a change puts in, not what another one takes out again.
+      const double sources = round.given ? given : renderer->sourceWork();
+      got.push_back(work - sources);
+      most.push_back(0.5 * (1.5 * round.steepest + round.drag / period) * squares);
+      EXPECT_LE(got.back(), most.back() + 1e-9) << round.name << " at " << period << " s";
+    }
+    std::printf("%s: %.3g J at 1 kHz, %.3g J at 8 kHz, sampling may give %.2g and %.2g J\n",
+                round.name.c_str(), got.front(), got.back(), most.front(), most.back());
+    // Where friction or a fall takes energy, sampling must not give it back either.
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      EXPECT_LE(got[i] - got.back(), most[i] + 1e-9) << round.name << ", run " << i;
+    }
+    EXPECT_LT(got.back(), 0.2 * std::max(got.front(), 0.0) + 1e-8) << round.name;
   }
 }
 

@@ -13,42 +13,15 @@
 #include <utility>
 #include <vector>
 
+#include "devices/oracle_renderer.h"
 #include "support/loops/hard_scene.h"
 #include "support/loops/loop_limit.h"
 #include "support/loops/loop_run.h"
-#include "support/oracle/oracle.h"
-#include "support/rivals/rival_renderer.h"
 
 namespace palpate::loops {
 namespace {
 
 bool isSlow() { return std::getenv("PALPATE_SLOW_TESTS") != nullptr; }
-
-/// The force of the oracle's proxy. Slow, and allocates.
-class OracleRenderer final : public rivals::RivalRenderer {
- public:
-  explicit OracleRenderer(ScenePtr scene) : RivalRenderer(std::move(scene)) {
-    std::vector<testing::FeasibleSet> all;
-    for (const rivals::Solid& solid : solids()) {
-      all.push_back(testing::FeasibleSet::outside(solid.field));
-    }
-    set_ = testing::FeasibleSet::allOf(all);
-  }
-
- private:
-  void forget() noexcept override { has_begun_ = false; }
-
-  [[nodiscard]] TickResult step(const HipState& hip) noexcept override {
-    if (!std::exchange(has_begun_, true)) proxy_ = hip.position;
-    proxy_ = testing::solveOracle(set_, proxy_, hip.position).proxy;
-    if (glm::distance(proxy_, hip.position) < 1e-12) return untouched(hip);
-    return spring(hip, proxy_, solids().front(), region());
-  }
-
-  testing::FeasibleSet set_;
-  Vec3 proxy_{0.0, 0.0, 0.0};  ///< [m]
-  bool has_begun_ = false;
-};
 
 /// Coulomb's cone about a flat wall at z = 0, in closed form: the proxy sticks while the spring to it lies in the cone.
 class FrictionWall final : public rivals::RivalRenderer {
@@ -78,7 +51,11 @@ class FrictionWall final : public rivals::RivalRenderer {
   bool is_held_ = false;
 };
 
+/// Null where there is neither a closed form nor an oracle.
 std::unique_ptr<HapticRenderer> truthOf(const HardScene& scene, const ScenePtr& compiled) {
+  if (scene.name == "texture") return nullptr;  // its height is not in the closed form
+  // Half a micrometer beside an open port, where an oracle that looks that far goes in. Nothing pushes the hand aside.
+  if (scene.name == "rim") return std::make_unique<FrictionWall>(compiled, 0.0);
   if (scene.friction > 0.0) return std::make_unique<FrictionWall>(compiled, scene.friction);
   return std::make_unique<OracleRenderer>(compiled);
 }
@@ -137,29 +114,61 @@ TEST(HardCases, BelowTheBudgetAHandComesToRest) {
   EXPECT_GE(2 * felt, runs);
 }
 
+/// How a loop is run beside its oracle's.
+struct Beside {
+  double rate = 1000.0;  ///< [Hz]
+  int delay = 0;         ///< [samples]
+  Motion motion = Motion::kPress;
+  bool is_noisy = false;  ///< readings jump by an encoder's step
+};
+
+std::vector<Beside> allBeside() {
+  if (!isSlow()) return {{}, {.is_noisy = true}};
+  std::vector<Beside> all;
+  for (const double rate : {1000.0, 4000.0, 10000.0}) {
+    for (const int delay : {0, 1}) {
+      all.push_back({rate, delay, Motion::kPress, false});
+      all.push_back({rate, delay, Motion::kPress, true});
+    }
+    all.push_back({rate, 0, Motion::kTap, false});
+    all.push_back({rate, 0, Motion::kDrag, false});
+  }
+  return all;
+}
+
 TEST(HardCases, TheLoopIsAsCalmAsWithAnOracle) {
-  const std::vector<std::string> few = {"flat", "ball-20", "two-balls", "friction-0.8"};
+  const std::vector<std::string> few = {"flat", "ball-20", "two-balls", "friction-0.8", "rim"};
+  int count = 0;
   for (const HardScene& scene : hardScenes()) {
     if (!isSlow() && std::find(few.begin(), few.end(), scene.name) == few.end()) continue;
-    if (scene.is_ours && !(scene.friction > 0.0)) continue;
-    if (scene.name == "texture") continue;  // its height is not in the closed form
     const ScenePtr compiled = compileHardScene(scene);
     const auto renderer = makeLoopRenderer("constraint", compiled);
     const auto truth = truthOf(scene, compiled);
+    if (truth == nullptr) continue;
     for (const std::string& device :
          isSlow() ? fourDevices() : std::vector<std::string>{"falcon"}) {
-      const devices::LoopModel loop = loopModelOf({scene.name, "constraint", device});
-      const double stiffness = 0.8 * devices::budgetOf(loop).stiffness();
-      const LoopSetting setting = pressing(loop, scene, stiffness);
-      const LoopOutcome ours = runLoop(*renderer, setting, kHardStiffness);
-      const LoopOutcome theirs = runLoop(*truth, setting, kHardStiffness);
-      std::printf("%s %s: chatter %.3g N, oracle %.3g N; mean %.4g N, oracle %.4g N\n",
-                  scene.name.c_str(), device.c_str(), ours.chatter, theirs.chatter, ours.mean,
-                  theirs.mean);
-      EXPECT_LE(ours.chatter, 1.1 * theirs.chatter + 1e-3) << scene.name << " on " << device;
-      EXPECT_NEAR(ours.mean, theirs.mean, 0.01) << scene.name << " on " << device;
+      for (const Beside& how : allBeside()) {
+        // The hand has to stay where the wall is.
+        if (scene.name == "rim" && (how.is_noisy || how.motion == Motion::kDrag)) continue;
+        const devices::LoopModel loop =
+            loopModelOf({scene.name, "constraint", device, "relaxed", how.rate, how.delay});
+        const double stiffness = 0.8 * devices::budgetOf(loop).stiffness();
+        LoopSetting setting = pressing(loop, scene, stiffness, how.motion);
+        setting.is_noisy = how.is_noisy;
+        const LoopOutcome ours = runLoop(*renderer, setting, kHardStiffness);
+        const LoopOutcome theirs = runLoop(*truth, setting, kHardStiffness);
+        const std::string text = scene.name + ", " + nameOf(how.motion) + " on " + device + " at " +
+                                 std::to_string(how.rate) + " Hz, delay " +
+                                 std::to_string(how.delay) + (how.is_noisy ? ", noise" : "");
+        std::printf("%s: chatter %.3g N, oracle %.3g N; mean %.4g N, oracle %.4g N\n", text.c_str(),
+                    ours.chatter, theirs.chatter, ours.mean, theirs.mean);
+        EXPECT_LE(ours.chatter, 1.1 * theirs.chatter + 1e-3) << text;
+        EXPECT_NEAR(ours.mean, theirs.mean, 0.01) << text;
+        ++count;
+      }
     }
   }
+  EXPECT_GE(count, isSlow() ? 1000 : 9);
 }
 
 TEST(HardCases, HollowsAreHeldDeeperThanTheirRadius) {

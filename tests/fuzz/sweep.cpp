@@ -37,7 +37,11 @@ namespace fs = std::filesystem;
 
 constexpr rlim_t kMemory = rlim_t{4} << 30U;
 constexpr double kSeconds = 20.0;
-constexpr double kMostSound = 300.0;       ///< [s] of a sound file
+constexpr double kMostSound = 300.0;  ///< [s] of a sound file
+/// A sound file that takes longer than this [s] is damaged in one of so many of its turns, and a quicker one stands in
+/// for it in the others: the scene of a whole head has the same readers as a small one, and takes a thousand times as long.
+constexpr double kSlowSound = 0.5;
+constexpr std::size_t kTurnsOfSlow = 50;
 constexpr long kMostResident = 1L << 20U;  // [kB]
 
 struct Run {
@@ -130,6 +134,17 @@ struct Sweep {
   std::string image;
 };
 
+/// Which sound file is damaged in turn `i`, by what each of them takes.
+std::size_t turnOf(std::size_t i, const std::vector<double>& sound) {
+  const std::size_t first = i % sound.size();
+  if ((i / sound.size()) % kTurnsOfSlow == 0) return first;
+  for (std::size_t k = 0; k < sound.size(); ++k) {
+    const std::size_t next = (first + k) % sound.size();
+    if (sound[next] <= kSlowSound) return next;
+  }
+  return first;
+}
+
 /// Damages the files of one format, and prints its line.
 Totals sweepFormat(const Sweep& sweep, const Reader& reader) {
   const std::vector<std::string> seeds = palpate::fuzz::seedsOf(reader.name);
@@ -147,20 +162,20 @@ Totals sweepFormat(const Sweep& sweep, const Reader& reader) {
   }
   const std::string file = own / (std::string("mutant") + reader.extension);
   const std::vector<std::string> command = commandFor(reader, file, sweep.image);
-  // [s] Twice what each seed takes, as the machine may be busier next time.
-  std::vector<double> sound;
+  std::vector<double> sound;  // [s]
   for (const std::string& whole : seeds) {
     std::ofstream(file, std::ios::binary) << whole;
-    sound.push_back(2.0 * run(sweep.program, command, kMostSound).seconds);
+    sound.push_back(run(sweep.program, command, kMostSound).seconds);
   }
   for (const Damage& damage : palpate::fuzz::damages()) {
     palpate::fuzz::Random random(sweep.seed);
     for (int i = 0; i < sweep.mutants; ++i) {
-      const std::size_t from = static_cast<std::size_t>(i) % seeds.size();
+      const std::size_t from = turnOf(static_cast<std::size_t>(i), sound);
       std::string bytes = seeds[from];
       damage.apply(bytes, random);
       std::ofstream(file, std::ios::binary) << bytes;
-      const Run result = run(sweep.program, command, sound[from] + kSeconds);
+      // Twice what the sound file takes, as the machine may be busier now.
+      const Run result = run(sweep.program, command, 2.0 * sound[from] + kSeconds);
       ++totals.runs;
       seconds += result.seconds;
       most = std::max(most, result.resident);

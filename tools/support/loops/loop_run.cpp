@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "palpate/devices/simulated_device.h"
@@ -79,7 +80,11 @@ LoopOutcome runLoop(HapticRenderer& renderer, const LoopSetting& setting, double
   device.open();
   devices::DeviceState state;
   std::uint64_t ticks = 0;
+  std::minstd_rand random(1);
   while (device.read(state) == devices::DeviceStatus::kOk) {
+    for (int axis = 0; setting.is_noisy && axis < 3; ++axis) {
+      state.position[axis] += (static_cast<double>(random() % 3) - 1.0) * loop.device.encoder;
+    }
     if (setting.poll && ticks++ % LoopSetting::kPollTicks == 0) setting.poll();
     const HipState hip{state.position, velocity.add(state.time, state.position).value, loop.period};
     const auto begin = std::chrono::steady_clock::now();

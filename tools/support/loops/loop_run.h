@@ -16,6 +16,8 @@ struct LoopSetting {
   double gain =
       1.0;  ///< [-] force at the device per force of the renderer: makes every wall that much stiffer
   double window = 0.5;  ///< [s] at the end, that is judged
+  /// Noise of the sensor: each coordinate of a reading is one encoder step too high, too low, or right. Its seed is fixed.
+  bool is_noisy = false;
   /// Called every kPollTicks ticks; what it throws ends the run.
   std::function<void()> poll = {};
   static constexpr std::uint64_t kPollTicks = 256;

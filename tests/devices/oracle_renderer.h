@@ -1,0 +1,43 @@
+#pragma once
+/// The brute-force oracle's proxy as a renderer, to be put into the same loop as ours.
+
+#include <utility>
+#include <vector>
+
+#include "support/oracle/oracle.h"
+#include "support/rivals/rival_renderer.h"
+
+namespace palpate::loops {
+
+/// The spring to the oracle's proxy, as stiff as the scene's first solid. Slow, and allocates.
+class OracleRenderer final : public rivals::RivalRenderer {
+ public:
+  /// The proxy stays outside all solids of the scene.
+  explicit OracleRenderer(ScenePtr scene) : RivalRenderer(std::move(scene)) {
+    std::vector<testing::FeasibleSet> all;
+    for (const rivals::Solid& solid : solids()) {
+      all.push_back(testing::FeasibleSet::outside(solid.field));
+    }
+    set_ = testing::FeasibleSet::allOf(all);
+  }
+
+  /// The proxy stays in `set`.
+  OracleRenderer(ScenePtr scene, testing::FeasibleSet set)
+      : RivalRenderer(std::move(scene)), set_(std::move(set)) {}
+
+ private:
+  void forget() noexcept override { has_begun_ = false; }
+
+  [[nodiscard]] TickResult step(const HipState& hip) noexcept override {
+    if (!std::exchange(has_begun_, true)) proxy_ = hip.position;
+    proxy_ = testing::solveOracle(set_, proxy_, hip.position).proxy;
+    if (glm::distance(proxy_, hip.position) < 1e-12) return untouched(hip);
+    return spring(hip, proxy_, solids().front(), region());
+  }
+
+  testing::FeasibleSet set_;
+  Vec3 proxy_{0.0, 0.0, 0.0};  ///< [m]
+  bool has_begun_ = false;
+};
+
+}  // namespace palpate::loops
