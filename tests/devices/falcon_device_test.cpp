@@ -17,7 +17,7 @@
 #include "support/temp_file.h"
 #include "support/wait.h"
 #ifdef PALPATE_LIBUSB
-#include "devices/usbfs_emulation.h"
+#include "devices/falcon_rig.h"
 #include "usb/libusb_list.h"
 #endif
 
@@ -71,27 +71,6 @@ TEST(FalconCalibrationFile, IsReadAsItIsWrittenAndErrorsNameTheirLine) {
 }
 
 #ifdef PALPATE_LIBUSB
-
-/// A driver on an emulated device, in the device's own time.
-struct Rig {
-  FalconEmulator emulator;
-  UsbfsEmulation usb{emulator};
-  falcon::FalconDevice device;
-
-  explicit Rig(std::vector<std::uint8_t> firmware = {}, const FalconCalibration& c = {})
-      : device([this] { return usb::openUsb({.descriptor = usb.descriptor()}); },
-               std::move(firmware), c, [this] { return emulator.now(); }) {}
-
-  /// Reads and writes until a reading comes; its status.
-  DeviceStatus turn(DeviceState& state, const Vec3& force = Vec3(0.0)) {
-    DeviceStatus status = DeviceStatus::kStale;
-    for (int i = 0; i < 10 && status == DeviceStatus::kStale; ++i) {
-      status = device.read(state);
-      if (device.write(force) != DeviceStatus::kOk) return DeviceStatus::kDisconnected;
-    }
-    return status;
-  }
-};
 
 TEST(FalconDevice, ReadsWhereTheGripIs) {
   Rig rig;

@@ -75,6 +75,10 @@ class UsbfsEmulation::Kernel {
     const std::lock_guard lock(mutex_);
     is_gone_ = true;
   }
+  void plugIn() {
+    const std::lock_guard lock(mutex_);
+    is_gone_ = false;
+  }
   std::atomic<int> steps{0};
   std::atomic<std::uint64_t> outs{0};
   [[nodiscard]] int pending() {
@@ -209,6 +213,7 @@ int UsbfsEmulation::descriptor() const noexcept {
 void UsbfsEmulation::answerFor(int copy) noexcept { the_descriptor = copy; }
 
 void UsbfsEmulation::unplug() noexcept { kernel_->unplug(); }
+void UsbfsEmulation::plugIn() noexcept { kernel_->plugIn(); }
 int UsbfsEmulation::steps() const noexcept { return kernel_->steps; }
 std::uint64_t UsbfsEmulation::outs() const noexcept { return kernel_->outs; }
 int UsbfsEmulation::pending() const noexcept { return kernel_->pending(); }

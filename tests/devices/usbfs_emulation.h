@@ -28,6 +28,8 @@ class UsbfsEmulation {
   std::function<int(Step)> fault;
   /// As if the cable was pulled.
   void unplug() noexcept;
+  /// The cable is in again; the device has power of its own, and kept its firmware.
+  void plugIn() noexcept;
   [[nodiscard]] int steps() const noexcept;           ///< so far
   [[nodiscard]] std::uint64_t outs() const noexcept;  ///< packets that the device got
   [[nodiscard]] int pending() const noexcept;         ///< transfers that the kernel holds
