@@ -279,7 +279,7 @@ TEST_P(FaultMatrix, LeadsToItsStateItsTextAndZeroForceInTime) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Falcon, FaultMatrix, ::testing::ValuesIn(faults()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& each) { return std::string(each.param.name); });
 
 TEST(FalconFaultInTime, ATickThatThrowsLeavesZeroForceByTheNextCommand) {
   Rig rig;

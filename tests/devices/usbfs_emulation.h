@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "devices/falcon_emulator.h"
 
@@ -21,6 +22,10 @@ class UsbfsEmulation {
   [[nodiscard]] int descriptor() const noexcept;
   /// A copy of descriptor() that is to be the node instead.
   void answerFor(int copy) noexcept;
+  /// From now on each descriptor of this file is the node. @throws std::runtime_error if it is not there.
+  void answerForNode(const std::string& file);
+
+  std::string serial;  ///< that string descriptors of any index give
 
   /// Which request of the kernel's comes next: counted from 0, for unplugging at each.
   enum class Step { kClaim, kControl, kSubmitIn, kSubmitOut, kReapIn, kReapOut, kRelease };
