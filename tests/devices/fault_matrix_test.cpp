@@ -271,8 +271,8 @@ TEST_P(FaultMatrix, LeadsToItsStateItsTextAndZeroForceInTime) {
       EXPECT_EQ(rig.emulator.motors, (std::array<int, 3>{}));
     } else {
       std::printf("  %-32s the loop ended after %.1f ms: %s\n", fault.name, over, fault.text);
-      // At once, or when the silence is over and the reading that is under way.
-      EXPECT_LE(over, fault.why == SafetyFault::kDevice ? 5.0 : 100.0 + 10.0);
+      // At once, or when the next command is sent, which waits for two readings of up to 4 ms; or when the silence is over.
+      EXPECT_LE(over, fault.why == SafetyFault::kDevice ? 2.0 * 4.0 + 2.0 : 100.0 + 10.0);
     }
   }
   expectHomingAndARamp(rig);

@@ -35,8 +35,8 @@ BEGIN = numpy.array([-0.100, -0.042, 0.060])
 END = numpy.array([-0.012, -0.018, 0.008])
 ALONG = (END - BEGIN) / numpy.linalg.norm(END - BEGIN)
 ASIDE = numpy.array([0.24, -0.88, 0.0]) / math.hypot(0.24, 0.88)
-CORNERS = [(0.0, 0.012, 0.0), (1.5, 0.097, 0.0), (3.0, 0.058, 0.0), (3.5, 0.058, 0.014), (4.5, 0.030, 0.014),
-           (5.0, 0.030, 0.014), (6.0, 0.058, 0.014), (6.5, 0.058, 0.0), (8.0, 0.012, 0.0)]
+CORNERS = [(0.0, 0.012, 0.0), (1.5, 0.097, 0.0), (3.0, 0.058, 0.0), (3.5, 0.058, 0.014), (4.5, 0.020, 0.014),
+           (5.0, 0.020, 0.014), (6.0, 0.058, 0.014), (6.5, 0.058, 0.0), (8.0, 0.012, 0.0)]
 PERIOD = CORNERS[-1][0]
 SMALLEST_BLOCK = 32  # [bytes] of malloc
 
@@ -96,6 +96,7 @@ class Bakes:
 def touch(palpate, folder, seconds):
     """Runs it beside the bakes. Its report, samples of its memory (s since the first tick, bytes), and how many bakes ended."""
     record = folder / "felt.npy"
+    record.unlink(missing_ok=True)
     command = [palpate, "touch", str(SCENE), "--device", "virtual:excalibur", "--path", str(folder / "way.csv"), "--realtime",
                "--record", str(record), "--states", "60000", "--force", "--json"]
     # The head's grids are made first, so that the time is spent in the loop.
