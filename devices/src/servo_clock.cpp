@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <ctime>
 
+#include "palpate/devices/device.h"
+
 namespace palpate::devices {
 namespace {
 
@@ -51,7 +53,7 @@ Elevation::Elevation(bool elevate, bool timers) noexcept {
   if (pthread_getschedparam(pthread_self(), &old_policy_, &old) == 0) {
     old_priority_ = old.sched_priority;
     sched_param wanted{};
-    wanted.sched_priority = kPriority;
+    wanted.sched_priority = kServoPriority;
     priority_error_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
     has_priority_ = priority_error_ == 0;
   }

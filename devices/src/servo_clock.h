@@ -28,9 +28,6 @@ class Elevation {
   [[nodiscard]] int priorityError() const noexcept { return priority_error_; }
   [[nodiscard]] int memoryError() const noexcept { return memory_error_; }
 
-  /// Above the threaded interrupts (50), below the kernel's own migration and watchdog threads (99).
-  static constexpr int kPriority = 75;
-
  private:
   bool has_priority_ = false;
   bool has_locked_memory_ = false;

@@ -130,7 +130,7 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
   Safety safety(info.limits, info.max_force, nanoseconds(settings.watchdog),
                 nanoseconds(settings.recovery), turn);
   HangWatch hangs(device, settings.realtime ? longestTurn(info.limits, turn) : kNever,
-                  elevation.hasPriority() ? Elevation::kPriority + 1 : 0);
+                  elevation.hasPriority() ? kServoPriority + 1 : 0);
   std::uint64_t cuts = 0;
   DeviceState last;
   bool has_reading = false;

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <utility>
 
 #include "devices/falcon_emulator.h"
 #include "falcon/boot_table.h"
@@ -17,7 +19,7 @@
 #include "support/temp_file.h"
 #include "support/wait.h"
 #ifdef PALPATE_LIBUSB
-#include "devices/usbfs_emulation.h"
+#include "devices/falcon_rig.h"
 #include "usb/libusb_list.h"
 #endif
 
@@ -71,27 +73,6 @@ TEST(FalconCalibrationFile, IsReadAsItIsWrittenAndErrorsNameTheirLine) {
 }
 
 #ifdef PALPATE_LIBUSB
-
-/// A driver on an emulated device, in the device's own time.
-struct Rig {
-  FalconEmulator emulator;
-  UsbfsEmulation usb{emulator};
-  falcon::FalconDevice device;
-
-  explicit Rig(std::vector<std::uint8_t> firmware = {}, const FalconCalibration& c = {})
-      : device([this] { return usb::openUsb({.descriptor = usb.descriptor()}); },
-               std::move(firmware), c, [this] { return emulator.now(); }) {}
-
-  /// Reads and writes until a reading comes; its status.
-  DeviceStatus turn(DeviceState& state, const Vec3& force = Vec3(0.0)) {
-    DeviceStatus status = DeviceStatus::kStale;
-    for (int i = 0; i < 10 && status == DeviceStatus::kStale; ++i) {
-      status = device.read(state);
-      if (device.write(force) != DeviceStatus::kOk) return DeviceStatus::kDisconnected;
-    }
-    return status;
-  }
-};
 
 TEST(FalconDevice, ReadsWhereTheGripIs) {
   Rig rig;
@@ -510,6 +491,59 @@ TEST(FalconDevice, AWallIsHeldWithoutAHiddenSample) {
     }
     // About 0.1 / s.
     EXPECT_EQ(late > early, share > 1.0) << share << ": " << early << " then " << late << " m";
+  }
+}
+
+/// [m] The largest swing about its mean of the grip, which a hand pushes steadily against a wall of `stiffness` [N/m]: early and
+/// late, by scene, session, servo loop, driver and libusb. It is displaced by 2 mm once the push is there.
+std::pair<double, double> swingAt(double stiffness, double mass, double damping) {
+  SceneDescription scene = parseScene(
+      "{palpate: 1, length: m, materials: {wall: {stiffness: " + std::to_string(stiffness) +
+          " N/m}}, layers: [{name: wall, wall: wall, inside: {half_space: {point: [0, 0, 0], "
+          "normal: [0, 0, 1]}}}]}",
+      "wall");
+  Session session(compile(std::move(scene)));
+  FalconCalibration calibration;
+  calibration.radians_per_count = 1e-5;  // so that the steps of the encoders do not hide the growth
+  Rig rig({}, calibration);
+  rig.emulator.radians_per_count = calibration.radians_per_count;
+  rig.emulator.mass = mass;
+  rig.emulator.damping = damping;
+  rig.emulator.place(Vec3(0.0, 0.0, 0.125));
+  // The push comes slowly, after the ramp of the force; it holds the grip 5 mm deep, so that it never leaves the wall.
+  rig.emulator.hand = [&](const Vec3&) {
+    const double t = 1e-9 * static_cast<double>(rig.emulator.now());
+    return Vec3(0.0, 0.0, -5e-3 * stiffness * std::clamp(t - 1.0, 0.0, 1.0));
+  };
+  std::atomic<bool> stop{false};
+  double early = 0.0;
+  double late = 0.0;
+  int n = 0;
+  const auto tick = [&](const DeviceState& reading) {
+    ++n;
+    if (n == 3000) rig.emulator.place(rig.emulator.position() + Vec3(0.0, 0.0, 2e-3));
+    const double swing = std::abs(reading.position.z + 5e-3);
+    if (n >= 3100 && n < 3300) early = std::max(early, swing);
+    if (n >= 4800) late = std::max(late, swing);
+    if (n == 5000) stop = true;
+    return session.step(reading, DeviceFrame::kDevice).force;
+  };
+  const ServoReport report = runServo(rig.device, tick, {}, stop);
+  EXPECT_EQ(report.exit, ServoExit::kStopped);
+  EXPECT_EQ(report.fault, SafetyFault::kNone);
+  EXPECT_GT(early, 1e-3);
+  return {early, late};
+}
+
+TEST(FalconDevice, AWallOfASceneGrowsFromTheExactLimitOnThroughTheWholeChain) {
+  constexpr double kMass = 0.02;    // [kg]
+  constexpr double kDamping = 0.2;  // [Ns/m]
+  const double limit = limitOf(kMass, kDamping);
+  for (const double share : {0.98, 1.02}) {
+    const auto [early, late] = swingAt(share * limit, kMass, kDamping);
+    std::printf("  %.2f of %.1f N/m: a swing of %.3f mm becomes one of %.3f mm\n", share, limit,
+                1e3 * early, 1e3 * late);
+    EXPECT_EQ(late > early, share > 1.0) << share;
   }
 }
 

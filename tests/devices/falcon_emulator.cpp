@@ -53,34 +53,36 @@ std::vector<std::uint8_t> syntheticFirmware(std::size_t words) {
   return out;
 }
 
-FalconEmulator::FalconEmulator() = default;
+FalconEmulator::FalconEmulator() { encode(); }
 
 void FalconEmulator::place(const Vec3& position) {
   position_ = position;
   velocity_ = Vec3(0.0);
+  encode();
 }
 
-std::array<int, 3> FalconEmulator::encoders() const {
-  std::array<int, 3> out{};
+void FalconEmulator::encode() {
   for (int i = 0; i < 3; ++i) {
-    out[static_cast<std::size_t>(i)] =
+    counts_[static_cast<std::size_t>(i)] =
         static_cast<int>(std::lround((thighAngle(i, position_) - kZero) / radians_per_count));
   }
-  return out;
 }
 
 void FalconEmulator::move(double seconds) {
   // Virtual work, by differences: the force along an axis is the torque times what the thighs turn along it.
-  constexpr double kStep = 1e-6;  // [m]
+  constexpr double kStep = 1e-6;          // [m]
+  constexpr double kNewtonMetre = -1e-4;  // [Nm] of a count
   Vec3 push(0.0);
-  for (int k = 0; k < 3; ++k) {
-    Vec3 d(0.0);
-    d[k] = kStep;
-    for (int i = 0; i < 3; ++i) {
-      const double torque = motors[static_cast<std::size_t>(i)] / -10000.0;
-      push[k] +=
-          torque * (thighAngle(i, position_ + d) - thighAngle(i, position_ - d)) / (2.0 * kStep);
+  quantum = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    Vec3 slope(0.0);  // [rad/m]
+    for (int k = 0; k < 3; ++k) {
+      Vec3 d(0.0);
+      d[k] = kStep;
+      slope[k] = (thighAngle(i, position_ + d) - thighAngle(i, position_ - d)) / (2.0 * kStep);
     }
+    push += kNewtonMetre * motors[static_cast<std::size_t>(i)] * slope;
+    quantum += 0.5 * std::abs(kNewtonMetre) * glm::length(slope);
   }
   felt = push;
   const double dt = seconds / kSubsteps;
@@ -92,6 +94,7 @@ void FalconEmulator::move(double seconds) {
     velocity_ += force * (dt / mass);
     position_ += 0.5 * dt * (before + velocity_);
   }
+  encode();
 }
 
 void FalconEmulator::control(std::uint8_t request, std::uint16_t value) {
@@ -162,10 +165,10 @@ void FalconEmulator::firmware(std::uint8_t byte) {
 void FalconEmulator::answer() {
   ++commands;
   if (motors != std::array<int, 3>{}) ++moving_commands;
-  move(1e-3);
+  if (moves) move(1e-3);
   now_ += 1'000'000;
   std::vector<std::uint8_t> reply = {'<'};
-  for (const int count : encoders()) {
+  for (const int count : counts_) {
     int rest = count & 0xFFFF;
     for (int k = 0; k < 4; ++k) {
       reply.push_back(static_cast<std::uint8_t>('A' + rest % 16));

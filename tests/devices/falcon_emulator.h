@@ -24,6 +24,7 @@ class FalconEmulator {
   bool has_firmware = true;
   unsigned homed = 7;
   unsigned buttons = 0;
+  bool moves = true;                       ///< false: the grip is held where it is
   double mass = 0.2;                       ///< [kg]
   double damping = 2.0;                    ///< [Ns/m] of the hand
   double radians_per_count = 0.000635905;  ///< [rad] of the encoders
@@ -38,7 +39,8 @@ class FalconEmulator {
   std::uint64_t loaded = 0;           ///< bytes of firmware
   int latency = 16;                   ///< [ms]
   unsigned lights = 0;
-  Vec3 felt{0.0};  ///< [N] that the motors gave to the grip in the last command
+  Vec3 felt{0.0};        ///< [N] that the motors gave to the grip in the last command
+  double quantum = 0.0;  ///< [N] at most, of half a count of each motor at that place
 
   FalconEmulator();
   void place(const Vec3& position);  ///< [m] of the base's frame, at rest
@@ -57,7 +59,7 @@ class FalconEmulator {
   void firmware(std::uint8_t byte);
   void answer();
   void move(double seconds);
-  [[nodiscard]] std::array<int, 3> encoders() const;
+  void encode();
 
   enum class Boot { kCold, kHello, kAutobaud, kLoading };
   Boot boot_ = Boot::kCold;
@@ -67,6 +69,7 @@ class FalconEmulator {
   std::deque<std::uint8_t> to_host_;
   Vec3 position_{0.0, 0.0, 0.125};
   Vec3 velocity_{0.0};
+  std::array<int, 3> counts_{};  ///< of the encoders, at the last reply
   std::atomic<std::int64_t> now_{0};
 };
 

@@ -3,6 +3,7 @@
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -14,6 +15,7 @@
 #include <deque>
 #include <mutex>
 #include <stdexcept>
+#include <vector>
 
 namespace palpate::devices {
 namespace {
@@ -75,6 +77,10 @@ class UsbfsEmulation::Kernel {
     const std::lock_guard lock(mutex_);
     is_gone_ = true;
   }
+  void plugIn() {
+    const std::lock_guard lock(mutex_);
+    is_gone_ = false;
+  }
   std::atomic<int> steps{0};
   std::atomic<std::uint64_t> outs{0};
   [[nodiscard]] int pending() {
@@ -112,7 +118,7 @@ class UsbfsEmulation::Kernel {
       if (setup[0] == 0x40) {
         falcon_.control(setup[1], static_cast<std::uint16_t>(setup[2] | (setup[3] << 8)));
       }
-      finish(urb, 0, 0);
+      finish(urb, 0, setup[0] == 0x80 && setup[1] == 6 ? describe(urb) : 0);
       return 0;
     }
     const bool is_in = (urb->endpoint & 0x80) != 0;
@@ -129,6 +135,23 @@ class UsbfsEmulation::Kernel {
     }
     finish(urb, -error, error == 0 ? urb->buffer_length : 0);
     return 0;
+  }
+
+  /// Answers a request for a string: of index 0 the languages, of others the serial number. Its length with the setup.
+  int describe(usbdevfs_urb* urb) const {
+    auto* bytes = static_cast<std::uint8_t*>(urb->buffer);
+    constexpr std::size_t kSetup = 8;
+    std::vector<std::uint8_t> text = {0, 3};
+    if (bytes[2] == 0) {
+      text.insert(text.end(), {0x09, 0x04});
+    } else {
+      for (const char c : owner_.serial) text.insert(text.end(), {static_cast<std::uint8_t>(c), 0});
+    }
+    text[0] = static_cast<std::uint8_t>(text.size());
+    const std::size_t room = static_cast<std::size_t>(urb->buffer_length) - kSetup;
+    const std::size_t size = std::min(text.size(), room);
+    std::memcpy(bytes + kSetup, text.data(), size);
+    return static_cast<int>(size);
   }
 
   int discard(usbdevfs_urb* urb) {
@@ -176,7 +199,14 @@ namespace {
 
 // One device at a time.
 std::atomic<int> the_descriptor{-1};
+std::atomic<ino_t> the_file{0};
 std::atomic<UsbfsEmulation::Kernel*> the_kernel{nullptr};
+
+bool isNode(int fd) {
+  if (fd >= 0 && fd == the_descriptor) return true;
+  struct stat about {};
+  return the_file != 0 && fstat(fd, &about) == 0 && about.st_ino == the_file;
+}
 
 }  // namespace
 
@@ -196,6 +226,7 @@ UsbfsEmulation::UsbfsEmulation(FalconEmulator& falcon)
 
 UsbfsEmulation::~UsbfsEmulation() {
   the_descriptor = -1;
+  the_file = 0;
   the_kernel = nullptr;
   close(descriptor_);
 }
@@ -208,7 +239,14 @@ int UsbfsEmulation::descriptor() const noexcept {
 
 void UsbfsEmulation::answerFor(int copy) noexcept { the_descriptor = copy; }
 
+void UsbfsEmulation::answerForNode(const std::string& file) {
+  struct stat about {};
+  if (stat(file.c_str(), &about) != 0) throw std::runtime_error("there is no " + file);
+  the_file = about.st_ino;
+}
+
 void UsbfsEmulation::unplug() noexcept { kernel_->unplug(); }
+void UsbfsEmulation::plugIn() noexcept { kernel_->plugIn(); }
 int UsbfsEmulation::steps() const noexcept { return kernel_->steps; }
 std::uint64_t UsbfsEmulation::outs() const noexcept { return kernel_->outs; }
 int UsbfsEmulation::pending() const noexcept { return kernel_->pending(); }
@@ -222,7 +260,7 @@ extern "C" int ioctl(int fd, unsigned long request, ...) {
   va_start(list, request);
   void* argument = va_arg(list, void*);
   va_end(list);
-  if (fd >= 0 && fd == palpate::devices::the_descriptor) {
+  if (palpate::devices::isNode(fd)) {
     return palpate::devices::the_kernel.load()->handle(request, argument);
   }
   return static_cast<int>(syscall(SYS_ioctl, fd, request, argument));

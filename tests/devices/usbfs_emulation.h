@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "devices/falcon_emulator.h"
 
@@ -21,6 +22,10 @@ class UsbfsEmulation {
   [[nodiscard]] int descriptor() const noexcept;
   /// A copy of descriptor() that is to be the node instead.
   void answerFor(int copy) noexcept;
+  /// From now on each descriptor of this file is the node. @throws std::runtime_error if it is not there.
+  void answerForNode(const std::string& file);
+
+  std::string serial;  ///< that string descriptors of any index give
 
   /// Which request of the kernel's comes next: counted from 0, for unplugging at each.
   enum class Step { kClaim, kControl, kSubmitIn, kSubmitOut, kReapIn, kReapOut, kRelease };
@@ -28,6 +33,8 @@ class UsbfsEmulation {
   std::function<int(Step)> fault;
   /// As if the cable was pulled.
   void unplug() noexcept;
+  /// The cable is in again; the device has power of its own, and kept its firmware.
+  void plugIn() noexcept;
   [[nodiscard]] int steps() const noexcept;           ///< so far
   [[nodiscard]] std::uint64_t outs() const noexcept;  ///< packets that the device got
   [[nodiscard]] int pending() const noexcept;         ///< transfers that the kernel holds

@@ -1,38 +1,39 @@
 // Plugs an emulated Falcon into a program that was started with this library before all others (LD_PRELOAD): its node is the
-// open descriptor kDescriptor, and time is the Falcon's. FAKE_FALCON_LOG names a file for what its motors gave; at command
-// number FAKE_FALCON_AT the process gets the signal FAKE_FALCON_SIGNAL, or the cable is pulled if that is 0. Everything between
-// the command line and the kernel is the real thing.
+// open descriptor kDescriptor, and time is the Falcon's. FAKE_FALCON_HAND names a file of where the hand wants to be, rows
+// `t x y z` in s and m of the device's frame; FAKE_FALCON_LOG one for what the motors gave, rows `x,y,z,quantum` in N, a command each
+// (FalconEmulator::quantum). At command number FAKE_FALCON_AT the process gets the signal FAKE_FALCON_SIGNAL, or the cable is
+// pulled if that is 0. Everything between the command line and the kernel is the real thing.
 
-#include <sys/syscall.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <vector>
 
 #include "devices/falcon_emulator.h"
 #include "devices/usbfs_emulation.h"
+#include "devices/virtual_clock.h"
 
 namespace palpate::devices {
 namespace {
 
 constexpr int kDescriptor = 100;
+const Vec3 kOrigin(0.0, 0.0, 0.125);  // [m] of the device's frame, in that of its base
 
-std::int64_t realTime() {
-  timespec now{};
-  syscall(SYS_clock_gettime, CLOCK_MONOTONIC, &now);
-  return 1'000'000'000 * static_cast<std::int64_t>(now.tv_sec) + now.tv_nsec;
-}
+struct Waypoint {
+  double time = 0.0;  ///< [s]
+  Vec3 place{0.0};    ///< [m] in the frame of the base
+};
 
 class PluggedFalcon {
  public:
-  PluggedFalcon() : began_(realTime()) {
+  PluggedFalcon() {
     dup2(usb_.descriptor(), kDescriptor);
     usb_.answerFor(kDescriptor);
+    if (const char* file = std::getenv("FAKE_FALCON_HAND")) readHand(file);
     if (const char* file = std::getenv("FAKE_FALCON_LOG")) log_ = std::fopen(file, "w");
     emulator_.damping = 7.0;
     emulator_.place(target(0.0));
@@ -48,7 +49,7 @@ class PluggedFalcon {
       if (signal != 0 && emulator_.commands == at) (void)kill(getpid(), signal);
       if (log_ == nullptr) return;
       const Vec3& f = emulator_.felt;
-      (void)std::fprintf(log_, "%.17g,%.17g,%.17g\n", f.x, f.y, f.z);
+      (void)std::fprintf(log_, "%.17g,%.17g,%.17g,%.17g\n", f.x, f.y, f.z, emulator_.quantum);
     };
   }
   ~PluggedFalcon() {
@@ -57,28 +58,38 @@ class PluggedFalcon {
   PluggedFalcon(const PluggedFalcon&) = delete;
   PluggedFalcon& operator=(const PluggedFalcon&) = delete;
 
-  /// [ns] Each look at the clock takes a little.
-  std::int64_t now() { return began_ + emulator_.now() + 500 * ++looks_; }
-
  private:
   static std::uint64_t numberOf(const char* name, std::uint64_t otherwise) {
     const char* text = std::getenv(name);
     return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
   }
 
-  /// Where the hand wants to be, in the frame of the base: 30 mm above the middle, from 0.8 s on 90 mm down and back up.
-  static Vec3 target(double time) {
-    constexpr double kWay = 2.0;  // [s] each
-    const double t = std::clamp(time - 0.8, 0.0, 2.0 * kWay);
-    const double down = t < kWay ? t / kWay : 2.0 - t / kWay;
-    return {0.005, 0.0, 0.125 + 0.030 - 0.090 * down};
+  void readHand(const char* file) {
+    std::ifstream in(file);
+    Waypoint row;
+    while (in >> row.time >> row.place.x >> row.place.y >> row.place.z) {
+      row.place += kOrigin;
+      way_.push_back(row);
+    }
   }
 
-  std::int64_t began_;
+  /// Straight from row to row; at rest before the first and after the last.
+  [[nodiscard]] Vec3 target(double time) const {
+    if (way_.empty()) return kOrigin;
+    if (time <= way_.front().time) return way_.front().place;
+    for (std::size_t i = 1; i < way_.size(); ++i) {
+      const Waypoint& a = way_[i - 1];
+      const Waypoint& b = way_[i];
+      if (time < b.time) return a.place + (time - a.time) / (b.time - a.time) * (b.place - a.place);
+    }
+    return way_.back().place;
+  }
+
+  std::vector<Waypoint> way_;
   FalconEmulator emulator_;
   UsbfsEmulation usb_{emulator_};
+  VirtualClock clock_{emulator_};
   std::FILE* log_ = nullptr;
-  std::atomic<std::int64_t> looks_{0};
 };
 
 PluggedFalcon& plugged() {
@@ -91,11 +102,3 @@ PluggedFalcon& plugged() {
 
 }  // namespace
 }  // namespace palpate::devices
-
-extern "C" int clock_gettime(clockid_t id, timespec* out) {
-  if (id != CLOCK_MONOTONIC) return static_cast<int>(syscall(SYS_clock_gettime, id, out));
-  const std::int64_t now = palpate::devices::plugged().now();
-  out->tv_sec = now / 1'000'000'000;
-  out->tv_nsec = now % 1'000'000'000;
-  return 0;
-}

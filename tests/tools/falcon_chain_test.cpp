@@ -1,41 +1,58 @@
 // `palpate touch` with a Falcon that is not there, behind the libusb that everybody uses: from the command line to the kernel.
 
+// The hand of the emulated Falcon goes along a path, held by a spring of 250 N/m.
+
 // A sanitizer wants to be loaded before all others itself.
 #if defined(PALPATE_LIBUSB) && !defined(__SANITIZE_ADDRESS__)
 
-#include <array>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <numbers>
 #include <utility>
 
+#include "palpate/core/math.h"
 #include "tools/helpers.h"
 
 namespace palpate::testing {
 namespace {
 
-using Triple = std::array<double, 3>;
+using Numbers = std::vector<double>;
 
-/// The three numbers from column `first` on of each row after `head` rows.
-std::vector<Triple> triples(const std::string& file, std::size_t head, int first) {
-  std::vector<Triple> out;
+/// The `count` numbers from column `first` on of each row after `head` rows.
+std::vector<Numbers> columns(const std::string& file, std::size_t head, std::size_t first,
+                             std::size_t count) {
+  std::vector<Numbers> out;
   const std::vector<std::string> rows = linesOf(textOf(file));
   for (std::size_t i = head; i < rows.size(); ++i) {
-    std::istringstream row(rows[i]);
-    std::string cell;
-    Triple values{};
-    for (int column = 0; column < first + 3 && std::getline(row, cell, ','); ++column) {
-      if (column >= first) values[static_cast<std::size_t>(column - first)] = std::stod(cell);
-    }
-    out.push_back(values);
+    const std::vector<std::string> cells = cellsOf(rows[i]);
+    Numbers& numbers = out.emplace_back();
+    for (std::size_t k = first; k < first + count; ++k) numbers.push_back(std::stod(cells.at(k)));
   }
   return out;
 }
 
-double length(const Triple& v) { return std::hypot(v[0], v[1], v[2]); }
-double distance(const Triple& a, const Triple& b) {
+double length(const Numbers& v) { return std::hypot(v[0], v[1], v[2]); }
+double distance(const Numbers& a, const Numbers& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
+
+/// How a scene's `device` is turned: about `axis`, by the right hand.
+struct Turn {
+  Vec3 axis{0.0, 0.0, 1.0};
+  double degrees = 0.0;
+
+  /// A force of the world, in the device's frame.
+  [[nodiscard]] Numbers toDevice(const Numbers& force) const {
+    const Vec3 f(force[0], force[1], force[2]);
+    const Vec3 k = glm::normalize(axis);
+    const double angle = -degrees * std::numbers::pi / 180.0;
+    const Vec3 turned = std::cos(angle) * f + std::sin(angle) * glm::cross(k, f) +
+                        (1.0 - std::cos(angle)) * glm::dot(k, f) * k;
+    return {turned.x, turned.y, turned.z};
+  }
+};
 
 /// Variables of the environment, for as long as it lives.
 class Environment {
@@ -65,57 +82,116 @@ class FalconChain : public ::testing::Test {
     }
     const Environment world(
         {{"LD_PRELOAD", test::buildFolder() + "/tests/libpalpate_fake_falcon.so"},
+         {"FAKE_FALCON_HAND", folder_.path() + "/hand"},
          {"FAKE_FALCON_LOG", folder_.path() + "/motors"},
          {"FAKE_FALCON_AT", std::to_string(at)},
          {"FAKE_FALCON_SIGNAL", std::to_string(signal)}});
     return runPalpate(arguments, folder_.path());
   }
+
+  static std::vector<std::string> regionsOf(const Json& report) {
+    std::vector<std::string> out;
+    for (const Json& visit : report["regions"]) out.push_back(visit["region"]);
+    return out;
+  }
+
+  /// Feels `scene` with the Falcon for `seconds`, at one place with `most` [N] or more, and again with the virtual device on the
+  /// same way of the hand: the motors must have given the virtual device's forces. Its report.
+  Json feel(const std::string& scene, const std::string& seconds, double most,
+            const Turn& turn = {}) {
+    const CommandResult result = run({"touch", scene, "--seconds", seconds, "--trace", "felt.csv",
+                                      "--record", "felt.npy", "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+    if (result.exit_code != 0) return {};
+    Json report = parseOnly(result);
+    EXPECT_EQ(report["device"]["simulated"], false);
+    EXPECT_EQ(report["safety"]["state"], "active");
+    EXPECT_EQ(report["safety"]["fault"], "no fault");
+    EXPECT_EQ(report["realtime"]["clock"], "device");
+    EXPECT_FALSE(report["realtime"].contains("late_ns")) << "nothing says when a reply was due";
+
+    std::string path = "t,x,y,z\n";
+    const std::vector<std::string> rows = linesOf(textOf(folder_.path("felt.csv")));
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      const std::vector<std::string> cells = cellsOf(rows[i]);
+      path += cells[0] + "," + cells[1] + "," + cells[2] + "," + cells[3] + "\n";
+    }
+    (void)folder_.file("way.csv", path);
+    const CommandResult again = runPalpate(
+        {"touch", scene, "--path", "way.csv", "--trace", "virtual.csv", "--json"}, folder_.path());
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(regionsOf(parseOnly(again)), regionsOf(report));
+
+    std::vector<Numbers> asked = columns(folder_.path("virtual.csv"), 1, 7, 3);
+    for (Numbers& force : asked) force = turn.toDevice(force);
+    const std::vector<Numbers> given = columns(folder_.path("motors"), 0, 0, 4);
+    EXPECT_GT(asked.size(), 5000U);
+    EXPECT_EQ(asked.size() + 1, rows.size());
+    double largest = 0.0;
+    double best = kInfinity;
+    // Set-up sends a few commands before the first tick's.
+    for (std::size_t offset = 0; offset < 10; ++offset) {
+      double worst = 0.0;
+      for (std::size_t i = 0; i < asked.size() && i + offset < given.size(); ++i) {
+        largest = std::max(largest, length(asked[i]));
+        // What half a count of each motor is there; and the arms are taken where the encoders say, which turns a force by less
+        // than two parts in a thousand.
+        const double allowed = given[i + offset][3] + 2e-3 * length(asked[i]);
+        worst = std::max(worst, distance(asked[i], given[i + offset]) / allowed);
+      }
+      best = std::min(best, worst);
+    }
+    EXPECT_LE(best, 1.0);
+    EXPECT_GT(largest, most);
+    std::printf("  at most %.2f N; motors against the virtual device: %.2f of the packet's step\n",
+                largest, best);
+    for (std::size_t i = given.size() - 3; i < given.size(); ++i) EXPECT_EQ(length(given[i]), 0.0);
+    return report;
+  }
+
   TempFolder folder_;
 };
 
+/// From 30 mm above the middle to 60 mm below it and back: through the container's mouth to its bottom.
+constexpr const char* kToTheBottom = "0.8 0.005 0 0.03\n2.8 0.005 0 -0.06\n4.8 0.005 0 0.03\n";
+
 TEST_F(FalconChain, InByTheMouthAlongTheWallAndOutAndTheMotorsGiveWhatTheSceneAsks) {
-  const std::string scene = test::sourceFolder() + "/data/scenes/container.yaml";
-  const CommandResult result = run({"touch", scene, "--seconds", "5.2", "--trace", "felt.csv",
-                                    "--record", "felt.npy", "--json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
-  const Json report = parseOnly(result);
-  EXPECT_EQ(report["device"]["simulated"], false);
-  EXPECT_EQ(report["safety"]["state"], "active");
-  EXPECT_EQ(report["safety"]["fault"], "no fault");
-  std::vector<std::string> regions;
-  for (const Json& visit : report["regions"]) regions.push_back(visit["region"]);
-  EXPECT_EQ(regions, (std::vector<std::string>{"outside", "liquid", "outside"}));
-
-  const std::vector<Triple> asked = triples(folder_.path() + "/felt.csv", 1, 7);
-  const std::vector<Triple> given = triples(folder_.path() + "/motors", 0, 0);
-  ASSERT_GT(asked.size(), 5000U);
-  double most = 0.0;
-  // Set-up sends a few commands before the first tick's.
-  double best = 1e9;
-  for (std::size_t offset = 0; offset < 10; ++offset) {
-    double worst = 0.0;
-    for (std::size_t i = 0; i < asked.size() && i + offset < given.size(); ++i) {
-      most = std::max(most, length(asked[i]));
-      // Half a count of each motor is 0.5e-4 Nm, at 20 to 30 rad/m; and the arms are taken where the encoders say, which
-      // turns a force by less than two parts in a thousand.
-      const double allowed = 3e-3 + 2e-3 * length(asked[i]);
-      worst = std::max(worst, distance(asked[i], given[i + offset]) / allowed);
-    }
-    best = std::min(best, worst);
-  }
-  EXPECT_LE(best, 1.0);
-  EXPECT_GT(most, 2.0) << "the bottom, from inside";
-  for (std::size_t i = given.size() - 3; i < given.size(); ++i) EXPECT_EQ(length(given[i]), 0.0);
-
-  // The same hand, felt anew without a device: the same forces, bit for bit.
+  (void)folder_.file("hand", kToTheBottom);
+  const Json report = feel(scenePath("container.yaml"), "5.2", 2.0);
+  EXPECT_EQ(regionsOf(report), (std::vector<std::string>{"outside", "liquid", "outside"}));
+  // Felt anew from the record: the same forces, bit for bit.
   EXPECT_EQ(runPalpate({"replay", "felt.npy"}, folder_.path()).exit_code, 0);
+}
+
+// Through the incision and the opened dura 15 mm deep into the brain, 14 mm aside, back against the dura from inside, and by the
+// same way on into the thalamus and out again. In the device's frame of the scene, whose z points out of the head.
+TEST_F(FalconChain, IntoAScannedHeadAgainstTheDuraFromInsideIntoTheThalamusAndOut) {
+  (void)folder_.file("hand",
+                     "0.8 0 0 0.042\n1.8 0 0 -0.004\n2.3 0.0037 -0.0135 -0.004\n"
+                     "3.3 0.0037 -0.0135 0.024\n4.3 0.0037 -0.0135 -0.004\n4.8 0 0 -0.004\n"
+                     "5.6 0 0 -0.043\n6.4 0 0 -0.004\n7.6 0 0 0.042\n");
+  const Json report = feel(scenePath("head.yaml"), "8.2", 1.0, {Vec3(24.0, -88.0, 0.0), 60.3});
+  EXPECT_EQ(regionsOf(report), (std::vector<std::string>{"outside", "skin", "brain", "thalamus",
+                                                         "brain", "skin", "outside"}));
+  // Aside of the opening the dura holds the hand in, whose spring and the wall's of 400 N/m are in series: the proxy stays at the
+  // wall, 1 mm or more in front of the hand.
+  double most_held = 0.0;
+  for (const std::string& line : linesOf(textOf(folder_.path("felt.csv")))) {
+    const std::vector<std::string> cells = cellsOf(line);
+    if (cells[10] != "brain" || cells[11] != "1") continue;
+    most_held = std::max(most_held, std::hypot(std::stod(cells[1]) - std::stod(cells[4]),
+                                               std::stod(cells[2]) - std::stod(cells[5]),
+                                               std::stod(cells[3]) - std::stod(cells[6])));
+  }
+  EXPECT_GT(most_held, 1e-3);
 }
 
 // At command 2700 the bowl's bottom is pressed from inside.
 constexpr std::size_t kPressed = 2700;
 
 TEST_F(FalconChain, AStopAndAPulledCableEndItWithZeroForceAndTheRecordKept) {
-  const std::string scene = test::sourceFolder() + "/data/scenes/container.yaml";
+  (void)folder_.file("hand", kToTheBottom);
+  const std::string scene = scenePath("container.yaml");
   struct Case {
     int signal;  ///< 0: the cable
     int exit_code;
@@ -127,7 +203,7 @@ TEST_F(FalconChain, AStopAndAPulledCableEndItWithZeroForceAndTheRecordKept) {
         run({"touch", scene, "--force", "--record", "felt.npy", "--json"}, kPressed, each.signal);
     EXPECT_EQ(result.exit_code, each.exit_code) << result.err << result.out;
     EXPECT_EQ(parseOnly(result)["error"]["code"], each.code);
-    const std::vector<Triple> given = triples(folder_.path() + "/motors", 0, 0);
+    const std::vector<Numbers> given = columns(folder_.path("motors"), 0, 0, 4);
     ASSERT_GE(given.size(), kPressed);
     EXPECT_GT(length(given[kPressed - 1]), 0.5);
     if (each.signal != 0) {

@@ -8,6 +8,7 @@
 #include "palpate/devices/falcon.h"
 #include "palpate/devices/safety_state.h"
 #include "real_device.h"
+#include "realtime_report.h"
 #include "stop_signal.h"
 #include "text.h"
 #include "verbs.h"
@@ -78,12 +79,8 @@ std::string failureOf(const Watched& w) {
 }
 
 Json watchedJson(const Watched& w) {
-  const auto& interval = w.servo.interval;
   return {{"ticks", w.servo.ticks},
-          {"interval_ns",
-           {{"p50", interval.quantile(0.5)},
-            {"p99", interval.quantile(0.99)},
-            {"max", interval.longest()}}},
+          {"interval_ns", latencyJson(w.servo.interval)},
           {"jumps", w.servo.safety.jumps},
           {"state", devices::nameOf(w.servo.state)},
           {"fault", devices::textOf(w.servo.fault)},

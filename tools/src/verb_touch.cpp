@@ -16,6 +16,7 @@
 #include "palpate/version.h"
 #include "picture/picture.h"
 #include "real_device.h"
+#include "realtime_report.h"
 #include "safety_report.h"
 #include "scene_hash.h"
 #include "shape_scene.h"
@@ -174,6 +175,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
                                 !options.image.empty() || !options.plot.empty());
   const TouchSummary& summary = run.summary;
   const devices::ServoReport& servo_report = run.servo;
+  const bool is_paced_by_device = device->info().is_clock;
 
   if (!options.image.empty()) {
     PictureOptions picture;
@@ -196,9 +198,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
       {"schema", "palpate.touch/1"}, {"scene", options.scene}, {"renderer", about.renderer}};
   report.json.update(summaryJson(summary, *scene));
   if (options.realtime) {
-    report.json["realtime"] = {{"overruns", servo_report.overruns},
-                               {"worst_lateness_s", servo_report.worst_lateness},
-                               {"elevated", servo_report.elevated}};
+    report.json["realtime"] = realtimeJson(servo_report, is_paced_by_device);
   }
   if (is_real) report.json["safety"] = safetyJson(servo_report);
   // A hand that presses on a point means to meet something there.
@@ -226,9 +226,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
                   report.text;
   }
   if (options.realtime) {
-    report.text += "Real time   " + std::to_string(servo_report.overruns) +
-                   " overruns, worst start " + formatSeconds(servo_report.worst_lateness) +
-                   " late" + (servo_report.elevated ? "\n" : ", without real-time priority\n");
+    report.text += realtimeText(servo_report, is_paced_by_device);
   }
   if (is_real && !isInputDevice(options.device.name)) report.text += safetyText(servo_report);
   const std::string grids = loaded.gridsText();

@@ -70,7 +70,7 @@ void FalconDevice::open() {
 void FalconDevice::start() {
   transport_ = opener_();
   parser_ = Parser();
-  is_homed_ = is_placed_ = is_owed_ = false;
+  is_homed_ = is_placed_ = is_owed_ = is_let_go_ = false;
   silent_reads_ = 0;
   last_time_ = -1.0;
   const auto normal = [&] {
@@ -252,17 +252,20 @@ std::array<int, 3> FalconDevice::motorsFor(const Vec3& force) const noexcept {
 
 DeviceStatus FalconDevice::write(const Vec3& force) noexcept {
   if (!transport_) return DeviceStatus::kDisconnected;
-  // One command for each reply; without one for a while the command is said again.
-  const bool says_again = silent_reads_ > 0 && silent_reads_ % kPatience == 0;
-  if (is_owed_ && !says_again) return DeviceStatus::kOk;
   Command command;
   command.motors = motorsFor(force);
+  const bool is_zero = command.motors == std::array<int, 3>{};
+  // One command for each reply; without one for a while the command is said again. Letting go waits for nothing.
+  const bool says_again = silent_reads_ > 0 && silent_reads_ % kPatience == 0;
+  const bool lets_go = is_zero && !is_let_go_;
+  if (is_owed_ && !says_again && !lets_go) return DeviceStatus::kOk;
   command.homes = !is_homed_;
   command.red = !is_homed_;
   command.green = is_homed_;
   const Status status = transport_->send(encode(command));
   if (status == Status::kGone) return DeviceStatus::kDisconnected;
   is_owed_ = status == Status::kOk;
+  is_let_go_ = is_owed_ && is_zero;
   return DeviceStatus::kOk;
 }
 

@@ -59,6 +59,7 @@ class FalconDevice final : public Device {
   bool is_homed_ = false;
   bool is_placed_ = false;  ///< grip_ is a pose that was found
   bool is_owed_ = false;    ///< a command has had no reply yet
+  bool is_let_go_ = false;  ///< the last command that went out was zero force
   int silent_reads_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "palpate/devices/device.h"
+#include "realtime_report.h"
 #include "stop_signal.h"
 
 namespace palpate::tools {
@@ -102,11 +103,7 @@ Json servoJson(const std::vector<ServoFigures>& figures) {
                    {"load_threads", f.load},
                    {"turns", late.count()},
                    {"overruns", f.report.overruns},
-                   {"late_ns",
-                    {{"p50", late.quantile(0.5)},
-                     {"p99", late.quantile(0.99)},
-                     {"p999", late.quantile(0.999)},
-                     {"max", late.longest()}}},
+                   {"late_ns", latencyJson(late)},
                    {"priority", f.report.has_priority},
                    {"locked_memory", f.report.has_locked_memory},
                    {"good", f.isGood()}});

@@ -14,6 +14,8 @@
 #include <system_error>
 #include <thread>
 
+#include "palpate/devices/device.h"
+
 namespace palpate::tools {
 namespace {
 
@@ -32,9 +34,8 @@ std::string errorText(int error) { return std::generic_category().message(error)
 int tryPriority() {
   int error = 0;
   std::thread probe([&error] {
-    constexpr int kPriority = 75;
     sched_param wanted{};
-    wanted.sched_priority = kPriority;
+    wanted.sched_priority = devices::kServoPriority;
     error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
   });
   probe.join();
@@ -43,7 +44,9 @@ int tryPriority() {
 
 Finding priority() {
   const int error = tryPriority();
-  if (error == 0) return {"Real-time priority", "granted (SCHED_FIFO 75)", true, ""};
+  if (error == 0)
+    return {"Real-time priority",
+            "granted (SCHED_FIFO " + std::to_string(devices::kServoPriority) + ")", true, ""};
   rlimit limit{};
   (void)getrlimit(RLIMIT_RTPRIO, &limit);
   return {"Real-time priority",

@@ -103,6 +103,9 @@ enum class Elevate : std::uint8_t {
   kRequire,  ///< no loop without it
 };
 
+/// SCHED_FIFO: above the threaded interrupts (50), below the kernel's own migration and watchdog threads (99).
+inline constexpr int kServoPriority = 75;
+
 struct ServoSettings {
   bool realtime = false;  ///< false: as fast as possible, one reading after the other
   double rate =
