@@ -1,5 +1,6 @@
 #include "palpate/scene/scene.h"
 
+#include "palpate/core/text.h"
 #include "palpate/interior/partition.h"
 #include "palpate/interior/port_machine.h"
 #include "palpate/scene/scene_file.h"
@@ -25,8 +26,8 @@ RegionId Scene::regionNamed(const std::string& name) const {
     names.push_back(regions_[i].name);
   }
   const std::string near = suggest(name, names);
-  throw inputError("scene.unknown_layer", "there is no region '" + name + "'",
-                   near.empty() ? "" : "did you mean '" + near + "'?");
+  throw inputError("scene.unknown_layer", "there is no region " + inQuotes(name),
+                   near.empty() ? "" : "did you mean " + inQuotes(near) + "?");
 }
 
 Box3 Scene::bounds() const {
