@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <glm/common.hpp>
@@ -22,6 +21,7 @@
 #include "huge_vector.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -214,11 +214,10 @@ class BrickMaker {
 
 void requireBrickMemory(double bytes, std::uint64_t max_memory, const std::string& name) {
   if (max_memory == 0 || bytes <= static_cast<double>(max_memory)) return;
-  char text[160];
-  std::snprintf(text, sizeof text, "needs %.3f GB for its bricks, %.3f GB are allowed",
-                bytes * 1e-9, static_cast<double>(max_memory) * 1e-9);
   throw Error(ErrorKind::kOperation,
-              {"bricks.memory", "grid '" + name + "' " + text,
+              {"bricks.memory",
+               "grid '" + name + "' needs " + inGigabytes(bytes) + " for its bricks, " +
+                   inGigabytes(static_cast<double>(max_memory)) + " are allowed",
                "use larger voxels, or sampler: accessor, which reads the grid itself"});
 }
 

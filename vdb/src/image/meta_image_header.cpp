@@ -185,7 +185,7 @@ void placeInSpace(const Fields& fields, std::size_t dimensions, MetaImageHeader&
   for (std::size_t a = 0; a < 3; ++a) {
     if (!(spacing[a] > 0.0) || !std::isfinite(spacing[a])) {
       throw fields.fail("metaimage.spacing", spacing_key,
-                        "the spacing " + shortNumber(spacing[a]) + " is not greater than 0",
+                        "the spacing " + shortNumber(spacing[a], 3) + " is not greater than 0",
                         "write a mirrored axis as a negative row of TransformMatrix");
     }
   }
@@ -281,8 +281,8 @@ void readScaling(const Fields& fields, MetaImageHeader& out) {
   out.coding.scaled = out.coding.slope != 1.0 || out.coding.intercept != 0.0;
   if (out.coding.scaled) {
     out.notes.push_back("values are scaled as the header says: times " +
-                        shortNumber(out.coding.slope) + ", plus " +
-                        shortNumber(out.coding.intercept));
+                        shortNumber(out.coding.slope, 3) + ", plus " +
+                        shortNumber(out.coding.intercept, 3));
   }
 }
 

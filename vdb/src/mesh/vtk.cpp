@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -10,6 +9,7 @@
 #include "mesh/builder.h"
 #include "mesh/scanner.h"
 #include "palpate/core/error.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -133,9 +133,7 @@ class Vtk {
   }
 
   Scalar takeScalar() {
-    std::string name(takeWord());
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string name = lowerCase(takeWord());
     const std::optional<Scalar> scalar = scalarCalled(name);
     if (!scalar) refuse("unknown type '" + name.substr(0, 40) + "'");
     return *scalar;
