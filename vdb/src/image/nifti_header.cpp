@@ -94,28 +94,28 @@ void checkDimensions(const Header& header, const std::string& path, std::optiona
   }
 }
 
-VoxelType voxelType(int datatype, const std::string& path) {
+Scalar voxelType(int datatype, const std::string& path) {
   switch (datatype) {
     case NIFTI_TYPE_UINT8:
-      return VoxelType::kUint8;
+      return Scalar::kUint8;
     case NIFTI_TYPE_INT8:
-      return VoxelType::kInt8;
+      return Scalar::kInt8;
     case NIFTI_TYPE_UINT16:
-      return VoxelType::kUint16;
+      return Scalar::kUint16;
     case NIFTI_TYPE_INT16:
-      return VoxelType::kInt16;
+      return Scalar::kInt16;
     case NIFTI_TYPE_UINT32:
-      return VoxelType::kUint32;
+      return Scalar::kUint32;
     case NIFTI_TYPE_INT32:
-      return VoxelType::kInt32;
+      return Scalar::kInt32;
     case NIFTI_TYPE_UINT64:
-      return VoxelType::kUint64;
+      return Scalar::kUint64;
     case NIFTI_TYPE_INT64:
-      return VoxelType::kInt64;
+      return Scalar::kInt64;
     case NIFTI_TYPE_FLOAT32:
-      return VoxelType::kFloat32;
+      return Scalar::kFloat32;
     case NIFTI_TYPE_FLOAT64:
-      return VoxelType::kFloat64;
+      return Scalar::kFloat64;
     default:
       break;
   }
