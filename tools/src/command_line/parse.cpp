@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "command_line/verb.h"
+#include "palpate/core/text.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/version.h"
 
@@ -78,14 +79,11 @@ const Verb* findVerb(std::string_view name) {
 
 Error unknownVerb(const std::string& word) {
   std::vector<std::string_view> names;
-  std::string list;
-  for (const Verb& verb : verbs()) {
-    names.emplace_back(verb.name);
-    list += (list.empty() ? "" : ", ") + std::string(verb.name);
-  }
+  for (const Verb& verb : verbs()) names.emplace_back(verb.name);
   const std::string close = suggest(word, names);
-  return usageError("there is no verb '" + word + "'",
-                    close.empty() ? "the verbs are " + list : "did you mean '" + close + "'?");
+  return usageError("there is no verb '" + word + "'", close.empty()
+                                                           ? "the verbs are " + joined(names)
+                                                           : "did you mean '" + close + "'?");
 }
 
 Invocation parseCommandLine(const std::vector<std::string>& arguments) {

@@ -1,6 +1,7 @@
 // The verbs that look at a scene or feel it.
 
 #include "command_line/verb.h"
+#include "palpate/core/text.h"
 #include "palpate/devices/device_presets.h"
 #include "palpate/devices/simulated_device.h"
 
@@ -9,11 +10,7 @@ namespace {
 
 /// The names of the simulated devices.
 std::string models() {
-  std::string text;
-  for (const devices::DevicePreset& preset : devices::devicePresets()) {
-    text += (text.empty() ? "" : ", ") + std::string(preset.name);
-  }
-  return text;
+  return joined(devices::devicePresets(), ", ", &devices::DevicePreset::name);
 }
 
 /// What the hand holds.

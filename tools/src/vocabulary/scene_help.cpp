@@ -2,6 +2,7 @@
 #include <set>
 
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 #include "palpate/scene/scene_file.h"
 #include "vocabulary/documents.h"
 
@@ -45,9 +46,7 @@ std::string helpOfKey(const Vocabulary& vocabulary, const MapWords& map, const K
   line("value:    ", valueText(vocabulary, key));
   line("default:  ", key.is_required ? "none, it is required" : key.fallback);
   line("needs:    ", key.needs);
-  std::string excluded;
-  for (const std::string& other : key.excludes) excluded += (excluded.empty() ? "" : ", ") + other;
-  line("not with: ", excluded);
+  line("not with: ", joined(key.excludes));
   line("values:   ", key.metric);
   line("in code:  ", key.in_code);
   line("since:    ", key.since);
