@@ -9,6 +9,7 @@
 #include "output_files.h"
 #include "palpate/core/text.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/scene/suggestion.h"
 #include "text.h"
 #include "verbs.h"
 
@@ -30,9 +31,8 @@ std::vector<const CaseEntry*> chosenCases(const std::vector<std::string>& names)
   }
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string close = suggest(name, known);
     throw usageError("the bench has no scene '" + name + "'",
-                     close.empty() ? "it has " + joined(known) : "did you mean '" + close + "'?");
+                     suggestionFor(name, known, "it has " + joined(known)));
   }
   return chosen;
 }

@@ -3,6 +3,7 @@
 
 #include "material_checks.h"
 #include "need.h"
+#include "palpate/scene/suggestion.h"
 #include "scene_compiler.h"
 
 namespace palpate {
@@ -123,12 +124,9 @@ int SceneCompiler::material(const std::string& name, const SourcePlace& place) {
   for (std::size_t i = 0; i < description_.materials.size(); ++i) {
     if (description_.materials[i].name == name) return static_cast<int>(i);
   }
-  std::vector<std::string_view> names;
-  for (const Material& m : description_.materials) names.push_back(m.name);
-  const std::string near = suggest(name, names);
   throw errorAt(
       place, "scene.unknown_material", "there is no material " + inQuotes(name),
-      near.empty() ? "define it below `materials:`" : "did you mean " + inQuotes(near) + "?");
+      suggestionFor(name, description_.materials, "define it below `materials:`", &Material::name));
 }
 
 Wall SceneCompiler::wall(const WallDescription& given, const SourcePlace& place) {
@@ -200,12 +198,9 @@ std::vector<RegionId> SceneCompiler::matching(const std::string& globs, const So
 }
 
 Error SceneCompiler::unknownRegion(const std::string& name, const SourcePlace& place) {
-  std::vector<std::string_view> names;
-  for (const Region& region : scene_->regions_) names.push_back(region.name);
-  const std::string near = suggest(name, names);
   return errorAt(
       place, "scene.unknown_layer", "there is no layer " + inQuotes(name),
-      near.empty() ? "name a layer, or 'outside'" : "did you mean " + inQuotes(near) + "?");
+      suggestionFor(name, scene_->regions_, "name a layer, or 'outside'", &Region::name));
 }
 
 std::vector<Wall> SceneCompiler::makeWalls() {

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "palpate/interior/partition.h"
+#include "palpate/scene/suggestion.h"
 #include "scene_compiler.h"
 
 namespace palpate {
@@ -15,25 +16,19 @@ constexpr std::size_t kPatientSurveyLines = 4096;
 }  // namespace
 
 PortId SceneCompiler::portNamed(const std::string& name, const PortDescription& asker) {
-  std::vector<std::string_view> names;
   for (std::size_t i = 0; i < description_.ports.size(); ++i) {
     if (description_.ports[i].name == name) return static_cast<PortId>(i);
-    names.push_back(description_.ports[i].name);
   }
-  const std::string near = suggest(name, names);
   throw errorAt(asker.place, "scene.unknown_port", "there is no port " + inQuotes(name),
-                near.empty() ? "" : "did you mean " + inQuotes(near) + "?");
+                suggestionFor(name, description_.ports, "", &PortDescription::name));
 }
 
 int SceneCompiler::sheetNamed(const PortDescription& asker) {
-  std::vector<std::string_view> names;
   for (std::size_t i = 0; i < description_.sheets.size(); ++i) {
     if (description_.sheets[i].name == asker.sheet) return static_cast<int>(i);
-    names.push_back(description_.sheets[i].name);
   }
-  const std::string near = suggest(asker.sheet, names);
   throw errorAt(asker.place, "scene.unknown_sheet", "there is no sheet " + inQuotes(asker.sheet),
-                near.empty() ? "" : "did you mean " + inQuotes(near) + "?");
+                suggestionFor(asker.sheet, description_.sheets, "", &SheetDescription::name));
 }
 
 std::vector<LeafId> SceneCompiler::facetLeaves(const PortDescription& given, const Port& port) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "palpate/scene/scene_file.h"
+#include "palpate/scene/suggestion.h"
 
 namespace palpate {
 
@@ -16,10 +16,7 @@ std::string listed(const std::vector<std::string_view>& names) {
 
 std::string suggestOrList(std::string_view word, const std::vector<std::string_view>& names,
                           std::string_view lead) {
-  const std::string close = suggest(word, names);
-  if (!close.empty()) return "did you mean " + inQuotes(close) + "?";
-  if (names.empty()) return {};
-  return std::string(lead) + listed(names);
+  return suggestionFor(word, names, names.empty() ? "" : std::string(lead) + listed(names));
 }
 
 }  // namespace palpate

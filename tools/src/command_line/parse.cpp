@@ -2,7 +2,7 @@
 
 #include "command_line/verb.h"
 #include "palpate/core/text.h"
-#include "palpate/scene/scene_file.h"
+#include "palpate/scene/suggestion.h"
 #include "palpate/version.h"
 
 namespace palpate::tools {
@@ -78,12 +78,10 @@ const Verb* findVerb(std::string_view name) {
 }
 
 Error unknownVerb(const std::string& word) {
-  std::vector<std::string_view> names;
-  for (const Verb& verb : verbs()) names.emplace_back(verb.name);
-  const std::string close = suggest(word, names);
-  return usageError("there is no verb '" + word + "'", close.empty()
-                                                           ? "the verbs are " + joined(names)
-                                                           : "did you mean '" + close + "'?");
+  return usageError(
+      "there is no verb '" + word + "'",
+      suggestionFor(word, verbs(), "the verbs are " + joined(verbs(), ", ", &Verb::name),
+                    &Verb::name));
 }
 
 Invocation parseCommandLine(const std::vector<std::string>& arguments) {

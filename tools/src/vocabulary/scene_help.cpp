@@ -3,7 +3,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/core/text.h"
-#include "palpate/scene/scene_file.h"
+#include "palpate/scene/suggestion.h"
 #include "vocabulary/documents.h"
 
 namespace palpate::tools {
@@ -90,12 +90,9 @@ std::string sceneHelp(const Vocabulary& vocabulary, const std::string& word) {
     text += (text.empty() ? "" : "\n") + helpOfKey(vocabulary, map, *key);
   }
   if (!text.empty()) return text;
-  const std::vector<std::string> words = sceneWords(vocabulary);
-  const std::string close =
-      suggest(name, std::vector<std::string_view>(words.begin(), words.end()));
   throw Error(ErrorKind::kUsage,
               {"usage.command_line", "no key or map of a scene is called '" + word + "'",
-               close.empty() ? "palpate help scene lists them" : "did you mean '" + close + "'?"});
+               suggestionFor(name, sceneWords(vocabulary), "palpate help scene lists them")});
 }
 
 }  // namespace palpate::tools
