@@ -14,15 +14,15 @@ class OracleRenderer final : public rivals::RivalRenderer {
  public:
   /// The proxy stays outside all solids of the scene.
   explicit OracleRenderer(ScenePtr scene) : RivalRenderer(std::move(scene)) {
-    std::vector<testing::FeasibleSet> all;
+    std::vector<oracle::FeasibleSet> all;
     for (const rivals::Solid& solid : solids()) {
-      all.push_back(testing::FeasibleSet::outside(solid.field));
+      all.push_back(oracle::FeasibleSet::outside(solid.field));
     }
-    set_ = testing::FeasibleSet::allOf(all);
+    set_ = oracle::FeasibleSet::allOf(all);
   }
 
   /// The proxy stays in `set`.
-  OracleRenderer(ScenePtr scene, testing::FeasibleSet set)
+  OracleRenderer(ScenePtr scene, oracle::FeasibleSet set)
       : RivalRenderer(std::move(scene)), set_(std::move(set)) {}
 
  private:
@@ -30,12 +30,12 @@ class OracleRenderer final : public rivals::RivalRenderer {
 
   [[nodiscard]] TickResult step(const HipState& hip) noexcept override {
     if (!std::exchange(has_begun_, true)) proxy_ = hip.position;
-    proxy_ = testing::solveOracle(set_, proxy_, hip.position).proxy;
+    proxy_ = oracle::solveOracle(set_, proxy_, hip.position).proxy;
     if (glm::distance(proxy_, hip.position) < 1e-12) return untouched(hip);
     return spring(hip, proxy_, solids().front(), region());
   }
 
-  testing::FeasibleSet set_;
+  oracle::FeasibleSet set_;
   Vec3 proxy_{0.0, 0.0, 0.0};  ///< [m]
   bool has_begun_ = false;
 };

@@ -2,6 +2,7 @@
 // that is added in one place is in all of it.
 
 #include <cstdio>
+#include <filesystem>
 
 #include "command_line/verb_words.h"
 #include "folders/folders.h"
@@ -131,7 +132,7 @@ TEST(SaidOnce, TheManualPageIsSetWithoutWarnings) {
 }
 
 /// What bash offers behind these words, the last of which is being written; one on each line.
-std::vector<std::string> offered(const std::vector<std::string>& words) {
+std::vector<std::string> offeredByBash(const std::vector<std::string>& words) {
   std::string line = "COMP_WORDS=(";
   for (const std::string& word : words) line += " '" + word + "'";
   const std::string script = "source " + kRoot + "/tools/completion/palpate.bash && " + line +
@@ -142,16 +143,47 @@ std::vector<std::string> offered(const std::vector<std::string>& words) {
 
 TEST(SaidOnce, BashCompletesVerbsOptionsWordsAndKeys) {
   using Words = std::vector<std::string>;
-  EXPECT_EQ(offered({"palpate", "to"}), Words{"touch"});
-  EXPECT_EQ(offered({"palpate", "c"}), (Words{"convert", "check"}));
-  EXPECT_EQ(offered({"palpate", "touch", "--max"}), Words{"--max-force"});
-  EXPECT_EQ(offered({"palpate", "--json", "touch", "--max"}), Words{"--max-force"});
-  EXPECT_EQ(offered({"palpate", "touch", "s.yaml", "--renderer", ""}),
+  EXPECT_EQ(offeredByBash({"palpate", "to"}), Words{"touch"});
+  EXPECT_EQ(offeredByBash({"palpate", "c"}), (Words{"convert", "check"}));
+  EXPECT_EQ(offeredByBash({"palpate", "touch", "--max"}), Words{"--max-force"});
+  EXPECT_EQ(offeredByBash({"palpate", "--json", "touch", "--max"}), Words{"--max-force"});
+  EXPECT_EQ(offeredByBash({"palpate", "touch", "s.yaml", "--renderer", ""}),
             (Words{"constraint", "paper"}));
-  EXPECT_EQ(offered({"palpate", "help", "sc"}), Words{"scene"});
-  EXPECT_EQ(offered({"palpate", "help", "scene", "opens"}), Words{"opens_at"});
+  EXPECT_EQ(offeredByBash({"palpate", "help", "sc"}), Words{"scene"});
+  EXPECT_EQ(offeredByBash({"palpate", "help", "scene", "opens"}), Words{"opens_at"});
   // Files are left to bash.
-  EXPECT_EQ(offered({"palpate", "touch", "s"}), Words{""});
+  EXPECT_EQ(offeredByBash({"palpate", "touch", "s"}), Words{""});
+}
+
+/// What fish offers behind a line.
+std::vector<std::string> offeredByFish(const std::string& line) {
+  const TempFolder home;
+  std::vector<std::string> lines =
+      linesOf(printed("HOME=" + home.path() + " fish --no-config -c \"source " + kRoot +
+                      "/tools/completion/palpate.fish; complete -C '" + line + "'\""));
+  for (std::string& each : lines) each = each.substr(0, each.find('\t'));  // what it means
+  return lines;
+}
+
+/// What zsh offers behind a line.
+std::vector<std::string> offeredByZsh(const std::string& line) {
+  const TempFolder folder;
+  std::filesystem::create_symlink(kRoot + "/tools/completion/palpate.zsh", folder.path("_palpate"));
+  return linesOf(
+      printed("zsh -f " + kRoot + "/tests/tools/offered.zsh " + folder.path() + " '" + line + "'"));
+}
+
+TEST(SaidOnce, FishAndZshCompleteVerbsOptionsWordsAndKeys) {
+  using Words = std::vector<std::string>;
+  for (const auto& offered : {offeredByFish, offeredByZsh}) {
+    SCOPED_TRACE(offered == offeredByFish ? "fish" : "zsh");
+    EXPECT_EQ(offered("palpate to"), Words{"touch"});
+    EXPECT_EQ(offered("palpate c"), (Words{"check", "convert"}));
+    EXPECT_EQ(offered("palpate touch --max"), Words{"--max-force"});
+    EXPECT_EQ(offered("palpate touch s.yaml --renderer "), (Words{"constraint", "paper"}));
+    EXPECT_EQ(offered("palpate help sc"), Words{"scene"});
+    EXPECT_EQ(offered("palpate help scene opens"), Words{"opens_at"});
+  }
 }
 
 }  // namespace

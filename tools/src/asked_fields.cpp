@@ -1,6 +1,7 @@
 #include "asked_fields.h"
 
 #include "palpate/scene/scene_file.h"
+#include "palpate/scene/suggestion.h"
 
 namespace palpate::tools {
 
@@ -14,14 +15,11 @@ std::vector<AskedField> chooseFields(const Scene& scene, const std::string& name
   for (const NamedField& named : scene.fields()) {
     all.push_back({named.name, named.source->get(), false, named.source->summary()});
   }
-  std::vector<std::string_view> names;
   for (const AskedField& a : all) {
     if (a.name == name) return {a};
-    names.push_back(a.name);
   }
-  const std::string close = suggest(name, names);
   throw inputError(code, "there is no field or layer '" + name + "'",
-                   close.empty() ? "palpate info names them" : "did you mean '" + close + "'?");
+                   suggestionFor(name, all, "palpate info names them", &AskedField::name));
 }
 
 const char* metricName(Metric metric) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "palpate/core/text.h"
 #include "palpate/devices/device_presets.h"
 #include "text.h"
 
@@ -160,11 +161,7 @@ std::string budgetText(std::span<const BudgetItem> items) {
                number(each.allowed) + " (" + ruleOf(each) + ")",
                std::isfinite(each.share) ? formatNumber(100.0 * each.share, 3) + " %" : "ALL"});
     if (!each.isAbove()) continue;
-    std::string places;
-    for (const std::string& place : each.item.places) {
-      places += (places.empty() ? "" : ", ") + place;
-    }
-    above += "  " + nameOf(each) + " (" + places + "): " + sizeOf(each.share);
+    above += "  " + nameOf(each) + " (" + joined(each.item.places) + "): " + sizeOf(each.share);
     if (!each.item.note.empty()) above += ", " + each.item.note;
     if (each.item.length > 0.0) {
       above += ", over a shaft of " + formatNumber(1e3 * each.item.length, 3) + " mm";

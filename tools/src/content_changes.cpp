@@ -7,6 +7,7 @@
 #include "palpate/core/error.h"
 #include "palpate/render/contents.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/scene/suggestion.h"
 #include "text.h"
 
 namespace palpate::tools {
@@ -77,13 +78,12 @@ Error unknownContent(const std::string& name, const Scene& scene) {
     }
   }
   for (const Material& material : scene.materials()) is_material |= material.name == name;
-  const std::string near = suggest(name, names);
-  return inputError("set.unknown_content",
-                    std::string(kOption) + ": " +
-                        (is_material ? "no region is filled with the material '" + name + "'"
-                                     : "the scene has no material '" + name + "'"),
-                    near.empty() ? "name the content of a layer; `palpate explain` lists them"
-                                 : "did you mean '" + near + "'?");
+  return inputError(
+      "set.unknown_content",
+      std::string(kOption) + ": " +
+          (is_material ? "no region is filled with the material '" + name + "'"
+                       : "the scene has no material '" + name + "'"),
+      suggestionFor(name, names, "name the content of a layer; `palpate explain` lists them"));
 }
 
 std::string rangeOf(const ContentSetting& setting) {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <utility>
 
 #include "palpate/core/error.h"
 #include "palpate/vdb/image.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::tools {
 namespace {
@@ -25,17 +25,7 @@ constexpr std::array<std::pair<const char*, InputKind>, 10> kExtensions = {{
     {".vtk", InputKind::kMesh},
 }};
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 }  // namespace
-
-bool hasExtension(const std::string& path, const std::string& extension) {
-  return lower(path).ends_with(lower(extension));
-}
 
 InputKind inputKind(const std::string& path) {
   std::error_code failed;
@@ -48,7 +38,7 @@ InputKind inputKind(const std::string& path) {
                      "name a file in it", path);
   }
   for (const auto& [extension, kind] : kExtensions) {
-    if (hasExtension(path, extension)) return kind;
+    if (vdb::hasExtension(path, extension)) return kind;
   }
   throw inputError(
       "file.unknown_kind", "cannot tell from its name what this file is",
@@ -58,9 +48,9 @@ InputKind inputKind(const std::string& path) {
 }
 
 std::string stemOf(const std::string& path) {
-  std::string name = std::filesystem::path(path).filename().string();
+  const std::string name = vdb::fileName(path);
   for (const std::string two : {".nii.gz", ".seg.nrrd"}) {
-    if (hasExtension(name, two)) return name.substr(0, name.size() - two.size());
+    if (vdb::hasExtension(name, two)) return name.substr(0, name.size() - two.size());
   }
   return std::filesystem::path(name).stem().string();
 }

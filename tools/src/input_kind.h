@@ -15,6 +15,5 @@ enum class InputKind { kScene, kGrid, kMesh, kImage };
 [[nodiscard]] std::string stemOf(const std::string& path);
 
 /// True if `path` ends with `extension` (".png"), in any case.
-[[nodiscard]] bool hasExtension(const std::string& path, const std::string& extension);
 
 }  // namespace palpate::tools

@@ -8,6 +8,7 @@
 
 #include "output_files.h"
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 #include "real_device.h"
 
 namespace palpate::tools {
@@ -81,14 +82,9 @@ void checkMotion(const TouchOptions& o) {
   const std::string motion = chosenMotion(o);
   const auto only = [&](bool given, const char* name,
                         std::initializer_list<std::string_view> motions) {
-    if (!given) return;
-    std::string list;
-    for (const auto m : motions) {
-      if (m == motion) return;
-      list += (list.empty() ? "" : ", ") + std::string(m);
-    }
+    if (!given || std::find(motions.begin(), motions.end(), motion) != motions.end()) return;
     throw usageError(std::string(name) + " does not apply to " + motion,
-                     "it is a parameter of " + list);
+                     "it is a parameter of " + joined(motions));
   };
   only(!o.normal.empty(), "--normal", {"--press", "--tap"});
   only(!o.depth.empty(), "--depth", {"--press", "--tap"});

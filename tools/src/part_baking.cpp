@@ -6,6 +6,7 @@
 
 #include "input_kind.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/vdb/text.h"
 #include "scene_baking.h"
 #include "scene_text.h"
 
@@ -119,9 +120,8 @@ BakedParts bakeParts(const BakeOptions& options, Console& console) {
                 {"bake.no_parts", "no part of it is better off as a grid",
                  "use the scene as it is; the notes say why", options.input});
   }
-  out.scene = "# Made by `palpate bake --parts` from " +
-              std::filesystem::path(options.input).filename().string() + ", with the grids of " +
-              std::filesystem::path(options.output).filename().string() + ".\n" + sceneText(scene);
+  out.scene = "# Made by `palpate bake --parts` from " + vdb::fileName(options.input) +
+              ", with the grids of " + vdb::fileName(options.output) + ".\n" + sceneText(scene);
   return out;
 }
 

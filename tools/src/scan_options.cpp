@@ -2,6 +2,7 @@
 
 #include "input_kind.h"
 #include "palpate/core/error.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::tools {
 namespace {
@@ -37,7 +38,7 @@ vdb::Mesh readMeshFile(const std::string& file, const std::string& units,
   const LengthUnit unit = prescribed.empty() ? meshUnit(units) : lengthUnit(prescribed);
   vdb::Mesh mesh = vdb::readMesh(file, unit.metres, spaceOf(options));
   // Of models of scans it matters; other meshes have no patient.
-  if (options.space.empty() && (mesh.space_is_stated || hasExtension(file, ".vtk"))) {
+  if (options.space.empty() && (mesh.space_is_stated || vdb::hasExtension(file, ".vtk"))) {
     console.note(file + ": coordinates are " + spaceText(mesh, options) +
                  "; --space says otherwise");
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "palpate/scene/scene_file.h"
+#include "palpate/scene/suggestion.h"
 
 namespace palpate::tools {
 namespace {
@@ -34,11 +35,8 @@ void checkSceneOptions(const BakeOptions& options, const SceneDescription& descr
   for (const auto& layer : description.layers) names.push_back(layer.name);
   for (const std::string& wanted : options.layers) {
     if (std::find(names.begin(), names.end(), wanted) != names.end()) continue;
-    const std::string close = suggest(wanted, names);
-    throw inputError(
-        "scene.unknown_layer", "there is no layer '" + wanted + "'",
-        close.empty() ? "palpate info names the layers" : "did you mean '" + close + "'?",
-        options.input);
+    throw inputError("scene.unknown_layer", "there is no layer '" + wanted + "'",
+                     suggestionFor(wanted, names, "palpate info names the layers"), options.input);
   }
 }
 

@@ -22,19 +22,7 @@ bool isPlain(std::string_view text) {
          text.back() != ' ' && (text.front() != '-' || text.size() > 1);
 }
 
-/// Scene files are UTF-8. @throws Error (kUsage): what a file is called need not be.
-std::string quoted(const std::string& text) {
-  try {
-    return Json(text).dump();
-  } catch (const Json::exception&) {
-    const std::string shown = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-    throw Error(ErrorKind::kUsage,
-                {"scene.not_utf8", shown + " is not UTF-8, as a scene file must be",
-                 "rename the file or folder"});
-  }
-}
-
-std::string wordText(const std::string& word) { return isPlain(word) ? word : quoted(word); }
+std::string wordText(const std::string& word) { return isPlain(word) ? word : sceneWord(word); }
 
 std::string flowText(const Node& node) {
   std::string out;
@@ -42,7 +30,7 @@ std::string flowText(const Node& node) {
     case Node::Kind::kNull:
       return "null";
     case Node::Kind::kScalar:
-      return node.quoted ? quoted(node.text) : wordText(node.text);
+      return node.quoted ? sceneWord(node.text) : wordText(node.text);
     case Node::Kind::kSequence:
       for (const Node& item : node.items) out += (out.empty() ? "" : ", ") + flowText(item);
       return "[" + out + "]";
@@ -83,6 +71,17 @@ class PathMover {
 };
 
 }  // namespace
+
+std::string sceneWord(const std::string& text) {
+  try {
+    return Json(text).dump();
+  } catch (const Json::exception&) {
+    const std::string shown = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+    throw Error(ErrorKind::kUsage,
+                {"scene.not_utf8", shown + " is not UTF-8, as a scene file must be",
+                 "rename the file or folder"});
+  }
+}
 
 std::string sceneText(const Node& root) {
   std::string out;

@@ -7,6 +7,9 @@
 
 namespace palpate::tools {
 
+/// `text` in double quotes. Scene files are UTF-8. @throws Error (kUsage): what a file is called need not be.
+[[nodiscard]] std::string sceneWord(const std::string& text);
+
 /// One line for each entry of a section, values in the flow style; what was quoted still is. Comments
 /// are not part of the tree.
 [[nodiscard]] std::string sceneText(const Node& root);

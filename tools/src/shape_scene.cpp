@@ -10,6 +10,7 @@
 #include "palpate/core/error.h"
 #include "palpate/vdb/io.h"
 #include "report.h"
+#include "scene_text.h"
 #include "vdb_grid_name.h"
 
 namespace palpate::tools {
@@ -35,8 +36,6 @@ void refuseImageOptions(const TouchOptions& o) {
   refuse(!o.scan.series.empty(), "--series", "DICOM folders");
 }
 
-std::string quoted(const std::string& text) { return Json(text).dump(); }
-
 /// What may stand as the name of a layer, and has not been one yet.
 std::string layerName(std::string text, std::set<std::string>& taken) {
   for (char& c : text) {
@@ -57,8 +56,9 @@ struct Parts {
 
   void addField(const std::string& name, const std::string& field) {
     const std::string layer = layerName(name, names);
-    fields += "  " + quoted(layer) + ": " + field + "\n";
-    layers += "  - {name: " + quoted(layer) + ", inside: " + quoted(layer) + ", wall: wall}\n";
+    fields += "  " + sceneWord(layer) + ": " + field + "\n";
+    layers +=
+        "  - {name: " + sceneWord(layer) + ", inside: " + sceneWord(layer) + ", wall: wall}\n";
   }
   [[nodiscard]] std::string text() const {
     std::string out = "palpate: 1\nlength: mm\n";
@@ -75,7 +75,7 @@ class Entries {
     if (!value.empty()) text_ += (text_.empty() ? "" : ", ") + key + ": " + value;
   }
   void addText(const std::string& key, const std::string& value) {
-    if (!value.empty()) add(key, quoted(value));
+    if (!value.empty()) add(key, sceneWord(value));
   }
   [[nodiscard]] std::string text() const { return "{" + text_ + "}"; }
 
@@ -122,7 +122,7 @@ void addImage(const TouchOptions& o, const std::string& file, Parts& parts) {
   parts.images += "  scan: " + image.text() + "\n";
   const auto add_layer = [&](const std::string& name, const std::string& kind, Entries surface) {
     surface.add("voxel", voxelOf(o));
-    parts.layers += "  - {name: " + quoted(layerName(name, parts.names)) + ", " + kind + ": " +
+    parts.layers += "  - {name: " + sceneWord(layerName(name, parts.names)) + ", " + kind + ": " +
                     surface.text() + ", wall: wall}\n";
   };
   if (o.labels.empty()) {
@@ -139,7 +139,7 @@ void addImage(const TouchOptions& o, const std::string& file, Parts& parts) {
     const bool is_value = label.find_first_not_of("0123456789") == std::string::npos;
     Entries surface;
     surface.add("image", "scan");
-    surface.add("match", "[" + (is_value ? label : quoted(label)) + "]");
+    surface.add("match", "[" + (is_value ? label : sceneWord(label)) + "]");
     add_layer(is_value ? "label " + label : label, "labels", surface);
   }
 }

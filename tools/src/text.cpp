@@ -3,24 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <glm/common.hpp>
 
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 #include "palpate/scene/units.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::tools {
 namespace {
 
+using vdb::trimmed;
+
 Error usageError(const char* what, std::string message, std::string hint) {
   return Error(ErrorKind::kUsage,
                {"usage.value", std::string(what) + ": " + std::move(message), std::move(hint)});
-}
-
-std::string_view trimmed(std::string_view text) {
-  const auto from = text.find_first_not_of(" \t\r");
-  if (from == std::string_view::npos) return {};
-  return text.substr(from, text.find_last_not_of(" \t\r") - from + 1);
 }
 
 double parseWithUnit(std::string_view text, Dimension dimension, double plain_unit,
@@ -145,9 +142,7 @@ Vec3 parsePoint(std::string_view text, const LengthUnit& unit, const char* what)
 std::string formatNumber(double value, int digits) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "%.*g", digits, value == 0.0 ? 0.0 : value);  // no "-0"
-  return buffer;
+  return shortNumber(value == 0.0 ? 0.0 : value, digits);  // no "-0"
 }
 
 std::string formatParameter(const Parameter& parameter) {

@@ -5,6 +5,7 @@
 
 #include "input_kind.h"
 #include "palpate/devices/record.h"
+#include "palpate/vdb/text.h"
 #include "stop_signal.h"
 #include "thin_trace.h"
 #include "trace_file.h"
@@ -55,7 +56,7 @@ void announceRecords(OutputFiles& files, const TouchOptions& options,
     files.announce(options.trace, inputs, OutputFiles::Streams::kYes);
   }
   if (options.record.empty()) return;
-  if (!hasExtension(options.record, ".npy")) {
+  if (!vdb::hasExtension(options.record, ".npy")) {
     throw Error(ErrorKind::kUsage,
                 {"usage.touch", "the record " + options.record + " must end in .npy"});
   }

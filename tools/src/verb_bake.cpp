@@ -9,6 +9,7 @@
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_error.h"
 #include "palpate/vdb/io.h"
+#include "palpate/vdb/text.h"
 #include "part_baking.h"
 #include "text.h"
 #include "verbs.h"
@@ -132,7 +133,7 @@ Json partJson(const std::string& layer, const vdb::HybridPart& part) {
 }  // namespace
 
 Report run(const BakeOptions& options, const GeneralOptions& general, Console& console) {
-  if (!hasExtension(options.output, ".vdb")) {
+  if (!vdb::hasExtension(options.output, ".vdb")) {
     throw Error(ErrorKind::kUsage,
                 {"usage.bake", "the output " + options.output + " must end in .vdb",
                  "palpate convert writes meshes and images"});

@@ -7,7 +7,9 @@
 #include "bench/stability_bench.h"
 #include "input_kind.h"
 #include "output_files.h"
+#include "palpate/core/text.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/scene/suggestion.h"
 #include "text.h"
 #include "verbs.h"
 
@@ -21,19 +23,16 @@ Error usageError(std::string message, std::string hint) {
 std::vector<const CaseEntry*> chosenCases(const std::vector<std::string>& names) {
   std::vector<const CaseEntry*> chosen;
   std::vector<std::string_view> known;
-  std::string list;
   for (const CaseEntry& entry : contactCases()) {
     known.push_back(entry.name);
-    list += (list.empty() ? "" : ", ") + entry.name;
     if (names.empty() || std::find(names.begin(), names.end(), entry.name) != names.end()) {
       chosen.push_back(&entry);
     }
   }
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string close = suggest(name, known);
     throw usageError("the bench has no scene '" + name + "'",
-                     close.empty() ? "it has " + list : "did you mean '" + close + "'?");
+                     suggestionFor(name, known, "it has " + joined(known)));
   }
   return chosen;
 }

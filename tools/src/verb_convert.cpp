@@ -5,10 +5,12 @@
 #include "input_kind.h"
 #include "json_parts.h"
 #include "output_files.h"
+#include "palpate/core/text.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/grid_image.h"
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/mesh.h"
+#include "palpate/vdb/text.h"
 #include "scan_options.h"
 #include "text.h"
 #include "verbs.h"
@@ -21,7 +23,7 @@ Error usageError(std::string message, std::string hint = {}) {
 }
 
 bool isImageName(const std::string& path) {
-  return hasExtension(path, ".nii") || hasExtension(path, ".nii.gz");
+  return vdb::hasExtension(path, ".nii") || vdb::hasExtension(path, ".nii.gz");
 }
 
 /// Whether the input is a grid of distances that nothing is asked to be done about.
@@ -49,8 +51,8 @@ vdb::LevelSet onlyGrid(const ConvertOptions& options, Console& console) {
   std::vector<BakedGrid> baked = bakeInput(bake, console);
   std::erase_if(baked, [](const BakedGrid& one) { return one.grid.info().name == kUnitedGrid; });
   if (baked.size() == 1) return baked.front().grid;
-  std::string names;
-  for (const BakedGrid& one : baked) names += (names.empty() ? "" : ", ") + one.grid.info().name;
+  const std::string names =
+      joined(baked, ", ", [](const BakedGrid& one) { return one.grid.info().name; });
   throw usageError(bake.input + " gives " + std::to_string(baked.size()) + " surfaces: " + names,
                    "choose one with --layer or --labels; `palpate bake` writes all to one .vdb");
 }
@@ -115,7 +117,7 @@ Written asImage(const ConvertOptions& options, Console& console) {
   Vec3 spacing(0.0);
   for (int axis = 0; axis < 3; ++axis) spacing[axis] = glm::length(image.axes[axis]);
   Written out;
-  out.bytes = vdb::encodeNifti(image, hasExtension(options.bake.output, ".gz"));
+  out.bytes = vdb::encodeNifti(image, vdb::hasExtension(options.bake.output, ".gz"));
   out.json = {{"kind", "image"},
               {"size", image.size},
               {"voxel_size_m", std::min({spacing.x, spacing.y, spacing.z})},
@@ -130,7 +132,7 @@ Written asImage(const ConvertOptions& options, Console& console) {
 
 Report run(const ConvertOptions& options, const GeneralOptions& general, Console& console) {
   const std::string& output = options.bake.output;
-  const bool to_grid = hasExtension(output, ".vdb");
+  const bool to_grid = vdb::hasExtension(output, ".vdb");
   const bool to_image = isImageName(output);
   const InputKind kind = inputKind(options.bake.input);
   if (!options.to_units.empty() && (to_grid || to_image)) {

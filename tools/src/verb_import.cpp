@@ -8,6 +8,7 @@
 #include "input_kind.h"
 #include "output_files.h"
 #include "palpate/vdb/scan_surface.h"
+#include "palpate/vdb/text.h"
 #include "scan_options.h"
 #include "text.h"
 #include "verbs.h"
@@ -159,7 +160,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
   OutputFiles files(general);
   const std::string changed_labels = withoutExtension(options.output) + ".labels.nii.gz";
   if (is_written) {
-    if (!hasExtension(options.output, ".yaml") && !hasExtension(options.output, ".yml")) {
+    if (!vdb::hasExtension(options.output, ".yaml") && !vdb::hasExtension(options.output, ".yml")) {
       throw Error(ErrorKind::kUsage,
                   {"usage.import", "the output " + options.output + " must end in .yaml", ""});
     }
@@ -180,7 +181,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
     const bool is_changed = options.min_island.has_value();
     const std::string output = options.output;
     const SceneFiles seen = {
-        is_changed ? fs::path(changed_labels).filename().string() : seenFrom(output, options.scan),
+        is_changed ? vdb::fileName(changed_labels) : seenFrom(output, options.scan),
         seenFrom(output, options.names),
         seenFrom(output, options.skin ? options.image : options.body),
         seenFrom(output, options.image)};

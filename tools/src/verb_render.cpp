@@ -1,10 +1,10 @@
-#include <filesystem>
 
 #include "input_kind.h"
 #include "json_parts.h"
 #include "loaded_scene.h"
 #include "output_files.h"
 #include "palpate/scene/units.h"
+#include "palpate/vdb/text.h"
 #include "picture/picture.h"
 #include "text.h"
 #include "verbs.h"
@@ -38,7 +38,7 @@ void parseSize(const std::string& text, PictureOptions& picture) {
 }  // namespace
 
 Report run(const RenderOptions& options, const GeneralOptions& general, Console& console) {
-  if (!hasExtension(options.output, ".png")) {
+  if (!vdb::hasExtension(options.output, ".png")) {
     throw usageError("the output " + options.output + " must end in .png");
   }
   PictureOptions picture;
@@ -54,7 +54,7 @@ Report run(const RenderOptions& options, const GeneralOptions& general, Console&
   picture.image = pictureImage(loaded, options.image);
   picture.colors = loaded.colors();
   picture.anatomical = !loaded.images().empty();
-  picture.title = std::filesystem::path(options.scene).filename().string();
+  picture.title = vdb::fileName(options.scene);
 
   const ScenePtr scene = loaded.compile();
   const CutPlane plane = drawPicture(*scene, picture, files.temporary(options.output), console);

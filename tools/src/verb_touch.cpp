@@ -13,6 +13,7 @@
 #include "output_files.h"
 #include "palpate/devices/record.h"
 #include "palpate/devices/session.h"
+#include "palpate/vdb/text.h"
 #include "palpate/version.h"
 #include "picture/picture.h"
 #include "real_device.h"
@@ -92,14 +93,14 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   const std::vector<std::string> inputs = {options.scene, options.path};
   announceRecords(files, options, inputs);
   if (!options.image.empty()) {
-    if (!hasExtension(options.image, ".png")) {
+    if (!vdb::hasExtension(options.image, ".png")) {
       throw Error(ErrorKind::kUsage,
                   {"usage.touch", "the picture " + options.image + " must end in .png"});
     }
     files.announce(options.image, inputs);
   }
   if (!options.plot.empty()) {
-    if (!hasExtension(options.plot, ".svg")) {
+    if (!vdb::hasExtension(options.plot, ".svg")) {
       throw Error(ErrorKind::kUsage,
                   {"usage.touch", "the plot " + options.plot + " must end in .svg"});
     }
@@ -107,7 +108,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   }
 
   if (!options.write_scene.empty()) {
-    if (!hasExtension(options.write_scene, ".yaml")) {
+    if (!vdb::hasExtension(options.write_scene, ".yaml")) {
       throw Error(ErrorKind::kUsage,
                   {"usage.touch", "the scene " + options.write_scene + " must end in .yaml"});
     }
@@ -179,7 +180,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
 
   if (!options.image.empty()) {
     PictureOptions picture;
-    picture.title = std::filesystem::path(options.scene).filename().string();
+    picture.title = vdb::fileName(options.scene);
     picture.track = trackOf(run.thin->rows());
     picture.image = pictureImage(loaded, "");
     picture.colors = loaded.colors();
@@ -187,7 +188,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
     (void)drawPicture(*scene, picture, files.temporary(options.image), console);
   }
   if (!options.plot.empty()) {
-    const std::string title = std::filesystem::path(options.scene).filename().string();
+    const std::string title = vdb::fileName(options.scene);
     files.write(options.plot, forcePlot(*run.thin, *scene, title));
   }
   checkStop();

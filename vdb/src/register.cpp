@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <numbers>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "palpate/vdb/image_distances.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
+#include "palpate/vdb/text.h"
 #include "scene_baked.h"
 #include "scene_grid.h"
 #include "scene_image.h"
@@ -45,18 +45,10 @@ struct Common {
 };
 using CommonPtr = std::shared_ptr<Common>;
 
-std::string fileName(const std::string& path) {
-  return std::filesystem::path(path).filename().string();
-}
-
 std::string widenedNote(double half_width) {
-  char text[160];
-  std::snprintf(
-      text, sizeof text,
-      "a band of %.3g voxels is too narrow for cubic sampling; it was widened to %g, with "
-      "distances to the closest points of the surface",
-      half_width, kCubicHalfWidth);
-  return text;
+  return "a band of " + shortNumber(half_width, 3) +
+         " voxels is too narrow for cubic sampling; it was widened to " +
+         shortNumber(kCubicHalfWidth, 6) + ", with distances to the closest points of the surface";
 }
 
 /// A grid that comes out of this module's own hands.
@@ -194,7 +186,7 @@ FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
         common->notes->add(
             path, {std::to_string(made.left_to_grid) + " of " + std::to_string(made.edges) +
                    " sharp edges are rounded as in a grid, as parts overlap beside them, at " +
-                   placeText(made.place, 1.0) + " for one; one solid would keep them sharp"});
+                   eachInMillimetres(made.place) + " for one; one solid would keep them sharp"});
       }
       return std::move(made.field);
     };

@@ -1,12 +1,12 @@
 #include "scene_map.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <utility>
 
 #include "palpate/vdb/material_grid.h"
+#include "palpate/vdb/text.h"
 #include "scene_grid.h"
 #include "scene_image.h"
 
@@ -101,10 +101,8 @@ void tell(const RegisterOptions& options, const ParameterKind& of, const Materia
       of.dimension
           ? ' ' + std::string(unitHelp(*of.dimension)).substr(0, unitHelp(*of.dimension).find(' '))
           : "";
-  char text[96];
-  std::snprintf(text, sizeof text, "%d bits a voxel, off by %.2g%s at most", how.bits, how.error,
-                unit.c_str());
-  options.on_note(of.key + " from " + grid.info().source + ": " + text);
+  options.on_note(of.key + " from " + grid.info().source + ": " + std::to_string(how.bits) +
+                  " bits a voxel, off by " + shortNumber(how.error, 2) + unit + " at most");
 }
 
 template <typename Make>

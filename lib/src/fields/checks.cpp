@@ -1,23 +1,17 @@
 #include "fields/checks.h"
 
-#include <charconv>
 #include <string>
 #include <utility>
 
 #include "fields/vector.h"
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 
 namespace palpate::fields {
 namespace {
 
-std::string text(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
-  return {buffer, result.ptr};
-}
-
 std::string text(const Vec3& v) {
-  return "[" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + "]";
+  return "[" + exactNumber(v.x) + ", " + exactNumber(v.y) + ", " + exactNumber(v.z) + "]";
 }
 
 std::string place(std::string_view shape, std::string_view parameter) {
@@ -32,7 +26,7 @@ bool hasBand(const Field& field, const Box3& bounds) {
 bool isLength(double value) { return value >= kSmallestLength && value <= kLargestLength; }
 
 std::string lengthRange() {
-  return "from " + text(kSmallestLength) + " to " + text(kLargestLength) + " m";
+  return "from " + exactNumber(kSmallestLength) + " to " + exactNumber(kLargestLength) + " m";
 }
 
 }  // namespace
@@ -41,7 +35,7 @@ void checkLength(std::string_view shape, std::string_view parameter, double valu
   if (isLength(value)) return;
   throw inputError(
       "field.bad_length",
-      place(shape, parameter) + " is " + text(value) + ", permitted is " + lengthRange(),
+      place(shape, parameter) + " is " + exactNumber(value) + ", permitted is " + lengthRange(),
       "lengths are positive and in meters");
 }
 
@@ -52,14 +46,14 @@ void checkNonNegative(std::string_view shape, std::string_view parameter, double
 void checkRange(std::string_view shape, std::string_view parameter, double value, double lowest,
                 double highest) {
   if (value >= lowest && value <= highest) return;
-  throw inputError("field.out_of_range", place(shape, parameter) + " is " + text(value) +
-                                             ", permitted is from " + text(lowest) + " to " +
-                                             text(highest));
+  throw inputError("field.out_of_range", place(shape, parameter) + " is " + exactNumber(value) +
+                                             ", permitted is from " + exactNumber(lowest) + " to " +
+                                             exactNumber(highest));
 }
 
 void checkFinite(std::string_view shape, std::string_view parameter, double value) {
   if (std::isfinite(value)) return;
-  throw inputError("field.not_finite", place(shape, parameter) + " is " + text(value) +
+  throw inputError("field.not_finite", place(shape, parameter) + " is " + exactNumber(value) +
                                            ", permitted is a finite number");
 }
 
@@ -123,9 +117,9 @@ void checkBand(std::string_view shape, const Field& field, double reach) {
     const FieldSample s = field.sample(bounds.lo + share * (1.0 / kSteps) * bounds.size());
     if (s.in_band || std::fabs(s.value) >= reach) continue;
     throw inputError("field.band_too_narrow",
-                     std::string(shape) + ": it needs its field up to " + text(reach) +
-                         " m from the surface, permitted is up to " + text(std::fabs(s.value)) +
-                         " m, where the band of its grid ends",
+                     std::string(shape) + ": it needs its field up to " + exactNumber(reach) +
+                         " m from the surface, permitted is up to " +
+                         exactNumber(std::fabs(s.value)) + " m, where the band of its grid ends",
                      "make the band wider, or the voxels larger");
   }
 }

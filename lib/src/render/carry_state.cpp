@@ -4,6 +4,7 @@
 #include <span>
 #include <string_view>
 
+#include "palpate/core/text.h"
 #include "palpate/interior/partition.h"
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/render/tick_state.h"
@@ -20,8 +21,6 @@ std::optional<std::size_t> placeOf(std::span<const Named> all, std::string_view 
   if (at == all.end()) return std::nullopt;
   return static_cast<std::size_t>(at - all.begin());
 }
-
-std::string inQuotes(const std::string& name) { return "'" + name + "'"; }
 
 /// The port in `to` with the name that port `id` has in `from`; `lost` lists the ones that `to` does not have.
 std::optional<PortId> portThere(PortId id, const Scene& from, const Scene& to,

@@ -12,7 +12,8 @@ constexpr std::string_view kHeader =
     "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,"
     "region,contact,event,tick_ns\n";
 
-std::string quoted(const std::string& text) {
+/// As a field of a table: in double quotes where it must be.
+std::string inCsv(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string out = "\"";
   for (const char c : text) {
@@ -60,7 +61,7 @@ std::string events(const TickResult& result, std::span<const std::string> ports)
     if (i > 0) joined += ';';
     joined += nameOf(ports, result.events[i], "port");
   }
-  return quoted(joined);
+  return inCsv(joined);
 }
 
 }  // namespace
@@ -68,11 +69,11 @@ std::string events(const TickResult& result, std::span<const std::string> ports)
 TraceText::TraceText(std::span<const std::string> regions, std::span<const std::string> ports)
     : ports_(ports.begin(), ports.end()) {
   regions_.reserve(regions.size());
-  for (const std::string& name : regions) regions_.push_back(quoted(name));
+  for (const std::string& name : regions) regions_.push_back(inCsv(name));
 }
 
 TraceText::TraceText(const Scene& scene) {
-  for (const Region& region : scene.regions()) regions_.push_back(quoted(region.name));
+  for (const Region& region : scene.regions()) regions_.push_back(inCsv(region.name));
   for (const Port& port : scene.ports()) ports_.push_back(port.name);
 }
 

@@ -3,6 +3,7 @@
 
 #include "material_checks.h"
 #include "need.h"
+#include "palpate/scene/suggestion.h"
 #include "scene_compiler.h"
 
 namespace palpate {
@@ -22,7 +23,7 @@ std::vector<FieldPtr> layerFields(const SceneDescription& description, const Box
     const LayerDescription& layer = description.layers[i];
     if (!layer.inside) {
       throw errorAt(layer.place, "scene.layer_without_field",
-                    "layer " + quoted(layer.name) + " has no field");
+                    "layer " + inQuotes(layer.name) + " has no field");
     }
     if (!left_out[i].empty()) {
       fields.emplace_back();
@@ -89,7 +90,7 @@ Partition SceneCompiler::makePartition(const Progress& progress) {
   for (const SheetDescription& sheet : description_.sheets) {
     if (!sheet.on) {
       throw errorAt(sheet.place, "scene.sheet_without_field",
-                    "sheet " + quoted(sheet.name) + " has no field that it is on");
+                    "sheet " + inQuotes(sheet.name) + " has no field that it is on");
     }
     sheet_mask_of_.push_back(sheet.where ? static_cast<int>(masks.size()) : -1);
     if (sheet.where) masks.push_back(made(sheet.where, progress));
@@ -107,7 +108,7 @@ void SceneCompiler::regions() {
     for (std::size_t j = 0; j <= i; ++j) {
       if (scene_->regions_[j].name == layer.name) {
         throw errorAt(layer.place, "scene.duplicate_layer",
-                      "layer name " + quoted(layer.name) + " is taken",
+                      "layer name " + inQuotes(layer.name) + " is taken",
                       "give each layer a name of its own ('outside' is the space around all)");
       }
     }
@@ -123,12 +124,9 @@ int SceneCompiler::material(const std::string& name, const SourcePlace& place) {
   for (std::size_t i = 0; i < description_.materials.size(); ++i) {
     if (description_.materials[i].name == name) return static_cast<int>(i);
   }
-  std::vector<std::string_view> names;
-  for (const Material& m : description_.materials) names.push_back(m.name);
-  const std::string near = suggest(name, names);
   throw errorAt(
-      place, "scene.unknown_material", "there is no material " + quoted(name),
-      near.empty() ? "define it below `materials:`" : "did you mean " + quoted(near) + "?");
+      place, "scene.unknown_material", "there is no material " + inQuotes(name),
+      suggestionFor(name, description_.materials, "define it below `materials:`", &Material::name));
 }
 
 Wall SceneCompiler::wall(const WallDescription& given, const SourcePlace& place) {
@@ -146,9 +144,9 @@ Wall SceneCompiler::wall(const WallDescription& given, const SourcePlace& place)
     throw errorAt(
         place, "scene.wall_without_stiffness",
         stiffness.range().most > 0.0
-            ? "material " + quoted(given.material) +
+            ? "material " + inQuotes(given.material) +
                   " has places without stiffness and cannot be a wall"
-            : "material " + quoted(given.material) + " has no stiffness and cannot be a wall",
+            : "material " + inQuotes(given.material) + " has no stiffness and cannot be a wall",
         "give it one (stiffness: 1000 N/m), or write `wall: absent`");
   }
   return wall;
@@ -200,12 +198,9 @@ std::vector<RegionId> SceneCompiler::matching(const std::string& globs, const So
 }
 
 Error SceneCompiler::unknownRegion(const std::string& name, const SourcePlace& place) {
-  std::vector<std::string_view> names;
-  for (const Region& region : scene_->regions_) names.push_back(region.name);
-  const std::string near = suggest(name, names);
   return errorAt(
-      place, "scene.unknown_layer", "there is no layer " + quoted(name),
-      near.empty() ? "name a layer, or 'outside'" : "did you mean " + quoted(near) + "?");
+      place, "scene.unknown_layer", "there is no layer " + inQuotes(name),
+      suggestionFor(name, scene_->regions_, "name a layer, or 'outside'", &Region::name));
 }
 
 std::vector<Wall> SceneCompiler::makeWalls() {

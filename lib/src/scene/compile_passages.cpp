@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "palpate/interior/partition.h"
+#include "palpate/scene/suggestion.h"
 #include "scene_compiler.h"
 
 namespace palpate {
@@ -15,25 +16,19 @@ constexpr std::size_t kPatientSurveyLines = 4096;
 }  // namespace
 
 PortId SceneCompiler::portNamed(const std::string& name, const PortDescription& asker) {
-  std::vector<std::string_view> names;
   for (std::size_t i = 0; i < description_.ports.size(); ++i) {
     if (description_.ports[i].name == name) return static_cast<PortId>(i);
-    names.push_back(description_.ports[i].name);
   }
-  const std::string near = suggest(name, names);
-  throw errorAt(asker.place, "scene.unknown_port", "there is no port " + quoted(name),
-                near.empty() ? "" : "did you mean " + quoted(near) + "?");
+  throw errorAt(asker.place, "scene.unknown_port", "there is no port " + inQuotes(name),
+                suggestionFor(name, description_.ports, "", &PortDescription::name));
 }
 
 int SceneCompiler::sheetNamed(const PortDescription& asker) {
-  std::vector<std::string_view> names;
   for (std::size_t i = 0; i < description_.sheets.size(); ++i) {
     if (description_.sheets[i].name == asker.sheet) return static_cast<int>(i);
-    names.push_back(description_.sheets[i].name);
   }
-  const std::string near = suggest(asker.sheet, names);
-  throw errorAt(asker.place, "scene.unknown_sheet", "there is no sheet " + quoted(asker.sheet),
-                near.empty() ? "" : "did you mean " + quoted(near) + "?");
+  throw errorAt(asker.place, "scene.unknown_sheet", "there is no sheet " + inQuotes(asker.sheet),
+                suggestionFor(asker.sheet, description_.sheets, "", &SheetDescription::name));
 }
 
 std::vector<LeafId> SceneCompiler::facetLeaves(const PortDescription& given, const Port& port) {
@@ -49,8 +44,8 @@ std::vector<LeafId> SceneCompiler::facetLeaves(const PortDescription& given, con
   if (leaves.empty() || !(bounds(port.from) || bounds(port.to))) {
     throw errorAt(
         given.place, "scene.port_face",
-        "port " + quoted(given.name) + " is on " + quoted(given.on_name) +
-            ", which is no part of " + quoted(given.from) + " or " + quoted(given.to),
+        "port " + inQuotes(given.name) + " is on " + inQuotes(given.on_name) +
+            ", which is no part of " + inQuotes(given.from) + " or " + inQuotes(given.to),
         given.on_note.empty()
             ? "name a field that the layer's `inside` is made from, or use `where:` for an "
               "opening of any shape"
@@ -80,14 +75,14 @@ std::vector<Port> SceneCompiler::makePorts() {
       if (range.least >= 0.0 && range.least <= range.most && std::isfinite(range.most)) continue;
       throw errorAt(
           given.place, "scene.parameter",
-          "port " + quoted(given.name) + " opens at a force that is not 0 N or more everywhere",
+          "port " + inQuotes(given.name) + " opens at a force that is not 0 N or more everywhere",
           "all values of opens_at, back and reopens_at must be finite numbers from 0 on");
     }
     if (!(given.rate.ratio > 0.0 && std::isfinite(given.rate.ratio)) ||
         !(given.rate.speed >= 0.0 && std::isfinite(given.rate.speed)) ||
         (given.rate.ratio != 1.0 && given.rate.speed == 0.0)) {
       throw errorAt(given.place, "scene.range",
-                    "the rate of port " + quoted(given.name) + " is out of range",
+                    "the rate of port " + inQuotes(given.name) + " is out of range",
                     "its ratio and its speed must be finite and more than 0");
     }
     port.rate = given.rate;
@@ -105,7 +100,7 @@ std::vector<Port> SceneCompiler::makePorts() {
     for (const AfterDescription& before : given.after) {
       if (before.times < 1) {
         throw errorAt(given.place, "scene.range",
-                      "port " + quoted(given.name) + " comes after " + quoted(before.port) +
+                      "port " + inQuotes(given.name) + " comes after " + inQuotes(before.port) +
                           " was passed " + std::to_string(before.times) + " times",
                       "`times` must be 1 or more");
       }
@@ -164,14 +159,14 @@ void SceneCompiler::requireTouching(const PortDescription& given, const Port& po
     return;
   }
   throw errorAt(given.place, "scene.regions_do_not_touch",
-                "port " + quoted(given.name) + " joins " + quoted(given.from) + " and " +
-                    quoted(given.to) + ", which do not touch",
+                "port " + inQuotes(given.name) + " joins " + inQuotes(given.from) + " and " +
+                    inQuotes(given.to) + ", which do not touch",
                 "a port opens the wall between two neighbours; `palpate explain` lists them");
 }
 
 void SceneCompiler::refuse(const PortDescription& given) {
   throw errorAt(given.place, "scene.port_cycle",
-                "port " + quoted(given.name) + " can only be passed after itself",
+                "port " + inQuotes(given.name) + " can only be passed after itself",
                 "break the circle of `after:`");
 }
 

@@ -20,13 +20,9 @@ enum class Asks { kThere, kElsewhere };
 // `make` over operands: done at once if they are all there, else when the result is asked for.
 FieldSourcePtr deferred(std::vector<FieldSourcePtr> operands, Asks asks, SourcePlace place,
                         std::function<FieldPtr(std::vector<FieldPtr>)> make) {
-  std::string summary;
-  bool ready = true;
-  for (const FieldSourcePtr& operand : operands) {
-    ready = ready && operand->isMade();
-    const std::string& part = operand->summary();
-    if (!part.empty()) summary += (summary.empty() ? "" : ", ") + part;
-  }
+  std::string summary = joined(operands, ", ", &FieldSource::summary);
+  const bool ready = std::all_of(operands.begin(), operands.end(),
+                                 [](const auto& operand) { return operand->isMade(); });
   auto maker = [operands = std::move(operands), asks, place = std::move(place),
                 make = std::move(make)](const Box3& within, const Progress& progress) {
     const Box3 needed = asks == Asks::kThere ? within : Box3::everything();

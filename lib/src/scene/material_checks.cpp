@@ -24,7 +24,7 @@ void checkTexture(const Material& material) {
     return;
   }
   throw inputError("scene.texture",
-                   "the texture of material " + quoted(material.name) + " is too high",
+                   "the texture of material " + inQuotes(material.name) + " is too high",
                    "its amplitude must be from 0 to its wavelength / 2 pi");
 }
 
@@ -84,7 +84,7 @@ void checkComposite(const Material& material) {
       !std::isfinite(composite.radius + composite.depth)) {
     throw inputError(
         "scene.parameter",
-        "the composite of material " + quoted(material.name) + " has no radius or no depth",
+        "the composite of material " + inQuotes(material.name) + " has no radius or no depth",
         "both must be more than 0, or the radius 0 for none");
   }
 }
@@ -92,7 +92,7 @@ void checkComposite(const Material& material) {
 }  // namespace
 
 void checkMaterial(const Material& material) {
-  const std::string of = "material " + quoted(material.name);
+  const std::string of = "material " + inQuotes(material.name);
   checkParameter(material.stiffness, "stiffness", of);
   checkParameter(material.damping, "damping", of);
   checkParameter(material.viscosity, "viscosity", of);

@@ -5,10 +5,9 @@
 #include <string_view>
 #include <vector>
 
-namespace palpate {
+#include "palpate/core/text.h"
 
-/// `text` in single quotes, on one line and not too long.
-[[nodiscard]] std::string inQuotes(std::string_view text);
+namespace palpate {
 
 /// "a, b, c": for hints that list what there is; cut after 32.
 [[nodiscard]] std::string listed(const std::vector<std::string_view>& names);

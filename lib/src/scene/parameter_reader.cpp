@@ -1,10 +1,10 @@
 #include "scene/parameter_reader.h"
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
+#include "palpate/core/text.h"
 #include "scene/messages.h"
 #include "scene/unit_table.h"
 #include "scene/values.h"
@@ -13,9 +13,8 @@ namespace palpate {
 namespace {
 
 std::string inUnit(double value, std::optional<Dimension> dimension) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return dimension ? text + (' ' + std::string(unitNames(*dimension)[0])) : text;
+  const std::string number = shortNumber(value, 4);
+  return dimension ? number + ' ' + std::string(unitNames(*dimension)[0]) : number;
 }
 
 /// Its range must be finite, and within the key's bounds.

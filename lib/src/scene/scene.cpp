@@ -2,7 +2,7 @@
 
 #include "palpate/interior/partition.h"
 #include "palpate/interior/port_machine.h"
-#include "palpate/scene/scene_file.h"
+#include "palpate/scene/suggestion.h"
 
 namespace palpate {
 
@@ -19,14 +19,11 @@ RegionId Scene::regionAt(const Vec3& p) const {
 }
 
 RegionId Scene::regionNamed(const std::string& name) const {
-  std::vector<std::string_view> names;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     if (regions_[i].name == name) return static_cast<RegionId>(i);
-    names.push_back(regions_[i].name);
   }
-  const std::string near = suggest(name, names);
-  throw inputError("scene.unknown_layer", "there is no region '" + name + "'",
-                   near.empty() ? "" : "did you mean '" + near + "'?");
+  throw inputError("scene.unknown_layer", "there is no region " + inQuotes(name),
+                   suggestionFor(name, regions_, "", &Region::name));
 }
 
 Box3 Scene::bounds() const {

@@ -8,15 +8,13 @@
 
 #include "globs.h"
 #include "label_share.h"
+#include "palpate/core/text.h"
 #include "palpate/interior/port_machine.h"
 #include "palpate/scene/scene.h"
 #include "palpate/scene/scene_file.h"
 #include "survey.h"
 
 namespace palpate {
-
-/// `text` in single quotes.
-[[nodiscard]] inline std::string quoted(const std::string& text) { return "'" + text + "'"; }
 
 /// Makes one Scene.
 class SceneCompiler {

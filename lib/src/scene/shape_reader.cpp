@@ -1,11 +1,11 @@
 #include "scene/shape_reader.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "palpate/core/text.h"
 #include "palpate/fields/implicit.h"
 #include "palpate/fields/primitives.h"
 #include "scene/messages.h"
@@ -160,10 +160,7 @@ std::function<FieldPtr()> readShape(std::string_view kind, const MapReader& read
 }
 
 std::string inUnitOf(const SceneLoader& loader, double metres) {
-  char digits[32];
-  const auto end = std::to_chars(std::begin(digits), std::end(digits),
-                                 metres / loader.metresPerUnit(), std::chars_format::general, 6);
-  return std::string(std::begin(digits), end.ptr) + " " + loader.lengthUnit();
+  return shortNumber(metres / loader.metresPerUnit(), 6) + " " + loader.lengthUnit();
 }
 
 }  // namespace palpate

@@ -1,19 +1,12 @@
 #include "scene/tissue_reader.h"
 
-#include <charconv>
-#include <iterator>
-
+#include "palpate/core/text.h"
 #include "scene/parameter_reader.h"
 
 namespace palpate {
 namespace {
 
-std::string forceText(double newton) {
-  char digits[32];
-  const auto end =
-      std::to_chars(std::begin(digits), std::end(digits), newton, std::chars_format::general, 6);
-  return std::string(std::begin(digits), end.ptr) + " N";
-}
+std::string forceText(double newton) { return shortNumber(newton, 6) + " N"; }
 
 SpringCurve readCurve(const MapReader& reader) {
   SpringCurve curve;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "palpate/scene/suggestion.h"
 #include "scene/messages.h"
 #include "scene/unit_table.h"
 
@@ -88,10 +89,9 @@ Error badUnit(const Document& document, const Node& node, Dimension dimension,
         what + " wants " + wanted + ", and " + inQuotes(quantity.unit) + " is no unit of that",
         "units: " + help);
   }
-  const std::string close = suggest(quantity.unit, unitNames(dimension));
   return document.error(node.mark, "scene.unit",
                         what + " has the unknown unit " + inQuotes(quantity.unit),
-                        close.empty() ? "units: " + help : "did you mean " + inQuotes(close) + "?");
+                        suggestionFor(quantity.unit, unitNames(dimension), "units: " + help));
 }
 
 }  // namespace

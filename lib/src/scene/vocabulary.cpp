@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "own_vocabulary.h"
+#include "palpate/core/text.h"
 #include "scene/messages.h"
 #include "scene/values.h"
 
@@ -95,11 +95,8 @@ auto* named(Items& items, std::string_view name) noexcept {
   return at == items.end() ? nullptr : &*at;
 }
 
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
+/// As the declarations have it.
+std::string shown(double value) { return shortNumber(value, 6); }
 
 }  // namespace
 

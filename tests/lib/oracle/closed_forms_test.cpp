@@ -4,7 +4,7 @@
 
 #include "lib/oracle/shapes.h"
 
-namespace palpate::testing {
+namespace palpate::oracle {
 namespace {
 
 // Everything is some tens of millimetres large.
@@ -215,4 +215,4 @@ TEST(ClosedForms, EllipsoidInItsSymmetryPlanesAndCenter) {
 }
 
 }  // namespace
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

@@ -7,7 +7,7 @@
 #include "palpate/fields/primitives.h"
 #include "support/oracle/closed_forms.h"
 
-namespace palpate::testing {
+namespace palpate::oracle {
 namespace {
 
 // Differences of order 4 over 1e-3 features are good to 1e-12 or so; a hand on a convex surface at
@@ -287,4 +287,4 @@ TEST(Oracle, TheCornerOfAKinkedBlackBoxHolds) {
 }
 
 }  // namespace
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

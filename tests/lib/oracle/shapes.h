@@ -9,7 +9,9 @@
 #include "support/function_field.h"
 #include "support/oracle/feasible_set.h"
 
-namespace palpate::testing {
+namespace palpate::oracle {
+
+using testing::functionField;
 
 class Random {
  public:
@@ -93,4 +95,4 @@ inline FeasibleSet aroundBoxSet(const Vec3& lo, const Vec3& hi) {
   return FeasibleSet::anyOf(sides);
 }
 
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

@@ -29,7 +29,7 @@ struct Worst {
 };
 
 Worst follow(Drive& drive, const FieldPtr& open, const std::vector<Vec3>& path, double most) {
-  const testing::FeasibleSet set = testing::FeasibleSet::outside(open);
+  const oracle::FeasibleSet set = oracle::FeasibleSet::outside(open);
   Worst worst;
   Vec3 before = drive.last().proxy;
   int i = 0;
@@ -40,7 +40,7 @@ Worst follow(Drive& drive, const FieldPtr& open, const std::vector<Vec3>& path, 
     EXPECT_TRUE(
         isNear(out.force, kK * (out.proxy - p), 1e-4 * kK * glm::length(out.proxy - p) + 1e-12))
         << "tick " << i;
-    const testing::OracleResult truth = testing::solveOracle(set, before, p);
+    const oracle::OracleResult truth = oracle::solveOracle(set, before, p);
     before = out.proxy;
     ++i;
     if (truth.ambiguous || !truth.converged || truth.active.empty()) continue;

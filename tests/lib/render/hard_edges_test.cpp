@@ -90,7 +90,7 @@ TEST(HardEdges, GrooveOfTenDegreesByClosedForm) {
     const Vec3 p = random.in({mm(-20, -20, -20), mm(20, 20, 20)});
     // The way there may be long: a hand that jumps about, then rests.
     (void)drive.to(p);
-    const Vec3 z = testing::grooveMinima(p, Vec3(0.0), n1, n2).front();
+    const Vec3 z = oracle::grooveMinima(p, Vec3(0.0), n1, n2).front();
     ASSERT_TRUE(isNear(drive.last().proxy, z, 1e-6 * glm::length(z - p) + 1e-9)) << i;
   }
 }

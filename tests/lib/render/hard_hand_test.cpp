@@ -13,8 +13,8 @@
 namespace palpate::test {
 namespace {
 
-using testing::Held;
-using testing::Minima;
+using oracle::Held;
+using oracle::Minima;
 
 constexpr double kSeconds = 2.0;
 
@@ -76,7 +76,7 @@ Renderer rendererOf(Drive& drive) {
 Renderer oracleOf(double stiffness, std::function<Minima(const Vec3&)> minima, const Vec3& start) {
   auto proxy = std::make_shared<Vec3>(start);
   return [=](const Vec3& p) {
-    *proxy = testing::nearestTo(minima(p), *proxy);
+    *proxy = oracle::nearestTo(minima(p), *proxy);
     return stiffness * (*proxy - p);
   };
 }
@@ -95,27 +95,26 @@ std::vector<Case> cases() {
   const Vec3 half = mm(30, 20, 10);
   std::vector<Case> out;
   out.push_back({"plane", halfSpace(o, up), false,
-                 [=](const Vec3& p) { return testing::planeMinima(p, o, up); }, mm(0, 0, 10),
+                 [=](const Vec3& p) { return oracle::planeMinima(p, o, up); }, mm(0, 0, 10),
                  mm(5, 3, -20)});
   out.push_back({"ball", sphere(o, 0.05), false,
-                 [=](const Vec3& p) { return testing::sphereMinima(p, o, 0.05, Held::kOutside); },
+                 [=](const Vec3& p) { return oracle::sphereMinima(p, o, 0.05, Held::kOutside); },
                  mm(2, 1, 60), mm(3, -2, 44)});
   for (const double radius : {0.05, 0.01, 0.002}) {
-    out.push_back(
-        {"hollow", sphere(o, radius), true,
-         [=](const Vec3& p) { return testing::sphereMinima(p, o, radius, Held::kInside); },
-         Vec3(0, 0, 0.1 * radius), mm(3, -2, 1e3 * radius + 20)});
+    out.push_back({"hollow", sphere(o, radius), true,
+                   [=](const Vec3& p) { return oracle::sphereMinima(p, o, radius, Held::kInside); },
+                   Vec3(0, 0, 0.1 * radius), mm(3, -2, 1e3 * radius + 20)});
   }
   out.push_back({"room", box(o, 2.0 * half), true,
-                 [=](const Vec3& p) { return testing::boxMinima(p, -half, half, Held::kInside); },
+                 [=](const Vec3& p) { return oracle::boxMinima(p, -half, half, Held::kInside); },
                  mm(0, 0, 0), mm(40, 35, 15)});
   out.push_back(
       {"torus", torus(o, up, 0.03, 0.01), false,
-       [=](const Vec3& p) { return testing::torusMinima(p, o, up, 0.03, 0.01, Held::kOutside); },
+       [=](const Vec3& p) { return oracle::torusMinima(p, o, up, 0.03, 0.01, Held::kOutside); },
        mm(30, 1, 20), mm(29, 2, 7)});
   out.push_back(
       {"torus within", torus(o, up, 0.03, 0.01), true,
-       [=](const Vec3& p) { return testing::torusMinima(p, o, up, 0.03, 0.01, Held::kInside); },
+       [=](const Vec3& p) { return oracle::torusMinima(p, o, up, 0.03, 0.01, Held::kInside); },
        mm(30, 0, 0), mm(45, 20, 12)});
   return out;
 }
@@ -164,7 +163,7 @@ TEST(HardHand, InDeepHollowsThePaperSwingsAndTheConstraintRendererRests) {
                           oracleOf(
                               stiffness,
                               [=](const Vec3& p) {
-                                return testing::sphereMinima(p, Vec3(0.0), radius, Held::kInside);
+                                return oracle::sphereMinima(p, Vec3(0.0), radius, Held::kInside);
                               },
                               Vec3(0.0)))
                         .swing);
@@ -199,7 +198,7 @@ TEST(HardHand, SlidesOffABallBelowTheLateralStiffnessOfTheContact) {
               oracleOf(
                   kDefaultK,
                   [=](const Vec3& p) {
-                    return testing::sphereMinima(p, Vec3(0.0), radius, Held::kOutside);
+                    return oracle::sphereMinima(p, Vec3(0.0), radius, Held::kOutside);
                   },
                   from));
     const double off = std::hypot(felt.end.x, felt.end.y);

@@ -32,14 +32,14 @@ inline ScenePtr sceneOfSolid(FieldPtr field, bool from_within = false, Material 
   return compile(description);
 }
 
-inline testing::FeasibleSet heldBy(const FieldPtr& field, bool from_within) {
-  return from_within ? testing::FeasibleSet::inside(field) : testing::FeasibleSet::outside(field);
+inline oracle::FeasibleSet heldBy(const FieldPtr& field, bool from_within) {
+  return from_within ? oracle::FeasibleSet::inside(field) : oracle::FeasibleSet::outside(field);
 }
 
 /// Drives a renderer and runs the oracle beside it, from the renderer's own proxy of the tick before.
 class Judge {
  public:
-  Judge(ScenePtr scene, testing::FeasibleSet set, double stiffness = kDefaultK)
+  Judge(ScenePtr scene, oracle::FeasibleSet set, double stiffness = kDefaultK)
       : drive_(std::move(scene)),
         set_(std::move(set)),
         stiffness_(stiffness),
@@ -66,13 +66,13 @@ class Judge {
   /// a surface means within a billionth of the feature size of its leaf, so that much is granted to x.
   void to(const Vec3& hip, double tolerance) {
     const Vec3 previous = drive_.last().proxy;
-    testing::OracleResult oracle = testing::solveOracle(set_, previous, hip, oracle_);
+    oracle::OracleResult oracle = oracle::solveOracle(set_, previous, hip, oracle_);
     const TickResult& out = drive_.to(hip);
     if (oracle.converged && !oracle.ambiguous && oracle.errorOf(out.proxy, hip, 1e-5) > tolerance) {
       // Nearer to an edge than its steps, the oracle leaps over it. Shorter ones decide.
-      testing::OracleSettings finer = oracle_;
+      oracle::OracleSettings finer = oracle_;
       finer.step = (oracle_.step > 0.0 ? oracle_.step : 0.02 * set_.feature()) / 100.0;
-      oracle = testing::solveOracle(set_, previous, hip, finer);
+      oracle = oracle::solveOracle(set_, previous, hip, finer);
     }
     ++ticks_;
     if (out.contact) ++contacts_;
@@ -114,10 +114,10 @@ class Judge {
 
  private:
   Drive drive_;
-  testing::FeasibleSet set_;
+  oracle::FeasibleSet set_;
   double stiffness_;
   double wall_slack_;  ///< [m]
-  testing::OracleSettings oracle_;
+  oracle::OracleSettings oracle_;
   std::function<bool(const Vec3&)> judged_;
   int ticks_ = 0;
   int contacts_ = 0;

@@ -53,7 +53,7 @@ TEST(HardJumps, FiveCentimetersDeepSlowlyAndAtOnce) {
       (void)drive.walk(deep, step);
       for (int i = 0; i < 5; ++i) (void)drive.to(deep);
       const TickResult& out = drive.last();
-      const auto oracle = testing::solveOracle(heldBy(solid.field, false), before, deep);
+      const auto oracle = oracle::solveOracle(heldBy(solid.field, false), before, deep);
       ASSERT_TRUE(out.contact);
       ASSERT_TRUE(isFinite(out.force));
       ASSERT_GE(solid.field->value(out.proxy), -1e-9);
@@ -76,7 +76,7 @@ TEST(HardJumps, AcrossTheObjectAsTheOracleJumps) {
     for (int i = 0; i < 60; ++i) {
       const Vec3 hip = random.in(around);
       const auto oracle =
-          testing::solveOracle(heldBy(solid.field, false), judge.drive().last().proxy, hip);
+          oracle::solveOracle(heldBy(solid.field, false), judge.drive().last().proxy, hip);
       // The first tick after the gap, and a few at rest: what one tick's budget leaves, the next ones do.
       const Vec3 first = judge.drive().to(hip).proxy;
       ASSERT_GE(solid.field->value(first), -1e-9) << i;

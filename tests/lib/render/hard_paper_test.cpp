@@ -101,9 +101,9 @@ TEST(HardPaper, Figure21WhereTheClosestPointIsWrong) {
     const TickResult& out = drive.to(to);
     EXPECT_NEAR(out.proxy.z, 0.01, 2e-6);
     EXPECT_TRUE(isNear(out.force, Vec3(0, 0, kDefaultK * 0.016), 2e-6 * kDefaultK));
-    const testing::Minima faces =
-        testing::boxMinima(to, mm(-100, -100, -10), mm(100, 100, 10), testing::Held::kOutside);
-    EXPECT_LT(testing::nearestTo(faces, to).z, 0.0) << "the closest point is on the other side";
+    const oracle::Minima faces =
+        oracle::boxMinima(to, mm(-100, -100, -10), mm(100, 100, 10), oracle::Held::kOutside);
+    EXPECT_LT(oracle::nearestTo(faces, to).z, 0.0) << "the closest point is on the other side";
   }
 }
 

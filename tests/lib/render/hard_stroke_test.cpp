@@ -9,7 +9,7 @@
 namespace palpate::test {
 namespace {
 
-using testing::Held;
+using oracle::Held;
 
 constexpr double kRadius = 0.05;
 constexpr double kDepth = 1e-3;
@@ -41,7 +41,7 @@ Errors strokeAround(RendererKind kind, double revolutions) {
     const Vec3 p = center + (kRadius - kDepth) * (std::cos(angle) * a + std::sin(angle) * b);
     const Vec3 force = drive.to(p).force;
     const Vec3 expected =
-        kDefaultK * (testing::sphereMinima(p, center, kRadius, Held::kOutside).front() - p);
+        kDefaultK * (oracle::sphereMinima(p, center, kRadius, Held::kOutside).front() - p);
     worst.direction = std::max(worst.direction, degreesBetween(force, expected));
     worst.magnitude =
         std::max(worst.magnitude, std::fabs(glm::length(force) / glm::length(expected) - 1.0));

@@ -36,23 +36,23 @@ ContactCase along(ScenePtr scene, const Vec3& start, const Curve& curve, double 
   return out;
 }
 
-Judge judgeByFormula(std::function<testing::Minima(const Vec3& hip)> minima) {
+Judge judgeByFormula(std::function<oracle::Minima(const Vec3& hip)> minima) {
   return [minima = std::move(minima)](std::span<const Vec3> path, std::span<const TickResult>,
                                       const Progress& progress) {
     report(progress, "judging", 0.0);
     Truth truth(path.size());
     Vec3 previous = path.front();
     for (std::size_t i = 0; i < path.size(); ++i) {
-      const testing::Minima found = minima(path[i]);
+      const oracle::Minima found = minima(path[i]);
       if (found.empty()) continue;
-      previous = testing::nearestTo(found, previous);
+      previous = oracle::nearestTo(found, previous);
       truth[i] = previous;
     }
     return truth;
   };
 }
 
-Judge judgeByOracle(testing::FeasibleSet allowed, std::size_t stride) {
+Judge judgeByOracle(oracle::FeasibleSet allowed, std::size_t stride) {
   return
       [allowed = std::move(allowed), stride](
           std::span<const Vec3> path, std::span<const TickResult> run, const Progress& progress) {
@@ -60,7 +60,7 @@ Judge judgeByOracle(testing::FeasibleSet allowed, std::size_t stride) {
         for (std::size_t i = stride; i < path.size(); i += stride) {
           report(progress, "asking the oracle",
                  static_cast<double>(i) / static_cast<double>(path.size()));
-          const auto found = testing::solveOracle(allowed, run[i - 1].proxy, path[i]);
+          const auto found = oracle::solveOracle(allowed, run[i - 1].proxy, path[i]);
           if (found.converged && !found.ambiguous) truth[i] = found.proxy;
         }
         return truth;

@@ -68,10 +68,10 @@ enum class StartIn { kOutside, kSolid };
                                 double to, double speed, Judge judge);
 
 /// Judged by formula: the minimum nearest to the true proxy of the tick before.
-[[nodiscard]] Judge judgeByFormula(std::function<testing::Minima(const Vec3& hip)> minima);
+[[nodiscard]] Judge judgeByFormula(std::function<oracle::Minima(const Vec3& hip)> minima);
 
 /// Judged by the oracle (tools/support/oracle), at every `stride`-th tick. The set is as the region of that
 /// tick has it.
-[[nodiscard]] Judge judgeByOracle(testing::FeasibleSet allowed, std::size_t stride);
+[[nodiscard]] Judge judgeByOracle(oracle::FeasibleSet allowed, std::size_t stride);
 
 }  // namespace palpate::tools

@@ -13,8 +13,8 @@
 namespace palpate::tools {
 namespace {
 
-using testing::Held;
-using testing::Minima;
+using oracle::Held;
+using oracle::Minima;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kStroke = 0.2;  // [m/s]
@@ -37,8 +37,8 @@ ContactCase ball(FieldPtr field, double radius, double depth, double speed, Held
   out.end = maker.size();
   out.path = maker.take();
   out.scene = solidScene(std::move(field), hollow ? StartIn::kSolid : StartIn::kOutside);
-  out.judge = judgeByFormula(
-      [=](const Vec3& p) { return testing::sphereMinima(p, kOrigin, radius, held); });
+  out.judge =
+      judgeByFormula([=](const Vec3& p) { return oracle::sphereMinima(p, kOrigin, radius, held); });
   return out;
 }
 
@@ -65,7 +65,7 @@ ContactCase egg(FieldPtr field) {
                kStroke, judgeByFormula([](const Vec3& p) {
                  const Vec3 q = p / kRadii;
                  if (glm::dot(q, q) >= 1.0) return Minima{p};
-                 return Minima{testing::closestOnEllipsoid(p, kRadii)};
+                 return Minima{oracle::closestOnEllipsoid(p, kRadii)};
                }));
 }
 
@@ -88,7 +88,7 @@ ContactCase ring() {
   };
   return along(solidScene(torus(kOrigin, kUp, radius, tube)), Vec3(0.06, 0.0, 0.0), curve, 0.0,
                10.0 * kTurn, kStroke, judgeByFormula([=](const Vec3& p) {
-                 return testing::torusMinima(p, kOrigin, kUp, radius, tube, Held::kOutside);
+                 return oracle::torusMinima(p, kOrigin, kUp, radius, tube, Held::kOutside);
                }));
 }
 
@@ -96,7 +96,7 @@ const Vec3 kHalfBox(0.03, 0.02, 0.01);  // [m]
 
 Judge boxJudge(Held held) {
   return judgeByFormula(
-      [=](const Vec3& p) { return testing::boxMinima(p, -kHalfBox, kHalfBox, held); });
+      [=](const Vec3& p) { return oracle::boxMinima(p, -kHalfBox, kHalfBox, held); });
 }
 
 /// Along the top face and off over its edge, into the side face and up over the edge again.
@@ -132,17 +132,16 @@ ContactCase room() {
 
 /// Round the crease between two balls, to and fro across it.
 ContactCase crease() {
-  const testing::Ball a{Vec3(-0.02, 0.0, 0.0), 0.03};
-  const testing::Ball b{Vec3(0.02, 0.0, 0.0), 0.03};
+  const oracle::Ball a{Vec3(-0.02, 0.0, 0.0), 0.03};
+  const oracle::Ball b{Vec3(0.02, 0.0, 0.0), 0.03};
   const double ring = std::sqrt(0.03 * 0.03 - 0.02 * 0.02);
   const auto curve = [=](double s) {
     const double rho = ring - 2.0 * kDepth;
     return Vec3(0.002 * std::sin(7.3 * s), rho * std::cos(s), rho * std::sin(s));
   };
-  return along(
-      solidScene(unite({sphere(a.center, a.radius), sphere(b.center, b.radius)})),
-      Vec3(0.0, 0.03, 0.0), curve, 0.0, 10.0 * kTurn, kStroke,
-      judgeByFormula([=](const Vec3& p) { return testing::twoBallUnionOutside(p, a, b); }));
+  return along(solidScene(unite({sphere(a.center, a.radius), sphere(b.center, b.radius)})),
+               Vec3(0.0, 0.03, 0.0), curve, 0.0, 10.0 * kTurn, kStroke,
+               judgeByFormula([=](const Vec3& p) { return oracle::twoBallUnionOutside(p, a, b); }));
 }
 
 /// Along the bottom of a groove of 10 degrees, swaying from wall to wall.
@@ -156,7 +155,7 @@ ContactCase groove() {
   return along(
       solidScene(unite({halfSpace(kOrigin, n1), halfSpace(kOrigin, n2)})), Vec3(0.0, 0.0, 0.02),
       curve, 0.0, 10.0 * kTurn, kStroke,
-      judgeByFormula([=](const Vec3& p) { return testing::grooveMinima(p, kOrigin, n1, n2); }));
+      judgeByFormula([=](const Vec3& p) { return oracle::grooveMinima(p, kOrigin, n1, n2); }));
 }
 
 /// Round the waist of two metaballs, where the surface bends both ways.
@@ -177,7 +176,7 @@ ContactCase saddle() {
     return surface - kDepth * glm::normalize(field->sample(surface).gradient);
   };
   return along(solidScene(field), Vec3(0.0, 0.04, 0.0), curve, 0.0, 4.0 * kTurn, kStroke,
-               judgeByOracle(testing::FeasibleSet::outside(field), 16));
+               judgeByOracle(oracle::FeasibleSet::outside(field), 16));
 }
 
 /// Adds balls with an opening each, in rows well away from the container, until the scene has `count` ports.
@@ -243,7 +242,7 @@ ContactCase container(std::size_t ports) {
     for (std::size_t i = 0; i < path.size(); ++i) {
       if (i >= inside_ends && i < outside_begins) continue;
       const Held held = i < inside_ends ? Held::kInside : Held::kOutside;
-      truth[i] = testing::sphereMinima(path[i], kOrigin, radius, held).front();
+      truth[i] = oracle::sphereMinima(path[i], kOrigin, radius, held).front();
     }
     return truth;
   };

@@ -9,8 +9,8 @@
 namespace palpate::tools {
 namespace {
 
-using testing::Held;
-using testing::Minima;
+using oracle::Held;
+using oracle::Minima;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kStroke = 0.2;      // [m/s]
@@ -47,7 +47,7 @@ ContactCase boxCorner() {
   const Vec3 half(0.03, 0.02, 0.01);
   return along(solidScene(box(Vec3(0.0), 2.0 * half), StartIn::kSolid), Vec3(0.0),
                wander(half, 0.004), 0.0, 40.0 * kTurn, kStroke, judgeByFormula([=](const Vec3& p) {
-                 return testing::boxMinima(p, -half, half, Held::kInside);
+                 return oracle::boxMinima(p, -half, half, Held::kInside);
                }));
 }
 
@@ -60,7 +60,7 @@ ContactCase threeBalls(bool hollow) {
   // From a place that is free: straight above the two balls that are cut out, or in the middle of all.
   const Vec3 free = hollow ? Vec3(0.010, 0.008, 0.0) : Vec3(-0.010, -0.005, 0.005);
   return along(solidScene(solid, StartIn::kSolid), free, wander(corner, 0.004), 0.0, 20.0 * kTurn,
-               kStroke, judgeByOracle(testing::FeasibleSet::inside(solid), kStride));
+               kStroke, judgeByOracle(oracle::FeasibleSet::inside(solid), kStride));
 }
 
 ContactCase coneTip(double half_angle) {
@@ -70,7 +70,7 @@ ContactCase coneTip(double half_angle) {
   return along(solidScene(cone(Vec3(0.0), up, radius, height), StartIn::kSolid), 0.5 * height * up,
                wander(height * up, 0.003), 0.0, 40.0 * kTurn, kStroke,
                judgeByFormula([=](const Vec3& p) {
-                 return testing::coneInside(p, Vec3(0.0), up, radius, height);
+                 return oracle::coneInside(p, Vec3(0.0), up, radius, height);
                }));
 }
 
@@ -90,7 +90,7 @@ ContactCase nestedCsg() {
                        20.0 * std::sin(1.73 * s + 0.9));
   };
   return along(solidScene(tree, StartIn::kSolid), mm(0, -4, 12), curve, 0.0, 6.0 * kTurn, kStroke,
-               judgeByOracle(testing::FeasibleSet::inside(tree), 4 * kStride));
+               judgeByOracle(oracle::FeasibleSet::inside(tree), 4 * kStride));
 }
 
 }  // namespace palpate::tools

@@ -8,8 +8,10 @@
 #include "bench/loop_report.h"
 #include "bench/machine_json.h"
 #include "output_files.h"
+#include "palpate/core/text.h"
 #include "palpate/devices/device_presets.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/scene/suggestion.h"
 #include "palpate/scene/units.h"
 #include "support/loops/loop_limit.h"
 #include "text.h"
@@ -26,13 +28,9 @@ const std::vector<std::string> kFewScenes = {"flat",      "ball-20",   "hollow-5
                                              "groove-10", "two-balls", "friction-0.8"};
 
 Error unknown(const char* what, const std::string& name, const std::vector<std::string>& known) {
-  std::string list;
-  for (const std::string& each : known) list += (list.empty() ? "" : ", ") + each;
-  const std::vector<std::string_view> views(known.begin(), known.end());
-  const std::string close = suggest(name, views);
   return Error(ErrorKind::kUsage,
                {"usage.bench", "the bench has no " + std::string(what) + " '" + name + "'",
-                close.empty() ? "it has " + list : "did you mean '" + close + "'?"});
+                suggestionFor(name, known, "it has " + joined(known))});
 }
 
 /// What was asked for, or `all`.

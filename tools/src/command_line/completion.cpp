@@ -1,13 +1,8 @@
 #include "command_line/verb_words.h"
+#include "palpate/core/text.h"
 
 namespace palpate::tools {
 namespace {
-
-std::string joined(const std::vector<std::string>& words, const char* between = " ") {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-  return text;
-}
 
 std::vector<std::string> namesOf(const std::vector<VerbWords>& verbs) {
   std::vector<std::string> names;
@@ -17,7 +12,7 @@ std::vector<std::string> namesOf(const std::vector<VerbWords>& verbs) {
 
 /// Behind `help` stand a verb or `scene`.
 std::string helpTopics(const std::vector<VerbWords>& verbs) {
-  return joined(namesOf(verbs)) + " scene";
+  return joined(namesOf(verbs), " ") + " scene";
 }
 
 std::string forBash(const std::vector<VerbWords>& verbs,
@@ -32,7 +27,7 @@ std::string forBash(const std::vector<VerbWords>& verbs,
       "  local options= words=\n"
       "  case $verb in\n"
       "    '') words='" +
-      joined(namesOf(verbs)) + "'; options='--help --version --json --quiet --force' ;;\n";
+      joined(namesOf(verbs), " ") + "'; options='--help --version --json --quiet --force' ;;\n";
   for (const VerbWords& verb : verbs) {
     std::vector<std::string> names;
     std::string values;
@@ -41,17 +36,17 @@ std::string forBash(const std::vector<VerbWords>& verbs,
       if (option.value.empty()) continue;
       values += "        " + joined(option.names, "|") + ") ";
       if (!option.choices.empty()) {
-        values += "words='" + joined(option.choices) + "'";
+        values += "words='" + joined(option.choices, " ") + "'";
       } else {
         values += option.is_file ? "words=FILES" : "words=NONE";
       }
       values += " ;;\n";
     }
-    text += std::string("    ") + verb.name + ")\n      options='" + joined(names) + "'\n";
+    text += std::string("    ") + verb.name + ")\n      options='" + joined(names, " ") + "'\n";
     if (verb.name == "help") {
       text += "      if ((COMP_CWORD == i + 1)); then words='" + helpTopics(verbs) +
               "'\n      elif [[ ${COMP_WORDS[i+1]} == scene ]]; then words='" +
-              joined(scene_words) + "'; else words=NONE; fi\n";
+              joined(scene_words, " ") + "'; else words=NONE; fi\n";
     } else {
       text += "      words=FILES\n";
     }
@@ -80,7 +75,7 @@ std::string shellWord(const std::string& text) {
 std::string forFish(const std::vector<VerbWords>& verbs,
                     const std::vector<std::string>& scene_words) {
   std::string text = "# Made by `palpate help --completion fish`.\n";
-  const std::string none = "not __fish_seen_subcommand_from " + joined(namesOf(verbs));
+  const std::string none = "not __fish_seen_subcommand_from " + joined(namesOf(verbs), " ");
   for (const VerbWords& verb : verbs) {
     text += "complete -c palpate -f -n " + shellWord(none) + " -a " + verb.name + " -d " +
             shellWord(verb.line) + "\n";
@@ -92,7 +87,7 @@ std::string forFish(const std::vector<VerbWords>& verbs,
         text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
       }
       if (!option.choices.empty()) {
-        text += " -x -a " + shellWord(joined(option.choices));
+        text += " -x -a " + shellWord(joined(option.choices, " "));
       } else if (!option.value.empty()) {
         text += option.is_file ? " -r" : " -x";
       }
@@ -104,7 +99,7 @@ std::string forFish(const std::vector<VerbWords>& verbs,
          shellWord(seen + "; and not __fish_seen_subcommand_from scene") + " -a " +
          shellWord(helpTopics(verbs)) + "\ncomplete -c palpate -f -n " +
          shellWord(seen + "; and __fish_seen_subcommand_from scene") + " -a " +
-         shellWord(joined(scene_words)) + "\n";
+         shellWord(joined(scene_words, " ")) + "\n";
 }
 
 std::string forZsh(const std::vector<VerbWords>& verbs,
@@ -126,7 +121,7 @@ std::string forZsh(const std::vector<VerbWords>& verbs,
     if (verb.name == "help") {
       text += "      if ((CURRENT == 3)); then compadd " + helpTopics(verbs) +
               "; fi\n      if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd " +
-              joined(scene_words) + "; fi\n";
+              joined(scene_words, " ") + "; fi\n";
     }
     text += "      _arguments";
     for (const OptionWords& option : verb.options) {
@@ -138,7 +133,7 @@ std::string forZsh(const std::vector<VerbWords>& verbs,
         std::string spec = "*" + name + "[" + help + "]";
         if (!option.value.empty()) {
           spec += ":value:";
-          if (!option.choices.empty()) spec += "(" + joined(option.choices) + ")";
+          if (!option.choices.empty()) spec += "(" + joined(option.choices, " ") + ")";
           if (option.is_file) spec += "_files";
         }
         text += " \\\n        " + shellWord(spec);

@@ -49,10 +49,9 @@ Verb devicesVerb() {
       "List haptic and input devices, say what bars access to one, test it, calibrate it",
       "palpate devices --states",
       "palpate devices [OPTIONS]",
-      "Where access to a USB device is denied, the udev rule that permits it is printed. Drivers\n"
-      "that were never run on hardware say so. Exit code of --test: 0 if the device was read "
-      "without\n"
-      "a fault, 1 if not.",
+      R"(Where access to a USB device is denied, the udev rule that permits it is printed. Drivers
+that were never run on hardware say so. Exit code of --test: 0 if the device was read without
+a fault, 1 if not.)",
       {},
       defineDevices,
       [](const Invocation& i) {
@@ -74,9 +73,8 @@ Verb doctorVerb() {
       "Say whether this machine is fit for a haptic device, and what to do",
       "palpate doctor",
       "palpate doctor",
-      "Kernel, real-time priority, locked memory, governor, devices and access to them. Exit code "
-      "0 if\n"
-      "nothing is in the way of a real-time loop, 1 if something is.",
+      R"(Kernel, real-time priority, locked memory, governor, devices and access to them. Exit code 0 if
+nothing is in the way of a real-time loop, 1 if something is.)",
       {},
       defineDoctor,
       [](const Invocation&) {}};

@@ -5,17 +5,17 @@
 namespace palpate::tools {
 
 void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes) {
-  add(app, group, "--affine", "sform|qform|spacing", o.affine,
+  addChoice(
+      app, group, "--affine", {"sform", "qform", "spacing"}, o.affine,
       "NIfTI: which form counts (default: sform, else qform; if both, they must agree); NIfTI, "
       "NRRD: "
-      "spacings only, axes along R, A, S from 0")
-      ->check(CLI::IsMember({"sform", "qform", "spacing"}));
-  add(app, group, "--space", "RAS|LPS", o.space,
+      "spacings only, axes along R, A, S from 0");
+  addChoice(
+      app, group, "--space", {"RAS", "LPS"}, o.space,
       meshes
           ? "which way the axes of a mesh run (default: as the file says, else RAS), or of a NRRD "
             "image that does not say"
-          : "which way the axes of a NRRD image run that does not say")
-      ->check(CLI::IsMember({"RAS", "LPS"}));
+          : "which way the axes of a NRRD image run that does not say");
   add(app, group, "--frame", "N", o.frame, "which volume of a 4-D image, from 0")
       ->check(CLI::Range(0, 1000000));
   add(app, group, "--series", "UID", o.series, "which DICOM series of a folder that holds several");
@@ -39,10 +39,10 @@ void addBaking(CLI::App& app, BakeOptions& o) {
   g = "From a mesh";
   add(app, g, "--units", "UNIT", o.units,
       "what one unit of the mesh is: mm (default), cm, m, um, in");
-  add(app, g, "--sign", "vote|winding|flood|unsigned", o.sign,
+  addChoice(
+      app, g, "--sign", {"vote", "winding", "flood", "unsigned"}, o.sign,
       "what is inside: where both agree, else refuse (default); by winding number, holes closed by "
-      "flat lids; what a flood from outside does not reach; or nothing, distances without sign")
-      ->check(CLI::IsMember({"vote", "winding", "flood", "unsigned"}));
+      "flat lids; what a flood from outside does not reach; or nothing, distances without sign");
   add(app, g, "--shell", "LENGTH", o.shell,
       "not a solid but a wall of this thickness along the triangles");
   add(app, g, "--smooth", "DEGREES", o.smooth,
@@ -53,15 +53,12 @@ void addBaking(CLI::App& app, BakeOptions& o) {
   add(app, g, "--above", "VALUE", o.above, "the surface around all voxels greater than this");
   addFlag(app, g, "--distances", o.distances,
           "the voxels are signed distances, negative inside: the surface where they are zero");
-  add(app, g, "--keep", "largest|all", o.keep, "--above: which pieces (default largest)")
-      ->check(CLI::IsMember({"largest", "all"}));
+  addChoice(app, g, "--keep", {"largest", "all"}, o.keep,
+            "--above: which pieces (default largest)");
   addFlag(app, g, "--fill", o.fill, "--above: close enclosed cavities");
-  add(app, g, "--labels", "NAME,...", o.labels,
-      "one grid for each of these labels: values, names, or patterns such as 'lung*'")
-      ->expected(1)
-      ->delimiter(',')
-      ->take_all()
-      ->allow_extra_args(false);
+  addList(app, g, "--labels", "NAME,...", o.labels,
+          "one grid for each of these labels: values, names, or patterns such as 'lung*'")
+      ->delimiter(',');
   add(app, g, "--names", "FILE", o.names,
       "table of names: `index name`, `value,name`, of Slicer, ITK-SNAP or FreeSurfer (default: the "
       "image's own)");
@@ -111,9 +108,9 @@ void defineCheck(CLI::App& app, Invocation& invocation) {
       "what one unit is, of a mesh or of a grid that does not say: mm (a mesh's default), cm, m, "
       "um, "
       "in");
-  add(app, g, "--space", "RAS|LPS", o.scan.space,
-      "mesh: which way its axes run (default: as the file says, else RAS); places are told in RAS")
-      ->check(CLI::IsMember({"RAS", "LPS"}));
+  addChoice(
+      app, g, "--space", {"RAS", "LPS"}, o.scan.space,
+      "mesh: which way its axes run (default: as the file says, else RAS); places are told in RAS");
   add(app, g, "--voxel", "LENGTH", o.voxel,
       "mesh: voxel size of the bake that is tried (default: 1/128 of the longest side)");
   add(app, g, "--layer", "NAME", o.layer, "grid: only this one of the file");
@@ -141,13 +138,8 @@ void defineBench(CLI::App& app, Invocation& invocation) {
       "ticks that are timed after other data went through the caches (default 30)")
       ->check(CLI::Range(0, 1000000));
   g = "Of `bench servo`";
-  app.add_option("--rate", o.rates,
-                 "servo and stability: a rate, may be repeated (default 1000, servo 4000 too)")
-      ->group(g)
-      ->option_text("HZ")
-      ->expected(1)
-      ->take_all()
-      ->allow_extra_args(false)
+  addList(app, g, "--rate", "HZ", o.rates,
+          "servo and stability: a rate, may be repeated (default 1000, servo 4000 too)")
       ->check(CLI::Range(1.0, 100000.0));
   add(app, g, "--seconds", "S", o.seconds, "for how long at each rate (default 5)")
       ->check(CLI::Range(0.1, 86400.0));
@@ -172,8 +164,8 @@ void defineHelp(CLI::App& app, Invocation& invocation) {
           "its keys");
   addFlag(app, g, "--schema", o.schema, "scene: the JSON Schema of scene files");
   addFlag(app, g, "--man", o.man, "the manual page palpate(1)");
-  add(app, g, "--completion", "SHELL", o.completion, "what completes words in bash, zsh or fish")
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  addChoice(app, g, "--completion", {"bash", "zsh", "fish"}, o.completion,
+            "what completes words in bash, zsh or fish", "SHELL");
 }
 
 }  // namespace
@@ -184,24 +176,17 @@ Verb bakeVerb() {
       "Turn a scene, a mesh or a scan into narrow-band level sets (.vdb)",
       "palpate bake data/scenes/container.yaml -o container.vdb --voxel 0.5",
       "palpate bake INPUT -o OUT.vdb [OPTIONS]",
-      "INPUT is a scene file, a mesh (.stl .obj .ply .vtk .gltf .glb) or an image (.nii .nii.gz "
-      ".nrrd\n"
-      ".nhdr .mha .mhd, or a folder with a DICOM series). Each layer\n"
-      "becomes a grid `<layer>/surface`. An image needs --above or --labels; labels that touch are "
-      "also\n"
-      "written as one grid, `united`: a point belongs to the label whose value is smallest, or to "
-      "none if\n"
-      "the opposite of `united` is smaller still.\n"
-      "\n"
-      "No grid holds an edge: its normal is some ten degrees off there, however small the voxels "
-      "are.\n"
-      "Where a layer has edges, how far its grid is off is told. With --parts, only what a grid "
-      "holds\n"
-      "and is not exact by itself becomes one, `<layer>/surface/<part>`; unions, intersections, "
-      "differences\n"
-      "and placements stay, and so do boxes and the like. FILE.yaml is INPUT with the grids in "
-      "those\n"
-      "places: as exact at its edges as INPUT, for every verb that takes a scene.",
+      R"(INPUT is a scene file, a mesh (.stl .obj .ply .vtk .gltf .glb) or an image (.nii .nii.gz .nrrd
+.nhdr .mha .mhd, or a folder with a DICOM series). Each layer
+becomes a grid `<layer>/surface`. An image needs --above or --labels; labels that touch are also
+written as one grid, `united`: a point belongs to the label whose value is smallest, or to none if
+the opposite of `united` is smaller still.
+
+No grid holds an edge: its normal is some ten degrees off there, however small the voxels are.
+Where a layer has edges, how far its grid is off is told. With --parts, only what a grid holds
+and is not exact by itself becomes one, `<layer>/surface/<part>`; unions, intersections, differences
+and placements stay, and so do boxes and the like. FILE.yaml is INPUT with the grids in those
+places: as exact at its edges as INPUT, for every verb that takes a scene.)",
       {},
       defineBake,
       [](const Invocation& i) {
@@ -217,19 +202,13 @@ Verb convertVerb() {
       "Turn grids into meshes or images, meshes into others, and all into grids",
       "palpate convert data/scenes/container.yaml -o container.stl --voxel 0.5",
       "palpate convert INPUT -o OUTPUT [OPTIONS]",
-      "INPUT is a grid (.vdb), a mesh, a scene or an image; the output's name says what it "
-      "becomes.\n"
-      "A mesh winds outwards. An image holds signed distances. Scenes, meshes and images are "
-      "baked\n"
-      "on the way, as `palpate bake` does. A file has no more than one mesh or image, so of "
-      "several\n"
-      "layers or grids one must be named with --layer. A grid becomes another grid by --voxel; by "
-      "--above\n"
-      "or --labels if it holds densities or labels; and by itself if it is turned, stretched or "
-      "of\n"
-      "doubles, or if its inside is not marked: that is mended whatever becomes of the grid, and "
-      "refused\n"
-      "where the band has holes.",
+      R"(INPUT is a grid (.vdb), a mesh, a scene or an image; the output's name says what it becomes.
+A mesh winds outwards. An image holds signed distances. Scenes, meshes and images are baked
+on the way, as `palpate bake` does. A file has no more than one mesh or image, so of several
+layers or grids one must be named with --layer. A grid becomes another grid by --voxel; by --above
+or --labels if it holds densities or labels; and by itself if it is turned, stretched or of
+doubles, or if its inside is not marked: that is mended whatever becomes of the grid, and refused
+where the band has holes.)",
       {},
       defineConvert,
       [](const Invocation& i) {
@@ -240,16 +219,16 @@ Verb convertVerb() {
 }
 
 Verb infoVerb() {
-  return {"info",
-          "Say what a file is: scene, grid, mesh or scan",
-          "palpate info /usr/share/mricron/templates/ch2.nii.gz",
-          "palpate info FILE... [OPTIONS]",
-          "An image is read whole: its place in space, its values, and how many voxels each label "
-          "has. It\n"
-          "counts as labels if it says so, has a table of names, or few different whole values.",
-          {},
-          defineInfo,
-          [](const Invocation& i) { need(!chosen<InfoOptions>(i).files.empty(), "FILE"); }};
+  return {
+      "info",
+      "Say what a file is: scene, grid, mesh or scan",
+      "palpate info /usr/share/mricron/templates/ch2.nii.gz",
+      "palpate info FILE... [OPTIONS]",
+      R"(An image is read whole: its place in space, its values, and how many voxels each label has. It
+counts as labels if it says so, has a table of names, or few different whole values.)",
+      {},
+      defineInfo,
+      [](const Invocation& i) { need(!chosen<InfoOptions>(i).files.empty(), "FILE"); }};
 }
 
 Verb checkVerb() {
@@ -258,17 +237,12 @@ Verb checkVerb() {
       "Say whether meshes, grids and scenes can be touched, and what is wrong with them",
       "palpate check organ.stl --units mm",
       "palpate check FILE... [OPTIONS]",
-      "A mesh: holes, edges with three triangles or more, triangles turned, doubled, without area "
-      "or\n"
-      "passing through others (exactly), parts inside out, size; and a bake is tried, as only "
-      "that\n"
-      "tells what is solid. A grid (.vdb): class, unit, band, |gradient| (1 for distances), "
-      "voxels that\n"
-      "are no numbers, holes in the band, and an inside that is not marked as such. A scene: all "
-      "of it "
-      "is\n"
-      "made, and what grids could not hold of its meshes and scans is told, with a place.\n"
-      "Exit code 0 if all can be touched, baking mending what is wrong; 1 if one cannot.",
+      R"(A mesh: holes, edges with three triangles or more, triangles turned, doubled, without area or
+passing through others (exactly), parts inside out, size; and a bake is tried, as only that
+tells what is solid. A grid (.vdb): class, unit, band, |gradient| (1 for distances), voxels that
+are no numbers, holes in the band, and an inside that is not marked as such. A scene: all of it is
+made, and what grids could not hold of its meshes and scans is told, with a place.
+Exit code 0 if all can be touched, baking mending what is wrong; 1 if one cannot.)",
       {},
       defineCheck,
       [](const Invocation& i) { need(!chosen<CheckOptions>(i).files.empty(), "FILE"); }};
@@ -280,32 +254,20 @@ Verb benchVerb() {
       "Measure contact (time and error of a tick), a hand in the loop, or how late a loop wakes",
       "palpate bench contact --scene sphere --scene torus --svg contact.svg",
       "palpate bench contact|stability|servo [OPTIONS]",
-      "`stability` lets a relaxed hand press on hard cases through simulated devices, with our "
-      "renderers and\n"
-      "published ones, and finds the stiffest wall on which it comes to rest, beside the device's "
-      "budget\n"
-      "(tools/docs/stability.md).\n"
-      "`contact` runs both renderers along the same paths on scenes of known truth and compares "
-      "the forces "
-      "with\n"
-      "closed forms, or with a slow oracle where there is none: `judged` is the number of ticks "
-      "compared.\n"
-      "`missed` counts those where one has a force and the other none; `step` and `turn` are the "
-      "largest\n"
-      "from tick to tick, with the true ones beside them. `unsettled` is the share of ticks that "
-      "ended\n"
-      "before the proxy was at rest, and how many came in a row. A dash: not measured, not judged, "
-      "or not\n"
-      "said by this renderer. Scenes: sphere, sphere-baked, sphere-deep, sphere-small, "
-      "sphere-hollow,\n"
-      "ellipsoid, quadric, torus, box-edge, box-room, box-corner, three-balls, three-hollow, "
-      "cone-tip,\n"
-      "cone-wide, csg-nested, crease, groove, saddle, container, ports-10, ports-100, ports-1000, "
-      "balls-1,\n"
-      "balls-1000, balls-10000, five-layers and lump (not judged).\n"
-      "`palpate bench servo` runs an empty loop in real time, and says whether this machine is "
-      "good\n"
-      "enough for each rate: how late turns began, and how many were missed.",
+      R"(`stability` lets a relaxed hand press on hard cases through simulated devices, with our renderers and
+published ones, and finds the stiffest wall on which it comes to rest, beside the device's budget
+(tools/docs/stability.md).
+`contact` runs both renderers along the same paths on scenes of known truth and compares the forces with
+closed forms, or with a slow oracle where there is none: `judged` is the number of ticks compared.
+`missed` counts those where one has a force and the other none; `step` and `turn` are the largest
+from tick to tick, with the true ones beside them. `unsettled` is the share of ticks that ended
+before the proxy was at rest, and how many came in a row. A dash: not measured, not judged, or not
+said by this renderer. Scenes: sphere, sphere-baked, sphere-deep, sphere-small, sphere-hollow,
+ellipsoid, quadric, torus, box-edge, box-room, box-corner, three-balls, three-hollow, cone-tip,
+cone-wide, csg-nested, crease, groove, saddle, container, ports-10, ports-100, ports-1000, balls-1,
+balls-1000, balls-10000, five-layers and lump (not judged).
+`palpate bench servo` runs an empty loop in real time, and says whether this machine is good
+enough for each rate: how late turns began, and how many were missed.)",
       {},
       defineBench,
       [](const Invocation& i) {
@@ -319,12 +281,10 @@ Verb helpVerb() {
           "Print help: all about a verb or a key of scene files, the manual, completion",
           "palpate help scene opens_at",
           "palpate help [VERB | scene [KEY]] [OPTIONS]",
-          "KEY is a key of scene files, a map of keys such as material, or both: port.rate.\n"
-          "Completion is switched on by `source <(palpate help --completion bash)`, or for good by "
-          "a file:\n"
-          "bash ~/.local/share/bash-completion/completions/palpate, zsh _palpate in a folder of "
-          "fpath,\n"
-          "fish ~/.config/fish/completions/palpate.fish.",
+          R"(KEY is a key of scene files, a map of keys such as material, or both: port.rate.
+Completion is switched on by `source <(palpate help --completion bash)`, or for good by a file:
+bash ~/.local/share/bash-completion/completions/palpate, zsh _palpate in a folder of fpath,
+fish ~/.config/fish/completions/palpate.fish.)",
           {},
           defineHelp,
           [](const Invocation& i) {

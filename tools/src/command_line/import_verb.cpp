@@ -13,12 +13,9 @@ void defineImport(CLI::App& app, Invocation& invocation) {
   addFlag(app, g, "--dry-run", o.dry_run,
           "write nothing; show regions, and the voxels, memory and time of their grids");
   g = "Regions (LABELS: values, ranges 5-28, names, patterns such as 'lung*', with commas)";
-  add(app, g, "--labels", "LABELS", o.labels,
-      "only these labels, each a region of its own (default: all)")
-      ->expected(1)
-      ->delimiter(',')
-      ->take_all()
-      ->allow_extra_args(false);
+  addList(app, g, "--labels", "LABELS", o.labels,
+          "only these labels, each a region of its own (default: all)")
+      ->delimiter(',');
   addList(app, g, "--region", "NAME=LABELS", o.regions,
           "one region of all of these labels, may be repeated");
   add(app, g, "--names", "FILE", o.names,
@@ -28,10 +25,10 @@ void defineImport(CLI::App& app, Invocation& invocation) {
       "change pieces and cavities of less than this; the changed image goes to FILE.labels.nii.gz "
       "(default: none, they are only told)")
       ->check(CLI::Range(1, 1000000000));
-  add(app, g, "--islands", "merge|drop", o.islands,
+  addChoice(
+      app, g, "--islands", {"merge", "drop"}, o.islands,
       "--min-island: they become part of what is around (default), or pieces become unlabelled "
-      "and cavities stay")
-      ->check(CLI::IsMember({"merge", "drop"}));
+      "and cavities stay");
   g = "The body, whose unlabelled rest becomes the region soft_tissue";
   add(app, g, "--image", "FILE", o.image, "grey values of the same scan: CT, MR");
   add(app, g, "--skin", "VALUE", o.skin,
@@ -56,15 +53,11 @@ Verb importVerb() {
       "Turn a segmented scan into a scene: regions, materials, ports",
       "palpate import labels.nii.gz --names labels.csv --body mask.nii.gz -o scan.yaml",
       "palpate import SCAN -o SCENE.yaml [OPTIONS]",
-      "SCAN is a label image. Each label becomes a region, with the material of the first "
-      "tissue in the\n"
-      "table that fits its name; stiffer ones come later, so that the wall between two is "
-      "that of the\n"
-      "stiffer. Regions that touch get a port that opens at the tissue's force; bone has "
-      "none. The scene\n"
-      "says of every number whether it was measured, derived or assumed, and by whom. It is "
-      "text to be\n"
-      "edited; grids are made when it is touched or baked.",
+      R"(SCAN is a label image. Each label becomes a region, with the material of the first tissue in the
+table that fits its name; stiffer ones come later, so that the wall between two is that of the
+stiffer. Regions that touch get a port that opens at the tissue's force; bone has none. The scene
+says of every number whether it was measured, derived or assumed, and by whom. It is text to be
+edited; grids are made when it is touched or baked.)",
       {},
       defineImport,
       [](const Invocation& i) {

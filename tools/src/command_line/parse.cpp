@@ -1,7 +1,8 @@
 #include <algorithm>
 
 #include "command_line/verb.h"
-#include "palpate/scene/scene_file.h"
+#include "palpate/core/text.h"
+#include "palpate/scene/suggestion.h"
 #include "palpate/version.h"
 
 namespace palpate::tools {
@@ -77,15 +78,10 @@ const Verb* findVerb(std::string_view name) {
 }
 
 Error unknownVerb(const std::string& word) {
-  std::vector<std::string_view> names;
-  std::string list;
-  for (const Verb& verb : verbs()) {
-    names.emplace_back(verb.name);
-    list += (list.empty() ? "" : ", ") + std::string(verb.name);
-  }
-  const std::string close = suggest(word, names);
-  return usageError("there is no verb '" + word + "'",
-                    close.empty() ? "the verbs are " + list : "did you mean '" + close + "'?");
+  return usageError(
+      "there is no verb '" + word + "'",
+      suggestionFor(word, verbs(), "the verbs are " + joined(verbs(), ", ", &Verb::name),
+                    &Verb::name));
 }
 
 Invocation parseCommandLine(const std::vector<std::string>& arguments) {

@@ -1,6 +1,7 @@
 // The verbs that look at a scene or feel it.
 
 #include "command_line/verb.h"
+#include "palpate/core/text.h"
 #include "palpate/devices/device_presets.h"
 #include "palpate/devices/simulated_device.h"
 
@@ -9,11 +10,7 @@ namespace {
 
 /// The names of the simulated devices.
 std::string models() {
-  std::string text;
-  for (const devices::DevicePreset& preset : devices::devicePresets()) {
-    text += (text.empty() ? "" : ", ") + std::string(preset.name);
-  }
-  return text;
+  return joined(devices::devicePresets(), ", ", &devices::DevicePreset::name);
 }
 
 /// What the hand holds.
@@ -66,8 +63,8 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   add(app, g, "--taps", "N", o.taps, "tap: how many (default 4)");
   addFlag(app, g, "--back", o.back, "insert: come back the same way");
   g = "The loop";
-  add(app, g, "--renderer", "NAME", o.renderer, "constraint or paper (default: as the scene says)")
-      ->check(CLI::IsMember({"constraint", "paper"}));
+  addChoice(app, g, "--renderer", {"constraint", "paper"}, o.renderer,
+            "constraint or paper (default: as the scene says)", "NAME");
   add(app, g, "--rate", "HZ", o.rate, "ticks a second (default 1000)")
       ->check(CLI::Range(1.0, 100000.0));
   addDevice(
@@ -97,16 +94,14 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1, 1000));
   add(app, g, "--alpha", "SHARE", o.alpha, "of the step back onto the surface (default 1)")
       ->check(CLI::Range(0.0, 1e6));
-  add(app, g, "--alpha-form", "FORM", o.alpha_form,
-      "printed, newton, or by_field: newton where the field is not a distance (default)")
-      ->check(CLI::IsMember({"by_field", "printed", "newton"}));
-  add(app, g, "--interior", "HOW", o.interior,
-      "at a wall from within: wall and content together (default), or the wall alone")
-      ->check(CLI::IsMember({"together", "wall"}));
+  addChoice(app, g, "--alpha-form", {"by_field", "printed", "newton"}, o.alpha_form,
+            "printed, newton, or by_field: newton where the field is not a distance (default)",
+            "FORM");
+  addChoice(app, g, "--interior", {"together", "wall"}, o.interior,
+            "at a wall from within: wall and content together (default), or the wall alone", "HOW");
   g = "What keeps a device stable (default: as the scene's `device` says, or nothing)";
-  add(app, g, "--passivity", "WHAT", o.passivity,
-      "observe the energy that the loop gives to the hand, or control it by damping")
-      ->check(CLI::IsMember({"observe", "control"}));
+  addChoice(app, g, "--passivity", {"observe", "control"}, o.passivity,
+            "observe the energy that the loop gives to the hand, or control it by damping", "WHAT");
   add(app, g, "--hand-force", "FORCE", o.hand_force,
       "passivity: the hand's largest force; no tick then gives more than there is: 5 (N)");
   add(app, g, "--coupling", "WHAT", o.coupling,
@@ -144,12 +139,9 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       "image, grid of densities: the surface around what is greater");
   addFlag(app, g, "--distances", o.distances,
           "image of signed distances, negative inside: the surface where they are 0");
-  add(app, g, "--labels", "NAME,...", o.labels,
-      "image: a layer for each of these labels, values or names")
-      ->expected(1)
-      ->delimiter(',')
-      ->take_all()
-      ->allow_extra_args(false);
+  addList(app, g, "--labels", "NAME,...", o.labels,
+          "image: a layer for each of these labels, values or names")
+      ->delimiter(',');
   add(app, g, "--names", "FILE", o.names, "image: table of names of its labels");
   add(app, g, "--layer", "NAME", o.layer, "grid: this one of a file (default: every level set)");
   add(app, g, "--voxel", "LENGTH", o.voxel,
@@ -164,9 +156,8 @@ void defineReplay(CLI::App& app, Invocation& invocation) {
   app.add_option("record", o.record);
   const char* g = "Options";
   add(app, g, "--scene", "SCENE", o.scene, "feel this scene instead of the record's")->check(named);
-  add(app, g, "--renderer", "NAME", o.renderer,
-      "constraint or paper (default: the one of the record)")
-      ->check(CLI::IsMember({"constraint", "paper"}));
+  addChoice(app, g, "--renderer", {"constraint", "paper"}, o.renderer,
+            "constraint or paper (default: the one of the record)", "NAME");
   add(app, g, "--from", "TICK", o.from,
       "compare from this tick on, and begin at the last state saved before it (default 0)")
       ->check(tickNumber);
@@ -225,14 +216,11 @@ Verb touchVerb() {
       "Move a probe through a scene and feel it",
       "palpate touch data/scenes/container.yaml --insert 0,0,60 0,0,0 --back --trace trace.csv",
       "palpate touch SCENE|MESH|IMAGE|GRID.vdb MOTION [OPTIONS]",
-      "Prints the regions in the order in which they were entered, with the depth below the "
-      "first\n"
-      "surface met and the peak force in each; the ports passed; how long a tick takes; and what "
-      "each\n"
-      "grid cost. A press or tap that meets nothing ends with 1. A trace has the header\n"
-      "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,"
-      "tick_ns\n"
-      "and the same input gives the same trace, bit for bit except tick_ns.",
+      R"(Prints the regions in the order in which they were entered, with the depth below the first
+surface met and the peak force in each; the ports passed; how long a tick takes; and what each
+grid cost. A press or tap that meets nothing ends with 1. A trace has the header
+t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_ns
+and the same input gives the same trace, bit for bit except tick_ns.)",
       {"--stroke", "--insert"},
       defineTouch,
       [](const Invocation& i) {
@@ -247,41 +235,35 @@ Verb replayVerb() {
       "Feel a record anew, and say whether the same comes out",
       "palpate replay press.npy --from 5000",
       "palpate replay FILE.npy [OPTIONS]",
-      "Feeds the readings of a record (palpate touch ... --record FILE.npy) to the same scene, "
-      "or to "
-      "another,\n"
-      "and compares what comes out of each tick with the record, bit for bit: velocity, proxy, "
-      "forces,\n"
-      "region, ports. It reports the first tick that is different and the largest differences of "
-      "force and\n"
-      "proxy. States are for the build that saved them; any build can replay from the first "
-      "tick.\n"
-      "Exit code 0 if all is the same, 1 if not; 3 if the record cannot be read.",
+      R"(Feeds the readings of a record (palpate touch ... --record FILE.npy) to the same scene, or to another,
+and compares what comes out of each tick with the record, bit for bit: velocity, proxy, forces,
+region, ports. It reports the first tick that is different and the largest differences of force and
+proxy. States are for the build that saved them; any build can replay from the first tick.
+Exit code 0 if all is the same, 1 if not; 3 if the record cannot be read.)",
       {},
       defineReplay,
       [](const Invocation& i) { need(!chosen<ReplayOptions>(i).record.empty(), "FILE.npy"); }};
 }
 
 Verb queryVerb() {
-  return {"query",
-          "Value, gradient, region and material at points; or an image's intensity",
-          "palpate query data/scenes/container.yaml --at 0,0,14 0,0,16",
-          "palpate query SCENE|IMAGE POINTS [OPTIONS]",
-          "An image (NIfTI, NRRD, MetaImage, a DICOM series) is read at RAS points in mm, "
-          "trilinear between voxel centres; "
-          "outside\n"
-          "these there is no value.",
-          {"--at"},
-          defineQuery,
-          [](const Invocation& i) {
-            const auto& o = chosen<QueryOptions>(i);
-            need(!o.input.empty(), "SCENE or IMAGE");
-            if (o.at.empty() == o.points.empty()) {
-              throw usageError(
-                  o.at.empty() ? "no points were given" : "--at and --points exclude one another",
-                  "write --at X,Y,Z ... or --points FILE.csv");
-            }
-          }};
+  return {
+      "query",
+      "Value, gradient, region and material at points; or an image's intensity",
+      "palpate query data/scenes/container.yaml --at 0,0,14 0,0,16",
+      "palpate query SCENE|IMAGE POINTS [OPTIONS]",
+      R"(An image (NIfTI, NRRD, MetaImage, a DICOM series) is read at RAS points in mm, trilinear between voxel centres; outside
+these there is no value.)",
+      {"--at"},
+      defineQuery,
+      [](const Invocation& i) {
+        const auto& o = chosen<QueryOptions>(i);
+        need(!o.input.empty(), "SCENE or IMAGE");
+        if (o.at.empty() == o.points.empty()) {
+          throw usageError(
+              o.at.empty() ? "no points were given" : "--at and --points exclude one another",
+              "write --at X,Y,Z ... or --points FILE.csv");
+        }
+      }};
 }
 
 Verb explainVerb() {

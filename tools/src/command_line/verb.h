@@ -7,11 +7,11 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 #include "command_line.h"
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 
 namespace palpate::tools {
 
@@ -93,10 +93,7 @@ template <class T>
 CLI::Option* add(CLI::App& app, const char* group, const char* names, const char* what, T& value,
                  const char* text) {
   auto* option = app.add_option(names, value, text)->group(group)->option_text(what);
-  if constexpr (!std::is_same_v<T, std::vector<std::string>>) {
-    option->multi_option_policy(CLI::MultiOptionPolicy::Throw);
-  }
-  return option;
+  return option->multi_option_policy(CLI::MultiOptionPolicy::Throw);
 }
 
 inline void addFlag(CLI::App& app, const char* group, const char* names, bool& value,
@@ -105,9 +102,20 @@ inline void addFlag(CLI::App& app, const char* group, const char* names, bool& v
 }
 
 /// A list that takes one value for each mention.
-inline void addList(CLI::App& app, const char* group, const char* names, const char* what,
-                    std::vector<std::string>& values, const char* text) {
-  add(app, group, names, what, values, text)->expected(1)->take_all()->allow_extra_args(false);
+template <class T>
+CLI::Option* addList(CLI::App& app, const char* group, const char* names, const char* what,
+                     std::vector<T>& values, const char* text) {
+  auto* option = app.add_option(names, values, text)->group(group)->option_text(what);
+  return option->expected(1)->take_all()->allow_extra_args(false);
+}
+
+/// One of a few words. `what` is them, "a|b", if it is not given.
+template <class T>
+void addChoice(CLI::App& app, const char* group, const char* names,
+               const std::vector<std::string>& words, T& value, const char* text,
+               const std::string& what = {}) {
+  add(app, group, names, what.empty() ? joined(words, "|").c_str() : what.c_str(), value, text)
+      ->check(CLI::IsMember(words));
 }
 
 }  // namespace palpate::tools

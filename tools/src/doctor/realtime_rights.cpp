@@ -14,6 +14,7 @@
 #include <system_error>
 #include <thread>
 
+#include "palpate/core/text.h"
 #include "palpate/devices/device.h"
 
 namespace palpate::tools {
@@ -95,10 +96,8 @@ Finding governor() {
     if (!name.empty()) names.insert(name);
   }
   if (names.empty()) return {"Governor", "none to be seen (a virtual machine?)", true, ""};
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   const bool is_good = names.size() == 1 && *names.begin() == "performance";
-  return {"Governor", list, is_good,
+  return {"Governor", joined(names), is_good,
           is_good ? "" : "cpupower frequency-set --governor performance"};
 }
 

@@ -3,6 +3,7 @@
 
 #include "explain/explain_sections.h"
 #include "json_parts.h"
+#include "palpate/core/text.h"
 #include "report_rows.h"
 #include "text.h"
 #include "transition_graph.h"
@@ -10,15 +11,7 @@
 // Where the probe can go, and when.
 
 namespace palpate::tools {
-namespace {
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const auto& part : parts) text += (text.empty() ? "" : ", ") + part;
-  return text.empty() ? "always" : text;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void addPorts(const Scene& scene, const SceneDescription& description, Report& report) {
   report.json["ports"] = Json::array();
@@ -63,7 +56,8 @@ void addTransitions(const Scene& scene, const SceneDescription& description, Rep
     const auto when = conditionsOf(t, scene, description);
     const Port* port = t.port ? &scene.ports()[*t.port] : nullptr;
     rows.add({regions[t.from].name, port == nullptr ? "(no wall)" : port->name, regions[t.to].name,
-              port == nullptr ? "both" : directionName(port->direction), joined(when)},
+              port == nullptr ? "both" : directionName(port->direction),
+              when.empty() ? "always" : joined(when)},
              {{"from", regions[t.from].name},
               {"port", port == nullptr ? Json() : Json(port->name)},
               {"to", regions[t.to].name},

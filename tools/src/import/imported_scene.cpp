@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
+#include "palpate/vdb/text.h"
 #include "report.h"
+#include "scene_text.h"
 #include "text.h"
 
 namespace palpate::tools {
@@ -22,18 +24,6 @@ constexpr double kBytesPerMapVoxel = 2.0 * (10.0 * 10.0 * 10.0) / (8.0 * 8.0 * 8
 // With two cores.
 constexpr double kSecondsPerVoxel = 5e-6;
 
-/// Scene files are UTF-8. @throws Error (kUsage): what a file is called need not be.
-std::string quoted(const std::string& text) {
-  try {
-    return Json(text).dump();
-  } catch (const Json::exception&) {
-    const std::string shown = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-    throw Error(ErrorKind::kUsage,
-                {"scene.not_utf8", shown + " is not UTF-8, as a scene file must be",
-                 "rename the file or folder"});
-  }
-}
-
 /// As a key or a plain name, quoted only where it must be.
 std::string word(const std::string& text) {
   const auto is_safe = [](char c) {
@@ -43,17 +33,11 @@ std::string word(const std::string& text) {
   return starts_well && text != "true" && text != "false" && text != "null" &&
                  std::all_of(text.begin(), text.end(), is_safe)
              ? text
-             : quoted(text);
+             : sceneWord(text);
 }
 
 std::string millimetres(double metres, int digits = 4) {
   return formatNumber(metres * 1e3, digits);
-}
-
-std::string listOf(const std::vector<int>& labels) {
-  std::string text;
-  for (const int label : labels) text += (text.empty() ? "" : ", ") + std::to_string(label);
-  return "[" + text + "]";
 }
 
 class SceneWriter {
@@ -116,18 +100,18 @@ class SceneWriter {
     if (!o.affine.empty()) keys += ", affine: " + o.affine;
     if (!o.space.empty()) keys += ", space: " + o.space;
     if (o.frame) keys += ", frame: " + std::to_string(*o.frame);
-    if (!o.series.empty()) keys += ", series: " + quoted(o.series);
+    if (!o.series.empty()) keys += ", series: " + sceneWord(o.series);
     return keys;
   }
 
   void images() {
     line("images:");
-    line("  labels: {file: " + quoted(files_.labels) +
-         (files_.names.empty() ? "" : ", names: " + quoted(files_.names)) +
+    line("  labels: {file: " + sceneWord(files_.labels) +
+         (files_.names.empty() ? "" : ", names: " + sceneWord(files_.names)) +
          (options_.min_island ? "" : reading()) + "}");
-    if (!files_.body.empty()) line("  body: {file: " + quoted(files_.body) + reading() + "}");
+    if (!files_.body.empty()) line("  body: {file: " + sceneWord(files_.body) + reading() + "}");
     if (options_.hounsfield && !options_.skin) {
-      line("  ct: {file: " + quoted(files_.image) + reading() + "}");
+      line("  ct: {file: " + sceneWord(files_.image) + reading() + "}");
     }
   }
 
@@ -222,7 +206,8 @@ class SceneWriter {
       const std::string from =
           options_.skin ? "threshold: {image: body, above: " + formatNumber(*options_.skin, 9) +
                               ", keep: largest, fill: true" + voxel + "}"
-                        : "labels: {image: body, match: " + listOf(scan_.body_labels) + voxel + "}";
+                        : "labels: {image: body, match: [" + vdb::listOf(scan_.body_labels) + "]" +
+                              voxel + "}";
       line("  - {name: " + std::string(kGapName) + ", " + from +
            ", wall: " + word(requireTissue(tissues_, "skin").name) +
            ", content: " + word(requireTissue(tissues_, "fat").name) + "}");
@@ -230,8 +215,8 @@ class SceneWriter {
     for (std::size_t r = 0; r < scan_.plan.regions.size(); ++r) {
       const PlannedRegion& region = scan_.plan.regions[r];
       line("  # " + about(r));
-      line("  - {name: " + word(region.name) + ", labels: {image: labels, match: " +
-           listOf(region.labels) + voxel + "}, wall: " + word(region.tissue->name) +
+      line("  - {name: " + word(region.name) + ", labels: {image: labels, match: " + "[" +
+           vdb::listOf(region.labels) + "]" + voxel + "}, wall: " + word(region.tissue->name) +
            (region.tissue->hasContent() ? ", content: " + word(region.tissue->name) : "") + "}");
     }
   }
@@ -261,8 +246,8 @@ class SceneWriter {
       }
       if (passage.outer.size() > 1) outer = "[" + outer + "]";
       const std::string inner = scan_.nameOf(passage.inner);
-      line("  - {name: " + quoted("into " + inner) + ", between: [" + outer + ", " + word(inner) +
-           "], opens_at: " + tissue.opens_at->text +
+      line("  - {name: " + sceneWord("into " + inner) + ", between: [" + outer + ", " +
+           word(inner) + "], opens_at: " + tissue.opens_at->text +
            (tissue.back ? ", back: " + tissue.back->text + hole_at + tissue.back->text + "}" : "") +
            "}");
     }

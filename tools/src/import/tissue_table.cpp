@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "palpate/scene/scene_file.h"
+#include "palpate/vdb/text.h"
 #include "text.h"
 
 namespace palpate::tools {
@@ -14,10 +15,9 @@ namespace {
 
 /// Blanks and hyphens as underscores, capitals small.
 std::string simplified(std::string_view name) {
-  std::string result(name);
-  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) {
-    return c == ' ' || c == '-' ? '_' : static_cast<char>(std::tolower(c));
-  });
+  std::string result = vdb::lowerCase(name);
+  std::replace_if(
+      result.begin(), result.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "palpate/vdb/text.h"
 #include "picture/cutaway.h"
 #include "picture/sheet.h"
 
@@ -66,14 +67,12 @@ Box3 closeBox(Sheet& s, const Box3& all) {
   return {track.center() - half, track.center() + half};
 }
 
-std::string fileName(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
-
 void drawTitle(Sheet& s) {
   TextStyle head = s.font(23);
   head.bold = true;
   s.canvas.text({s.left, s.px(38)}, s.options.title, head);
   std::string line = "cut " + s.plane.name;
-  if (s.options.image) line += "; grey values of " + fileName(s.options.image->source);
+  if (s.options.image) line += "; grey values of " + vdb::fileName(s.options.image->source);
   if (s.zoomed) line += "; close to where the hand moved (the frame on the right)";
   s.canvas.text({s.left, s.px(64)}, line, s.font(15, kFaintInk));
 }

@@ -2,7 +2,8 @@
 #include <set>
 
 #include "palpate/core/error.h"
-#include "palpate/scene/scene_file.h"
+#include "palpate/core/text.h"
+#include "palpate/scene/suggestion.h"
 #include "vocabulary/documents.h"
 
 namespace palpate::tools {
@@ -45,9 +46,7 @@ std::string helpOfKey(const Vocabulary& vocabulary, const MapWords& map, const K
   line("value:    ", valueText(vocabulary, key));
   line("default:  ", key.is_required ? "none, it is required" : key.fallback);
   line("needs:    ", key.needs);
-  std::string excluded;
-  for (const std::string& other : key.excludes) excluded += (excluded.empty() ? "" : ", ") + other;
-  line("not with: ", excluded);
+  line("not with: ", joined(key.excludes));
   line("values:   ", key.metric);
   line("in code:  ", key.in_code);
   line("since:    ", key.since);
@@ -91,12 +90,9 @@ std::string sceneHelp(const Vocabulary& vocabulary, const std::string& word) {
     text += (text.empty() ? "" : "\n") + helpOfKey(vocabulary, map, *key);
   }
   if (!text.empty()) return text;
-  const std::vector<std::string> words = sceneWords(vocabulary);
-  const std::string close =
-      suggest(name, std::vector<std::string_view>(words.begin(), words.end()));
   throw Error(ErrorKind::kUsage,
               {"usage.command_line", "no key or map of a scene is called '" + word + "'",
-               close.empty() ? "palpate help scene lists them" : "did you mean '" + close + "'?"});
+               suggestionFor(name, sceneWords(vocabulary), "palpate help scene lists them")});
 }
 
 }  // namespace palpate::tools

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace palpate::testing {
+namespace palpate::oracle {
 namespace {
 
 Vec3 onSphere(const Vec3& p, const Ball& ball) {
@@ -212,4 +212,4 @@ Vec3 closestOnEllipsoid(const Vec3& p, const Vec3& radii) {
   return out;
 }
 
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

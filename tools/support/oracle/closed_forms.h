@@ -8,7 +8,7 @@
 
 #include "palpate/core/math.h"
 
-namespace palpate::testing {
+namespace palpate::oracle {
 
 using Minima = std::vector<Vec3>;
 
@@ -65,4 +65,4 @@ struct Ball {
 /// surface than the surface's medial axis. For points with equal distances: one of them.
 [[nodiscard]] Vec3 closestOnEllipsoid(const Vec3& p, const Vec3& radii);
 
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

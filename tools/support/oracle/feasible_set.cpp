@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace palpate::testing {
+namespace palpate::oracle {
 
 double FieldSide::spacing() const noexcept {
   // Truncation (spacing / feature)^4 / 30 and rounding 1e-16 feature / spacing are both near 1e-13.
@@ -121,4 +121,4 @@ double FeasibleSet::value(const Vec3& p) const noexcept {
   return best;
 }
 
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

@@ -5,7 +5,7 @@
 
 #include "palpate/fields/field.h"
 
-namespace palpate::testing {
+namespace palpate::oracle {
 
 /// One side of one smooth field: the points with sign * S >= 0. Only values are asked of the field;
 /// derivatives are this file's own differences of order 4, so that a wrong gradient cannot agree
@@ -55,4 +55,4 @@ class FeasibleSet {
   double feature_ = kInfinity;
 };
 
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

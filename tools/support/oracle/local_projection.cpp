@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-namespace palpate::testing {
+namespace palpate::oracle {
 namespace {
 
 /// Slack [features] by which a side counts as kept: what is left after Newton's last step.
@@ -210,4 +210,4 @@ LocalPoint projectLocally(const FeasibleSet& set, const Vec3& q, double radius,
   return best ? *best : byDirections(set, q, radius, allowed);
 }
 
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

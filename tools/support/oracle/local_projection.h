@@ -6,7 +6,7 @@
 
 #include "support/oracle/feasible_set.h"
 
-namespace palpate::testing {
+namespace palpate::oracle {
 
 struct LocalPoint {
   Vec3 point{0.0, 0.0, 0.0};
@@ -28,4 +28,4 @@ struct LocalPoint {
 /// Solves the n x n system a x = b in place, n = b.size(), row major; false if singular.
 [[nodiscard]] bool solveLinear(std::vector<double>& a, std::vector<double>& b);
 
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

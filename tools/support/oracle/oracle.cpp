@@ -7,7 +7,7 @@
 
 #include "support/oracle/local_projection.h"
 
-namespace palpate::testing {
+namespace palpate::oracle {
 namespace {
 
 /// Smallest eigenvalue and its vector of a symmetric 1 x 1 or 2 x 2 matrix.
@@ -248,4 +248,4 @@ OracleResult solveOracle(const FeasibleSet& set, const Vec3& previous, const Vec
   return result;
 }
 
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

@@ -7,7 +7,7 @@
 
 #include "support/oracle/feasible_set.h"
 
-namespace palpate::testing {
+namespace palpate::oracle {
 
 struct OracleSettings {
   /// Step h of the flow [m]; 0: 1/50 of the smallest feature. It is run again with h / 10.
@@ -35,4 +35,4 @@ struct OracleResult {
 [[nodiscard]] OracleResult solveOracle(const FeasibleSet& set, const Vec3& previous,
                                        const Vec3& hip, const OracleSettings& settings = {});
 
-}  // namespace palpate::testing
+}  // namespace palpate::oracle

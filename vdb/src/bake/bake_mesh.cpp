@@ -20,6 +20,7 @@
 #include "bake/walls.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -65,7 +66,8 @@ void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& colum
   if (columns.doubt()) {
     throw inputError("mesh.ambiguous",
                      "the mesh does not tell what is solid: at " +
-                         placeText(columns.doubt()->place, plan.voxel) + " " + columns.doubt()->why,
+                         eachInMillimetres(columns.doubt()->place * plan.voxel) + " " +
+                         columns.doubt()->why,
                      hint, mesh.source);
   }
   CrossingSearch crossings(solid);
@@ -74,8 +76,9 @@ void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& colum
     const std::optional<Vec3> crossing = crossings.in(pocket.box.grownBy(1.5));
     if (!crossing) continue;
     throw inputError("mesh.ambiguous",
-                     "the mesh passes through itself at " + placeText(*crossing, plan.voxel) +
-                         " and encloses a space of " + std::to_string(pocket.voxels) +
+                     "the mesh passes through itself at " +
+                         eachInMillimetres(*crossing * plan.voxel) + " and encloses a space of " +
+                         std::to_string(pocket.voxels) +
                          " voxels there: inside by the flood, outside by the winding number",
                      hint, mesh.source);
   }

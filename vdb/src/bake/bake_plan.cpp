@@ -9,20 +9,16 @@
 
 #include "palpate/scene/units.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
 
-std::string number(double value) {
+/// With fewer digits where there is much.
+std::string roughlyInGigabytes(double bytes) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-std::string inGigabytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, bytes < 1e8 ? "%.3f GB" : "%.1f GB", bytes * 1e-9);
-  return text;
+  std::snprintf(text, sizeof text, "%.1f GB", bytes * 1e-9);
+  return bytes < 1e8 ? inGigabytes(bytes) : text;
 }
 
 /// Rounded up to two significant digits: a number that a person would type.
@@ -47,15 +43,14 @@ std::uint64_t memoryLimit(std::uint64_t max_memory) {
   return static_cast<std::uint64_t>(0.8 * bytes);
 }
 
-std::string inMillimetres(double metres) { return number(metres * 1e3) + " mm"; }
-
 BakePlan checkOptions(const BakeOptions& options) {
   if (!(options.voxel_size > 0.0) || !std::isfinite(options.voxel_size)) {
     throw inputError("bake.voxel_size", "the voxel size is " + inMillimetres(options.voxel_size) +
                                             "; it must be a positive length");
   }
   if (!(options.half_width >= 2.0 && options.half_width <= 1000.0)) {
-    throw inputError("bake.half_width", "the band's half width is " + number(options.half_width) +
+    throw inputError("bake.half_width", "the band's half width is " +
+                                            shortNumber(options.half_width, 6) +
                                             " voxels; it must be from 2 to 1000");
   }
   if (options.box && !options.box->isBounded()) {
@@ -149,17 +144,17 @@ void requireMemory(double area, double margin, const BakePlan& plan) {
                          touched(Lower::DIM) * sizeof(Lower) + touched(Upper::DIM) * sizeof(Upper);
   const auto limit = static_cast<double>(plan.max_memory);
   if (growing + fixed <= margin * limit) return;
-  std::string hint = "allow more than " + inGigabytes(2.0 * fixed);
+  std::string hint = "allow more than " + roughlyInGigabytes(2.0 * fixed);
   if (limit > 2.0 * fixed) {
     const double fits = 1.1 * plan.voxel * std::sqrt(growing / (limit - fixed));
     hint = "voxels of " + inMillimetres(roundedUp(fits)) +
            " should fit; also check that the shape has the length unit it should";
   }
-  throw Error(ErrorKind::kOperation,
-              {"bake.memory",
-               "voxels of " + inMillimetres(plan.voxel) + " need about " +
-                   inGigabytes(growing + fixed) + "; " + inGigabytes(limit) + " are allowed",
-               hint});
+  throw Error(ErrorKind::kOperation, {"bake.memory",
+                                      "voxels of " + inMillimetres(plan.voxel) + " need about " +
+                                          roughlyInGigabytes(growing + fixed) + "; " +
+                                          roughlyInGigabytes(limit) + " are allowed",
+                                      hint});
 }
 
 }  // namespace palpate::vdb

@@ -51,9 +51,6 @@ void requireMemory(double area, double margin, const BakePlan& plan);
 /// [bytes] What 0 stands for in `max_memory`: 80 % of the machine's.
 [[nodiscard]] std::uint64_t memoryLimit(std::uint64_t max_memory);
 
-/// "0.25 mm"
-[[nodiscard]] std::string inMillimetres(double metres);
-
 /// Runs body(index) for every index below `count` in parallel, in pieces of some 50 ms between which
 /// the calling thread reports progress, from share `from` to `to`.
 template <typename Body>

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "bake/lost_plates.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
 
-std::string inVoxels(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g voxels", length);
-  return text;
-}
+std::string inVoxels(double length) { return shortNumber(length, 2) + " voxels"; }
 
 }  // namespace
 

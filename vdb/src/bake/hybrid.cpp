@@ -17,6 +17,7 @@
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_error.h"
 #include "palpate/vdb/grid_memory.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -29,20 +30,18 @@ constexpr double kWorthIt = 1.5;
 /// Metadata of a part's grid: [m] by how much it may be off its part.
 constexpr const char* kTolerance = "tolerance_m";
 
-std::string text(const char* format, double value) {
+std::string inNanoseconds(double ns) {
   std::array<char, 64> out{};
-  std::snprintf(out.data(), out.size(), format, value);
+  std::snprintf(out.data(), out.size(), "%.0f ns", ns);
   return out.data();
 }
-
-std::string millimetres(double metres) { return text("%.3g mm", metres * 1e3); }
 
 /// Of a grid that is read again, so many blocks of 8^3 voxels are compared with its part.
 constexpr std::size_t kBlocksToTellBy = 100;
 
 HybridOptions checked(HybridOptions options) {
   if (!(options.tolerance >= 0.0)) {
-    throw inputError("bake.tolerance", "the tolerance is " + millimetres(options.tolerance) +
+    throw inputError("bake.tolerance", "the tolerance is " + inMillimetres(options.tolerance, 3) +
                                            "; it must be 0 or more");
   }
   if (options.sampler == Sampler::kCubic) {
@@ -52,11 +51,7 @@ HybridOptions checked(HybridOptions options) {
 }
 
 std::string errorText(const GridError& error) {
-  return millimetres(error.off) + " and " + text("%.2g degree", error.turn / kDegree);
-}
-
-std::string placeText(const Vec3& p) {
-  return "(" + millimetres(p.x) + ", " + millimetres(p.y) + ", " + millimetres(p.z) + ")";
+  return inMillimetres(error.off, 3) + " and " + shortNumber(error.turn / kDegree, 2) + " degree";
 }
 
 Pose inverse(const Pose& pose) {
@@ -203,7 +198,7 @@ class HybridBaker {
     if (error.off <= limit.off && error.turn <= limit.turn) return;
     throw inputError("bake.other_field",
                      "the grid " + grid.info().name + " is off its part of the field by " +
-                         errorText(error) + " near " + placeText(error.where),
+                         errorText(error) + " near " + eachInMillimetres(error.where, 3),
                      "it was made of another field: bake again");
   }
 
@@ -226,8 +221,8 @@ class HybridBaker {
     } else if (options_.parts == Parts::kOperands && field.metric() == Metric::kExact) {
       out.reason = "stays analytic: it is exact";
     } else if (isFastEnough(part, domain, out)) {
-      out.reason = "stays analytic: a query takes " + text("%.0f ns", out.analytic_ns) +
-                   ", of a grid " + text("%.0f ns", out.grid_ns);
+      out.reason = "stays analytic: a query takes " + inNanoseconds(out.analytic_ns) +
+                   ", of a grid " + inNanoseconds(out.grid_ns);
     } else {
       makeGrid(part, out);
     }
@@ -282,7 +277,7 @@ class HybridBaker {
     }
     if (part.is_placed) bake_options.metadata["frame"] = "part";
     if (options_.tolerance > 0.0)
-      bake_options.metadata[kTolerance] = text("%.17g", options_.tolerance);
+      bake_options.metadata[kTolerance] = shortNumber(options_.tolerance, 17);
     setBox(bake_options, part.needed, part.field->bounds());
     LevelSet grid;
     try {
@@ -302,13 +297,13 @@ class HybridBaker {
     const GridError limit = allowed(bake_options.voxel_size);
     if (error.off > limit.off || error.turn > limit.turn) {
       out.reason = "stays analytic: a grid is off by up to " + errorText(error) + ", worst near " +
-                   placeText(error.where);
+                   eachInMillimetres(error.where, 3);
       return;
     }
     out.reason = "is a grid, off by at most " + errorText(error);
     if (options_.parts == Parts::kAuto) {
-      out.reason += ": a query takes " + text("%.0f ns", out.grid_ns) + " instead of " +
-                    text("%.0f ns", out.analytic_ns);
+      out.reason += ": a query takes " + inNanoseconds(out.grid_ns) + " instead of " +
+                    inNanoseconds(out.analytic_ns);
     }
     out.grid = std::move(grid);
     part.made = std::move(made);

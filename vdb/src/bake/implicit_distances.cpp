@@ -13,6 +13,7 @@
 #include "bake/closest_point.h"
 #include "bake/implicit_feet.h"
 #include "bake/wall_leaves.h"
+#include "palpate/vdb/text.h"
 #include "scan/distance_leaves.h"
 #include "scan/leaf_places.h"
 #include "scan/spread_feet.h"

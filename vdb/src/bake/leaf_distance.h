@@ -32,10 +32,11 @@ inline constexpr float kFarSquare = 3.0e38F;
 /// voxels at a time. Squares are off by some 1e-6 of a voxel times the distance.
 void findSquares(const LeafQuery& query) noexcept;
 
-/// Its two forms; findSquares() takes the one that the processor has.
-void findSquaresPlain(const LeafQuery& query) noexcept;
+/// What that chooses from.
+void findSquaresBase(const LeafQuery& query) noexcept;
+#if defined(__x86_64__)
 void findSquaresAvx2(const LeafQuery& query) noexcept;
-[[nodiscard]] bool hasAvx2() noexcept;
+#endif
 
 [[nodiscard]] LeafQuery makeQuery(const std::vector<Facet>& facets, float half_width,
                                   LeafScratch& scratch, float* squares);

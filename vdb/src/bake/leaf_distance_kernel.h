@@ -1,11 +1,18 @@
-// The search of leaf_distance.h over eight lanes. No include guard and no namespace of its own: a file for
-// one kind of processor includes it once, after PALPATE_KERNEL says with what attributes to compile, and
-// after `Lanes` and its functions. Attributes rather than compiler flags, and none of the standard
-// library's code, so that no inline function of another header is compiled for more than the least processor.
+// The search of leaf_distance.h over eight lanes: a kernel, as simd.h says. None of the standard library's code is in it, so
+// that no inline function of another header is compiled for more than the least processor.
 
-#if !defined(PALPATE_KERNEL)
-#error "define PALPATE_KERNEL and Lanes"
-#endif
+#include "bake/leaf_distance.h"
+#include "simd.h"
+
+namespace palpate::vdb {
+namespace {
+
+using Lanes = Floats;
+
+/// The sign of each of eight parts along x, y and z.
+PALPATE_KERNEL Lanes xSigns(float s) noexcept { return Lanes{-s, -s, -s, -s, s, s, s, s}; }
+PALPATE_KERNEL Lanes ySigns(float s) noexcept { return Lanes{-s, -s, s, s, -s, -s, s, s}; }
+PALPATE_KERNEL Lanes zSigns(float s) noexcept { return Lanes{-s, s, -s, s, -s, s, -s, s}; }
 
 /// n . (x, y, z) + offset
 PALPATE_KERNEL Lanes planeOf(const float* n, const Lanes& offset, const Lanes& x, const Lanes& y,
@@ -30,8 +37,9 @@ PALPATE_KERNEL Lanes squaresOf(const Facet& f, const Lanes& x, const Lanes& y,
     least = n == 0 ? square : min(least, square);
   }
   const Lanes height = planeOf(f.normal, all(f.normal[3]), x, y, z);
-  // Beside the longest side, or else rounding could take the way beyond a needle's tip for its inside.
-  const Lanes in_plane = zeroWhereInside(outermost, beyond_longest, least);
+  // Within all sides it is none. Beside the longest, or else rounding could take the way beyond a needle's tip for its inside.
+  const Lanes in_plane =
+      whereLess(outermost, zero, whereLess(zero, beyond_longest, least, zero), least);
   return fma(height, height, in_plane);
 }
 
@@ -63,7 +71,7 @@ PALPATE_KERNEL void select(const LeafQuery& q, const std::uint32_t* from, std::u
   // A hundred-thousandth covers the rounding.
   const Lanes most = all(q.half_width + reach + 1e-4F);
   Lanes limit = min(fma(root(least), all(1.00001F), all(2.0F * reach + 1e-4F)), most);
-  limit = noneWhereAbove(least, most * most, limit * limit);
+  limit = whereLess(most * most, least, all(-1.0F), limit * limit);
   for (std::uint32_t& kept : to.counts) kept = 0;
   for (std::uint32_t n = 0; n < count; ++n) {
     const std::uint32_t name = from == nullptr ? n : from[n];
@@ -83,7 +91,7 @@ PALPATE_KERNEL void scatter(const Lanes& squares, float* corner) noexcept {
   for (int n = 0; n < 8; ++n) corner[(n >> 2) * 64 + ((n >> 1) & 1) * 8 + (n & 1)] = found[n];
 }
 
-PALPATE_KERNEL void searchLeaf(const LeafQuery& q) noexcept {
+PALPATE_ENTRY void searchLeaf(const LeafQuery& q) noexcept {
   constexpr float kReachFour = 2.598077F;  // [voxels] half diagonals: of the voxels of 4^3
   constexpr float kReachTwo = 0.8660254F;  // and of 2^3
   for (int n = 0; n < 512; ++n) q.squares[n] = kFarSquare;
@@ -114,3 +122,6 @@ PALPATE_KERNEL void searchLeaf(const LeafQuery& q) noexcept {
     }
   }
 }
+
+}  // namespace
+}  // namespace palpate::vdb

@@ -2,13 +2,13 @@
 #include <algorithm>
 
 #include "bake/lost_plates.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
 
-std::string textOf(const LostPlace& place, const BakePlan& plan) {
-  return inMillimetres(place.thickness) + " thin near " +
-         placeText(place.where / plan.voxel, plan.voxel);
+std::string textOf(const LostPlace& place) {
+  return inMillimetres(place.thickness) + " thin near " + eachInMillimetres(place.where);
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ void LostPlaces::refusePlates(const BakePlan& plan, const BakeOptions& options) 
   }
   if (first == nullptr) return;
   throw inputError("bake.too_thin",
-                   "'" + options.name + "' is " + textOf(*first, plan) +
+                   "'" + options.name + "' is " + textOf(*first) +
                        " and would have holes in a grid of " + inMillimetres(plan.voxel) +
                        " voxels",
                    "a voxel of " + inMillimetres(thinnest / kHeld) +
@@ -51,11 +51,9 @@ std::string LostPlaces::wiresAndCrumbs(const BakePlan& plan) const {
     }
   }
   const auto thickest = [&](const std::vector<LostPlace>& found) {
-    return textOf(*std::max_element(found.begin(), found.end(),
-                                    [](const LostPlace& a, const LostPlace& b) {
-                                      return a.thickness < b.thickness;
-                                    }),
-                  plan);
+    return textOf(*std::max_element(
+        found.begin(), found.end(),
+        [](const LostPlace& a, const LostPlace& b) { return a.thickness < b.thickness; }));
   };
   std::string text;
   // A long one is seen here and there, so that how many there are is not known.

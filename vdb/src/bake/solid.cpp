@@ -8,6 +8,7 @@
 #include "bake/bake_plan.h"
 #include "bake/edges.h"
 #include "bake/weld.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -71,7 +72,7 @@ void refuseOutliers(const Mesh& mesh) {
       if (glm::distance(p, middle) <= kFar * size) continue;
       throw inputError("mesh.outlier",
                        "vertex " + std::to_string(vertex) + " (from 0) lies at " +
-                           placeText(p, 1.0) +
+                           eachInMillimetres(p) +
                            ", more than a thousand times the size of the rest away",
                        "remove it, or put it where it belongs", mesh.source);
     }
@@ -201,7 +202,7 @@ void dropSpecks(Solid& solid, std::vector<Hole>& holes, std::size_t& first_lid,
   if (count == 0 || count == solid.parts.size()) return;
   solid.dropped = std::to_string(count) + (count == 1 ? " open fragment, " : " open fragments, ") +
                   (count == 1 ? "" : "the largest ") + inMillimetres(size(*largest) * voxel) +
-                  " across near " + placeText(largest->box.center(), voxel);
+                  " across near " + eachInMillimetres(largest->box.center() * voxel);
   std::size_t lid = first_lid;
   std::erase_if(holes, [&](const Hole& hole) {
     const bool is_gone = is_speck[solid.part_of[lid]];
@@ -251,7 +252,8 @@ void requireSmallLids(const Mesh& mesh, const Solid& solid, const std::vector<Ho
         "mesh.open",
         "the mesh is open: " + std::to_string(count) + (count == 1 ? " hole" : " holes") +
             ", the largest " + inMillimetres(glm::length(box.size()) * voxel) + " across at " +
-            placeText(middle, voxel) + ", too large beside the surface to guess what closes it",
+            eachInMillimetres(middle * voxel) +
+            ", too large beside the surface to guess what closes it",
         "close it in a mesh editor; or let the winding number decide (--sign winding), which puts "
         "flat lids on all holes; or ask for a shell of some thickness (--shell 2mm)",
         mesh.source);
@@ -259,11 +261,6 @@ void requireSmallLids(const Mesh& mesh, const Solid& solid, const std::vector<Ho
 }
 
 }  // namespace
-
-std::string placeText(const Vec3& place, double voxel) {
-  return "(" + inMillimetres(place.x * voxel) + ", " + inMillimetres(place.y * voxel) + ", " +
-         inMillimetres(place.z * voxel) + ")";
-}
 
 Solid makeSurface(const Mesh& mesh, double voxel) {
   std::vector<Side> sides;

@@ -39,7 +39,4 @@ struct Solid {
 /// Only checked, welded and without doubled triangles: for a shell about the surface.
 [[nodiscard]] Solid makeSurface(const Mesh& mesh, double voxel);
 
-/// "(1 mm, 2 mm, 3 mm)" of a place in voxels.
-[[nodiscard]] std::string placeText(const Vec3& place, double voxel);
-
 }  // namespace palpate::vdb

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <glm/common.hpp>
@@ -19,9 +18,11 @@
 #include "brick/least_way.h"
 #include "brick/prefilter.h"
 #include "brick/slopes.h"
+#include "grid/survey.h"
 #include "huge_vector.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -31,18 +32,6 @@ using openvdb::CoordBBox;
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 using Accessor = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
-
-/// [units] What a voxel out of the band counts: its distance is at least the half width, but between
-/// such voxels the surface can be nearer than the mean of them says. A distance to something rho away
-/// bends by at most 1 / rho along two axes; trilinear means are off by voxel^2 / 8 of that (three
-/// axes, to be safe, and no cell is further from its voxels than 0.87), those of the cubic spline by
-/// voxel^2 / 6, from voxels up to 3.5 off.
-float plateauOf(const LevelSetInfo& info, Sampler sampler) {
-  const double slack = sampler == Sampler::kCubic
-                           ? 2.0 / 6.0 / std::max(info.half_width - 2.0 * std::sqrt(3.0), 1.0)
-                           : 3.0 / 8.0 / (info.half_width - 0.5 * std::sqrt(3.0));
-  return static_cast<float>((info.half_width - slack) * info.voxel_size / info.metres_per_unit);
-}
 
 /// Three blocks in a row along z, as leaves or tiles.
 struct BlockRow {
@@ -214,11 +203,10 @@ class BrickMaker {
 
 void requireBrickMemory(double bytes, std::uint64_t max_memory, const std::string& name) {
   if (max_memory == 0 || bytes <= static_cast<double>(max_memory)) return;
-  char text[160];
-  std::snprintf(text, sizeof text, "needs %.3f GB for its bricks, %.3f GB are allowed",
-                bytes * 1e-9, static_cast<double>(max_memory) * 1e-9);
   throw Error(ErrorKind::kOperation,
-              {"bricks.memory", "grid '" + name + "' " + text,
+              {"bricks.memory",
+               "grid '" + name + "' needs " + inGigabytes(bytes) + " for its bricks, " +
+                   inGigabytes(static_cast<double>(max_memory)) + " are allowed",
                "use larger voxels, or sampler: accessor, which reads the grid itself"});
 }
 

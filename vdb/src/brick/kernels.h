@@ -1,5 +1,4 @@
-// One look into bricks, in terms of simd.h, which is included before: a kernel's translation unit
-// compiles this for its own instruction set.
+// One look into bricks: a kernel, as simd.h says.
 //
 // The cubic kernel: with c the 4^3 coefficients around the point and w, d, e the weights of the cubic
 // B-spline, its first and its second derivative along one axis,
@@ -8,6 +7,16 @@
 //
 // What bounds the time is how many instructions the processor can look ahead, so that the next look
 // starts while this one waits for memory: fewer instructions count more than shorter chains.
+
+#include <bit>
+
+#include "brick/instruction_set.h"
+#include "simd.h"
+
+namespace palpate::vdb {
+namespace {
+
+using Lanes = Doubles;
 
 /// Where a point lies. Along each axis: the voxel before it, from 0 in the box and anything beyond it,
 /// and how far it is from the middle of the cell that begins there, from -0.5 to 0.5.
@@ -119,8 +128,8 @@ struct Rows {
 };
 
 PALPATE_KERNEL Rows rowsAt(const float* row) noexcept {
-  return {load(row), load(row + Brick::kRow), load(row + 2 * Brick::kRow),
-          load(row + 3 * Brick::kRow)};
+  return {loadWidened(row), loadWidened(row + Brick::kRow), loadWidened(row + 2 * Brick::kRow),
+          loadWidened(row + 3 * Brick::kRow)};
 }
 
 /// 6 times the value. In one chain, which takes fewer instructions than two that run at once.
@@ -264,3 +273,6 @@ PALPATE_ENTRY FieldSample sampleLinear(const BrickView& view, const Vec3& p) noe
 }
 
 inline BrickKernels kernels() noexcept { return {&sampleCubic, &jetCubic, &sampleLinear}; }
+
+}  // namespace
+}  // namespace palpate::vdb

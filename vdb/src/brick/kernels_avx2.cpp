@@ -1,9 +1,9 @@
 // The kernels for processors with AVX2 and FMA (2013 and later).
 
-#define PALPATE_TARGET "avx2,fma"
-#include "brick/kernels_x86.h"
-
 #if defined(__x86_64__)
+
+#define PALPATE_TARGET "avx2,fma"
+#include "brick/kernels.h"
 
 namespace palpate::vdb {
 

@@ -1,9 +1,9 @@
 // The kernels for processors with AVX-512 F and VL: four lanes as with AVX2, in twice the registers.
 
-#define PALPATE_TARGET "avx2,fma,avx512f,avx512vl"
-#include "brick/kernels_x86.h"
-
 #if defined(__x86_64__)
+
+#define PALPATE_TARGET "avx2,fma,avx512f,avx512vl"
+#include "brick/kernels.h"
 
 namespace palpate::vdb {
 

@@ -15,12 +15,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "brick/brick_field.h"
 #include "brick/voxel_feet.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -252,9 +252,7 @@ class Widening {
   }
 
   [[nodiscard]] std::string oldWidth() const {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.6g voxels", source_.info().half_width);
-    return text;
+    return shortNumber(source_.info().half_width, 6) + " voxels";
   }
 
   const LevelSet& source_;

@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "brick/bricks.h"
@@ -12,6 +10,7 @@
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_error.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -27,12 +26,6 @@ constexpr double kMostStep = 0.25;
 constexpr double kUnseen = 0.4;
 /// [voxels] What rounding leaves of a bound that was found in floats.
 constexpr double kRounding = 1e-4;
-
-std::string text(const char* format, double a) {
-  char out[160];
-  std::snprintf(out, sizeof out, format, a);
-  return out;
-}
 
 class Certifier {
  public:
@@ -97,12 +90,7 @@ class Certifier {
   [[nodiscard]] Vec3 place(const Coord& at) const {
     return grid_.impl().origin + grid_.info().voxel_size * Vec3(at.x(), at.y(), at.z());
   }
-  [[nodiscard]] std::string placeText(const Vec3& p) const {
-    char out[96];
-    std::snprintf(out, sizeof out, "(%.6g, %.6g, %.6g) mm", p.x * 1e3, p.y * 1e3, p.z * 1e3);
-    return out;
-  }
-  [[nodiscard]] std::string placeText(const Coord& at) const { return placeText(place(at)); }
+  [[nodiscard]] std::string placeText(const Coord& at) const { return inMillimetres(place(at)); }
   [[nodiscard]] std::string name() const { return "grid '" + grid_.info().name + "'"; }
 
   [[noreturn]] void no(const char* code, const std::string& what, const char* hint) const {
@@ -123,8 +111,8 @@ class Certifier {
     if (steps.near.by > kMostStep) {
       no("vdb.jump",
          "has voxels by the surface that cannot both be distances, one at " +
-             placeText(steps.near.at) + text(": they differ by %.2g voxels more", steps.near.by) +
-             " than the way between them",
+             placeText(steps.near.at) + ": they differ by " + shortNumber(steps.near.by, 2) +
+             " voxels more than the way between them",
          "the file may be damaged: write it again; or make distances of its values, with "
          "OpenVDB's sdfToSdf or vdb_tool -normalize");
     }
@@ -133,9 +121,8 @@ class Certifier {
       rebuild("its band has holes, one at " + placeText(steps.far_holes.at));
     } else if (std::max(steps.far.by, steps.near.by) > kSmallStep) {
       const bool by_far = steps.far.by > steps.near.by;
-      rebuild("voxels differ by up to " +
-              text("%.2g voxels more than the way between them, one at ",
-                   by_far ? steps.far.by : steps.near.by) +
+      rebuild("voxels differ by up to " + shortNumber(by_far ? steps.far.by : steps.near.by, 2) +
+              " voxels more than the way between them, one at " +
               placeText(by_far ? steps.far.at : steps.near.at));
     }
   }
@@ -145,9 +132,8 @@ class Certifier {
       const double mean = tally.sum / static_cast<double>(tally.gradients);
       if (!(std::fabs(mean - 1.0) <= kMostSlope)) {
         no("vdb.gradient",
-           text("has a |gradient| of %.3g on average, so that its values are not distances in its "
-                "own unit",
-                mean),
+           "has a |gradient| of " + shortNumber(mean, 3) +
+               " on average, so that its values are not distances in its own unit",
            "the unit may be wrong, or the values are in voxels or densities: write it again with "
            "distances");
       }
@@ -185,8 +171,8 @@ class Certifier {
     if (options_.max_memory == 0 || bytes <= limit) return;
     throw Error(ErrorKind::kOperation,
                 {"vdb.memory",
-                 name() + text(" needs about %.3f GB", bytes * 1e-9) +
-                     text(" to widen its band; %.3f GB are allowed", limit * 1e-9),
+                 name() + " needs about " + inGigabytes(bytes) + " to widen its band; " +
+                     inGigabytes(limit) + " are allowed",
                  "allow more, or write it with a half width of 6 voxels", options_.path});
   }
 
@@ -222,22 +208,21 @@ class Certifier {
   [[noreturn]] void refuse(const BandCertificate& c) const {
     if (!has_surface_) {
       no("vdb.no_surface",
-         text("has voxels inside, but samples of it are outside everywhere: the whole shape is "
-              "smaller than a voxel of %.3g mm",
-              grid_.info().voxel_size * 1e3),
+         "has voxels inside, but samples of it are outside everywhere: the whole shape is smaller "
+         "than a voxel of " +
+             inMillimetres(grid_.info().voxel_size, 3),
          "use smaller voxels; also check the length unit");
     }
     if (c.steepest > kMostSteep) {
       no("vdb.uncertified",
-         text("has samples by the surface that differ by up to %.2g times their distance",
-              c.steepest) +
-             text("; %.2g is the most that a surface can be touched with", kMostSteep),
+         "has samples by the surface that differ by up to " + shortNumber(c.steepest, 2) +
+             " times their distance; " + shortNumber(kMostSteep, 2) +
+             " is the most that a surface can be touched with",
          "its values are not distances: write it again, or bake the shape that it is of");
     }
     no("vdb.uncertified",
-       text("does not answer at points %.2g voxels from its surface",
-            c.within / grid_.info().voxel_size) +
-           ", one near " + placeText(unknown_at_),
+       "does not answer at points " + shortNumber(c.within / grid_.info().voxel_size, 2) +
+           " voxels from its surface, one near " + placeText(unknown_at_),
        "its band is too narrow there, or has a hole: write it again with a half width of 6 voxels");
   }
 
@@ -261,15 +246,11 @@ CertifiedGrid certified(const LevelSet& grid, const CertifyOptions& options,
 
 std::string roughNote(const LevelSet& grid, const BandCertificate& c) {
   if (!(c.rough > kMostRough)) return {};
-  std::array<char, 224> out{};
-  std::snprintf(
-      out.data(), out.size(),
-      "%.3g %% of its surface has edges, or bends within a voxel of %.3g mm, one place at "
-      "(%.6g, %.6g, %.6g) mm; what is felt there is off by a large share of a voxel; "
-      "smaller voxels hold it",
-      100.0 * c.rough, grid.info().voxel_size * 1e3, c.slope_place.x * 1e3, c.slope_place.y * 1e3,
-      c.slope_place.z * 1e3);
-  return out.data();
+  return shortNumber(100.0 * c.rough, 3) +
+         " % of its surface has edges, or bends within a voxel of " +
+         inMillimetres(grid.info().voxel_size, 3) + ", one place at " +
+         inMillimetres(c.slope_place) +
+         "; what is felt there is off by a large share of a voxel; smaller voxels hold it";
 }
 
 }  // namespace palpate::vdb

@@ -62,7 +62,7 @@ class AccessorField final : public Field {
         origin_(grid_.impl().origin),
         voxel_(grid_.info().voxel_size),
         metres_per_unit_(grid_.info().metres_per_unit),
-        plateau_(plateauOf(grid_.info())) {
+        plateau_(plateauOf(grid_.info(), Sampler::kAccessor)) {
     const Survey survey = surveyGrid(*grid_.impl().grid, plateau_);
     // The slope of a distance is 1, though a grid whose surface is flat may measure less.
     lipschitz_ = std::max(1.0, survey.steepest);
@@ -94,14 +94,6 @@ class AccessorField final : public Field {
   [[nodiscard]] const LevelSet& grid() const noexcept { return grid_; }
 
  private:
-  /// [units] What an inactive voxel counts. Its distance is at least half_width voxels, but between
-  /// eight such voxels the surface can be nearer than interpolation says: the distance to one point
-  /// bends by at most 1 / distance along each axis, so by voxel^2 / 8 of that each.
-  static float plateauOf(const LevelSetInfo& info) {
-    const double slack = 3.0 / 8.0 / (info.half_width - 0.5 * std::sqrt(3.0));
-    return static_cast<float>((info.half_width - slack) * info.voxel_size / info.metres_per_unit);
-  }
-
   [[nodiscard]] Vec3 position(const Coord& at) const noexcept {
     return origin_ + voxel_ * Vec3(at.x(), at.y(), at.z());
   }

@@ -4,12 +4,12 @@
 #include <openvdb/tools/SignedFloodFill.h>
 
 #include <cmath>
-#include <cstdio>
 
 #include "grid/grid_tally.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/grid_check.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 
@@ -25,15 +25,14 @@ std::uint64_t markInside(openvdb::FloatGrid& grid, double metres_per_unit,
   // of the band all around it; where the band has a hole, some must.
   const GridTally after = tallyOf(grid);
   if (after.sign_breaks.voxels > 0) {
-    const openvdb::Vec3d p = metres_per_unit * 1e3 * grid.indexToWorld(after.sign_breaks.first);
-    char place[96];
-    std::snprintf(place, sizeof place, "(%.6g, %.6g, %.6g) mm", p.x(), p.y(), p.z());
+    const openvdb::Vec3d p = metres_per_unit * grid.indexToWorld(after.sign_breaks.first);
     throw inputError(
         "vdb.torn",
         "the inside of grid '" + grid.getName() +
             "' is not marked, and its band does not tell it: inside and outside meet "
             "without a band in between at " +
-            std::to_string(after.sign_breaks.voxels) + " voxels, one at " + place,
+            std::to_string(after.sign_breaks.voxels) + " voxels, one at " +
+            inMillimetres(Vec3(p.x(), p.y(), p.z())),
         "the band has holes, or the grid was cut off: write it again with a whole band "
         "all around",
         path);

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "bake/bake_plan.h"
@@ -11,6 +10,7 @@
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/grid_memory.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -119,12 +119,11 @@ void requireMemory(VdbFile& file, const VdbArchive::Entry& entry, std::uint64_t 
                    const std::string& path) {
   const std::uint64_t bytes = file.memoryOf(entry);
   if (bytes <= limit) return;
-  char text[120];
-  std::snprintf(text, sizeof text, "takes %.3f GB, %.3f GB are allowed",
-                static_cast<double>(bytes) * 1e-9, static_cast<double>(limit) * 1e-9);
   throw Error(
       ErrorKind::kOperation,
-      {"vdb.memory", "grid '" + entry.name() + "' " + text,
+      {"vdb.memory",
+       "grid '" + entry.name() + "' takes " + inGigabytes(static_cast<double>(bytes)) + ", " +
+           inGigabytes(static_cast<double>(limit)) + " are allowed",
        "allow more, or put its surface into larger voxels: palpate convert --voxel SIZE", path});
 }
 

@@ -9,6 +9,7 @@
 
 #include "image/readers.h"
 #include "palpate/core/error.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -34,7 +35,7 @@ struct Slice {
   double height = 0.0;          ///< [mm] along the slices' normal
 };
 
-std::string nameOf(const Slice& slice) { return fs::path(slice.elements.path).filename().string(); }
+std::string nameOf(const Slice& slice) { return fileName(slice.elements.path); }
 
 void checkPixels(const DicomElements& e) {
   const auto fail = [&](const char* code, const std::string& what, const std::string& hint = {}) {
@@ -152,8 +153,8 @@ Vec3 stepOf(const std::vector<Slice>& slices, const std::string& path) {
     if (std::abs(gaps[i] - usual) > kEvenSteps * usual) {
       throw inputError("dicom.spacing",
                        "slices are not evenly spaced: from " + nameOf(slices[i]) + " to " +
-                           nameOf(slices[i + 1]) + " it is " + shortNumber(gaps[i]) +
-                           " mm, elsewhere " + shortNumber(usual) +
+                           nameOf(slices[i + 1]) + " it is " + shortNumber(gaps[i], 3) +
+                           " mm, elsewhere " + shortNumber(usual, 3) +
                            (gaps[i] > 1.5 * usual ? "; a slice may be missing" : ""),
                        "complete the series, or resample it evenly", path);
     }
@@ -165,7 +166,7 @@ Vec3 stepOf(const std::vector<Slice>& slices, const std::string& path) {
     if (glm::length(slices[i].position - expected) > kEvenSteps * glm::length(step)) {
       throw inputError("dicom.spacing",
                        nameOf(slices[i]) + " is " +
-                           shortNumber(glm::length(slices[i].position - expected)) +
+                           shortNumber(glm::length(slices[i].position - expected), 3) +
                            " mm off the line that the others' positions are on",
                        "complete the series, or resample it evenly", path);
     }
@@ -180,15 +181,15 @@ void tell(const std::vector<Slice>& slices, const Vec3& step, std::vector<std::s
   const double shear =
       std::acos(std::clamp(glm::dot(glm::normalize(step), normal), -1.0, 1.0)) * kDegrees;
   if (shear > kShearToTell) {
-    notes.push_back("the slices are sheared by " + shortNumber(shear) +
+    notes.push_back("the slices are sheared by " + shortNumber(shear, 3) +
                     " degrees (a tilted gantry): so are the voxels");
   }
   const DicomElements& e = first.elements;
   if (!e.text(kGantryTilt).empty()) {
     const double tilt = std::abs(e.numbers(kGantryTilt, 1).front());
     if (tilt > kTiltToDoubt && std::abs(tilt - shear) > kTiltToDoubt) {
-      notes.push_back("GantryDetectorTilt says " + shortNumber(tilt) +
-                      " degrees, the slices' positions " + shortNumber(shear) +
+      notes.push_back("GantryDetectorTilt says " + shortNumber(tilt, 3) +
+                      " degrees, the slices' positions " + shortNumber(shear, 3) +
                       ": the positions count");
     }
   }

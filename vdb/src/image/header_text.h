@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "palpate/vdb/text.h"
+
 namespace palpate::vdb {
 
-[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
-[[nodiscard]] std::string lowerCase(std::string_view text);
 /// Between runs of blanks.
 [[nodiscard]] std::vector<std::string_view> wordsOf(std::string_view text);
 

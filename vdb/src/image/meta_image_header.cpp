@@ -104,18 +104,16 @@ class Fields {
   std::uint64_t end_ = 0;
 };
 
-VoxelType voxelType(const Fields& fields) {
+Scalar voxelType(const Fields& fields) {
   const std::string& name = fields.value("ElementType");
-  constexpr std::pair<std::string_view, VoxelType> kNames[] = {
-      {"MET_CHAR", VoxelType::kInt8},       {"MET_UCHAR", VoxelType::kUint8},
-      {"MET_SHORT", VoxelType::kInt16},     {"MET_USHORT", VoxelType::kUint16},
-      {"MET_INT", VoxelType::kInt32},       {"MET_UINT", VoxelType::kUint32},
-      {"MET_LONG", VoxelType::kInt32},      {"MET_ULONG", VoxelType::kUint32},
-      {"MET_LONG_LONG", VoxelType::kInt64}, {"MET_ULONG_LONG", VoxelType::kUint64},
-      {"MET_FLOAT", VoxelType::kFloat32},   {"MET_DOUBLE", VoxelType::kFloat64}};
-  for (const auto& [known, type] : kNames) {
-    if (known == name) return type;
-  }
+  constexpr ScalarName kNames[] = {
+      {"MET_CHAR", Scalar::kInt8},       {"MET_UCHAR", Scalar::kUint8},
+      {"MET_SHORT", Scalar::kInt16},     {"MET_USHORT", Scalar::kUint16},
+      {"MET_INT", Scalar::kInt32},       {"MET_UINT", Scalar::kUint32},
+      {"MET_LONG", Scalar::kInt32},      {"MET_ULONG", Scalar::kUint32},
+      {"MET_LONG_LONG", Scalar::kInt64}, {"MET_ULONG_LONG", Scalar::kUint64},
+      {"MET_FLOAT", Scalar::kFloat32},   {"MET_DOUBLE", Scalar::kFloat64}};
+  if (const auto kind = scalarCalled(name, kNames)) return *kind;
   throw fields.fail("metaimage.data_type", "ElementType",
                     "voxels of type '" + name + "' cannot be read",
                     "save the image with an integer or float type of 8 to 64 bits");
@@ -185,7 +183,7 @@ void placeInSpace(const Fields& fields, std::size_t dimensions, MetaImageHeader&
   for (std::size_t a = 0; a < 3; ++a) {
     if (!(spacing[a] > 0.0) || !std::isfinite(spacing[a])) {
       throw fields.fail("metaimage.spacing", spacing_key,
-                        "the spacing " + shortNumber(spacing[a]) + " is not greater than 0",
+                        "the spacing " + shortNumber(spacing[a], 3) + " is not greater than 0",
                         "write a mirrored axis as a negative row of TransformMatrix");
     }
   }
@@ -281,8 +279,8 @@ void readScaling(const Fields& fields, MetaImageHeader& out) {
   out.coding.scaled = out.coding.slope != 1.0 || out.coding.intercept != 0.0;
   if (out.coding.scaled) {
     out.notes.push_back("values are scaled as the header says: times " +
-                        shortNumber(out.coding.slope) + ", plus " +
-                        shortNumber(out.coding.intercept));
+                        shortNumber(out.coding.slope, 3) + ", plus " +
+                        shortNumber(out.coding.intercept, 3));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "palpate/core/error.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -93,28 +94,28 @@ void checkDimensions(const Header& header, const std::string& path, std::optiona
   }
 }
 
-VoxelType voxelType(int datatype, const std::string& path) {
+Scalar voxelType(int datatype, const std::string& path) {
   switch (datatype) {
     case NIFTI_TYPE_UINT8:
-      return VoxelType::kUint8;
+      return Scalar::kUint8;
     case NIFTI_TYPE_INT8:
-      return VoxelType::kInt8;
+      return Scalar::kInt8;
     case NIFTI_TYPE_UINT16:
-      return VoxelType::kUint16;
+      return Scalar::kUint16;
     case NIFTI_TYPE_INT16:
-      return VoxelType::kInt16;
+      return Scalar::kInt16;
     case NIFTI_TYPE_UINT32:
-      return VoxelType::kUint32;
+      return Scalar::kUint32;
     case NIFTI_TYPE_INT32:
-      return VoxelType::kInt32;
+      return Scalar::kInt32;
     case NIFTI_TYPE_UINT64:
-      return VoxelType::kUint64;
+      return Scalar::kUint64;
     case NIFTI_TYPE_INT64:
-      return VoxelType::kInt64;
+      return Scalar::kInt64;
     case NIFTI_TYPE_FLOAT32:
-      return VoxelType::kFloat32;
+      return Scalar::kFloat32;
     case NIFTI_TYPE_FLOAT64:
-      return VoxelType::kFloat64;
+      return Scalar::kFloat64;
     default:
       break;
   }
@@ -174,7 +175,7 @@ void checkSpacings(const nifti_image& nim, const char* user, const std::string& 
     if (!(nim.pixdim[i] > 0.0) || !std::isfinite(nim.pixdim[i])) {
       throw fail(path, "nifti.spacing",
                  "the voxel spacing pixdim[" + std::to_string(i) + "] is " +
-                     shortNumber(nim.pixdim[i]) + ", which " + user + " needs to be positive",
+                     shortNumber(nim.pixdim[i], 3) + ", which " + user + " needs to be positive",
                  "set the sform and set qform_code to 0");
     }
   }
@@ -232,7 +233,7 @@ Place placeInSpace(const nifti_image& nim, const std::array<int, 3>& size, const
           path, "nifti.affine_conflict",
           "sform (code " + std::to_string(nim.sform_code) + ") and qform (code " +
               std::to_string(nim.qform_code) + ") place the image differently: by " +
-              shortNumber(apart) + " voxels at a corner, 0.1 at most is taken as agreement",
+              shortNumber(apart, 3) + " voxels at a corner, 0.1 at most is taken as agreement",
           "set the code of the wrong one to 0, or say which counts: affine: sform or affine: qform "
           "(on the command line --affine sform)");
     }
@@ -277,7 +278,8 @@ NiftiHeader interpret(Header raw, int version, bool swapped, const std::string& 
   out.header_bytes = sizeof(Header);
   const std::size_t header_size = sizeof(Header) + 4;  // four bytes announce the extensions
   if (!(offset >= 0.0) || offset > 1e15) {
-    throw fail(path, "nifti.offset", "the voxels are said to begin at byte " + shortNumber(offset));
+    throw fail(path, "nifti.offset",
+               "the voxels are said to begin at byte " + shortNumber(offset, 3));
   }
   out.data_offset = std::max<std::uint64_t>(static_cast<std::uint64_t>(offset), header_size);
   out.extension_bytes = out.data_offset - sizeof(Header);

@@ -9,6 +9,7 @@
 
 #include "image/utf8.h"
 #include "palpate/core/error.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -67,13 +68,6 @@ std::string unescaped(std::string_view text) {
     i += entity == std::end(kEntities) ? 1 : entity->first.size();
   }
   return out;
-}
-
-/// The text between the blanks around it.
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
 LabelTable tableIn(std::string_view xml, const std::string& path) {

@@ -94,7 +94,7 @@ Vec3 readSpacings(const NrrdFields& fields, const std::vector<std::optional<Vec3
     spacing[a] = (*numbers)[header.spatial[static_cast<std::size_t>(a)]];
     if (!(spacing[a] > 0.0) || !std::isfinite(spacing[a])) {
       throw fields.fail("nrrd.spacing", "spacings",
-                        "the spacing " + shortNumber(spacing[a]) + " is not greater than 0");
+                        "the spacing " + shortNumber(spacing[a], 3) + " is not greater than 0");
     }
   }
   return spacing;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace palpate::vdb {
 namespace {
@@ -60,12 +59,6 @@ double disagreement(const Place& a, const Place& b, const std::array<int, 3>& si
     worst = std::max(worst, glm::length(apart));
   }
   return worst;
-}
-
-std::string shortNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
 }
 
 }  // namespace palpate::vdb

@@ -28,9 +28,6 @@ struct Place {
 /// Largest distance between the two places of a corner of the image, in voxels of `a`.
 [[nodiscard]] double disagreement(const Place& a, const Place& b, const std::array<int, 3>& size);
 
-/// Three digits.
-[[nodiscard]] std::string shortNumber(double value);
-
 /// "4 x 5 x 6"
 template <typename Sizes>
 std::string shapeText(const Sizes& sizes) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 
 #include "image/header_text.h"
@@ -10,11 +11,8 @@ namespace {
 enum class Format { kNifti, kNrrd, kMetaImage, kDicom };
 
 bool endsWith(const std::string& path, std::initializer_list<const char*> extensions) {
-  const std::string lower = lowerCase(path);
-  for (const char* extension : extensions) {
-    if (lower.ends_with(extension)) return true;
-  }
-  return false;
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const char* extension) { return hasExtension(path, extension); });
 }
 
 std::optional<Format> formatOf(const std::string& path) {

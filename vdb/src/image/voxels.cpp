@@ -29,52 +29,6 @@ void convertAs(std::span<const unsigned char> raw, const VoxelCoding& coding, fl
 
 }  // namespace
 
-const char* nameOf(VoxelType type) noexcept {
-  switch (type) {
-    case VoxelType::kUint8:
-      return "uint8";
-    case VoxelType::kInt8:
-      return "int8";
-    case VoxelType::kUint16:
-      return "uint16";
-    case VoxelType::kInt16:
-      return "int16";
-    case VoxelType::kUint32:
-      return "uint32";
-    case VoxelType::kInt32:
-      return "int32";
-    case VoxelType::kUint64:
-      return "uint64";
-    case VoxelType::kInt64:
-      return "int64";
-    case VoxelType::kFloat32:
-      return "float32";
-    case VoxelType::kFloat64:
-      return "float64";
-  }
-  return "";
-}
-
-std::size_t bytesOf(VoxelType type) noexcept {
-  switch (type) {
-    case VoxelType::kUint8:
-    case VoxelType::kInt8:
-      return 1;
-    case VoxelType::kUint16:
-    case VoxelType::kInt16:
-      return 2;
-    case VoxelType::kUint32:
-    case VoxelType::kInt32:
-    case VoxelType::kFloat32:
-      return 4;
-    case VoxelType::kUint64:
-    case VoxelType::kInt64:
-    case VoxelType::kFloat64:
-      break;
-  }
-  return 8;
-}
-
 void Oddities::tell(std::vector<std::string>& notes) const {
   if (not_finite > 0) {
     notes.push_back(std::to_string(not_finite) +
@@ -95,28 +49,7 @@ void convertVoxels(std::span<unsigned char> raw, const VoxelCoding& coding, floa
                    raw.begin() + static_cast<std::ptrdiff_t>(at + bytes));
     }
   }
-  switch (coding.type) {
-    case VoxelType::kUint8:
-      return convertAs<std::uint8_t>(raw, coding, out, odd);
-    case VoxelType::kInt8:
-      return convertAs<std::int8_t>(raw, coding, out, odd);
-    case VoxelType::kUint16:
-      return convertAs<std::uint16_t>(raw, coding, out, odd);
-    case VoxelType::kInt16:
-      return convertAs<std::int16_t>(raw, coding, out, odd);
-    case VoxelType::kUint32:
-      return convertAs<std::uint32_t>(raw, coding, out, odd);
-    case VoxelType::kInt32:
-      return convertAs<std::int32_t>(raw, coding, out, odd);
-    case VoxelType::kUint64:
-      return convertAs<std::uint64_t>(raw, coding, out, odd);
-    case VoxelType::kInt64:
-      return convertAs<std::int64_t>(raw, coding, out, odd);
-    case VoxelType::kFloat32:
-      return convertAs<float>(raw, coding, out, odd);
-    case VoxelType::kFloat64:
-      return convertAs<double>(raw, coding, out, odd);
-  }
+  withKind(coding.type, [&](auto zero) { convertAs<decltype(zero)>(raw, coding, out, odd); });
 }
 
 std::vector<float> readVoxels(ByteStream& stream, std::uint64_t count, const VoxelCoding& coding,

@@ -7,31 +7,13 @@
 #include <vector>
 
 #include "image/byte_stream.h"
+#include "scalar.h"
 
 namespace palpate::vdb {
 
-enum class VoxelType {
-  kUint8,
-  kInt8,
-  kUint16,
-  kInt16,
-  kUint32,
-  kInt32,
-  kUint64,
-  kInt64,
-  kFloat32,
-  kFloat64
-};
-
-[[nodiscard]] const char* nameOf(VoxelType type) noexcept;
-[[nodiscard]] std::size_t bytesOf(VoxelType type) noexcept;
-[[nodiscard]] inline bool isInteger(VoxelType type) noexcept {
-  return type != VoxelType::kFloat32 && type != VoxelType::kFloat64;
-}
-
 /// How the bytes of a file become values.
 struct VoxelCoding {
-  VoxelType type = VoxelType::kUint8;
+  Scalar type = Scalar::kUint8;
   bool swapped = false;  ///< the file's byte order is not this machine's
   bool scaled = false;   ///< slope and intercept are to be applied
   double slope = 1.0;

@@ -1,6 +1,5 @@
 #include "material/material_file.h"
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 #include "grid/vdb_file.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/openvdb_access.h"
+#include "palpate/vdb/text.h"
 #include "palpate/version.h"
 
 namespace palpate::vdb {
@@ -20,12 +20,6 @@ constexpr const char* kUnit = "unit";
 constexpr const char* kQuantised = "palpate:quantised";
 /// A box of more voxels than this is a mistake, or would not fit a brick's index.
 constexpr double kMostVoxels = 2147483647.0;
-
-std::string exactText(double value) {
-  std::array<char, 32> buffer{};
-  char* const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
-}
 
 std::string textOf(const openvdb::GridBase& grid, const char* key) {
   const openvdb::Metadata::ConstPtr value = grid[key];
@@ -210,13 +204,13 @@ openvdb::FloatGrid::Ptr toOpenVdb(const NamedMaterialGrid& named) {
   note("length_unit", named.length_unit);
   note(kUnit, named.unit);
   const MaterialMap::Range range = named.grid->range();
-  note("range", exactText(range.least) + " to " + exactText(range.most) + " " + named.unit);
+  note("range", exactNumber(range.least) + " to " + exactNumber(range.most) + " " + named.unit);
   note("palpate:version", PALPATE_VERSION_STRING);
   if (const Quantisation& how = named.grid->info().quantisation; how.bits != 32) {
-    note(kQuantised, std::to_string(how.bits) + " bits, least " + exactText(how.least) + ", step " +
-                         exactText(how.step) + ", error " + exactText(how.error));
+    note(kQuantised, std::to_string(how.bits) + " bits, least " + exactNumber(how.least) +
+                         ", step " + exactNumber(how.step) + ", error " + exactNumber(how.error));
   }
-  note("tolerance", exactText(named.grid->info().quantisation.error) + " " + named.unit);
+  note("tolerance", exactNumber(named.grid->info().quantisation.error) + " " + named.unit);
   return grid;
 }
 

@@ -10,6 +10,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/vdb/mesh.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -203,10 +204,7 @@ std::string encodeGlb(const Mesh& exact) {
 }  // namespace
 
 MeshFormat meshFormat(const std::string& path) {
-  const std::size_t dot = path.find_last_of("./");
-  std::string extension = dot == std::string::npos ? "" : path.substr(dot);
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extensionOf(path);
   if (extension == ".stl") return MeshFormat::kStl;
   if (extension == ".obj") return MeshFormat::kObj;
   if (extension == ".ply") return MeshFormat::kPly;

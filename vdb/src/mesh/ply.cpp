@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -13,11 +12,9 @@
 namespace palpate::vdb {
 namespace {
 
-enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
-
 struct Property {
   std::string name;
-  Scalar type = Scalar::kFloat;
+  Scalar type = Scalar::kFloat32;
   std::optional<Scalar> count;  ///< of a list: the type of its length
 };
 
@@ -27,17 +24,13 @@ struct Element {
   std::vector<Property> properties;
 };
 
-std::optional<Scalar> scalarCalled(const std::string& name) {
-  if (name == "char" || name == "int8") return Scalar::kInt8;
-  if (name == "uchar" || name == "uint8") return Scalar::kUint8;
-  if (name == "short" || name == "int16") return Scalar::kInt16;
-  if (name == "ushort" || name == "uint16") return Scalar::kUint16;
-  if (name == "int" || name == "int32") return Scalar::kInt32;
-  if (name == "uint" || name == "uint32") return Scalar::kUint32;
-  if (name == "float" || name == "float32") return Scalar::kFloat;
-  if (name == "double" || name == "float64") return Scalar::kDouble;
-  return {};
-}
+constexpr ScalarName kScalars[] = {
+    {"char", Scalar::kInt8},      {"int8", Scalar::kInt8},       {"uchar", Scalar::kUint8},
+    {"uint8", Scalar::kUint8},    {"short", Scalar::kInt16},     {"int16", Scalar::kInt16},
+    {"ushort", Scalar::kUint16},  {"uint16", Scalar::kUint16},   {"int", Scalar::kInt32},
+    {"int32", Scalar::kInt32},    {"uint", Scalar::kUint32},     {"uint32", Scalar::kUint32},
+    {"float", Scalar::kFloat32},  {"float32", Scalar::kFloat32}, {"double", Scalar::kFloat64},
+    {"float64", Scalar::kFloat64}};
 
 class Ply {
  public:
@@ -142,10 +135,10 @@ class Ply {
     if (type == "list") {
       std::string count;
       words >> count >> type;
-      property.count = scalarCalled(count);
+      property.count = scalarCalled(count, kScalars);
       if (!property.count) refuse("unknown type '" + count + "' of a list's length");
     }
-    const std::optional<Scalar> scalar = scalarCalled(type);
+    const std::optional<Scalar> scalar = scalarCalled(type, kScalars);
     if (!scalar) refuse("unknown property type '" + type + "'");
     property.type = *scalar;
     if (!(words >> property.name)) refuse("a property without a name");
@@ -183,37 +176,9 @@ class Ply {
 
   double readScalar(Scalar type) {
     if (is_text_) return readText();
-    switch (type) {
-      case Scalar::kInt8:
-        return readBinary<std::int8_t>();
-      case Scalar::kUint8:
-        return readBinary<std::uint8_t>();
-      case Scalar::kInt16:
-        return readBinary<std::int16_t>();
-      case Scalar::kUint16:
-        return readBinary<std::uint16_t>();
-      case Scalar::kInt32:
-        return readBinary<std::int32_t>();
-      case Scalar::kUint32:
-        return readBinary<std::uint32_t>();
-      case Scalar::kFloat:
-        return static_cast<double>(readBinary<float>());
-      case Scalar::kDouble:
-        break;
-    }
-    return readBinary<double>();
-  }
-
-  template <typename Type>
-  Type readBinary() {
-    if (input_.text.size() - input_.at < sizeof(Type)) refuseEnd();
-    char raw[sizeof(Type)];
-    std::memcpy(raw, input_.text.data() + input_.at, sizeof raw);
-    input_.at += sizeof raw;
-    if (swap_) std::reverse(raw, raw + sizeof raw);
-    Type value;
-    std::memcpy(&value, raw, sizeof value);
-    return value;
+    const std::optional<double> value = input_.number(type, swap_);
+    if (!value) refuseEnd();
+    return *value;
   }
 
   double readText() {

@@ -5,7 +5,6 @@
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
@@ -16,6 +15,7 @@
 #include "mesh/gltf_guard.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/image.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -140,13 +140,6 @@ Mesh readWithAssimp(const std::string& path, double metres_per_unit) {
   ChildReader result =
       runInChild(task, [&](ChildWriter& out) { put(out, parseWithAssimp(path, metres_per_unit)); });
   return takeMesh(result);
-}
-
-std::string extensionOf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 std::ifstream openFile(const std::string& path) {

@@ -1,12 +1,15 @@
 #pragma once
-/// Words and numbers of a text, with the line they are on.
+/// Words and numbers of a text, with the line they are on, and numbers of binary data between them.
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
+#include <cstring>
 #include <optional>
 #include <string_view>
 
 #include "palpate/core/math.h"
+#include "scalar.h"
 
 namespace palpate::vdb {
 
@@ -31,6 +34,19 @@ struct Scanner {
   std::string_view wordOfLine() noexcept {
     while (at < text.size() && text[at] != '\n' && isBlank(text[at])) ++at;
     return at < text.size() && text[at] == '\n' ? std::string_view() : take();
+  }
+
+  /// The next number of binary data; nothing if they end before it does.
+  std::optional<double> number(Scalar kind, bool is_swapped) noexcept {
+    return withKind(kind, [&](auto value) -> std::optional<double> {
+      if (text.size() - at < sizeof value) return {};
+      char raw[sizeof value];
+      std::memcpy(raw, text.data() + at, sizeof raw);
+      at += sizeof raw;
+      if (is_swapped) std::reverse(raw, raw + sizeof raw);
+      std::memcpy(&value, raw, sizeof raw);
+      return static_cast<double>(value);
+    });
   }
 
   /// To the end of this line.

@@ -9,6 +9,7 @@
 #include "palpate/core/error.h"
 #include "palpate/core/stop.h"
 #include "palpate/vdb/mesh.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -343,7 +344,7 @@ SharpField withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double
   }
   if (made.left_to_grid > 0) {
     throw inputError("mesh.sharp_inner",
-                     "by every sharp edge, at " + placeText(made.place, 1.0) +
+                     "by every sharp edge, at " + eachInMillimetres(made.place) +
                          " for one, is a wall that is not on the surface of the solid: parts "
                          "overlap there, or the grid has lost it",
                      "make the mesh one solid in a mesh editor; or leave sharp edges to the grid",

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -10,37 +8,19 @@
 #include "mesh/builder.h"
 #include "mesh/scanner.h"
 #include "palpate/core/error.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
 
-enum class Scalar {
-  kInt8,
-  kUint8,
-  kInt16,
-  kUint16,
-  kInt32,
-  kUint32,
-  kInt64,
-  kUint64,
-  kFloat,
-  kDouble
-};
-
-std::optional<Scalar> scalarCalled(std::string_view name) {
-  constexpr std::pair<std::string_view, Scalar> kNames[] = {
-      {"char", Scalar::kInt8},          {"unsigned_char", Scalar::kUint8},
-      {"short", Scalar::kInt16},        {"unsigned_short", Scalar::kUint16},
-      {"int", Scalar::kInt32},          {"unsigned_int", Scalar::kUint32},
-      {"long", Scalar::kInt64},         {"unsigned_long", Scalar::kUint64},
-      {"vtktypeint64", Scalar::kInt64}, {"vtktypeuint64", Scalar::kUint64},
-      {"vtkidtype", Scalar::kInt32},    {"float", Scalar::kFloat},
-      {"double", Scalar::kDouble}};
-  for (const auto& [known, scalar] : kNames) {
-    if (known == name) return scalar;
-  }
-  return {};
-}
+constexpr ScalarName kScalars[] = {
+    {"char", Scalar::kInt8},          {"unsigned_char", Scalar::kUint8},
+    {"short", Scalar::kInt16},        {"unsigned_short", Scalar::kUint16},
+    {"int", Scalar::kInt32},          {"unsigned_int", Scalar::kUint32},
+    {"long", Scalar::kInt64},         {"unsigned_long", Scalar::kUint64},
+    {"vtktypeint64", Scalar::kInt64}, {"vtktypeuint64", Scalar::kUint64},
+    {"vtkidtype", Scalar::kInt32},    {"float", Scalar::kFloat32},
+    {"double", Scalar::kFloat64}};
 
 class Vtk {
  public:
@@ -133,10 +113,8 @@ class Vtk {
   }
 
   Scalar takeScalar() {
-    std::string name(takeWord());
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const std::optional<Scalar> scalar = scalarCalled(name);
+    const std::string name = lowerCase(takeWord());
+    const std::optional<Scalar> scalar = scalarCalled(name, kScalars);
     if (!scalar) refuse("unknown type '" + name.substr(0, 40) + "'");
     return *scalar;
   }
@@ -156,44 +134,11 @@ class Vtk {
       }
       refuse("'" + std::string(word.substr(0, 40)) + "' is not a number");
     }
-    switch (type) {
-      case Scalar::kInt8:
-        return takeBinary<std::int8_t>();
-      case Scalar::kUint8:
-        return takeBinary<std::uint8_t>();
-      case Scalar::kInt16:
-        return takeBinary<std::int16_t>();
-      case Scalar::kUint16:
-        return takeBinary<std::uint16_t>();
-      case Scalar::kInt32:
-        return takeBinary<std::int32_t>();
-      case Scalar::kUint32:
-        return takeBinary<std::uint32_t>();
-      case Scalar::kInt64:
-        return static_cast<double>(takeBinary<std::int64_t>());
-      case Scalar::kUint64:
-        return static_cast<double>(takeBinary<std::uint64_t>());
-      case Scalar::kFloat:
-        return static_cast<double>(takeBinary<float>());
-      case Scalar::kDouble:
-        break;
-    }
-    return takeBinary<double>();
-  }
-
-  /// Always big endian.
-  template <typename Type>
-  Type takeBinary() {
-    if (input_.text.size() - input_.at < sizeof(Type)) refuseEnd();
-    char raw[sizeof(Type)];
-    std::memcpy(raw, input_.text.data() + input_.at, sizeof raw);
-    input_.at += sizeof raw;
-    if constexpr (std::endian::native == std::endian::little) {
-      std::reverse(raw, raw + sizeof raw);
-    }
-    Type value;
-    std::memcpy(&value, raw, sizeof value);
-    return value;
+    // Always big endian.
+    const std::optional<double> value =
+        input_.number(type, std::endian::native == std::endian::little);
+    if (!value) refuseEnd();
+    return *value;
   }
 
   void readPoints() {

@@ -1,7 +1,8 @@
-// Compiled for processors with AVX2; called where they are.
+// The loops for processors with AVX2.
+
 #if defined(__x86_64__)
 
-#include "scan/relax.h"
+#define PALPATE_TARGET "avx2,fma"
 #include "scan/relax_kernel.h"
 
 namespace palpate::vdb {

@@ -1,69 +1,51 @@
-// The inner loop of the smoothing of masks, eight voxels at a time. No include guard: the two files
-// that compile it, for different processors, include it once each. No fused operations, so that both give
-// the same bits.
+// The inner loops of the smoothing of masks, eight voxels at a time: a kernel, as simd.h says. No fused operations, so that
+// every instruction set gives the same bits.
 
 #include "scan/relax.h"
+#include "simd.h"
 
 namespace palpate::vdb {
 namespace {
-
-using Eight = float __attribute__((vector_size(32)));
-using EightBits = std::int32_t __attribute__((vector_size(32)));
-
-inline Eight at(const float* from) noexcept {
-  Eight result;
-  __builtin_memcpy(&result, from, sizeof result);
-  return result;
-}
 
 inline constexpr std::ptrdiff_t kStepX = std::ptrdiff_t{Patch::kSide} * Patch::kRow;
 inline constexpr std::ptrdiff_t kStepY = Patch::kRow;
 inline constexpr std::ptrdiff_t kStepZ = 1;
 
-inline const float* rowOf(const Patch& patch, int row) noexcept {
+PALPATE_KERNEL const float* rowOf(const Patch& patch, int row) noexcept {
   return patch.values + Patch::kHalo * (kStepX + kStepY) + Patch::kFirst + (row >> 3) * kStepX +
          (row & 7) * kStepY;
 }
 
 /// NaN, which any voxel outside the band makes of a difference, is no difference.
-inline Eight known(Eight a) noexcept {
-  const EightBits is = a < Eight{} + 3e38F;  // false for NaN
-  EightBits bits;
-  __builtin_memcpy(&bits, &a, sizeof bits);
-  bits &= is;
-  __builtin_memcpy(&a, &bits, sizeof a);
-  return a;
-}
+PALPATE_KERNEL Floats known(Floats a) noexcept { return whereLess(a, all(3e38F), a, all(0.0F)); }
 
 /// The second difference along one axis.
-inline Eight bend(const float* c, std::ptrdiff_t s) noexcept {
-  return known(at(c - s) - 2.0F * at(c) + at(c + s));
+PALPATE_KERNEL Floats bend(const float* c, std::ptrdiff_t s) noexcept {
+  return known(load(c - s) - 2.0F * load(c) + load(c + s));
 }
 
 /// The mixed difference of the square from c on.
-inline Eight twist(const float* c, std::ptrdiff_t u, std::ptrdiff_t v) noexcept {
-  return known(at(c) - at(c + u) - at(c + v) + at(c + u + v));
+PALPATE_KERNEL Floats twist(const float* c, std::ptrdiff_t u, std::ptrdiff_t v) noexcept {
+  return known(load(c) - load(c + u) - load(c + v) + load(c + u + v));
 }
 
 /// The sum over the squares that share a row of voxels and its neighbor u away, by their places along the row: what
 /// the later of two such sums has more than the one before it is the force.
-inline Eight twistAlongRow(const float* c, std::ptrdiff_t u) noexcept {
+PALPATE_KERNEL Floats twistAlongRow(const float* c, std::ptrdiff_t u) noexcept {
   return twist(c, u, kStepZ) - twist(c - kStepZ, u, kStepZ);
 }
-
-inline void put(const Eight& a, float* to) noexcept { __builtin_memcpy(to, &a, sizeof a); }
 
 /// take(row, its first voxel, the force on its eight voxels) for each row that `rows` has a bit for. Differences that
 /// rows side by side share are worked out once. Those that touch a row without voxels are none, so nothing is
 /// carried across one.
 template <typename Take>
-inline void forForces(const Patch& patch, std::uint64_t rows, const RelaxWeights& w,
-                      const Take& take) {
-  const Eight none{};
+PALPATE_KERNEL void forForces(const Patch& patch, std::uint64_t rows, const RelaxWeights& w,
+                              const Take& take) {
+  const Floats none{};
   // For each y, of the slabs x before and here.
-  Eight bend_before[8];
-  Eight bend_here[8];
-  Eight twist_before[8];
+  Floats bend_before[8];
+  Floats bend_here[8];
+  Floats twist_before[8];
   for (int y = 0; y < 8; ++y) {
     bend_before[y] = bend_here[y] = twist_before[y] = none;
     if ((rows >> y & 1U) == 0) continue;
@@ -75,10 +57,10 @@ inline void forForces(const Patch& patch, std::uint64_t rows, const RelaxWeights
   }
   for (int x = 0; x < 8; ++x) {
     // The same of the rows y before and here.
-    Eight y_bend_before = none;
-    Eight y_bend_here = none;
-    Eight xy_before = none;
-    Eight yz_before = none;
+    Floats y_bend_before = none;
+    Floats y_bend_here = none;
+    Floats xy_before = none;
+    Floats yz_before = none;
     if ((rows >> (8 * x) & 1U) != 0) {
       const float* const c = rowOf(patch, 8 * x) - kStepY;
       y_bend_before = bend(c, kStepY);
@@ -94,13 +76,13 @@ inline void forForces(const Patch& patch, std::uint64_t rows, const RelaxWeights
         continue;
       }
       const float* const c = rowOf(patch, row);
-      const Eight bend_next = bend(c + kStepX, kStepX);
-      const Eight y_bend_next = bend(c + kStepY, kStepY);
-      const Eight z_bends =
+      const Floats bend_next = bend(c + kStepX, kStepX);
+      const Floats y_bend_next = bend(c + kStepY, kStepY);
+      const Floats z_bends =
           bend(c - kStepZ, kStepZ) - 2.0F * bend(c, kStepZ) + bend(c + kStepZ, kStepZ);
-      const Eight xy = twist(c, kStepX, kStepY);
-      const Eight yz = twistAlongRow(c, kStepY);
-      const Eight twist_here =
+      const Floats xy = twist(c, kStepX, kStepY);
+      const Floats yz = twistAlongRow(c, kStepY);
+      const Floats twist_here =
           w.plane[2] * (xy - xy_before) + w.plane[1] * twistAlongRow(c, kStepX);
       take(row, c,
            w.axis[0] * (bend_before[y] - 2.0F * bend_here[y] + bend_next) +
@@ -118,42 +100,56 @@ inline void forForces(const Patch& patch, std::uint64_t rows, const RelaxWeights
   }
 }
 
-inline void forceOf(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
-                    float* out) {
-  forForces(patch, rows, weights, [&](int row, const float*, const Eight& force) {
-    put(force, out + std::ptrdiff_t{8} * row);
-  });
-}
+/// The force itself.
+struct PutForce {
+  float* out;
 
-inline void relaxRows(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
-                      const RelaxStep& step) {
-  forForces(patch, rows, weights, [&](int row, const float* c, const Eight& whole) {
+  PALPATE_KERNEL void operator()(int row, const float*, const Floats& force) const noexcept {
+    store(force, out + std::ptrdiff_t{8} * row);
+  }
+};
+
+/// What a step of relaxation makes of it.
+struct Relax {
+  const RelaxStep& step;
+
+  PALPATE_KERNEL void operator()(int row, const float* c, const Floats& whole) const noexcept {
     const std::ptrdiff_t n = std::ptrdiff_t{8} * row;
-    const Eight force = whole - at(step.bias + n);
-    const Eight lower = at(step.lower + n);
-    const Eight upper = at(step.upper + n);
+    const Floats force = whole - load(step.bias + n);
+    const Floats lower = load(step.lower + n);
+    const Floats upper = load(step.upper + n);
     // NaN is neither less nor more, and stays.
-    Eight value = at(c) - force * at(step.share + n);
-    value = value < lower ? lower : value;
-    value = value > upper ? upper : value;
-    const Eight before = at(step.value + n);
-    put(value + step.momentum * (value - before), step.ahead + n);
-    put(value, step.value + n);
-  });
+    Floats value = load(c) - force * load(step.share + n);
+    value = whereLess(value, lower, lower, value);
+    value = whereLess(upper, value, upper, value);
+    const Floats before = load(step.value + n);
+    store(value + step.momentum * (value - before), step.ahead + n);
+    store(value, step.value + n);
+  }
+};
+
+PALPATE_ENTRY void forceOf(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
+                           float* out) {
+  forForces(patch, rows, weights, PutForce{out});
 }
 
-inline void diffuseRows(const Patch& patch, std::uint64_t rows, int stride, const float* share,
-                        float* out) {
+PALPATE_ENTRY void relaxRows(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
+                             const RelaxStep& step) {
+  forForces(patch, rows, weights, Relax{step});
+}
+
+PALPATE_ENTRY void diffuseRows(const Patch& patch, std::uint64_t rows, int stride,
+                               const float* share, float* out) {
   for (; rows != 0; rows &= rows - 1) {
     const int row = __builtin_ctzll(rows);
     const float* const c = rowOf(patch, row);
-    const Eight here = at(c);
-    Eight sum = here;
+    const Floats here = load(c);
+    Floats sum = here;
     for (int a = 0; a < 3; ++a) {
       const std::ptrdiff_t s = stride * (a == 0 ? kStepX : a == 1 ? kStepY : kStepZ);
-      sum += share[a] * (known(at(c - s) - here) + known(at(c + s) - here));
+      sum += share[a] * (known(load(c - s) - here) + known(load(c + s) - here));
     }
-    put(sum, out + std::ptrdiff_t{8} * row);
+    store(sum, out + std::ptrdiff_t{8} * row);
   }
 }
 

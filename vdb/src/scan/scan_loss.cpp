@@ -4,11 +4,11 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <sstream>
 #include <vector>
 
+#include "palpate/vdb/text.h"
 #include "scan/single_walls.h"
 
 namespace palpate::vdb {
@@ -100,9 +100,8 @@ std::map<std::string, std::string> metadataOf(const ScanLoss& loss) {
   if (loss.lost > 0) result[kLostKey] = std::to_string(loss.lost);
   if (loss.filled > 0) result[kFilledKey] = std::to_string(loss.filled);
   if (result.empty()) return result;
-  char text[100];
-  std::snprintf(text, sizeof text, "%.6g %.6g %.6g", loss.place.x, loss.place.y, loss.place.z);
-  result[kPlaceKey] = text;
+  result[kPlaceKey] = shortNumber(loss.place.x, 6) + " " + shortNumber(loss.place.y, 6) + " " +
+                      shortNumber(loss.place.z, 6);
   return result;
 }
 
@@ -128,12 +127,9 @@ std::string scanLossNote(const LevelSetInfo& info) {
   if (loss.filled > 0) {
     what += (what.empty() ? "" : ", ") + voxels(loss.filled) + " of the scan around it filled";
   }
-  char text[200];
-  std::snprintf(text, sizeof text,
-                ", where parts or gaps are thinner than voxels of %.4g mm hold; most at "
-                "(%.4g, %.4g, %.4g) mm; smaller voxels keep them",
-                1e3 * info.voxel_size, 1e3 * loss.place.x, 1e3 * loss.place.y, 1e3 * loss.place.z);
-  return what + text;
+  return what + ", where parts or gaps are thinner than voxels of " +
+         inMillimetres(info.voxel_size, 4) + " hold; most at " + inMillimetres(loss.place, 4) +
+         "; smaller voxels keep them";
 }
 
 }  // namespace palpate::vdb

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "palpate/vdb/text.h"
 #include "scan/label_partition.h"
 #include "scan/lattice.h"
 #include "scan/lattice_spline.h"
@@ -19,11 +19,8 @@ namespace {
 constexpr double kMaskDone = 0.3;
 constexpr double kBandDone = 0.5;
 
-std::string shortNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
+/// Every digit of a float.
+std::string levelText(double value) { return shortNumber(value, 9); }
 
 double smallestSpacing(const Image& image) {
   double smallest = glm::length(image.axes[0]);
@@ -75,8 +72,8 @@ Error nothingThere(const Image& image, bool is_below, double level) {
   }
   return inputError(
       "scan.empty",
-      "nothing in the image lies " + sideOf(is_below) + shortNumber(level) +
-          (is_below ? "; its smallest value is " : "; its largest value is ") + shortNumber(last),
+      "nothing in the image lies " + sideOf(is_below) + levelText(level) +
+          (is_below ? "; its smallest value is " : "; its largest value is ") + levelText(last),
       is_below ? "choose a higher threshold" : "choose a lower threshold", image.source);
 }
 
@@ -88,7 +85,7 @@ LevelSet surfaceFromThreshold(const Image& image, const ThresholdOptions& option
   const bool is_below = options.below.has_value();
   const double level = options.below.value_or(options.above);
   if (!std::isfinite(level)) {
-    throw inputError("scan.threshold", "the threshold is " + shortNumber(level),
+    throw inputError("scan.threshold", "the threshold is " + levelText(level),
                      "give a finite intensity", image.source);
   }
   const auto is_inside = [&](float value) {
@@ -100,7 +97,7 @@ LevelSet surfaceFromThreshold(const Image& image, const ThresholdOptions& option
   if (options.fill) fillCavities(mask);
   report(progress, "threshold", kMaskDone);
   BakeOptions with_source = bake;
-  with_source.metadata["threshold"] = sideOf(is_below) + shortNumber(level) +
+  with_source.metadata["threshold"] = sideOf(is_below) + levelText(level) +
                                       (options.largest_component ? ", largest piece" : "") +
                                       (options.fill ? ", filled" : "");
   const Vec3 lengths(glm::length(image.axes[0]), glm::length(image.axes[1]),
@@ -132,12 +129,6 @@ Progress smoothingOf(const Progress& progress) {
     last = std::max(last, kBandDone * fraction);
     return progress(what, last);
   };
-}
-
-std::string listOf(const std::vector<int>& labels) {
-  std::string list;
-  for (const int label : labels) list += (list.empty() ? "" : ", ") + std::to_string(label);
-  return list;
 }
 
 }  // namespace

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <unordered_map>
 
 #include "palpate/core/error.h"
+#include "palpate/vdb/text.h"
 #include "survey/label_runs.h"
 
 namespace palpate::vdb {
@@ -258,10 +258,9 @@ std::map<int, std::uint64_t> countLabels(const Image& image) {
     all.wrong = std::min(all.wrong, part.wrong);
   });
   if (all.wrong < image.values.size()) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.9g", static_cast<double>(image.values[all.wrong]));
     failNotLabels(image, std::string("this is no label image: ") + placeOf(image, all.wrong) +
-                             " is " + text + ", and labels are whole numbers from 0 to " +
+                             " is " + shortNumber(image.values[all.wrong], 9) +
+                             ", and labels are whole numbers from 0 to " +
                              std::to_string(kMostLabel));
   }
   std::map<int, std::uint64_t> counts;

@@ -1,0 +1,32 @@
+#pragma once
+/// Numbers, names and lists, as messages show them.
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace palpate {
+
+/// With at most `digits` that count.
+[[nodiscard]] std::string shortNumber(double value, int digits);
+/// With as few digits as read back exactly.
+[[nodiscard]] std::string exactNumber(double value);
+
+/// `text` in single quotes, on one line and not too long.
+[[nodiscard]] std::string inQuotes(std::string_view text);
+
+/// "a, b, c": shown(item) of each, or the member of each that it is. Those that show as nothing are left out.
+template <typename Items, typename Shown = std::identity>
+[[nodiscard]] std::string joined(const Items& items, std::string_view between = ", ",
+                                 Shown shown = {}) {
+  std::string text;
+  for (const auto& item : items) {
+    const auto& part = std::invoke(shown, item);
+    const std::string_view one = part;
+    if (!text.empty() && !one.empty()) text += between;
+    text += one;
+  }
+  return text;
+}
+
+}  // namespace palpate

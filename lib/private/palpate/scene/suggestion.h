@@ -1,0 +1,25 @@
+#pragma once
+/// What to do about a name that nobody knows.
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "palpate/core/text.h"
+#include "palpate/scene/scene_file.h"
+
+namespace palpate {
+
+/// "did you mean 'x'?" if a name of one of `items` is close to `word`, else `otherwise`. `name` is the member of each
+/// that is its name.
+template <typename Items, typename Name = std::identity>
+[[nodiscard]] std::string suggestionFor(std::string_view word, const Items& items,
+                                        std::string otherwise = {}, Name name = {}) {
+  std::vector<std::string_view> names;
+  for (const auto& item : items) names.emplace_back(std::invoke(name, item));
+  const std::string close = suggest(word, names);
+  return close.empty() ? otherwise : "did you mean " + inQuotes(close) + "?";
+}
+
+}  // namespace palpate

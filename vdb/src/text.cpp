@@ -1,0 +1,77 @@
+#include "palpate/vdb/text.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+
+namespace palpate::vdb {
+
+std::string shortNumber(double value, int digits) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+  return text.data();
+}
+
+std::string exactNumber(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end.ptr};
+}
+
+std::string inGigabytes(double bytes) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.3f GB", bytes * 1e-9);
+  return text.data();
+}
+
+std::string inMillimetres(double metres, int digits) {
+  return shortNumber(metres * 1e3, digits) + " mm";
+}
+
+std::string inMillimetres(const Vec3& metres, int digits) {
+  const Vec3 p = metres * 1e3;
+  return "(" + shortNumber(p.x, digits) + ", " + shortNumber(p.y, digits) + ", " +
+         shortNumber(p.z, digits) + ") mm";
+}
+
+std::string eachInMillimetres(const Vec3& metres, int digits) {
+  return "(" + inMillimetres(metres.x, digits) + ", " + inMillimetres(metres.y, digits) + ", " +
+         inMillimetres(metres.z, digits) + ")";
+}
+
+std::string listOf(const std::vector<int>& labels) {
+  std::string list;
+  for (const int label : labels) list += (list.empty() ? "" : ", ") + std::to_string(label);
+  return list;
+}
+
+std::string_view trimmed(std::string_view text) noexcept {
+  constexpr std::string_view kBlanks = " \t\r\n\v\f";
+  const auto first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+std::string lowerCase(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return out;
+}
+
+bool hasExtension(std::string_view path, std::string_view extension) {
+  return lowerCase(path).ends_with(lowerCase(extension));
+}
+
+std::string extensionOf(const std::string& path) {
+  return lowerCase(std::filesystem::path(path).extension().string());
+}
+
+std::string fileName(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+}  // namespace palpate::vdb
