@@ -117,8 +117,8 @@ std::vector<Fault> faults() {
     return Fault{name,  std::move(prepare), kEnded, kFaulty, SafetyFault::kSilence, kSilentText,
                  within};
   };
-  const auto goesOn = [](const char* name, std::function<void(World&, Rig&)> prepare,
-                         double within) {
+  const auto goes_on = [](const char* name, std::function<void(World&, Rig&)> prepare,
+                          double within) {
     return Fault{name,
                  std::move(prepare),
                  ServoExit::kStopped,
@@ -144,7 +144,7 @@ std::vector<Fault> faults() {
       silent("RepliesAreGarbage", replying([](Reply& reply) { reply.assign(16, 0xEE); })),
       silent("RepliesLackTheirEnd", replying([](Reply& reply) { reply.back() = 'A'; })),
       silent("NoReplies", replying(nothing)),
-      goesOn("NoRepliesForAWhile", replying(4, nothing), kSilence),
+      goes_on("NoRepliesForAWhile", replying(4, nothing), kSilence),
       silent(
           "TheClockJumpsAheadInSilence",
           [](World& world, Rig& rig) {
@@ -172,13 +172,13 @@ std::vector<Fault> faults() {
        [](World& world, Rig&) { world.tick = [] { return Vec3(std::nan("")); }; }, kEnded, kFaulty,
        SafetyFault::kNotFinite, "readings or forces were not finite, one after the other",
        kNext + 1.0},
-      goesOn(
+      goes_on(
           "OneForceIsNotFinite",
           [](World& world, Rig&) {
             world.tick = [n = 0]() mutable { return n++ == 0 ? Vec3(0.0, kInfinity, 0.0) : kPush; };
           },
           kNext + 1.0),
-      goesOn("TheLoopHangsForAWhile", hanging(40), kHang),
+      goes_on("TheLoopHangsForAWhile", hanging(40), kHang),
       {"TheLoopHangs", hanging(150), kEnded, kFaulty, SafetyFault::kHung,
        "the servo loop stood still for too long", kHang},
       {"ItIsStopped",

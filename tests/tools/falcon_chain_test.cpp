@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "palpate/core/math.h"
+#include "palpate/devices/falcon.h"
 #include "tools/helpers.h"
 
 namespace palpate::testing {
@@ -77,9 +78,8 @@ class FalconChain : public ::testing::Test {
   /// is pulled if that is 0.
   CommandResult run(std::vector<std::string> arguments, std::size_t at = 1'000'000,
                     int signal = 0) {
-    for (const char* more : {"--device", "falcon", "--descriptor", "100"}) {
-      arguments.emplace_back(more);
-    }
+    if (arguments.front() == "touch") arguments.insert(arguments.end(), {"--device", "falcon"});
+    arguments.insert(arguments.end(), {"--descriptor", "100"});
     const Environment world(
         {{"LD_PRELOAD", test::buildFolder() + "/tests/libpalpate_fake_falcon.so"},
          {"FAKE_FALCON_HAND", folder_.path() + "/hand"},
@@ -184,6 +184,28 @@ TEST_F(FalconChain, IntoAScannedHeadAgainstTheDuraFromInsideIntoTheThalamusAndOu
                                                std::stod(cells[3]) - std::stod(cells[6])));
   }
   EXPECT_GT(most_held, 1e-3);
+}
+
+TEST_F(FalconChain, ASelfTestAndACalibrationReadWhereTheGripIsHeldAndPushNobody) {
+  (void)folder_.file("hand", "0 0.01 0 0.005\n");
+  const CommandResult tested = run({"devices", "--test", "falcon", "--seconds", "2", "--json"});
+  ASSERT_EQ(tested.exit_code, 0) << tested.err << tested.out;
+  const Json result = parseOnly(tested)["result"];
+  EXPECT_EQ(result["state"], "active");
+  EXPECT_EQ(result["fault"], "no fault");
+  EXPECT_EQ(result["jumps"], 0);
+  // A reply each millisecond of the Falcon's time, and half a microsecond for each look at the clock: some of them a turn.
+  EXPECT_NEAR(result["ticks"].get<double>(), 1950.0, 50.0);
+  EXPECT_NEAR(result["interval_ns"]["p50"].get<double>(), 1.05e6, 0.05e6);
+
+  const CommandResult calibrated = run({"devices", "--calibrate", "constants", "--seconds", "2"});
+  ASSERT_EQ(calibrated.exit_code, 0) << calibrated.err;
+  const devices::FalconCalibration read = devices::readFalconCalibration(folder_.path("constants"));
+  // Half a count of each arm is at most 0.1 mm.
+  EXPECT_LT(glm::length(read.origin - Vec3(0.01, 0.0, 0.13)), 1e-4);
+  for (const Numbers& force : columns(folder_.path("motors"), 0, 0, 4)) {
+    ASSERT_EQ(length(force), 0.0);
+  }
 }
 
 // At command 2700 the bowl's bottom is pressed from inside.
