@@ -1,4 +1,5 @@
-// A Falcon in a closed loop, through the libusb that everybody uses: how stiff a wall it holds, and the whole way through a scene.
+// A Falcon in a closed loop, through the libusb that everybody uses: how stiff a wall it holds, and the whole way
+// through a scene.
 
 #ifdef PALPATE_LIBUSB
 
@@ -27,8 +28,8 @@ void expectLetGo(Rig& rig) {
   EXPECT_EQ(rig.usb.pending(), 0);
 }
 
-/// [N/m] of a wall at which a mass neither comes to rest nor swings up: the exact discrete system, in which a force that is
-/// computed from the reading at the end of one turn is held over the next, has a determinant of 1.
+/// [N/m] of a wall at which a mass neither comes to rest nor swings up: the exact discrete system, in which a force
+/// that is computed from the reading at the end of one turn is held over the next, has a determinant of 1.
 double limitOf(double mass, double damping) {
   constexpr double kPeriod = 1e-3;  // [s]
   const double e = std::exp(-damping * kPeriod / mass);
@@ -75,8 +76,8 @@ TEST(FalconLoop, AWallIsHeldWithoutAHiddenSample) {
   }
 }
 
-/// [m] The largest swing about its mean of the grip, which a hand pushes steadily against a wall of `stiffness` [N/m]: early and
-/// late, by scene, session, servo loop, driver and libusb. It is displaced by 2 mm once the push is there.
+/// [m] The largest swing about its mean of the grip, which a hand pushes steadily against a wall of `stiffness` [N/m]:
+/// early and late, by scene, session, servo loop, driver and libusb. It is displaced by 2 mm once the push is there.
 std::pair<double, double> swingAt(double stiffness, double mass, double damping) {
   SceneDescription scene = parseScene(
       "{palpate: 1, length: m, materials: {wall: {stiffness: " + std::to_string(stiffness) +
