@@ -112,7 +112,8 @@ TEST(FalconPacket, AByteThatCannotBeMakesAPacketNone) {
   }
 }
 
-/// Bytes as a line may bring them: packets, damaged ones, and garbage. Without memory of the heap, which sanitizers watch dearly.
+/// Bytes as a line may bring them: packets, damaged ones, and garbage. Without memory of the heap, which sanitizers
+/// watch dearly.
 class AnyBytes {
  public:
   explicit AnyBytes(unsigned seed) : random_(seed) {}
@@ -130,7 +131,8 @@ class AnyBytes {
     }
     const std::size_t size = random_() % bytes_.size();
     for (std::size_t k = 0; k < size; ++k) {
-      bytes_[k] = static_cast<std::uint8_t>(kind == 2 ? "<>AP@Q"[random_() % 6] : random_());
+      const auto any = static_cast<std::uint8_t>(random_());
+      bytes_[k] = kind == 2 ? static_cast<std::uint8_t>("<>AP@Q"[any % 6]) : any;
     }
     return std::span(bytes_).first(size);
   }

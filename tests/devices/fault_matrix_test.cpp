@@ -1,7 +1,7 @@
-// What can go wrong while a hand is pushed, one after the other, on a Falcon behind the libusb that everybody uses, in the
-// device's own time: each leads to its state, its text, and zero force in time; and plugged in again, to homing and a ramp.
-// Faults of opening are in falcon_device_test.cpp, of a record in replay_device_test.cpp and tools/touch_record_test.cpp, of signals in
-// tools/falcon_chain_test.cpp.
+// Faults while a Falcon behind the libusb that everybody uses pushes a hand, in the device's own time: each leads to its
+// state, its text, and zero force in time; plugged in again, the device is homed and ramped. Faults of opening are in
+// falcon_device_test.cpp, of a record in replay_device_test.cpp and tools/touch_record_test.cpp, of signals in
+// tools/falcon_chain_test.cpp, of access in usb/falcon_node_test.cpp.
 
 #ifdef PALPATE_LIBUSB
 
@@ -27,7 +27,7 @@ constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
 constexpr std::uint64_t kBegins = 1000;  // the command at which it goes wrong, the ramp over
 const Vec3 kPush(0.0, 0.0, 1.0);         // [N]
 
-/// What the world of one case is made of, and what was seen of it.
+/// One case: the mischief of the world, and how the device fared.
 struct World {
   VirtualClock clock;
   std::function<int(Step)> kernel;    ///< errno of a step of libusb's, from kBegins on
@@ -98,8 +98,8 @@ constexpr const char* kGoneText = "the device reported a fault";
 constexpr const char* kSilentText = "the device gave no valid reply for too long";
 constexpr const char* kNothing = "no fault";
 
-// Zero force comes with the next command, 1 ms. In silence it comes after 10 ms and the wait of the reading that is under way,
-// of four packets at most, 1 ms each; and the command takes 1 ms.
+// Zero force comes with the next command, 1 ms. In silence it comes after 10 ms and the wait of the reading that is
+// under way, of four packets at most, 1 ms each; and the command takes 1 ms.
 constexpr double kNext = 1.0;
 constexpr double kSilence = 10.0 + 4.0 + 1.0;
 // The thread that watches cuts 20 ms after the last turn, which was up to 1 ms before.
@@ -117,8 +117,8 @@ std::vector<Fault> faults() {
     return Fault{name,  std::move(prepare), kEnded, kFaulty, SafetyFault::kSilence, kSilentText,
                  within};
   };
-  const auto goesOn = [](const char* name, std::function<void(World&, Rig&)> prepare,
-                         double within) {
+  const auto goes_on = [](const char* name, std::function<void(World&, Rig&)> prepare,
+                          double within) {
     return Fault{name,
                  std::move(prepare),
                  ServoExit::kStopped,
@@ -144,7 +144,7 @@ std::vector<Fault> faults() {
       silent("RepliesAreGarbage", replying([](Reply& reply) { reply.assign(16, 0xEE); })),
       silent("RepliesLackTheirEnd", replying([](Reply& reply) { reply.back() = 'A'; })),
       silent("NoReplies", replying(nothing)),
-      goesOn("NoRepliesForAWhile", replying(4, nothing), kSilence),
+      goes_on("NoRepliesForAWhile", replying(4, nothing), kSilence),
       silent(
           "TheClockJumpsAheadInSilence",
           [](World& world, Rig& rig) {
@@ -172,13 +172,13 @@ std::vector<Fault> faults() {
        [](World& world, Rig&) { world.tick = [] { return Vec3(std::nan("")); }; }, kEnded, kFaulty,
        SafetyFault::kNotFinite, "readings or forces were not finite, one after the other",
        kNext + 1.0},
-      goesOn(
+      goes_on(
           "OneForceIsNotFinite",
           [](World& world, Rig&) {
             world.tick = [n = 0]() mutable { return n++ == 0 ? Vec3(0.0, kInfinity, 0.0) : kPush; };
           },
           kNext + 1.0),
-      goesOn("TheLoopHangsForAWhile", hanging(40), kHang),
+      goes_on("TheLoopHangsForAWhile", hanging(40), kHang),
       {"TheLoopHangs", hanging(150), kEnded, kFaulty, SafetyFault::kHung,
        "the servo loop stood still for too long", kHang},
       {"ItIsStopped",
@@ -271,7 +271,8 @@ TEST_P(FaultMatrix, LeadsToItsStateItsTextAndZeroForceInTime) {
       EXPECT_EQ(rig.emulator.motors, (std::array<int, 3>{}));
     } else {
       std::printf("  %-32s the loop ended after %.1f ms: %s\n", fault.name, over, fault.text);
-      // At once, or when the next command is sent, which waits for two readings of up to 4 ms; or when the silence is over.
+      // At once, or when the next command is sent, which waits for two readings of up to 4 ms; or when the silence is
+      // over.
       EXPECT_LE(over, fault.why == SafetyFault::kDevice ? 2.0 * 4.0 + 2.0 : 100.0 + 10.0);
     }
   }

@@ -9,9 +9,9 @@
 
 namespace palpate::devices {
 
-/// While it lives, `descriptor()` is what the device's node would be when opened: the test executable defines ioctl(), which
-/// libusb then calls, and answers for it. Everything between the driver and the kernel is the real thing. Transfers end when
-/// they are reaped; libusb asks again and again meanwhile, as the descriptor is always ready.
+/// While it lives, `descriptor()` is what the device's node would be when opened: the test executable defines ioctl(),
+/// which libusb then calls, and answers for it. Everything between the driver and the kernel is the real thing.
+/// Transfers end when they are reaped; libusb asks again and again meanwhile, as the descriptor is always ready.
 class UsbfsEmulation {
  public:
   explicit UsbfsEmulation(FalconEmulator& falcon);

@@ -3,9 +3,9 @@
 
   tests/soak/soak.py [--seconds 600] [--palpate build/release/bin/palpate] [--keep FOLDER]
 
-A hand on the simulated Excalibur goes in and out of the scanned head (data/scenes/head.yaml) at 1 kHz by the clock, along the needle's
-way and against the dura beside it, while another palpate bakes grids on every core, again and again. Reported: overruns, how late
-turns began (50 %, 99.9 %, most), ticks, memory. It fails (exit status 1) if
+A hand on the simulated Excalibur goes in and out of the scanned head (data/scenes/head.yaml) at 1 kHz by the clock,
+along the needle's way and against the dura beside it, while another palpate bakes grids on every core, again and again.
+Reported: overruns, how late turns began (50 %, 99.9 %, most), ticks, memory. It fails (exit status 1) if
   - a force is not finite, or longer than the device's maximum;
   - a tick is missing in the record;
   - the process's memory grows by half of what one forgotten block in each tick would take;
@@ -29,8 +29,8 @@ import numpy
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENE = ROOT / "data/scenes/head.yaml"
 RATE = 1000  # [Hz]
-# Corners of the way [m], in the world of the scene, and when the hand is there [s]: along the needle's way to the thalamus and back, then
-# aside of the opening in the dura and back against it from inside.
+# Corners of the way: when the hand is there [s], how far along the needle's way and how far aside of it [m]. To the
+# thalamus and back, then aside of the opening in the dura and back against it from inside.
 BEGIN = numpy.array([-0.100, -0.042, 0.060])
 END = numpy.array([-0.012, -0.018, 0.008])
 ALONG = (END - BEGIN) / numpy.linalg.norm(END - BEGIN)
@@ -94,11 +94,11 @@ class Bakes:
 
 
 def touch(palpate, folder, seconds):
-    """Runs it beside the bakes. Its report, samples of its memory (s since the first tick, bytes), and how many bakes ended."""
+    """Runs it beside the bakes. Its report, samples of its memory (s since it began, bytes), the number of bakes."""
     record = folder / "felt.npy"
     record.unlink(missing_ok=True)
-    command = [palpate, "touch", str(SCENE), "--device", "virtual:excalibur", "--path", str(folder / "way.csv"), "--realtime",
-               "--record", str(record), "--states", "60000", "--force", "--json"]
+    command = [palpate, "touch", str(SCENE), "--device", "virtual:excalibur", "--path", str(folder / "way.csv"),
+               "--realtime", "--record", str(record), "--states", "60000", "--force", "--json"]
     # The head's grids are made first, so that the time is spent in the loop.
     subprocess.run([palpate, "explain", str(SCENE), "--json"], check=True, stdout=subprocess.DEVNULL)
     with open(folder / "report.json", "w") as out, open(folder / "talk.txt", "w") as talk:
@@ -160,21 +160,24 @@ def main():
         if bakes < 1:
             failures.append("no bake ended meanwhile")
 
-        replay = subprocess.run([options.palpate, "replay", str(folder / "felt.npy"), "--json"], capture_output=True, text=True)
+        replay = subprocess.run([options.palpate, "replay", str(folder / "felt.npy"), "--json"],
+                                capture_output=True, text=True)
         again = json.loads(replay.stdout) if replay.stdout else {}
         if replay.returncode != 0:
             failures.append("the record is not felt anew bit for bit: " + replay.stdout + replay.stderr)
 
         late = report["realtime"]["late_ns"]
-        print(f"ticks        {len(rows)} in {report['seconds']:.1f} s, of {int(options.seconds * RATE) + 1} of the path")
+        asked = int(options.seconds * RATE) + 1
+        print(f"ticks        {len(rows)} in {report['seconds']:.1f} s, of {asked} of the path")
         print(f"overruns     {report['realtime']['overruns']}, real-time priority {report['realtime']['elevated']}")
         print("late         50 %%: %.1f us, 99 %%: %.1f us, 99.9 %%: %.1f us, at most %.1f us"
               % tuple(1e-3 * late[each] for each in ("p50", "p99", "p999", "max")))
         work = report["realtime"]["work_ns"]
         print("turn         50 %%: %.1f us, 99.9 %%: %.1f us, at most %.1f us"
               % tuple(1e-3 * work[each] for each in ("p50", "p999", "max")))
-        print(f"force        all finite, at most {longest:.2f} N of {most:g} N" if finite else "force        not finite")
-        print(f"memory       {settled[0][1] / 1e6:.2f} MB, grew by {growth / 1e3:.1f} kB, of {permitted / 1e3:.0f} kB permitted")
+        print(f"force        {'all finite' if finite else 'not finite'}, at most {longest:.2f} N of {most:g} N")
+        print(f"memory       {settled[0][1] / 1e6:.2f} MB, grew by {growth / 1e3:.1f} kB, "
+              f"of {permitted / 1e3:.0f} kB permitted")
         print(f"bakes        {bakes} beside it")
         print(f"felt anew    {again.get('compared')} ticks, {again.get('different')} different")
         for failure in failures:

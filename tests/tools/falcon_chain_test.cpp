@@ -1,4 +1,5 @@
-// `palpate touch` with a Falcon that is not there, behind the libusb that everybody uses: from the command line to the kernel.
+// `palpate touch` with a Falcon that is not there, behind the libusb that everybody uses: from the command line to the
+// kernel.
 
 // The hand of the emulated Falcon goes along a path, held by a spring of 250 N/m.
 
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "palpate/core/math.h"
+#include "palpate/devices/falcon.h"
 #include "tools/helpers.h"
 
 namespace palpate::testing {
@@ -73,13 +75,12 @@ class Environment {
 
 class FalconChain : public ::testing::Test {
  protected:
-  /// The command with a Falcon on descriptor 100, in the Falcon's time. At command `at` the process gets `signal`, or the cable
-  /// is pulled if that is 0.
+  /// The command with a Falcon on descriptor 100, in the Falcon's time. At command `at` the process gets `signal`, or
+  /// the cable is pulled if that is 0.
   CommandResult run(std::vector<std::string> arguments, std::size_t at = 1'000'000,
                     int signal = 0) {
-    for (const char* more : {"--device", "falcon", "--descriptor", "100"}) {
-      arguments.emplace_back(more);
-    }
+    if (arguments.front() == "touch") arguments.insert(arguments.end(), {"--device", "falcon"});
+    arguments.insert(arguments.end(), {"--descriptor", "100"});
     const Environment world(
         {{"LD_PRELOAD", test::buildFolder() + "/tests/libpalpate_fake_falcon.so"},
          {"FAKE_FALCON_HAND", folder_.path() + "/hand"},
@@ -95,8 +96,8 @@ class FalconChain : public ::testing::Test {
     return out;
   }
 
-  /// Feels `scene` with the Falcon for `seconds`, at one place with `most` [N] or more, and again with the virtual device on the
-  /// same way of the hand: the motors must have given the virtual device's forces. Its report.
+  /// Feels `scene` with the Falcon for `seconds`, at one place with `most` [N] or more, and again with the virtual
+  /// device on the same way of the hand: the motors must have given the virtual device's forces. Its report.
   Json feel(const std::string& scene, const std::string& seconds, double most,
             const Turn& turn = {}) {
     const CommandResult result = run({"touch", scene, "--seconds", seconds, "--trace", "felt.csv",
@@ -134,8 +135,8 @@ class FalconChain : public ::testing::Test {
       double worst = 0.0;
       for (std::size_t i = 0; i < asked.size() && i + offset < given.size(); ++i) {
         largest = std::max(largest, length(asked[i]));
-        // What half a count of each motor is there; and the arms are taken where the encoders say, which turns a force by less
-        // than two parts in a thousand.
+        // Half a count of each motor, in N at that place; and the arms are taken where the encoders say, which turns a
+        // force by less than two parts in a thousand.
         const double allowed = given[i + offset][3] + 2e-3 * length(asked[i]);
         worst = std::max(worst, distance(asked[i], given[i + offset]) / allowed);
       }
@@ -163,8 +164,9 @@ TEST_F(FalconChain, InByTheMouthAlongTheWallAndOutAndTheMotorsGiveWhatTheSceneAs
   EXPECT_EQ(runPalpate({"replay", "felt.npy"}, folder_.path()).exit_code, 0);
 }
 
-// Through the incision and the opened dura 15 mm deep into the brain, 14 mm aside, back against the dura from inside, and by the
-// same way on into the thalamus and out again. In the device's frame of the scene, whose z points out of the head.
+// Through the incision and the opened dura 15 mm deep into the brain, 14 mm aside, back against the dura from inside,
+// and by the same way on into the thalamus and out again. In the device's frame of the scene, whose z points out of the
+// head.
 TEST_F(FalconChain, IntoAScannedHeadAgainstTheDuraFromInsideIntoTheThalamusAndOut) {
   (void)folder_.file("hand",
                      "0.8 0 0 0.042\n1.8 0 0 -0.004\n2.3 0.0037 -0.0135 -0.004\n"
@@ -173,8 +175,8 @@ TEST_F(FalconChain, IntoAScannedHeadAgainstTheDuraFromInsideIntoTheThalamusAndOu
   const Json report = feel(scenePath("head.yaml"), "8.2", 1.0, {Vec3(24.0, -88.0, 0.0), 60.3});
   EXPECT_EQ(regionsOf(report), (std::vector<std::string>{"outside", "skin", "brain", "thalamus",
                                                          "brain", "skin", "outside"}));
-  // Aside of the opening the dura holds the hand in, whose spring and the wall's of 400 N/m are in series: the proxy stays at the
-  // wall, 1 mm or more in front of the hand.
+  // Aside of the opening the dura holds the hand in, whose spring and the wall's of 400 N/m are in series: the proxy
+  // stays at the wall, 1 mm or more in front of the hand.
   double most_held = 0.0;
   for (const std::string& line : linesOf(textOf(folder_.path("felt.csv")))) {
     const std::vector<std::string> cells = cellsOf(line);
@@ -184,6 +186,29 @@ TEST_F(FalconChain, IntoAScannedHeadAgainstTheDuraFromInsideIntoTheThalamusAndOu
                                                std::stod(cells[3]) - std::stod(cells[6])));
   }
   EXPECT_GT(most_held, 1e-3);
+}
+
+TEST_F(FalconChain, ASelfTestAndACalibrationReadWhereTheGripIsHeldAndPushNobody) {
+  (void)folder_.file("hand", "0 0.01 0 0.005\n");
+  const CommandResult tested = run({"devices", "--test", "falcon", "--seconds", "2", "--json"});
+  ASSERT_EQ(tested.exit_code, 0) << tested.err << tested.out;
+  const Json result = parseOnly(tested)["result"];
+  EXPECT_EQ(result["state"], "active");
+  EXPECT_EQ(result["fault"], "no fault");
+  EXPECT_EQ(result["jumps"], 0);
+  // A reply each millisecond of the Falcon's time, and half a microsecond for each look at the clock: some of them a
+  // turn.
+  EXPECT_NEAR(result["ticks"].get<double>(), 1950.0, 50.0);
+  EXPECT_NEAR(result["interval_ns"]["p50"].get<double>(), 1.05e6, 0.05e6);
+
+  const CommandResult calibrated = run({"devices", "--calibrate", "constants", "--seconds", "2"});
+  ASSERT_EQ(calibrated.exit_code, 0) << calibrated.err;
+  const devices::FalconCalibration read = devices::readFalconCalibration(folder_.path("constants"));
+  // Half a count of each arm is at most 0.1 mm.
+  EXPECT_LT(glm::length(read.origin - Vec3(0.01, 0.0, 0.13)), 1e-4);
+  for (const Numbers& force : columns(folder_.path("motors"), 0, 0, 4)) {
+    ASSERT_EQ(length(force), 0.0);
+  }
 }
 
 // At command 2700 the bowl's bottom is pressed from inside.

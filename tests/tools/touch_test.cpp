@@ -216,7 +216,14 @@ TEST_F(Touch, RealTimeKeepsToTheClockAndReportsOverruns) {
   const CommandResult result = touch({"--press", "0,0,-40", "--normal", "0,0,-1", "--depth", "0.5",
                                       "--clearance", "0.5", "--hold", "0", "--realtime", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(parseOnly(result)["realtime"]["overruns"].is_number());
+  const Json realtime = parseOnly(result)["realtime"];
+  EXPECT_EQ(realtime["clock"], "machine");
+  EXPECT_TRUE(realtime["overruns"].is_number());
+  // A turn never begins before it is due; the histogram's quantiles rise.
+  EXPECT_GE(realtime["late_ns"]["p50"], 0);
+  EXPECT_LE(realtime["late_ns"]["p50"], realtime["late_ns"]["p999"]);
+  EXPECT_LE(realtime["late_ns"]["p999"], realtime["late_ns"]["max"]);
+  EXPECT_GT(realtime["work_ns"]["max"], 0);
 }
 
 TEST_F(Touch, AnInterruptEndsTheLoopAndKeepsWhatWasFelt) {

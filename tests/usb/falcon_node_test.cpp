@@ -1,5 +1,5 @@
-// A Falcon that is found, opened, unplugged and plugged in again by libusb's own search: umockdev stands for sysfs, udev and the
-// device's node, the emulation for the kernel behind the node.
+// A Falcon that is found, opened, unplugged and plugged in again by libusb's own search: umockdev stands for sysfs,
+// udev and the device's node, the emulation for the kernel behind the node.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
