@@ -29,14 +29,20 @@ class OracleRenderer final : public rivals::RivalRenderer {
   void forget() noexcept override { has_begun_ = false; }
 
   [[nodiscard]] TickResult step(const HipState& hip) noexcept override {
-    if (!std::exchange(has_begun_, true)) proxy_ = hip.position;
-    proxy_ = oracle::solveOracle(set_, proxy_, hip.position).proxy;
+    const bool has_begun = std::exchange(has_begun_, true);
+    if (!has_begun) proxy_ = hip.position;
+    // Where the hand rests, the proxy is at its minimum already.
+    if (!has_begun || hip.position != hand_) {
+      proxy_ = oracle::solveOracle(set_, proxy_, hip.position).proxy;
+    }
+    hand_ = hip.position;
     if (glm::distance(proxy_, hip.position) < 1e-12) return untouched(hip);
     return spring(hip, proxy_, solids().front(), region());
   }
 
   oracle::FeasibleSet set_;
   Vec3 proxy_{0.0, 0.0, 0.0};  ///< [m]
+  Vec3 hand_{0.0, 0.0, 0.0};   ///< [m] of the last tick
   bool has_begun_ = false;
 };
 
