@@ -69,8 +69,7 @@ const FieldReader::Built& FieldReader::buildNamed(const std::string& name, Mark 
   const Document& document = loader_.document();
   const auto found = named_.find(name);
   if (found == named_.end()) {
-    throw document.error(mark, "scene.unknown_field", "there is no field " + inQuotes(name),
-                         suggestOrList(name, names(), "fields: "));
+    throw unknownName(document, mark, "field", name, names());
   }
   Named& named = found->second;
   if (!path_.empty()) named_.find(path_.back())->second.uses.push_back(name);
@@ -171,9 +170,7 @@ FieldReader::Built FieldReader::buildRegistered(const Node::Entry& kind) {
   const auto found = registry_.fields.find(kind.key);
   if (found == registry_.fields.end()) {
     if (words != nullptr) {
-      throw document.error(kind.key_mark, "scene.no_reader",
-                           "this program reads no " + inQuotes(kind.key) + " fields",
-                           "palpate::vdb reads them, and is not part of this program");
+      throw noReader(document, kind.key_mark, inQuotes(kind.key) + " fields");
     }
     throw document.error(kind.key_mark, "scene.unknown_kind",
                          "there is no kind of field " + inQuotes(kind.key),

@@ -100,8 +100,7 @@ std::string RegionReader::readSheetName(const MapReader& reader) const {
   std::string name = readText(document, sheet, "'sheet'");
   const std::vector<std::string_view> names = namesOf(scene_.sheets);
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    throw document.error(sheet.mark, "scene.unknown_sheet", "there is no sheet " + inQuotes(name),
-                         suggestOrList(name, names, "sheets: "));
+    throw unknownName(document, sheet.mark, "sheet", name, names);
   }
   return name;
 }
@@ -121,9 +120,7 @@ void RegionReader::readAfter(const Node& after, PortDescription& port) const {
     AfterDescription before = readBefore(item);
     const Node* named = item.kind == Node::Kind::kMap ? item.find("port") : &item;
     if (std::find(names.begin(), names.end(), before.port) == names.end()) {
-      throw document.error(named->mark, "scene.unknown_port",
-                           "there is no port " + inQuotes(before.port),
-                           suggestOrList(before.port, names, "ports: "));
+      throw unknownName(document, named->mark, "port", before.port, names);
     }
     if (before.port == port.name) {
       throw document.error(named->mark, "scene.cycle",

@@ -54,10 +54,7 @@ const Material& RegionReader::material(const Node& node, const std::string& what
   if (found == scene_.materials.end()) {
     std::vector<std::string_view> names = namesOf(scene_.materials);
     if (what == kWallKey) names.push_back(kAbsent);
-    std::string hint = suggestOrList(name, names, "materials: ");
-    if (hint.empty()) hint = "define it in `materials`";
-    throw loader_.document().error(node.mark, "scene.unknown_material",
-                                   "there is no material " + inQuotes(name), std::move(hint));
+    throw unknownName(loader_.document(), node.mark, "material", name, names);
   }
   return *found;
 }
@@ -105,9 +102,7 @@ void RegionReader::readSurface(const MapReader& reader, LayerDescription& layer)
   }
   const auto kind = registry_.layers.find(surface->key);
   if (kind == registry_.layers.end()) {
-    throw document.error(surface->key_mark, "scene.no_reader",
-                         "this program reads no images, so no " + inQuotes(surface->key),
-                         "palpate::vdb reads them, and is not part of this program");
+    throw noReader(document, surface->key_mark, "images, so no " + inQuotes(surface->key));
   }
   MapReader values(loader_, surface->value, inQuotes(surface->key),
                    reader.words(surface->key).type);
@@ -159,9 +154,7 @@ void RegionReader::requireRegion(const Node& node, bool globs) const {
     return;
   }
   if (std::find(regions.begin(), regions.end(), name) == regions.end()) {
-    throw loader_.document().error(node.mark, "scene.unknown_region",
-                                   "there is no region " + inQuotes(name),
-                                   suggestOrList(name, regions, "regions: "));
+    throw unknownName(loader_.document(), node.mark, "region", name, regions);
   }
 }
 

@@ -23,10 +23,7 @@ std::shared_ptr<void> FileLoader::image(const std::string& name, Mark place) con
   if (found != images_.end()) return found->second;
   std::vector<std::string_view> names;
   for (const auto& [known, image] : images_) names.push_back(known);
-  std::string hint = suggestOrList(name, names, "images: ");
-  if (hint.empty()) hint = "define it in `images`";
-  throw document_.error(place, "scene.unknown_image", "there is no image " + inQuotes(name),
-                        std::move(hint));
+  throw unknownName(document_, place, "image", name, names);
 }
 
 MaterialMapPtr FileLoader::map(const Node& node, const ParameterKind& of) const {
@@ -40,8 +37,7 @@ MaterialMapPtr FileLoader::map(const Node& node, const ParameterKind& of) const 
     return map;
   }
   if (registry_.maps.empty()) {
-    throw document_.error(node.mark, "scene.no_reader", "this program reads no maps of parameters",
-                          "palpate::vdb reads them, and is not part of this program");
+    throw noReader(document_, node.mark, "maps of parameters");
   }
   for (const auto& [kind, read] : registry_.maps) (void)keys.optional(kind);
   keys.finish();
@@ -81,8 +77,7 @@ void FileLoader::readImages(const Node& images) {
   for (const Node::Entry& entry : images.entries) {
     refuseEmpty(document_, entry);
     if (!registry_.image) {
-      throw document_.error(entry.key_mark, "scene.no_reader", "this program reads no images",
-                            "palpate::vdb reads them, and is not part of this program");
+      throw noReader(document_, entry.key_mark, "images");
     }
     MapReader reader(*this, entry.value, "the image " + inQuotes(entry.key), "image");
     images_[entry.key] = registry_.image(reader);

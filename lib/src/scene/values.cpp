@@ -209,6 +209,19 @@ std::size_t readChoice(const Document& document, const Node& node, const std::st
   return static_cast<std::size_t>(found - choices.begin());
 }
 
+Error unknownName(const Document& document, Mark mark, const std::string& kind,
+                  const std::string& name, const std::vector<std::string_view>& names) {
+  std::string hint = suggestOrList(name, names, kind + "s: ");
+  if (hint.empty()) hint = "define it in `" + kind + "s`";
+  return document.error(mark, "scene.unknown_" + kind, "there is no " + kind + " " + inQuotes(name),
+                        std::move(hint));
+}
+
+Error noReader(const Document& document, Mark mark, const std::string& what) {
+  return document.error(mark, "scene.no_reader", "this program reads no " + what,
+                        "palpate::vdb reads them, and is not part of this program");
+}
+
 void requireMap(const Document& document, const Node& node, const std::string& what) {
   if (node.kind != Node::Kind::kMap) throw wrongKind(document, node, what, "a map {key: value}");
 }

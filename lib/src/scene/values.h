@@ -48,6 +48,13 @@ void checkValue(const SceneLoader& loader, const Node& node, const KeyWords& key
                                      const std::string& what,
                                      const std::vector<std::string_view>& choices);
 
+/// There is no `kind` ("port") called so; those of `names` there are.
+[[nodiscard]] Error unknownName(const Document& document, Mark mark, const std::string& kind,
+                                const std::string& name,
+                                const std::vector<std::string_view>& names);
+/// What is written needs palpate::vdb, and the program has none. `what` it does not read.
+[[nodiscard]] Error noReader(const Document& document, Mark mark, const std::string& what);
+
 /// @throws Error unless `node` is a map.
 void requireMap(const Document& document, const Node& node, const std::string& what);
 /// @throws Error if the entry has no value; points at the key, because the value is nowhere.

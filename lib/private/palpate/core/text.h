@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// With at most `digits` that count.
+/// With at most `digits` significant digits.
 [[nodiscard]] std::string shortNumber(double value, int digits);
 /// With as few digits as read back exactly.
 [[nodiscard]] std::string exactNumber(double value);

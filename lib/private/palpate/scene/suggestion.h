@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "palpate/core/text.h"
@@ -19,7 +20,7 @@ template <typename Items, typename Name = std::identity>
   std::vector<std::string_view> names;
   for (const auto& item : items) names.emplace_back(std::invoke(name, item));
   const std::string close = suggest(word, names);
-  return close.empty() ? otherwise : "did you mean " + inQuotes(close) + "?";
+  return close.empty() ? std::move(otherwise) : "did you mean " + inQuotes(close) + "?";
 }
 
 }  // namespace palpate
