@@ -1,5 +1,7 @@
 // A hand in the loop on hard cases, below the budget of its device: as calm as it is with a brute-force oracle. And hands that
 // are dictated: what a sampled world gives falls with the period.
+//
+// One scene by its name: PALPATE_HARD_SCENE=corner-out.
 
 #include <gtest/gtest.h>
 
@@ -20,6 +22,12 @@
 
 namespace palpate::loops {
 namespace {
+
+/// Whether a scene is to be run.
+bool isAsked(const HardScene& scene) {
+  const char* const only = std::getenv("PALPATE_HARD_SCENE");
+  return only == nullptr || scene.name == only;
+}
 
 bool isSlow() { return std::getenv("PALPATE_SLOW_TESTS") != nullptr; }
 
@@ -141,6 +149,7 @@ TEST(HardCases, TheLoopIsAsCalmAsWithAnOracle) {
   const std::vector<std::string> few = {"flat", "ball-20", "two-balls", "friction-0.8", "rim"};
   int count = 0;
   for (const HardScene& scene : hardScenes()) {
+    if (!isAsked(scene)) continue;
     if (!isSlow() && std::find(few.begin(), few.end(), scene.name) == few.end()) continue;
     const ScenePtr compiled = compileHardScene(scene);
     const auto renderer = makeLoopRenderer("constraint", compiled);
@@ -169,7 +178,7 @@ TEST(HardCases, TheLoopIsAsCalmAsWithAnOracle) {
       }
     }
   }
-  EXPECT_GE(count, isSlow() ? 1000 : 9);
+  EXPECT_GT(count, 0);
 }
 
 TEST(HardCases, HollowsAreHeldDeeperThanTheirRadius) {

@@ -8,6 +8,7 @@
 
 #include "bake/solid.h"
 #include "named_progress.h"
+#include "palpate/core/text.h"
 #include "palpate/scene/units.h"
 #include "palpate/scene/vocabulary.h"
 #include "palpate/vdb/bake.h"

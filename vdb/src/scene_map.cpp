@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "palpate/core/text.h"
 #include "palpate/vdb/material_grid.h"
 #include "palpate/vdb/text.h"
 #include "scene_grid.h"

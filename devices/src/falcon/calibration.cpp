@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 #include "palpate/devices/falcon.h"
 
 namespace palpate::devices {
@@ -41,12 +42,6 @@ double& valueOf(FalconCalibration& calibration, const Entry& entry) {
   return (calibration.*entry.vector)[entry.axis];
 }
 
-std::string numberText(double value) {
-  std::array<char, 32> text{};
-  char* const end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
 Error lineError(const std::string& file, int line, const std::string& what) {
   Problem problem{"falcon.calibration", what, "a line is `name value`", file};
   problem.line = line;
@@ -70,8 +65,8 @@ void readLine(const std::string& text, const std::string& file, int number,
     const bool is_whole = end.ec == std::errc() && end.ptr == value.data() + value.size();
     if (!is_whole || !(read >= entry.least && read <= entry.most)) {
       throw lineError(file, number,
-                      name + " must be from " + numberText(entry.least) + " to " +
-                          numberText(entry.most) + " " + entry.unit + ", not " + value);
+                      name + " must be from " + exactNumber(entry.least) + " to " +
+                          exactNumber(entry.most) + " " + entry.unit + ", not " + value);
     }
     valueOf(into, entry) = read;
     return;
@@ -95,7 +90,7 @@ std::string textOf(const FalconCalibration& calibration) {
   std::string out =
       "# Constants of a Novint Falcon. Constants that are not listed keep their default.\n";
   for (const Entry& entry : kEntries) {
-    out += std::string(entry.name) + " " + numberText(valueOf(copy, entry)) + "  # " + entry.unit +
+    out += std::string(entry.name) + " " + exactNumber(valueOf(copy, entry)) + "  # " + entry.unit +
            "\n";
   }
   return out;

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "palpate/core/text.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/openvdb_access.h"
 #include "palpate/vdb/text.h"

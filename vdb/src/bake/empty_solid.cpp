@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bake/lost_plates.h"
+#include "palpate/core/text.h"
 #include "palpate/vdb/text.h"
 
 namespace palpate::vdb {

@@ -11,6 +11,7 @@
 #include "bake/query_cost.h"
 #include "named_progress.h"
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 #include "palpate/fields/csg.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"

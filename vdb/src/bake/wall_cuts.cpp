@@ -7,7 +7,7 @@
 
 #include "bake/bake_plan.h"
 #include "bake/edges.h"
-#include "mesh/box_tree.h"
+#include "palpate/core/bounds_tree.h"
 
 namespace palpate::vdb {
 namespace {
@@ -110,7 +110,7 @@ WallCuts::WallCuts(const Solid& solid, const Progress& progress) {
     for (const std::uint32_t v : solid.triangles[n]) boxes[n].include(solid.vertices[v]);
     boxes[n] = boxes[n].grownBy(kInPlane);
   }
-  const BoxTree tree(std::move(boxes));
+  const BoundsTree tree(boxes);
   constexpr std::size_t kBatch = 1024;
   struct Batch {
     std::vector<WallCut> cuts;
@@ -127,7 +127,7 @@ WallCuts::WallCuts(const Solid& solid, const Progress& progress) {
                            const Wall wall = wallOf(solid, mine);
                            if (wall.normal != Vec3(0.0)) {
                              std::vector<std::uint32_t> others;
-                             tree.forEachMeeting(tree.box(mine), [&](std::uint32_t other) {
+                             tree.visitMeeting(boxes[mine], [&](std::uint32_t other) {
                                if (other != mine) others.push_back(other);
                              });
                              std::sort(others.begin(), others.end());

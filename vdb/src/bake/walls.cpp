@@ -220,27 +220,27 @@ CrossingSearch::CrossingSearch(const Solid& solid) : solid_(solid) {}
 
 std::optional<Vec3> CrossingSearch::in(const Box3& box) {
   if (!tree_) {
-    std::vector<Box3> boxes(solid_.triangles.size());
-    for (std::size_t n = 0; n < boxes.size(); ++n) {
-      for (const std::uint32_t v : solid_.triangles[n]) boxes[n].include(solid_.vertices[v]);
+    boxes_.resize(solid_.triangles.size());
+    for (std::size_t n = 0; n < boxes_.size(); ++n) {
+      for (const std::uint32_t v : solid_.triangles[n]) boxes_[n].include(solid_.vertices[v]);
     }
-    tree_.emplace(std::move(boxes));
+    tree_.emplace(boxes_);
   }
   std::vector<std::uint32_t> near;
-  tree_->forEachMeeting(box, [&](std::uint32_t n) { near.push_back(n); });
+  tree_->visitMeeting(box, [&](std::uint32_t n) { near.push_back(n); });
   std::sort(near.begin(), near.end());
   for (const std::uint32_t here : near) {
     const Triangle& mine = solid_.triangles[here];
     std::optional<Vec3> found;
     std::uint32_t with = 0;
-    tree_->forEachMeeting(tree_->box(here), [&](std::uint32_t n) {
+    tree_->visitMeeting(boxes_[here], [&](std::uint32_t n) {
       if (n <= here || (found && n > with)) return;
       if (solid_.part_of[here] != solid_.part_of[n]) return;
       const Triangle& other = solid_.triangles[n];
       const bool touches = std::any_of(mine.begin(), mine.end(), [&](std::uint32_t v) {
         return std::find(other.begin(), other.end(), v) != other.end();
       });
-      if (touches || !BoxTree::meet(tree_->box(n), box)) return;
+      if (touches || !BoundsTree::meet(boxes_[n], box)) return;
       if (const auto at = trianglesMeet(solid_.vertices, mine, other)) {
         found = at;
         with = n;

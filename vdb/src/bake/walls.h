@@ -8,7 +8,7 @@
 
 #include "bake/columns.h"
 #include "bake/solid.h"
-#include "mesh/box_tree.h"
+#include "palpate/core/bounds_tree.h"
 #include "palpate/core/progress.h"
 
 namespace palpate::vdb {
@@ -31,7 +31,8 @@ class CrossingSearch {
 
  private:
   const Solid& solid_;
-  std::optional<BoxTree> tree_;  ///< made when it is first needed
+  std::vector<Box3> boxes_;         ///< of the triangles
+  std::optional<BoundsTree> tree_;  ///< of the same; made when it is first needed
 };
 
 }  // namespace palpate::vdb

@@ -19,6 +19,7 @@
 
 #include "brick/brick_field.h"
 #include "brick/voxel_feet.h"
+#include "palpate/core/text.h"
 #include "palpate/vdb/openvdb_access.h"
 #include "palpate/vdb/text.h"
 

@@ -7,6 +7,7 @@
 #include "grid/grid_tally.h"
 #include "grid/rebuilt.h"
 #include "grid/voxel_steps.h"
+#include "palpate/core/text.h"
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_error.h"
 #include "palpate/vdb/openvdb_access.h"

@@ -9,6 +9,7 @@
 
 #include "image/readers.h"
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 #include "palpate/vdb/text.h"
 
 namespace palpate::vdb {

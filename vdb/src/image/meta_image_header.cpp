@@ -11,6 +11,7 @@
 
 #include "image/header_text.h"
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 
 namespace palpate::vdb {
 namespace {

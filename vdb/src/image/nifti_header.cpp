@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 #include "palpate/vdb/text.h"
 
 namespace palpate::vdb {

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "image/header_text.h"
+#include "palpate/core/text.h"
 
 namespace palpate::vdb {
 namespace {

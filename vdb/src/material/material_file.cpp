@@ -9,6 +9,7 @@
 
 #include "grid/vdb_file.h"
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 #include "palpate/vdb/openvdb_access.h"
 #include "palpate/vdb/text.h"
 #include "palpate/version.h"

@@ -9,9 +9,9 @@
 #include "bake/bake_plan.h"
 #include "bake/edges.h"
 #include "bake/wall_count.h"
-#include "mesh/box_tree.h"
 #include "mesh/exact_side.h"
 #include "mesh/triangles_meet.h"
+#include "palpate/core/bounds_tree.h"
 #include "palpate/vdb/mesh_defects.h"
 
 namespace palpate::vdb {
@@ -96,16 +96,21 @@ bool isDegenerate(const std::vector<Vec3>& vertices, const Triangle& t) {
   return true;
 }
 
-BoxTree treeOf(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
-  std::vector<Box3> boxes(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (const std::uint32_t vertex : triangles[t]) boxes[t].include(vertices[vertex]);
-  }
-  return BoxTree(std::move(boxes));
+Box3 boxOf(const std::vector<Vec3>& vertices, const Triangle& triangle) {
+  Box3 box;
+  for (const std::uint32_t vertex : triangle) box.include(vertices[vertex]);
+  return box;
+}
+
+BoundsTree treeOf(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  std::vector<Box3> boxes;
+  boxes.reserve(triangles.size());
+  for (const Triangle& triangle : triangles) boxes.push_back(boxOf(vertices, triangle));
+  return BoundsTree(boxes);
 }
 
 void findCrossings(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-                   const BoxTree& tree, const Progress& progress, MeshDefects& defects) {
+                   const BoundsTree& tree, const Progress& progress, MeshDefects& defects) {
   struct Found {
     std::size_t count = 0;
     std::optional<Vec3> first;
@@ -117,7 +122,7 @@ void findCrossings(const std::vector<Vec3>& vertices, const std::vector<Triangle
         const std::size_t end = std::min(triangles.size(), (batch + 1) * kBatch);
         for (std::size_t t = batch * kBatch; t < end; ++t) {
           const auto mine = static_cast<std::uint32_t>(t);
-          tree.forEachMeeting(tree.box(mine), [&](std::uint32_t other) {
+          tree.visitMeeting(boxOf(vertices, triangles[mine]), [&](std::uint32_t other) {
             if (other <= mine) return;
             const auto at = trianglesMeet(vertices, triangles[mine], triangles[other]);
             if (!at) return;
@@ -179,7 +184,7 @@ std::vector<Part> findParts(const std::vector<Vec3>& vertices,
 class Surroundings {
  public:
   Surroundings(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-               const BoxTree& tree)
+               const BoundsTree& tree)
       : vertices_(vertices),
         triangles_(triangles),
         tree_(tree),
@@ -205,7 +210,7 @@ class Surroundings {
  private:
   [[nodiscard]] std::vector<std::uint32_t> aroundPlace(const Vec3& place, std::uint32_t own) const {
     std::vector<std::pair<std::uint32_t, int>> below;  // walls entered, by part
-    tree_.forEachMeeting({Vec3(place.x, place.y, -kInfinity), place}, [&](std::uint32_t t) {
+    tree_.visitMeeting({Vec3(place.x, place.y, -kInfinity), place}, [&](std::uint32_t t) {
       const auto& [a, b, c] = triangles_[t];
       if (part_of_[t] == own) return;
       const WallHit hit = hitWall(vertices_[a], vertices_[b], vertices_[c], place.x, place.y);
@@ -224,7 +229,7 @@ class Surroundings {
 
   const std::vector<Vec3>& vertices_;
   const std::vector<Triangle>& triangles_;
-  const BoxTree& tree_;
+  const BoundsTree& tree_;
   std::vector<std::uint32_t> part_of_;  ///< of each triangle; filled while parts_ is made
   std::vector<Part> parts_;
 };
@@ -268,7 +273,7 @@ MeshDefects findDefects(const Mesh& mesh, const Progress& progress) {
   const std::vector<bool> turned = turnAlike(mesh.vertices, sides, triangles);
   defects.turned_triangles =
       static_cast<std::size_t>(std::count(turned.begin(), turned.end(), true));
-  const BoxTree tree = treeOf(mesh.vertices, triangles);
+  const BoundsTree tree = treeOf(mesh.vertices, triangles);
   report(progress, "check mesh: parts", 0.25);
   sortParts(Surroundings(mesh.vertices, triangles, tree), defects);
   findCrossings(mesh.vertices, triangles, tree, progress, defects);

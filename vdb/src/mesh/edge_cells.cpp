@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/box_tree.h"
+#include "palpate/core/bounds_tree.h"
 
 namespace palpate::vdb {
 namespace {
@@ -89,8 +89,8 @@ EdgeCells::EdgeCells(const std::vector<Vec3>& vertices, const std::vector<MeshTr
   std::size_t slots = 16;
   while (slots < 2 * cells.size()) slots *= 2;
   table_.resize(slots);
-  const BoxTree triangle_tree(std::move(boxes));
-  const BoxTree edge_tree(std::move(edge_boxes));
+  const BoundsTree triangle_tree(boxes);
+  const BoundsTree edge_tree(edge_boxes);
   std::vector<std::pair<double, std::uint32_t>> near;
   for (const auto& [x, y, z] : cells) {
     const Vec3 center = lo_ + size * (Vec3(x, y, z) + 0.5);
@@ -98,7 +98,7 @@ EdgeCells::EdgeCells(const std::vector<Vec3>& vertices, const std::vector<MeshTr
     // nearest is no farther than the edge that the cell is about.
     near.clear();
     double least = reach + radius;
-    triangle_tree.forEachMeeting(
+    triangle_tree.visitMeeting(
         Box3{center, center}.grownBy(reach + 3.0 * radius), [&](std::uint32_t t) {
           const auto& [a, b, c] = triangles[t];
           const double distance =
@@ -112,7 +112,7 @@ EdgeCells::EdgeCells(const std::vector<Vec3>& vertices, const std::vector<MeshTr
       if (distance <= least + 2.0 * radius) lists_.push_back(t);
     }
     cell.edges = static_cast<std::uint32_t>(lists_.size());
-    edge_tree.forEachMeeting(Box3{center, center}.grownBy(reach + half), [&](std::uint32_t e) {
+    edge_tree.visitMeeting(Box3{center, center}.grownBy(reach + half), [&](std::uint32_t e) {
       const Vec3 at = nearestOf(vertices[edges[e][0]], vertices[edges[e][1]], center);
       if (glm::distance(at, center) <= reach + radius) lists_.push_back(e);
     });

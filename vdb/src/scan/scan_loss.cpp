@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+#include "palpate/core/text.h"
 #include "palpate/vdb/text.h"
 #include "scan/single_walls.h"
 

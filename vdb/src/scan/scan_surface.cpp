@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "palpate/core/text.h"
 #include "palpate/vdb/text.h"
 #include "scan/label_partition.h"
 #include "scan/lattice.h"

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 #include "palpate/vdb/text.h"
 #include "survey/label_runs.h"
 

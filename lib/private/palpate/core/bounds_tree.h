@@ -1,5 +1,5 @@
 #pragma once
-/// A bounding-volume hierarchy over axis-aligned boxes: which of many things may be near a point.
+/// A bounding-volume hierarchy over axis-aligned boxes: which of many things may be near a point or meet a box.
 
 #include <cstdint>
 #include <span>
@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "palpate/core/math.h"
+#include "palpate/export.h"
 
 namespace palpate {
 
 /// Immutable after construction; visits are real-time safe (their stack is fixed, the tree's depth is
 /// bounded by halving). Items are numbered as in the constructor's list; empty boxes are never met,
 /// infinite ones always.
-class BoundsTree {
+class PALPATE_EXPORT BoundsTree {
  public:
   BoundsTree() = default;
   explicit BoundsTree(std::span<const Box3> boxes);
@@ -37,6 +38,33 @@ class BoundsTree {
       } else {
         stack[depth++] = node.first;
         stack[depth++] = node.first + 1;
+      }
+    }
+  }
+
+  /// Whether they have a point in common.
+  [[nodiscard]] static bool meet(const Box3& a, const Box3& b) noexcept {
+    return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y &&
+           a.lo.z <= b.hi.z && b.lo.z <= a.hi.z;
+  }
+
+  /// Calls f(item) for each item whose box has a point in common with `box` [m].
+  template <typename F>
+  void visitMeeting(const Box3& box, F&& f) const {
+    if (nodes_.empty()) return;
+    std::uint32_t stack[kMaxDepth];
+    int depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+      const Node& node = nodes_[stack[--depth]];
+      if (!meet(node.box, box)) continue;
+      if (node.count > 0) {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+          if (meet(boxes_[i], box)) f(items_[i]);
+        }
+      } else {
+        stack[depth++] = node.first + 1;
+        stack[depth++] = node.first;
       }
     }
   }

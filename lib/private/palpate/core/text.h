@@ -5,15 +5,17 @@
 #include <string>
 #include <string_view>
 
+#include "palpate/export.h"
+
 namespace palpate {
 
 /// With at most `digits` significant digits.
-[[nodiscard]] std::string shortNumber(double value, int digits);
+[[nodiscard]] PALPATE_EXPORT std::string shortNumber(double value, int digits);
 /// With as few digits as read back exactly.
-[[nodiscard]] std::string exactNumber(double value);
+[[nodiscard]] PALPATE_EXPORT std::string exactNumber(double value);
 
 /// `text` in single quotes, on one line and not too long.
-[[nodiscard]] std::string inQuotes(std::string_view text);
+[[nodiscard]] PALPATE_EXPORT std::string inQuotes(std::string_view text);
 
 /// "a, b, c": shown(item) of each, or the member of each that it is. Those that show as nothing are left out.
 template <typename Items, typename Shown = std::identity>

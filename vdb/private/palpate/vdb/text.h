@@ -9,10 +9,6 @@
 
 namespace palpate::vdb {
 
-/// With at most `digits` significant digits.
-[[nodiscard]] std::string shortNumber(double value, int digits);
-/// With as few digits as read back exactly.
-[[nodiscard]] std::string exactNumber(double value);
 /// "1.234 GB"
 [[nodiscard]] std::string inGigabytes(double bytes);
 /// "1.5 mm"
