@@ -57,7 +57,7 @@ void addBaking(CLI::App& app, BakeOptions& o) {
       ->check(CLI::IsMember({"largest", "all"}));
   addFlag(app, g, "--fill", o.fill, "--above: close enclosed cavities");
   add(app, g, "--labels", "NAME,...", o.labels,
-      "one grid for each of these labels: values, names, or patterns such as 'lung*'")
+      "one grid for each of these labels: values, ranges 5-28, names, or patterns such as 'lung*'")
       ->expected(1)
       ->delimiter(',')
       ->take_all()
@@ -246,7 +246,8 @@ Verb infoVerb() {
           "palpate info FILE... [OPTIONS]",
           "An image is read whole: its place in space, its values, and how many voxels each label "
           "has. It\n"
-          "counts as labels if it says so, has a table of names, or few different whole values.",
+          "counts as labels if it says so, has a table of names, few different whole values, or "
+          "parcels of them.",
           {},
           defineInfo,
           [](const Invocation& i) { need(!chosen<InfoOptions>(i).files.empty(), "FILE"); }};

@@ -1,25 +1,15 @@
 #include "import/tissue_table.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
-#include <string_view>
 
+#include "import/tissue_choice.h"
 #include "palpate/scene/scene_file.h"
 #include "text.h"
 
 namespace palpate::tools {
 namespace {
-
-/// Blanks and hyphens as underscores, capitals small.
-std::string simplified(std::string_view name) {
-  std::string result(name);
-  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) {
-    return c == ' ' || c == '-' ? '_' : static_cast<char>(std::tolower(c));
-  });
-  return result;
-}
 
 /// Nearly incompressible: of a tissue that says nothing of it.
 constexpr double kPoisson = 0.45;
