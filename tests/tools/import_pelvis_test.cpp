@@ -291,11 +291,14 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
     const bool is_held = glm::length(row.hand - row.proxy) > 1e-6;  // by a wall
     if (!is_in || is_held) continue;
     const Model by_labels = model(depth);
-    // It presses up to 4 mm before it cuts (0.6 N at 156 N/m), and borders are a voxel off.
-    if (by_labels.since < 8.0 || by_labels.until < ray.voxel) continue;
+    // Out of a muscle it presses up to 10 mm before that gives way (1.5 N at 156 N/m, slant), and then up to 4 mm before it
+    // cuts (0.6 N); and borders are a voxel off.
+    if (by_labels.since < 15.0 || by_labels.until < ray.voxel) continue;
     // Each border is up to a voxel off, and the force by as much of what the friction of its two sides differs by; the
     // first has nothing on its outer side.
-    const double off = ray.voxel * 1e-3 * (35.0 + 12.0 * static_cast<double>(borders - 1));
+    // Out of the muscle the tip may slide along a slant wall as far as it presses on it, so that the border is off by that.
+    const double slid = borders > 2 ? 12.0 * 1.5 / 156.0 : 0.0;
+    const double off = ray.voxel * 1e-3 * (35.0 + 12.0 * static_cast<double>(borders - 1)) + slid;
     EXPECT_NEAR(force, by_labels.force, off) << "at " << depth << " mm";
     worst = std::max(worst, std::abs(force - by_labels.force));
     ++compared;

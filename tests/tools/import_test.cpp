@@ -267,14 +267,14 @@ TEST(Import, TheProjectsTableGivesEveryNumberASourceAndFitsTheNamesInUse) {
                                                         {"Tibialis anterior muscle", "muscle"},
                                                         {"tibia_left", "bone"},
                                                         {"lung_upper_lobe_left", "lung"},
-                                                        {"pulmonary_vein", "vessel"},
+                                                        {"pulmonary_vein", "vein"},
                                                         {"gallbladder", "gallbladder"},
                                                         {"urinary_bladder", "hollow_organ"},
                                                         {"spinal_cord", "nerve"},
                                                         {"Thalamus_L", "brain"},
                                                         {"mandible", "bone"},
                                                         {"submandibular_gland", "soft_tissue"},
-                                                        {"portal_vein_and_splenic_vein", "vessel"},
+                                                        {"portal_vein_and_splenic_vein", "vein"},
                                                         {"Skin", "skin"},
                                                         {"subcutaneous fat", "fat"},
                                                         {"trachea", "airway"},
@@ -371,6 +371,191 @@ TEST(Import, LabelsWithoutNamesAreToldToHaveOneTissue) {
   const CommandResult named =
       runPalpate({"import", "leg.nii.gz", "--names", "names.csv", "--dry-run"}, folder.path());
   EXPECT_EQ(named.err.find("taken for"), std::string::npos) << named.err;
+}
+
+/// What each label of a report is, by its name or else its number.
+std::map<std::string, std::string> tissuesIn(const Json& json) {
+  std::map<std::string, std::string> of;
+  for (const Json& label : json["labels"]) {
+    const std::string name = label["name"].is_null() ? std::to_string(label["label"].get<int>())
+                                                     : label["name"].get<std::string>();
+    of[name] = label["tissue"];
+  }
+  return of;
+}
+
+using Tissues = std::map<std::string, std::string>;
+
+TEST(Import, WhatFitsNoTissueIsListedWithItsVolumeAndGivenOneOnRequest) {
+  const TempFolder folder;
+  (void)writeLabels(folder, "l.nii.gz", 21, [](int x, int, int) { return (x + 10) / 5; });
+  (void)folder.file("n.csv", "value,name\n1,R-C-X\n2,Outer Blob\n3,femur\n4,seen nowhere\n");
+  const std::vector<std::string> common = {"l.nii.gz", "--names", "n.csv", "--dry-run"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = common;
+    all.insert(all.end(), more.begin(), more.end());
+    return imported(folder, all);
+  };
+  const Json plain = with({});
+  ASSERT_EQ(plain["unmatched"].size(), 3U);
+  // 5 slices of 21 x 21 voxels of 1 mm; of the last label one.
+  EXPECT_NEAR(plain["unmatched"][0]["volume_m3"].get<double>(), 5 * 441e-9, 1e-15);
+  EXPECT_EQ(plain["unmatched"][2]["name"], "seen nowhere");
+  EXPECT_NEAR(plain["unmatched"][2]["volume_m3"].get<double>(), 441e-9, 1e-15);
+  EXPECT_EQ(find(plain["regions"], "femur")->at("why"), "word \"femur\"");
+  EXPECT_EQ(find(plain["regions"], "femur")->at("class"), "rigid");
+  for (const Json& label : plain["labels"]) {
+    EXPECT_EQ(label["known"], label["name"] == "femur");
+    EXPECT_FALSE(label["touches"].empty());
+  }
+  const CommandResult text =
+      runPalpate({"import", "l.nii.gz", "--names", "n.csv", "--dry-run"}, folder.path());
+  EXPECT_NE(text.out.find("3 regions fit no tissue"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("R-C-X: 2.21 cm^3"), std::string::npos) << text.out;
+
+  (void)folder.file("t.txt", "# mine\n\nouter-*=bone\r\nnot here=fat\nseen nowhere = nerve\n");
+  const Json given =
+      with({"--tissue-file", "t.txt", "--tissue", "1=liver", "--tissue", "4=muscle", "--strict"});
+  EXPECT_TRUE(given["unmatched"].empty());
+  EXPECT_EQ(tissuesIn(given), (Tissues{{"R-C-X", "liver"},
+                                       {"Outer Blob", "bone"},
+                                       {"femur", "bone"},
+                                       {"seen nowhere", "muscle"}}));
+  EXPECT_EQ(find(given["regions"], "R-C-X")->at("why"), "--tissue 1=liver");
+  // The last one wins, whatever a name says.
+  EXPECT_EQ(tissuesIn(with({"--tissue", "3=fat", "--tissue", "2-3=brain"}))["femur"], "brain");
+  // Regions that are joined go by their own name, or by what all of their labels are.
+  const Json joined = with({"--region", "bones=2-3", "--region", "rest=1,4"});
+  EXPECT_EQ(find(joined["regions"], "bones")->at("tissue"), "bone");
+  EXPECT_EQ(joined["labels"].size(), 4U);
+}
+
+TEST(Import, NumbersOfFreeSurferNeedNoNames) {
+  const TempFolder folder;
+  (void)writeLabels(folder, "aseg.nii.gz", 15, [](int x, int, int) {
+    return x < -3 ? 1035 : x < 0 ? 2 : x < 3 ? 4 : x < 5 ? 24 : 9999;
+  });
+  const Json json = imported(folder, {"aseg.nii.gz", "--codes", "freesurfer", "--dry-run"});
+  EXPECT_EQ(tissuesIn(json), (Tissues{{"1035", "brain"},
+                                      {"2", "brain"},
+                                      {"4", "ventricle"},
+                                      {"24", "csf"},
+                                      {"9999", "soft_tissue"}}));
+  EXPECT_EQ(json["unmatched"].size(), 1U);
+}
+
+TEST(Import, AirThatReachesTheBorderIsOutside) {
+  const TempFolder folder;
+  // A head in air, with a sinus that is labelled as air too.
+  const auto labels = [&](bool has_sinus) {
+    (void)writeLabels(folder, "head.nii.gz", 31, [&](int x, int y, int z) {
+      if (has_sinus && std::hypot(x, y, z) < 4) return 1;
+      return std::hypot(x, y, z) < 12 ? 2 : 1;
+    });
+  };
+  (void)folder.file("n.csv", "value,name\n1,Air\n2,white matter\n");
+  (void)writeLabels(folder, "body.nii.gz", 31,
+                    [](int x, int y, int z) { return std::hypot(x, y, z) < 12 ? 1 : 0; });
+  const std::vector<std::string> bare = {"head.nii.gz", "--names", "n.csv",
+                                         "-o",          "s.yaml",  "--force"};
+  std::vector<std::string> in_body = bare;
+  in_body.insert(in_body.end(), {"--body", "body.nii.gz"});
+  for (const bool has_sinus : {false, true}) {
+    labels(has_sinus);
+    const Json json = imported(folder, bare);
+    ASSERT_EQ(json["regions"].size(), 1U);
+    ASSERT_EQ(json["outside"].size(), 1U);
+    EXPECT_EQ(json["outside"][0]["name"], "Air");
+    EXPECT_GT(json["outside"][0]["volume_m3"].get<double>(), 1e-6);
+    EXPECT_EQ(tissuesIn(json).at("Air"), "air");
+    EXPECT_NE(textOf(folder.path("s.yaml")).find("# Air ("), std::string::npos);
+  }
+  // Without a body both are outside; with one, what is in it must not become flesh.
+  const Json query = parseOnly(
+      runPalpate({"query", "s.yaml", "--json", "--at", "0,0,0", "0,8,0", "0,14,0"}, folder.path()));
+  EXPECT_EQ(query["points"][0]["region"], "outside");
+  EXPECT_EQ(query["points"][1]["region"], "white matter");
+  EXPECT_EQ(query["points"][2]["region"], "outside");
+  const Json kept = imported(folder, in_body);
+  EXPECT_TRUE(kept["outside"].empty());
+  EXPECT_EQ(find(kept["regions"], "Air")->at("class"), "gas");
+  labels(false);
+  EXPECT_EQ(imported(folder, in_body)["outside"].size(), 1U);
+}
+
+TEST(Import, TheSuggestedTouchIsOneThatAHandCanHold) {
+  const TempFolder folder;
+  writeLeg(folder);
+  (void)imported(folder,
+                 {"leg.nii.gz", "--names", "names.csv", "--body", "body.nii.gz", "-o", "leg.yaml"});
+  std::vector<std::string> arguments;
+  for (const std::string& line : linesOf(textOf(folder.path("leg.yaml")))) {
+    const std::size_t at = line.find("palpate touch SCENE.yaml ");
+    if (at == std::string::npos) continue;
+    std::istringstream words(line.substr(at + std::string("palpate ").size()));
+    for (std::string word; words >> word;) {
+      arguments.push_back(word == "SCENE.yaml"  ? "leg.yaml"
+                          : word == "SCENE.png" ? "leg.png"
+                                                : word);
+    }
+    break;
+  }
+  ASSERT_FALSE(arguments.empty());
+  arguments.insert(arguments.end(), {"--speed", "20mm/s", "--json"});
+  const CommandResult touch = runPalpate(arguments, folder.path());
+  ASSERT_EQ(touch.exit_code, 0) << touch.err;
+  double peak = 0.0;
+  const Json told = parseOnly(touch);
+  for (const Json& region : told["regions"])
+    peak = std::max(peak, region["peak_force_N"].get<double>());
+  EXPECT_GT(told["regions"].size(), 2U);
+  // A millimetre into a wall of at most 2000 N/m, on top of what the needle feels on its way.
+  EXPECT_LT(peak, 5.0);
+}
+
+TEST(Import, AScanInTheSceneFolderIsNamedFromThere) {
+  const TempFolder folder;
+  writeLeg(folder);
+  (void)imported(folder, {folder.path("leg.nii.gz"), "-o", folder.path("leg.yaml")});
+  EXPECT_NE(textOf(folder.path("leg.yaml")).find("labels: {file: \"leg.nii.gz\""),
+            std::string::npos);
+}
+
+TEST(Import, RangesOfLabelsAreThoseOfBakeToo) {
+  const TempFolder folder;
+  (void)writeLabels(folder, "l.nii.gz", 21, [](int x, int y, int z) {
+    return std::hypot(x, y, z) < 8 ? 1 + (x + 10) / 4 : 0;  // 1 to 5
+  });
+  const CommandResult baked =
+      runPalpate({"bake", "l.nii.gz", "--labels", "2-4", "-o", "l.vdb", "--json"}, folder.path());
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  for (const char* name : {"label_2", "label_3", "label_4"}) {
+    EXPECT_NE(baked.out.find(name), std::string::npos) << name;
+  }
+  EXPECT_EQ(baked.out.find("label_5"), std::string::npos);
+  const CommandResult none =
+      runPalpate({"bake", "l.nii.gz", "--labels", "7-9", "-o", "n.vdb", "--json"}, folder.path());
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_EQ(parseOnly(none)["error"]["code"], "labels.no_voxels");
+}
+
+TEST(Import, InfoCountsManyLabelsWithoutNames) {
+  const TempFolder folder;
+  // 125 parcels of 5^3 voxels, and grey values of as many kinds.
+  const auto parcel = [](int x, int y, int z) {
+    return 1 + (x + 12) / 5 + 5 * ((y + 12) / 5) + 25 * ((z + 12) / 5);
+  };
+  (void)writeLabels(folder, "parcels.nii.gz", 25, parcel);
+  (void)writeLabels(folder, "grey.nii.gz", 25, [](int x, int y, int z) {
+    return 1 + (7 * x * x + 11 * y * y + 13 * z * z) % 125;
+  });
+  const auto info = [&](const char* file) {
+    return parseOnly(runPalpate({"info", file, "--json"}, folder.path()))["files"][0];
+  };
+  const Json labels = info("parcels.nii.gz")["labels"];
+  ASSERT_EQ(labels.size(), 125U);
+  for (const Json& label : labels) EXPECT_EQ(label["voxels"], 125);
+  EXPECT_FALSE(info("grey.nii.gz").contains("labels"));
 }
 
 TEST(Import, AStopLeavesNothingBehind) {
@@ -553,6 +738,25 @@ INSTANTIATE_TEST_SUITE_P(
             3,
             "tissues.none",
             "label_1"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--strict"}, 3, "tissues.unmatched", "label_2 ("},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--tissue", "bone"}, 2, "usage.import", "LABELS=TISSUE"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--tissue", "1=bon"},
+            2,
+            "usage.import",
+            "did you mean 'bone'"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--names", "names.csv", "--tissue", "femurr=bone"},
+            2,
+            "usage.import",
+            "did you mean 'femur'"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--tissue-file", "names.csv"},
+            3,
+            "tissues.line",
+            "line 1"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--tissue-file", "none.txt"},
+            3,
+            "file.missing",
+            "none.txt"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--codes", "aal"}, 2, "usage.command_line", "--codes"},
         Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "no_skin.yaml", "--body", "body.nii.gz"},
             3,
             "tissues.missing",

@@ -110,6 +110,10 @@ _palpate() {
         '*--image[grey values of the same scan\: CT, MR]:value:_files' \
         '*--skin[--image\: the body is brighter than this; its largest piece, cavities filled (CT\: -300)]:value:' \
         '*--body[or a mask of the body\: what is not 0]:value:_files' \
+        '*--tissue[the tissue of a value, a range, a name or a pattern\: "Outer-Table=bone", may be repeated]:value:' \
+        '*--tissue-file[lines of the same; --tissue goes before them]:value:_files' \
+        '*--codes[the labels are numbers of FreeSurfer'\''s table, of SynthSeg'\''s too, and need no names]:value:(freesurfer)' \
+        '*--strict[what fits no tissue is an error]' \
         '*--hounsfield[--image is a CT in Hounsfield units\: stiffness varies with it, where the table of tissues says how]' \
         '*--materials[table of tissues (default\: the project'\''s data/materials/tissues.yaml)]:value:_files' \
         '*--voxel[voxel size of the grids, in mm or with a unit (default\: of the same volume as the scan'\''s)]:value:' \
@@ -145,7 +149,7 @@ _palpate() {
         '*--distances[the voxels are signed distances, negative inside\: the surface where they are zero]' \
         '*--keep[--above\: which pieces (default largest)]:value:(all largest)' \
         '*--fill[--above\: close enclosed cavities]' \
-        '*--labels[one grid for each of these labels\: values, names, or patterns such as '\''lung*'\'']:value:' \
+        '*--labels[one grid for each of these labels\: values, ranges 5-28, names, or patterns such as '\''lung*'\'']:value:' \
         '*--names[table of names\: `index name`, `value,name`, of Slicer, ITK-SNAP or FreeSurfer (default\: the image'\''s own)]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
@@ -175,7 +179,7 @@ _palpate() {
         '*--distances[the voxels are signed distances, negative inside\: the surface where they are zero]' \
         '*--keep[--above\: which pieces (default largest)]:value:(all largest)' \
         '*--fill[--above\: close enclosed cavities]' \
-        '*--labels[one grid for each of these labels\: values, names, or patterns such as '\''lung*'\'']:value:' \
+        '*--labels[one grid for each of these labels\: values, ranges 5-28, names, or patterns such as '\''lung*'\'']:value:' \
         '*--names[table of names\: `index name`, `value,name`, of Slicer, ITK-SNAP or FreeSurfer (default\: the image'\''s own)]:value:_files' \
         '*--level-set[a grid that does not say its class holds signed distances, negative inside]' \
         '*--json[print one JSON object instead of text]' \

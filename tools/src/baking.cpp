@@ -8,11 +8,13 @@
 
 #include "grid_baking.h"
 #include "input_kind.h"
+#include "label_range.h"
 #include "loaded_scene.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/image_distances.h"
+#include "palpate/vdb/label_survey.h"
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/scan_surface.h"
 #include "scan_options.h"
@@ -153,8 +155,26 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
   })};
 }
 
+/// 7, a name, a pattern, or of a range 5-28 what the image holds.
+std::vector<int> labelsIn(const std::string& entry, const vdb::NameTable& names,
+                          const std::string& source, const vdb::Image& image) {
+  const bool is_range = entry.find('-') != std::string::npos;
+  const auto range = is_range ? labelRange(entry) : std::nullopt;
+  if (!range) return vdb::resolveLabels({entry}, names, source);
+  std::vector<int> values;
+  for (const auto& [label, voxels] : vdb::countLabels(image)) {
+    if (label != 0 && label >= range->first && label <= range->second) values.push_back(label);
+  }
+  if (values.empty()) {
+    throw inputError("labels.no_voxels", "no voxel of the image is of labels " + entry,
+                     "palpate info lists the labels", source);
+  }
+  return values;
+}
+
 /// The labels asked for, as layers: a name for each set of values, in the order asked.
-std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOptions& options) {
+std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOptions& options,
+                                                                  const vdb::Image& image) {
   const bool is_grid = inputKind(options.input) == InputKind::kGrid;
   const vdb::NameTable names =
       !options.names.empty() ? vdb::readLabelTable(options.names).names
@@ -163,7 +183,7 @@ std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOpti
   const std::string source = options.names.empty() ? options.input : options.names;
   std::vector<std::pair<std::string, std::vector<int>>> layers;
   for (const std::string& entry : options.labels) {
-    for (const int value : vdb::resolveLabels({entry}, names, source)) {
+    for (const int value : labelsIn(entry, names, source, image)) {
       const auto named = names.find(value);
       const std::string layer =
           named != names.end() ? named->second : "label_" + std::to_string(value);
@@ -226,10 +246,9 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
   refuse(!options.labels.empty() && !options.layers.empty() && !is_grid, "--layer",
          "--above; labels are called by their names");
   if (is_grid) refuseScanOptions(options.scan, false);
-  const auto layers = labelLayers(options);
-
   std::string unit;
   const vdb::Image image = readVoxels(options, unit);
+  const auto layers = labelLayers(options, image);
   const double asked = askedVoxel(options, lengthUnit(unit));
   for (const auto& note : image.notes) console.note(options.input + ": " + note);
   const double spacing = std::min(

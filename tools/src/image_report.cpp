@@ -52,6 +52,21 @@ std::optional<std::map<int, std::size_t>> countValues(const std::vector<float>& 
   return counts;
 }
 
+/// Whole values that are not grey: none is below 0, and a voxel beside another that is not 0 mostly has its value. A
+/// parcel is more than a few voxels wide, and grey values have noise.
+bool lookLikeLabels(const std::vector<float>& values) {
+  constexpr double kSame = 0.7;
+  std::size_t pairs = 0;
+  std::size_t same = 0;
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    if (values[n] < 0.0F) return false;
+    if (n == 0 || values[n] == 0.0F || values[n - 1] == 0.0F) continue;
+    ++pairs;
+    same += values[n] == values[n - 1] ? 1U : 0U;
+  }
+  return static_cast<double>(same) > kSame * static_cast<double>(pairs);
+}
+
 std::string colorText(const vdb::LabelColor& c) {
   char text[16];
   const auto byte = [](float v) { return static_cast<unsigned>(std::lround(v * 255.0F)); };
@@ -165,7 +180,7 @@ FileReport imageReport(const std::string& file, const InfoOptions& options, Cons
       options.names.empty() ? image.labels : vdb::readLabelTable(options.names);
   const auto counts = countValues(image.values);
   const bool told = info.is_labels || !options.names.empty();
-  if (counts && (told || counts->size() <= kFewValues)) {
+  if (counts && (told || counts->size() <= kFewValues || lookLikeLabels(image.values))) {
     addLabels(*counts, table, out);
   } else if (told) {
     console.note(file + ": it says that it holds labels, but its values are not whole numbers");

@@ -142,13 +142,17 @@ struct ImportOptions {
   std::vector<std::string> labels;   ///< values, ranges, names, globs; empty: all
   std::vector<std::string> regions;  ///< NAME=LABELS
   std::string names;
-  std::string image;              ///< grey values
-  std::optional<double> skin;     ///< the body is where `image` is brighter
-  bool hounsfield = false;        ///< `image` is a CT, from which stiffness comes
-  std::string body;               ///< mask of the body
-  std::optional<int> min_island;  ///< [voxels]
-  std::string islands;            ///< "merge" or "drop"; empty: merge
-  std::string materials;          ///< table of tissues; empty: the project's
+  std::string image;                 ///< grey values
+  std::optional<double> skin;        ///< the body is where `image` is brighter
+  bool hounsfield = false;           ///< `image` is a CT, from which stiffness comes
+  std::string body;                  ///< mask of the body
+  std::optional<int> min_island;     ///< [voxels]
+  std::string islands;               ///< "merge" or "drop"; empty: merge
+  std::vector<std::string> tissues;  ///< LABELS=TISSUE
+  std::string tissue_file;           ///< lines of the same
+  std::string codes;      ///< whose numbers the labels are: "freesurfer"; empty: nobody's
+  bool strict = false;    ///< what no tissue fits is an error
+  std::string materials;  ///< table of tissues; empty: the project's
   std::string voxel;
   ScanOptions reading;  ///< of all images
 };

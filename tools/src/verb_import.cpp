@@ -2,11 +2,13 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <set>
 
 #include "import/import_report.h"
 #include "import/imported_scene.h"
 #include "input_kind.h"
 #include "output_files.h"
+#include "palpate/vdb/label_codes.h"
 #include "palpate/vdb/scan_surface.h"
 #include "palpate/vdb/text.h"
 #include "scan_options.h"
@@ -30,11 +32,14 @@ vdb::Image readScan(const std::string& path, const ImportOptions& options, Conso
   return image;
 }
 
-/// `path`, as seen from the folder of the scene.
+/// `path`, as seen from the folder of the scene. One that was given as absolute stays so, unless it is in that folder or
+/// beneath it, so that the folder can be moved.
 std::string seenFrom(const std::string& scene, const std::string& path) {
-  if (path.empty() || fs::path(path).is_absolute()) return path;
-  return fs::absolute(path).lexically_normal().lexically_proximate(
-      fs::absolute(scene).lexically_normal().parent_path());
+  if (path.empty()) return path;
+  const fs::path folder = fs::absolute(scene).lexically_normal().parent_path();
+  const fs::path seen = fs::absolute(path).lexically_normal().lexically_proximate(folder);
+  const bool is_beneath = !seen.empty() && *seen.begin() != "..";
+  return fs::path(path).is_absolute() && !is_beneath ? path : seen.string();
 }
 
 std::vector<std::vector<int>> labelsOf(const RegionPlan& plan) {
@@ -88,13 +93,50 @@ vdb::VoxelMask bodyOf(const ImportOptions& options, const vdb::Image* image, Imp
   return vdb::bodyMask(*image, *options.skin, scan.labels, console.progress());
 }
 
+/// Air that reaches the border of the image is what is around: no region. With a body, labels of air that are in it as
+/// well (a sinus) stay, as their rest would become the body's.
+void leaveOutAir(ImportedScan& scan, Console& console) {
+  std::vector<PlannedRegion> kept;
+  for (std::size_t r = 0; r < scan.plan.regions.size(); ++r) {
+    PlannedRegion& region = scan.plan.regions[r];
+    const vdb::LabelSurvey::Region& found = scan.survey.regions[r];
+    const bool is_air = region.tissue->kind == TissueClass::kGas && region.tissue->lining.empty();
+    if (!is_air || !found.at_border) {
+      kept.push_back(std::move(region));
+      continue;
+    }
+    const auto is_enclosed = [](const auto& piece) { return !piece.at_border; };
+    if (scan.has_body && std::any_of(found.pieces.begin(), found.pieces.end(), is_enclosed)) {
+      console.note("'" + region.name +
+                   "' is air around the body and air in it: a region without walls of its own, "
+                   "open to outside");
+      kept.push_back(std::move(region));
+      continue;
+    }
+    scan.open_air.push_back({region.name, region.labels, region.why, found.voxels, found.volume});
+  }
+  // An image of nothing else keeps it.
+  if (kept.empty()) {
+    scan.open_air.clear();
+    return;
+  }
+  for (const OpenAir& air : scan.open_air) {
+    console.note("'" + air.name + "' (" + cubicCentimetres(air.volume) +
+                 " cm^3) is air that reaches the image's border: it is outside, and no region");
+  }
+  scan.plan.regions = std::move(kept);
+}
+
 /// A body that lies elsewhere is a mistake; one that some labels stick out of gets a note.
-void checkBody(const ImportOptions& options, const vdb::Image& labels, const vdb::VoxelMask& body,
+void checkBody(const ImportOptions& options, const ImportedScan& scan, const vdb::VoxelMask& body,
                Console& console) {
   std::uint64_t labelled = 0;
   std::uint64_t outside = 0;
+  std::set<int> around;
+  for (const OpenAir& air : scan.open_air) around.insert(air.labels.begin(), air.labels.end());
   for (std::size_t n = 0; n < body.size(); ++n) {
-    if (labels.values[n] == 0.0F) continue;
+    const float label = scan.labels.values[n];
+    if (label == 0.0F || (!around.empty() && around.contains(static_cast<int>(label)))) continue;
     ++labelled;
     outside += body[n] == 0 ? 1U : 0U;
   }
@@ -108,13 +150,34 @@ void checkBody(const ImportOptions& options, const vdb::Image& labels, const vdb
                " labelled voxels are not in the body");
 }
 
+/// @throws Error that lists what fits no tissue.
+void refuseUnknown(const ImportOptions& options, const ImportedScan& scan) {
+  const double voxel = std::abs(glm::determinant(scan.labels.axes));
+  std::string text;
+  std::size_t count = 0;
+  for (const PlannedRegion& region : scan.plan.regions) {
+    if (region.is_known) continue;
+    std::uint64_t voxels = 0;
+    for (const int label : region.labels) voxels += scan.counts.at(label);
+    text += (count++ == 0 ? "" : ", ") + region.name + " (" +
+            cubicCentimetres(voxel * static_cast<double>(voxels)) + " cm^3)";
+  }
+  if (count == 0) return;
+  throw inputError("tissues.unmatched", formatCount(count) + " regions fit no tissue: " + text,
+                   "give them one: --tissue \"NAME=bone\", or leave out --strict", options.scan);
+}
+
 ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, Console& console) {
   ImportedScan scan;
   scan.labels = readScan(options.scan, options, console);
-  const vdb::NameTable names =
-      options.names.empty() ? scan.labels.labels.names : vdb::readLabelTable(options.names).names;
+  const LabelNames table = {
+      options.names.empty() ? scan.labels.labels.names : vdb::readLabelTable(options.names).names,
+      vdb::readLabelCodes(options.scan, imageOptions(options.reading))};
+  scan.names = table.names;
   report(console.progress(), "labels", 0.0);
-  scan.plan = planRegions(options, vdb::countLabels(scan.labels), names, tissues);
+  scan.counts = vdb::countLabels(scan.labels);
+  scan.plan = planRegions(options, scan.counts, table, tissues);
+  if (options.strict) refuseUnknown(options, scan);
   std::optional<vdb::Image> grey;
   if (!options.image.empty()) grey = readScan(options.image, options, console);
   if (options.hounsfield) {
@@ -124,11 +187,16 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
   scan.image_voxels = scan.labels.values.size() + (grey ? grey->values.size() : 0);
   const vdb::VoxelMask body = bodyOf(options, grey ? &*grey : nullptr, scan, console);
   grey.reset();
-  checkBody(options, scan.labels, body, console);
   scan.has_body = !body.empty();
-  const std::vector<std::vector<int>> labels = labelsOf(scan.plan);
   const vdb::VoxelMask* const in_body = scan.has_body ? &body : nullptr;
+  std::vector<std::vector<int>> labels = labelsOf(scan.plan);
   scan.survey = vdb::surveyLabels(scan.labels, labels, in_body, console.progress());
+  leaveOutAir(scan, console);
+  checkBody(options, scan, body, console);
+  if (!scan.open_air.empty()) {
+    labels = labelsOf(scan.plan);
+    scan.survey = vdb::surveyLabels(scan.labels, labels, in_body, console.progress());
+  }
   if (options.min_island) {
     scan.changes = vdb::changeIslands(
         scan.labels, labels, scan.survey, static_cast<std::uint64_t>(*options.min_island),
@@ -148,6 +216,23 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
   return scan;
 }
 
+/// One note for all: the report lists them.
+void tellUnknown(const ImportedScan& scan, Console& console) {
+  double volume = 0.0;
+  std::size_t count = 0;
+  const Tissue* felt_as = nullptr;
+  for (std::size_t r = 0; r < scan.plan.regions.size(); ++r) {
+    if (scan.plan.regions[r].is_known) continue;
+    ++count;
+    volume += scan.survey.regions[r].volume;
+    felt_as = scan.plan.regions[r].tissue;
+  }
+  if (count == 0 || scan.names.empty()) return;
+  console.note(formatCount(count) + " regions (" + cubicCentimetres(volume) +
+               " cm^3) fit no tissue and are felt as " + felt_as->name +
+               "; --tissue gives them one, --strict refuses them");
+}
+
 /// "a/scan" for "a/scan.yaml".
 std::string withoutExtension(const std::string& path) {
   return (fs::path(path).parent_path() / fs::path(path).stem()).string();
@@ -164,8 +249,8 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
       throw Error(ErrorKind::kUsage,
                   {"usage.import", "the output " + options.output + " must end in .yaml", ""});
     }
-    const std::vector<std::string> inputs = {options.scan, options.names, options.image,
-                                             options.body, options.materials};
+    const std::vector<std::string> inputs = {options.scan, options.names,     options.image,
+                                             options.body, options.materials, options.tissue_file};
     files.announce(options.output, inputs);
     if (options.min_island) files.announce(changed_labels, inputs);
   }
@@ -173,6 +258,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
       options.materials.empty() ? ownTissueTable() : readTissueTable(options.materials);
   ImportedScan scan = readAll(options, tissues, console);
   for (const std::string& note : scan.plan.notes) console.note(note);
+  tellUnknown(scan, console);
   if (!scan.has_body) {
     console.note("no --skin and no --body: what has no label is outside");
   }

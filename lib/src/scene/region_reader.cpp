@@ -179,7 +179,9 @@ RegionReader::Between RegionReader::readBetween(const MapReader& reader) const {
   const Document& document = loader_.document();
   const auto& items = readList(document, *reader.find("between"), "'between'", 2, 2);
   const Between between{readSide(items[0]), readSide(items[1])};
-  if (between.a == between.b && !isGlob(between.a)) {
+  // A list means all pairs of it.
+  const bool is_one = between.a.find(',') == std::string::npos && !isGlob(between.a);
+  if (between.a == between.b && is_one) {
     throw document.error(items[1].mark, "scene.kind",
                          "between " + inQuotes(between.a) + " and itself there is no wall");
   }

@@ -56,8 +56,9 @@ void addBaking(CLI::App& app, BakeOptions& o) {
   addChoice(app, g, "--keep", {"largest", "all"}, o.keep,
             "--above: which pieces (default largest)");
   addFlag(app, g, "--fill", o.fill, "--above: close enclosed cavities");
-  addList(app, g, "--labels", "NAME,...", o.labels,
-          "one grid for each of these labels: values, names, or patterns such as 'lung*'")
+  addList(
+      app, g, "--labels", "NAME,...", o.labels,
+      "one grid for each of these labels: values, ranges 5-28, names, or patterns such as 'lung*'")
       ->delimiter(',');
   add(app, g, "--names", "FILE", o.names,
       "table of names: `index name`, `value,name`, of Slicer, ITK-SNAP or FreeSurfer (default: the "
@@ -225,7 +226,7 @@ Verb infoVerb() {
       "palpate info /usr/share/mricron/templates/ch2.nii.gz",
       "palpate info FILE... [OPTIONS]",
       R"(An image is read whole: its place in space, its values, and how many voxels each label has. It
-counts as labels if it says so, has a table of names, or few different whole values.)",
+counts as labels if it says so, has a table of names, few different whole values, or parcels of them.)",
       {},
       defineInfo,
       [](const Invocation& i) { need(!chosen<InfoOptions>(i).files.empty(), "FILE"); }};

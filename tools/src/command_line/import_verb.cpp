@@ -34,6 +34,16 @@ void defineImport(CLI::App& app, Invocation& invocation) {
   add(app, g, "--skin", "VALUE", o.skin,
       "--image: the body is brighter than this; its largest piece, cavities filled (CT: -300)");
   add(app, g, "--body", "FILE", o.body, "or a mask of the body: what is not 0");
+  g = "Tissues, by names and codes unless said here";
+  addList(
+      app, g, "--tissue", "LABELS=TISSUE", o.tissues,
+      "the tissue of a value, a range, a name or a pattern: \"Outer-Table=bone\", may be repeated");
+  add(app, g, "--tissue-file", "FILE", o.tissue_file,
+      "lines of the same; --tissue goes before them");
+  add(app, g, "--codes", "freesurfer", o.codes,
+      "the labels are numbers of FreeSurfer's table, of SynthSeg's too, and need no names")
+      ->check(CLI::IsMember({"freesurfer"}));
+  addFlag(app, g, "--strict", o.strict, "what fits no tissue is an error");
   g = "Materials and grids";
   addFlag(app, g, "--hounsfield", o.hounsfield,
           "--image is a CT in Hounsfield units: stiffness varies with it, where the table of "
@@ -53,11 +63,11 @@ Verb importVerb() {
       "Turn a segmented scan into a scene: regions, materials, ports",
       "palpate import labels.nii.gz --names labels.csv --body mask.nii.gz -o scan.yaml",
       "palpate import SCAN -o SCENE.yaml [OPTIONS]",
-      R"(SCAN is a label image. Each label becomes a region, with the material of the first tissue in the
-table that fits its name; stiffer ones come later, so that the wall between two is that of the
-stiffer. Regions that touch get a port that opens at the tissue's force; bone has none. The scene
-says of every number whether it was measured, derived or assumed, and by whom. It is text to be
-edited; grids are made when it is touched or baked.)",
+      R"(SCAN is a label image. Each label becomes a region, with the tissue that the words of its name or its
+code mean; what fits none is listed. What stands between two regions their tissues' classes say: bone
+never opens, flesh and membranes give way both ways at their forces, fluids and air have no walls, and
+parcels of one tissue none between them. The scene says of every number whether it was measured,
+derived or assumed, and by whom. It is text to be edited; grids are made when it is touched or baked.)",
       {},
       defineImport,
       [](const Invocation& i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "import/crossings.h"
 #include "json_parts.h"
 #include "text.h"
 
@@ -37,12 +38,15 @@ class ImportReport {
                     {"size", image.size},
                     {"voxel_size_m", scan_.voxel}};
     regions();
+    labels();
+    unknown();
+    openAir();
     changes();
     islands();
     cost();
-    const auto ports = passages(scan_, tissues_).size();
+    const auto ports = crossings(scan_, tissues_).ports.size();
     report_.json["ports"] = ports;
-    report_.text += formatCount(ports) + " ports into regions from what touches them\n";
+    report_.text += formatCount(ports) + " ports between regions that touch\n";
     if (written.empty()) {
       report_.text += "Nothing was written (--dry-run)\n";
     } else {
@@ -55,9 +59,11 @@ class ImportReport {
 
  private:
   void regions() {
-    Table table({"region", "labels", "tissue", "voxels", "cm^3", "pieces", "within", "touches"});
+    Table table(
+        {"region", "labels", "tissue", "why", "voxels", "cm^3", "pieces", "within", "touches"});
     Json json = Json::array();
-    const auto add = [&](std::size_t r, const std::string& labels, const std::string& tissue) {
+    const auto add = [&](std::size_t r, const std::string& labels, const std::string& tissue,
+                         TissueClass kind, const std::string& why) {
       const vdb::LabelSurvey::Region& region = scan_.survey.regions[r];
       const auto shares = scan_.neighborsOf(r);
       std::string touches;
@@ -71,11 +77,13 @@ class ImportReport {
         }
       }
       if (shares.size() > 2) touches += ", " + std::to_string(shares.size() - 2) + " more";
-      table.add({scan_.nameOf(r), labels, tissue, formatCount(region.voxels),
+      table.add({scan_.nameOf(r), labels, tissue, why, formatCount(region.voxels),
                  cubicCentimetres(region.volume), formatCount(region.pieces.size()),
                  region.within ? scan_.nameOf(*region.within) : "-", touches});
       json.push_back({{"name", scan_.nameOf(r)},
                       {"tissue", tissue},
+                      {"class", className(kind)},
+                      {"why", why},
                       {"voxels", region.voxels},
                       {"volume_m3", region.volume},
                       {"pieces", region.pieces.size()},
@@ -85,13 +93,96 @@ class ImportReport {
                       {"bounds_m", boxJson(region.bounds)}});
       if (r < scan_.plan.regions.size()) json.back()["labels"] = scan_.plan.regions[r].labels;
     };
-    if (scan_.has_body) add(scan_.survey.gap(), "-", "skin, fat");
+    if (scan_.has_body) {
+      add(scan_.survey.gap(), "-", "skin, fat", TissueClass::kSolid, "no label, in the body");
+    }
     for (std::size_t r = 0; r < scan_.plan.regions.size(); ++r) {
       const PlannedRegion& region = scan_.plan.regions[r];
-      add(r, labelList(region.labels), region.tissue->name);
+      add(r, labelList(region.labels), region.tissue->name, region.tissue->kind, whyOf(region));
     }
     report_.json["regions"] = json;
     report_.text += table.text("") + "\n";
+  }
+
+  [[nodiscard]] static std::string whyOf(const PlannedRegion& region) {
+    return region.is_known ? region.why : "nothing fits: " + region.why;
+  }
+
+  [[nodiscard]] double volumeOf(int label) const {
+    const auto at = scan_.counts.find(label);
+    const double voxels = at == scan_.counts.end() ? 0.0 : static_cast<double>(at->second);
+    return voxels * std::abs(glm::determinant(scan_.labels.axes));
+  }
+
+  /// Each label by itself; regions that are joined have several.
+  void labels() {
+    Json json = Json::array();
+    const auto add = [&](const std::vector<int>& labels, Json more) {
+      for (const int label : labels) {
+        const auto name = scan_.names.find(label);
+        Json one = {{"label", label},
+                    {"name", name == scan_.names.end() ? Json() : Json(name->second)},
+                    {"volume_m3", volumeOf(label)}};
+        one.update(more);
+        json.push_back(std::move(one));
+      }
+    };
+    for (std::size_t r = 0; r < scan_.plan.regions.size(); ++r) {
+      const PlannedRegion& region = scan_.plan.regions[r];
+      Json touches = Json::array();
+      for (const auto& [other, share] : scan_.neighborsOf(r)) touches.push_back(other);
+      add(region.labels, {{"region", region.name},
+                          {"tissue", region.tissue->name},
+                          {"class", className(region.tissue->kind)},
+                          {"why", whyOf(region)},
+                          {"known", region.is_known},
+                          {"touches", touches}});
+    }
+    for (const OpenAir& air : scan_.open_air) {
+      add(air.labels, {{"region", "outside"},
+                       {"tissue", "air"},
+                       {"class", className(TissueClass::kGas)},
+                       {"why", air.why + "; it reaches the image's border"},
+                       {"known", true},
+                       {"touches", Json::array()}});
+    }
+    report_.json["labels"] = std::move(json);
+  }
+
+  /// What fits no tissue, the largest first: nothing is guessed silently.
+  void unknown() {
+    std::vector<std::pair<double, std::size_t>> found;
+    for (std::size_t r = 0; r < scan_.plan.regions.size(); ++r) {
+      if (!scan_.plan.regions[r].is_known) found.emplace_back(scan_.survey.regions[r].volume, r);
+    }
+    std::sort(found.rbegin(), found.rend());
+    Json json = Json::array();
+    std::string text;
+    for (const auto& [volume, r] : found) {
+      const PlannedRegion& region = scan_.plan.regions[r];
+      json.push_back({{"name", region.name},
+                      {"labels", region.labels},
+                      {"volume_m3", volume},
+                      {"felt_as", region.tissue->name},
+                      {"why", region.why}});
+      text += "  " + region.name + ": " + cubicCentimetres(volume) + " cm^3, " + region.why + "\n";
+    }
+    report_.json["unmatched"] = std::move(json);
+    if (found.empty()) return;
+    const PlannedRegion& first = scan_.plan.regions[found.front().second];
+    report_.text += formatCount(found.size()) + " regions fit no tissue and are felt as " +
+                    first.tissue->name + "; give them one with --tissue \"" + first.name +
+                    "=bone\":\n" + text;
+  }
+
+  void openAir() {
+    Json json = Json::array();
+    for (const OpenAir& air : scan_.open_air) {
+      json.push_back({{"name", air.name}, {"labels", air.labels}, {"volume_m3", air.volume}});
+      report_.text += air.name + " (" + cubicCentimetres(air.volume) +
+                      " cm^3) is air that reaches the image's border: it is outside\n";
+    }
+    report_.json["outside"] = std::move(json);
   }
 
   [[nodiscard]] static std::string placeText(const Vec3& place) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "import/crossings.h"
+#include "import/suggested_way.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/text.h"
 #include "report.h"
@@ -44,13 +46,18 @@ class SceneWriter {
  public:
   SceneWriter(const ImportOptions& options, const ImportedScan& scan, const TissueTable& tissues,
               const SceneFiles& files)
-      : options_(options), scan_(scan), tissues_(tissues), files_(files) {}
+      : options_(options),
+        scan_(scan),
+        tissues_(tissues),
+        files_(files),
+        crossings_(crossings(scan, tissues)) {}
 
   std::string write() {
     header();
     images();
     materials();
     layers();
+    walls();
     ports();
     return std::move(text_);
   }
@@ -68,22 +75,18 @@ class SceneWriter {
     line(
         "# It is yours to edit. Lengths are in mm, in the scan's axes "
         "(RAS): x right, y front, z head.");
-    Box3 box;
-    for (std::size_t r = 0; r < scan_.survey.outside(); ++r) {
-      const Box3& bounds = scan_.survey.regions[r].bounds;
-      if (bounds.isEmpty()) continue;
-      box.include(bounds.lo);
-      box.include(bounds.hi);
-    }
-    const Vec3 middle = box.center() * 1e3;
     const auto point = [](const Vec3& p) {
-      return formatNumber(std::round(p.x)) + "," + formatNumber(std::round(p.y)) + "," +
-             formatNumber(std::round(p.z));
+      return formatNumber(p.x * 1e3) + "," + formatNumber(p.y * 1e3) + "," +
+             formatNumber(p.z * 1e3);
     };
-    line("# A probe from the front to the middle, and back:");
-    line("#   palpate touch SCENE.yaml --insert " +
-         point(Vec3(middle.x, box.hi.y * 1e3 + 20.0, middle.z)) + " " + point(middle) +
+    const SuggestedWay way = suggestedWay(scan_);
+    line("# A probe " + way.what + ", and back:");
+    line("#   palpate touch SCENE.yaml --insert " + point(way.from) + " " + point(way.to) +
          " --back --image SCENE.png");
+    for (const OpenAir& air : scan_.open_air) {
+      line("# " + air.name + " (" + cubicCentimetres(air.volume) +
+           " cm^3) is air that reaches the image's border: it is outside, and no layer.");
+    }
     if (!scan_.changes.empty()) {
       line("# " + std::to_string(scan_.changes.size()) + " pieces and cavities of less than " +
            std::to_string(*options_.min_island) + " voxels were changed; " + files_.labels +
@@ -116,7 +119,7 @@ class SceneWriter {
   }
 
   [[nodiscard]] bool isMapped(const Tissue& tissue) const {
-    return options_.hounsfield && tissue.stiffness_of_ct;
+    return options_.hounsfield && tissue.stiffness_of_ct && tissue.hasWall();
   }
 
   void number(const char* what, const std::optional<SourcedNumber>& n) {
@@ -139,9 +142,13 @@ class SceneWriter {
       number("Young's modulus E_n", tissues_.shaft_young);
     }
     for (const Tissue* tissue : used) {
-      const SourcedNumber stiffness = tissues_.wallStiffness(*tissue);
+      if (!tissue->hasWall() && !tissue->hasContent()) continue;  // air
+      const SourcedNumber stiffness =
+          tissue->hasWall() ? tissues_.wallStiffness(*tissue) : SourcedNumber{};
       line("  # " + tissue->name);
-      if (isMapped(*tissue)) {
+      if (!tissue->hasWall()) {
+        // A fluid: drag is all that is felt.
+      } else if (isMapped(*tissue)) {
         const SourcedTransfer& of_ct = *tissue->stiffness_of_ct;
         line("  #   stiffness by CT number " + of_ct.text + ": " + basisName(of_ct.basis) + ": " +
              of_ct.source);
@@ -159,10 +166,13 @@ class SceneWriter {
         number("shaft, sideways,", lateral->stiffness);
         number("and it tears at", lateral->strength);
       }
-      std::string entry = "  " + word(tissue->name) + ": {stiffness: ";
-      entry += isMapped(*tissue) ? std::string("{image: ") + (options_.skin ? "body" : "ct") +
-                                       ", transfer: " + tissue->stiffness_of_ct->text + "}"
-                                 : stiffness.text;
+      std::string entry;
+      if (tissue->hasWall()) {
+        entry = ", stiffness: " + (isMapped(*tissue)
+                                       ? std::string("{image: ") + (options_.skin ? "body" : "ct") +
+                                             ", transfer: " + tissue->stiffness_of_ct->text + "}"
+                                       : stiffness.text);
+      }
       if (tissue->damping) entry += ", damping: " + tissue->damping->text;
       if (tissue->friction) {
         entry += ", friction: {static: " + tissue->friction->text +
@@ -180,7 +190,7 @@ class SceneWriter {
         }
         entry += "}";
       }
-      line(entry + "}");
+      line("  " + word(tissue->name) + ": {" + entry.substr(2) + "}");
     }
   }
 
@@ -214,42 +224,58 @@ class SceneWriter {
     }
     for (std::size_t r = 0; r < scan_.plan.regions.size(); ++r) {
       const PlannedRegion& region = scan_.plan.regions[r];
-      line("  # " + about(r));
-      line("  - {name: " + word(region.name) + ", labels: {image: labels, match: " + "[" +
-           vdb::listOf(region.labels) + "]" + voxel + "}, wall: " + word(region.tissue->name) +
+      line("  # " + (region.is_known ? region.tissue->name : "fits no tissue") + " (" + region.why +
+           "): " + about(r));
+      line("  - {name: " + word(region.name) + ", labels: {image: labels, match: [" +
+           vdb::listOf(region.labels) + "]" + voxel +
+           "}, wall: " + (region.tissue->hasWall() ? word(region.tissue->name) : "absent") +
            (region.tissue->hasContent() ? ", content: " + word(region.tissue->name) : "") + "}");
     }
   }
 
-  void ports() {
-    const std::vector<Passage> all = passages(scan_, tissues_);
-    if (all.empty()) return;
+  /// One region, or a list of them.
+  [[nodiscard]] std::string regionList(const std::vector<std::size_t>& regions) const {
+    std::string text;
+    for (const std::size_t one : regions) {
+      text += (text.empty() ? "" : ", ") + word(scan_.nameOf(one));
+    }
+    return regions.size() > 1 ? "[" + text + "]" : text;
+  }
+
+  void walls() {
+    if (crossings_.walls.empty()) return;
     line(
-        "ports:   # into each region from those that touch it and come before it; `opens_at` on "
-        "the "
-        "way in, `back` on the way out and in a hole");
+        "walls:   # in place of the later layer's own: none between parcels of one tissue, of a "
+        "fluid what it lies in or its lining");
+    for (const WallBetween& one : crossings_.walls) {
+      line("  - {between: [" + regionList(one.outer) + ", " + regionList(one.inner) +
+           "], wall: " + (one.wall != nullptr ? word(one.wall->name) : "absent") + "}");
+    }
+  }
+
+  void ports() {
+    if (crossings_.ports.empty()) return;
+    line(
+        "ports:   # `opens_at` from the first to the second, `back` from the second to the first, "
+        "`hole`: either way where one is");
     // A tip that overlaps a hole of its own size finds it.
     const std::string hole_at =
         ", hole: {radius: " + millimetres(2.0 * tissues_.tip_radius.value) + " mm, reopens_at: ";
-    std::vector<const Tissue*> told;
-    for (const Passage& passage : all) {
-      const Tissue& tissue = *passage.through;
-      if (std::find(told.begin(), told.end(), &tissue) == told.end()) {
-        told.push_back(&tissue);
-        line("  # " + tissue.name);
-        number("opens_at", tissue.opens_at);
-        number("back", tissue.back);
+    std::vector<const SourcedNumber*> told;
+    for (const Passage& port : crossings_.ports) {
+      for (const TissueForce* one : {&port.in, &port.out, &port.reopens}) {
+        if (one->force == nullptr ||
+            std::find(told.begin(), told.end(), one->force) != told.end()) {
+          continue;
+        }
+        told.push_back(one->force);
+        number((one->of->name + ", " + one->what).c_str(), *one->force);
       }
-      std::string outer;
-      for (const std::size_t one : passage.outer) {
-        outer += (outer.empty() ? "" : ", ") + word(scan_.nameOf(one));
-      }
-      if (passage.outer.size() > 1) outer = "[" + outer + "]";
-      const std::string inner = scan_.nameOf(passage.inner);
-      line("  - {name: " + sceneWord("into " + inner) + ", between: [" + outer + ", " +
-           word(inner) + "], opens_at: " + tissue.opens_at->text +
-           (tissue.back ? ", back: " + tissue.back->text + hole_at + tissue.back->text + "}" : "") +
-           "}");
+      const bool has_hole = port.reopens.force != nullptr;
+      line("  - {name: " + sceneWord(port.name) + ", between: [" + regionList(port.outer) + ", " +
+           regionList(port.inner) + "], opens_at: " + port.in.text() +
+           (has_hole || port.out.text() != port.in.text() ? ", back: " + port.out.text() : "") +
+           (has_hole ? hole_at + port.reopens.text() + "}" : "") + "}");
     }
   }
 
@@ -257,6 +283,7 @@ class SceneWriter {
   const ImportedScan& scan_;
   const TissueTable& tissues_;
   const SceneFiles& files_;
+  Crossings crossings_;
   std::string text_;
 };
 
@@ -313,6 +340,9 @@ std::vector<const Tissue*> tissuesOf(const ImportedScan& scan, const TissueTable
     use(&requireTissue(tissues, "fat"));
   }
   for (const PlannedRegion& region : scan.plan.regions) use(region.tissue);
+  for (const PlannedRegion& region : scan.plan.regions) {
+    if (!region.tissue->lining.empty()) use(tissues.find(region.tissue->lining));
+  }
   return used;
 }
 
@@ -323,38 +353,6 @@ double estimateMemory(const ImportedScan& scan, const TissueTable& tissues, doub
   }
   return kBytesOfCommand + kBytesPerVoxel * active_voxels +
          kBytesPerImageVoxel * static_cast<double>(scan.image_voxels) + kBytesPerMapVoxel * maps;
-}
-
-std::vector<Passage> passages(const ImportedScan& scan, const TissueTable& tissues) {
-  std::vector<Passage> found;
-  const vdb::LabelSurvey& survey = scan.survey;
-  if (scan.has_body) {
-    const Tissue& skin = requireTissue(tissues, "skin");
-    if (skin.opens_at) found.push_back({{survey.outside()}, survey.gap(), &skin});
-  }
-  // The gap is the outermost layer, then come the regions as they are listed.
-  for (std::size_t inner = 0; inner < survey.gap(); ++inner) {
-    const Tissue* tissue = scan.plan.regions[inner].tissue;
-    if (!tissue->opens_at) continue;
-    std::vector<std::size_t> outer;
-    for (const vdb::LabelSurvey::Contact& contact : survey.regions[inner].contacts) {
-      const bool is_region = contact.other < survey.gap();
-      if (is_region && contact.other > inner) continue;  // that one's wall
-      if (contact.other == survey.outside()) {
-        // The image's border is closed, and the skin is what leads into a body.
-        const double free = contact.area - survey.regions[inner].border;
-        if (scan.has_body || free <= 1e-9 * contact.area) continue;
-      }
-      outer.push_back(contact.other);
-    }
-    // In the order of the layers, outside and the gap before them.
-    std::sort(outer.begin(), outer.end(), [&](std::size_t a, std::size_t b) {
-      const auto rank = [&](std::size_t r) { return r >= survey.gap() ? 0 : r + 1; };
-      return rank(a) < rank(b);
-    });
-    if (!outer.empty()) found.push_back({std::move(outer), inner, tissue});
-  }
-  return found;
 }
 
 std::string writeScene(const ImportOptions& options, const ImportedScan& scan,

@@ -2,6 +2,7 @@
 /// A scanned body as regions, and the scene file made of them.
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,10 +12,22 @@
 
 namespace palpate::tools {
 
+/// Labels of air that reach the image's border: they are outside, and no region.
+struct OpenAir {
+  std::string name;
+  std::vector<int> labels;
+  std::string why;
+  std::uint64_t voxels = 0;
+  double volume = 0.0;  ///< [m3]
+};
+
 /// All that the scene is written from.
 struct ImportedScan {
-  vdb::Image labels;  ///< its values may be gone
+  vdb::Image labels;
+  vdb::NameTable names;
+  std::map<int, std::uint64_t> counts;  ///< voxels of each label, before any change
   RegionPlan plan;
+  std::vector<OpenAir> open_air;
   vdb::LabelSurvey survey;  ///< of the plan's regions
   bool has_body = false;
   std::vector<int> body_labels;            ///< of its mask, if it is from one
@@ -40,7 +53,7 @@ struct GridEstimate {
 /// `area` [m2] of the surface, `volume` [m3] inside, `voxel` [m].
 [[nodiscard]] GridEstimate estimateGrid(double area, double volume, double voxel);
 
-/// Of all regions, those of a body first; each once.
+/// Of all regions, those of a body first, and of their linings; each once.
 /// @throws Error (kInput) as requireTissue().
 [[nodiscard]] std::vector<const Tissue*> tissuesOf(const ImportedScan& scan,
                                                    const TissueTable& tissues);
@@ -48,15 +61,6 @@ struct GridEstimate {
 /// [bytes] The most that `palpate touch` will have at a time, about.
 [[nodiscard]] double estimateMemory(const ImportedScan& scan, const TissueTable& tissues,
                                     double active_voxels);
-
-/// What leads into a region from others that touch it, whose wall with them is its own.
-struct Passage {
-  std::vector<std::size_t> outer;
-  std::size_t inner = 0;
-  const Tissue* through = nullptr;
-};
-/// Of all regions whose tissue opens; first that of the skin.
-[[nodiscard]] std::vector<Passage> passages(const ImportedScan& scan, const TissueTable& tissues);
 
 /// Files as the scene names them.
 struct SceneFiles {

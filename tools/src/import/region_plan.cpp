@@ -1,10 +1,13 @@
 #include "import/region_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <set>
 #include <string_view>
+#include <tuple>
 
+#include "label_range.h"
 #include "palpate/core/error.h"
 #include "palpate/scene/units.h"
 #include "palpate/vdb/scan_surface.h"
@@ -17,14 +20,6 @@ using Counts = std::map<int, std::uint64_t>;
 
 Error usage(std::string message, std::string hint) {
   return Error(ErrorKind::kUsage, {"usage.import", std::move(message), std::move(hint)});
-}
-
-std::optional<int> wholeNumber(std::string_view text) {
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  if (text.empty() || text.size() > 6 || !std::all_of(text.begin(), text.end(), is_digit)) {
-    return std::nullopt;
-  }
-  return std::stoi(std::string(text));
 }
 
 std::string listOf(const Counts& counts) {
@@ -42,14 +37,12 @@ std::string listOf(const Counts& counts) {
 std::vector<int> labelsOf(const std::string& entry, const ImportOptions& options,
                           const Counts& counts, const vdb::NameTable& names) {
   std::vector<int> wanted;
-  const std::size_t dash = entry.find('-');
-  const auto from = wholeNumber(std::string_view(entry).substr(0, dash));
-  const auto to = dash == std::string::npos ? std::nullopt
-                                            : wholeNumber(std::string_view(entry).substr(dash + 1));
-  if (from && to) {
-    if (*from > *to) throw usage("the range " + entry + " is empty", "write 5-28");
+  const bool is_range = entry.find('-') != std::string::npos;
+  const auto range = is_range ? labelRange(entry) : std::nullopt;
+  if (range) {
+    if (range->first > range->second) throw usage("the range " + entry + " is empty", "write 5-28");
     for (const auto& [label, voxels] : counts) {
-      if (label >= *from && label <= *to && label != 0) wanted.push_back(label);
+      if (label >= range->first && label <= range->second && label != 0) wanted.push_back(label);
     }
   } else {
     wanted = vdb::resolveLabels({entry}, names, options.names);
@@ -81,9 +74,13 @@ std::string layerName(std::string name) {
 
 class Planner {
  public:
-  Planner(const ImportOptions& options, const Counts& counts, const vdb::NameTable& names,
+  Planner(const ImportOptions& options, const Counts& counts, const LabelNames& labels,
           const TissueTable& tissues)
-      : options_(options), counts_(counts), names_(names), tissues_(tissues) {}
+      : options_(options),
+        counts_(counts),
+        labels_(labels),
+        names_(labels.names),
+        tissues_(tissues) {}
 
   RegionPlan make() {
     for (const std::string& text : options_.regions) addJoined(text);
@@ -103,18 +100,28 @@ class Planner {
     for (const int label : single) {
       if (!taken_.contains(label)) addSingle(label);
     }
-    if (names_.empty() && plan_.regions.size() > joined) {
-      plan_.notes.push_back(
-          "the labels have no names, so that nothing tells their tissues: they are taken for " +
-          plan_.regions.back().tissue->name + "; --names gives them names");
-    }
     if (plan_.regions.empty()) {
       throw inputError("labels.none", "the image holds no label: all of its voxels are 0", "",
                        options_.scan);
     }
-    std::stable_sort(plan_.regions.begin(), plan_.regions.end(), [&](const auto& a, const auto& b) {
-      return tissues_.wallStiffness(*a.tissue).value < tissues_.wallStiffness(*b.tissue).value;
-    });
+    setTissues();
+    if (names_.empty() && plan_.regions.size() > joined && !plan_.regions.back().is_known) {
+      plan_.notes.push_back(
+          "the labels have no names, so that nothing tells their tissues: they are taken for " +
+          plan_.regions.back().tissue->name +
+          "; --names gives them names, --codes says whose numbers they are");
+    }
+    const auto rank = [&](const PlannedRegion& region) {
+      const Tissue& tissue = *region.tissue;
+      // Of two layers the later has the wall: never is it that of what is rigid that gives way.
+      constexpr std::array kOrder = {TissueClass::kGas, TissueClass::kFluid, TissueClass::kSolid,
+                                     TissueClass::kMembrane, TissueClass::kRigid};
+      const auto place = std::find(kOrder.begin(), kOrder.end(), tissue.kind) - kOrder.begin();
+      const double stiffness = tissue.hasWall() ? tissues_.wallStiffness(tissue).value : 0.0;
+      return std::tuple(place, stiffness, &tissue - tissues_.tissues.data());
+    };
+    std::stable_sort(plan_.regions.begin(), plan_.regions.end(),
+                     [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
     return std::move(plan_);
   }
 
@@ -146,7 +153,7 @@ class Planner {
     }
     std::sort(region.labels.begin(), region.labels.end());
     if (region.labels.empty()) throw usage("the region '" + name + "' is given twice", "");
-    add(std::move(region));
+    plan_.regions.push_back(std::move(region));
   }
 
   /// Labels of one name are one region.
@@ -165,20 +172,25 @@ class Planner {
       same->labels.push_back(label);
       return;
     }
-    add({name, {label}, nullptr});
+    plan_.regions.push_back({name, {label}, nullptr});
   }
 
-  void add(PlannedRegion region) {
-    region.tissue = tissues_.of(region.name);
-    if (region.tissue == nullptr) {
-      throw inputError("tissues.none", "no tissue fits the region '" + region.name + "'",
-                       "let the last tissue of the table take all: labels: [\"*\"]", tissues_.file);
+  void setTissues() {
+    std::vector<NamedLabels> regions;
+    for (const PlannedRegion& region : plan_.regions)
+      regions.push_back({region.name, region.labels});
+    const std::vector<TissueChoice> choices =
+        chooseTissues(options_, regions, labels_, tissues_, plan_.notes);
+    for (std::size_t r = 0; r < choices.size(); ++r) {
+      plan_.regions[r].tissue = choices[r].tissue;
+      plan_.regions[r].why = choices[r].why;
+      plan_.regions[r].is_known = choices[r].is_known;
     }
-    plan_.regions.push_back(std::move(region));
   }
 
   const ImportOptions& options_;
   const Counts& counts_;
+  const LabelNames& labels_;
   const vdb::NameTable& names_;
   const TissueTable& tissues_;
   std::map<int, std::string> taken_;  ///< by --region
@@ -187,9 +199,9 @@ class Planner {
 
 }  // namespace
 
-RegionPlan planRegions(const ImportOptions& options, const Counts& counts,
-                       const vdb::NameTable& names, const TissueTable& tissues) {
-  return Planner(options, counts, names, tissues).make();
+RegionPlan planRegions(const ImportOptions& options, const Counts& counts, const LabelNames& labels,
+                       const TissueTable& tissues) {
+  return Planner(options, counts, labels, tissues).make();
 }
 
 }  // namespace palpate::tools

@@ -4,38 +4,14 @@
 #include <string_view>
 #include <utility>
 
-#include "import/own_tissues.h"
+#include "import/own_tables.h"
+#include "import/table_loader.h"
 #include "import/tissue_table.h"
 #include "palpate/scene/scene_file.h"
 #include "text.h"
 
 namespace palpate::tools {
 namespace {
-
-/// The same strict reader of maps as scenes have; a table has no fields and no images.
-class TableLoader final : public SceneLoader {
- public:
-  explicit TableLoader(const Document& document) : document_(document) {}
-  [[nodiscard]] const Document& document() const noexcept override { return document_; }
-  [[nodiscard]] double metresPerUnit() const noexcept override { return 1.0; }
-  [[nodiscard]] std::string lengthUnit() const override { return "m"; }
-  [[nodiscard]] std::string resolvePath(const std::string& path) const override { return path; }
-  [[nodiscard]] FieldSourcePtr field(const Node& node) const override { throw none(node.mark); }
-  [[nodiscard]] std::shared_ptr<void> image(const std::string& /*name*/,
-                                            Mark place) const override {
-    throw none(place);
-  }
-  [[nodiscard]] MaterialMapPtr map(const Node& node, const ParameterKind& /*of*/) const override {
-    throw none(node.mark);
-  }
-
- private:
-  [[nodiscard]] Error none(Mark mark) const {
-    return document_.error(mark, "tissues.kind",
-                           "a table of tissues has no shapes, images and maps");
-  }
-  const Document& document_;
-};
 
 enum class NumberKind {
   kLength,
@@ -111,7 +87,7 @@ const char* unitsOf(NumberKind kind) {
 
 class TableReader {
  public:
-  explicit TableReader(const Document& document) : loader_(document) {}
+  explicit TableReader(const Document& document) : loader_(document, "tissues") {}
 
   TissueTable read() {
     const Document& document = loader_.document();
@@ -131,6 +107,7 @@ class TableReader {
       table.shaft_young = number(*young, "shaft_young", NumberKind::kPressure);
     }
     has_spring_ = table.shaft_spring.has_value();
+    table.unknown = root.textOr("unknown", "");
     const Node& tissues = root.require("tissues");
     if (tissues.kind != Node::Kind::kMap || tissues.entries.empty()) {
       throw document.error(tissues.mark, "tissues.kind", "'tissues' wants a map of tissues",
@@ -140,6 +117,7 @@ class TableReader {
     for (const Node::Entry& entry : tissues.entries) {
       table.tissues.push_back(tissue(entry));
     }
+    checkNames(table, tissues);
     return table;
   }
 
@@ -218,21 +196,15 @@ class TableReader {
   }
 
   Tissue tissue(const Node::Entry& entry) {
-    const Document& document = loader_.document();
     Tissue made;
     made.name = entry.key;
     MapReader reader(loader_, entry.value, "a tissue");
-    const Node& labels = reader.require("labels");
-    if (labels.kind != Node::Kind::kSequence || labels.items.empty()) {
-      throw document.error(labels.mark, "tissues.kind", "'labels' wants a list of patterns",
-                           "write labels: [\"*muscle*\"]");
+    if (const Node* labels = reader.optional("labels")) {
+      made.labels = loader_.texts(*labels, "labels");
     }
-    for (const Node& item : labels.items) {
-      if (item.kind != Node::Kind::kScalar || item.text.empty()) {
-        throw document.error(item.mark, "tissues.kind", "a pattern of label names is a text");
-      }
-      made.labels.push_back(item.text);
-    }
+    const std::string class_name = reader.textOr("class", "");
+    const std::string parcels = reader.textOr("parcels", "apart");
+    made.lining = reader.textOr("lining", "");
     const auto read = [&](const char* key, NumberKind kind) -> std::optional<SourcedNumber> {
       const Node* node = reader.optional(key);
       if (node == nullptr) return std::nullopt;
@@ -247,6 +219,7 @@ class TableReader {
     made.viscosity = read("viscosity", NumberKind::kDamping);
     made.opens_at = read("opens_at", NumberKind::kForce);
     made.back = read("back", NumberKind::kForce);
+    made.reopens = read("reopens", NumberKind::kForce);
     made.cutting = read("cutting", NumberKind::kForce);
     made.shaft = read("shaft", NumberKind::kForcePerLength);
     made.shaft_static = read("shaft_static", NumberKind::kForcePerLength);
@@ -254,19 +227,75 @@ class TableReader {
       made.stiffness_of_ct = transfer(*node);
     }
     reader.finish();
+    if (parcels != "joined" && parcels != "apart") {
+      throw loader_.wrong(entry.key_mark, "'parcels' of '" + made.name + "' is joined or apart");
+    }
+    made.parcels_joined = parcels == "joined";
+    setClass(made, class_name, entry.key_mark);
     check(made, entry.key_mark);
     return made;
   }
 
+  void setClass(Tissue& tissue, const std::string& kind, Mark mark) const {
+    tissue.kind = tissue.opens_at ? TissueClass::kSolid : TissueClass::kRigid;
+    if (!kind.empty()) {
+      const std::optional<TissueClass> given = classNamed(kind);
+      if (!given || *given == TissueClass::kOutside) {
+        throw document().error(mark, "tissues.class",
+                               "'" + tissue.name + "' is of class '" + kind + "'",
+                               "write rigid, solid, membrane, fluid or gas");
+      }
+      tissue.kind = *given;
+    }
+    const bool is_flowing = tissue.kind == TissueClass::kFluid || tissue.kind == TissueClass::kGas;
+    const auto refuse = [&](const char* why) {
+      return document().error(
+          mark, "tissues.class",
+          "'" + tissue.name + "' is " + className(tissue.kind) + ", and " + why);
+    };
+    if (tissue.kind == TissueClass::kRigid && tissue.opens_at) {
+      throw refuse("has 'opens_at': nothing gets into what is rigid");
+    }
+    if (is_flowing && (tissue.hasWall() || tissue.opens_at || tissue.cutting || tissue.shaft)) {
+      throw refuse("has a wall or what cuts it; it may have viscosity, and a lining");
+    }
+    if (tissue.kind == TissueClass::kGas && tissue.viscosity) {
+      throw refuse("has viscosity: nothing is felt in a gas");
+    }
+    if (!is_flowing && !tissue.lining.empty()) {
+      throw refuse("has a lining, as only a fluid and a gas have");
+    }
+  }
+
+  /// Tissues that others name must be there.
+  void checkNames(const TissueTable& table, const Node& tissues) const {
+    if (!table.unknown.empty() && table.find(table.unknown) == nullptr) {
+      throw document().error(
+          document().root.mark, "tissues.unknown",
+          "'unknown' names '" + table.unknown + "', which is no tissue of this table");
+    }
+    for (const Tissue& tissue : table.tissues) {
+      if (tissue.lining.empty()) continue;
+      const Tissue* lining = table.find(tissue.lining);
+      if (lining == nullptr || lining->kind != TissueClass::kMembrane || !lining->opens_at) {
+        throw document().error(tissues.mark, "tissues.lining",
+                               "the lining of '" + tissue.name + "' is '" + tissue.lining + "'",
+                               "name a tissue of class membrane with opens_at");
+      }
+    }
+  }
+
+  [[nodiscard]] const Document& document() const { return loader_.document(); }
+
   void check(const Tissue& tissue, Mark mark) const {
     const Document& document = loader_.document();
-    const bool from_modulus = tissue.young || tissue.shear;
-    if (!tissue.stiffness && !from_modulus) {
+    const bool is_flowing = tissue.kind == TissueClass::kFluid || tissue.kind == TissueClass::kGas;
+    if (!tissue.hasWall() && !is_flowing) {
       throw document.error(mark, "tissues.stiffness",
                            "'" + tissue.name + "' has no stiffness, and no modulus for one",
                            "give stiffness, young or shear");
     }
-    if (!tissue.stiffness && !tissue.poisson) {
+    if (tissue.hasWall() && !tissue.stiffness && !tissue.poisson) {
       throw document.error(mark, "tissues.poisson",
                            "'" + tissue.name + "' has a modulus, but no Poisson's ratio",
                            "give poisson: {value: 0.45, ...}");
@@ -276,9 +305,9 @@ class TableReader {
                            "Poisson's ratio of '" + tissue.name + "' is " + tissue.poisson->text,
                            "it is from 0 to 0.5");
     }
-    if (tissue.back && !tissue.opens_at) {
+    if ((tissue.back || tissue.reopens) && !tissue.opens_at) {
       throw document.error(mark, "tissues.back",
-                           "'" + tissue.name + "' has 'back', but nothing gets in",
+                           "'" + tissue.name + "' has 'back' or 'reopens', but nothing gets in",
                            "give opens_at as well");
     }
     if (tissue.shaft && !has_spring_) {

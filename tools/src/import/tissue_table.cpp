@@ -1,25 +1,16 @@
 #include "import/tissue_table.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
-#include <string_view>
 
+#include "import/tissue_choice.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/text.h"
 #include "text.h"
 
 namespace palpate::tools {
 namespace {
-
-/// Blanks and hyphens as underscores, capitals small.
-std::string simplified(std::string_view name) {
-  std::string result = vdb::lowerCase(name);
-  std::replace_if(
-      result.begin(), result.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
-  return result;
-}
 
 /// Nearly incompressible: of a tissue that says nothing of it.
 constexpr double kPoisson = 0.45;

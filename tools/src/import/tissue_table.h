@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "import/border_table.h"
+
 namespace palpate::tools {
 
 enum class Basis { kMeasured, kDerived, kAssumed };
@@ -29,7 +31,10 @@ struct SourcedTransfer {
 
 struct Tissue {
   std::string name;
-  std::vector<std::string> labels;         ///< patterns of label names
+  TissueClass kind = TissueClass::kSolid;
+  bool parcels_joined = false;      ///< two regions of it have no wall between them
+  std::string lining;               ///< of a fluid or a gas: a membrane of the table; or empty
+  std::vector<std::string> labels;  ///< patterns of label names
   std::optional<SourcedNumber> stiffness;  ///< [N/m]
   std::optional<SourcedNumber> young;      ///< [Pa]
   std::optional<SourcedNumber> shear;      ///< [Pa]
@@ -38,7 +43,8 @@ struct Tissue {
   std::optional<SourcedNumber> friction;   ///< static; sliding is the same
   std::optional<SourcedNumber> viscosity;  ///< [N s/m]
   std::optional<SourcedNumber> opens_at;   ///< [N]
-  std::optional<SourcedNumber> back;       ///< [N]
+  std::optional<SourcedNumber> back;       ///< [N] out of it, where no hole is
+  std::optional<SourcedNumber> reopens;    ///< [N] in a hole that is there
   // Of a needle in it.
   std::optional<SourcedNumber> cutting;  ///< [N]
   std::optional<SourcedNumber> shaft;    ///< [N/m] friction on each length of the shaft that slides
@@ -47,6 +53,8 @@ struct Tissue {
 
   /// Whether something is felt inside of it.
   [[nodiscard]] bool hasContent() const { return viscosity || cutting || shaft; }
+  /// A fluid or a gas has no elastic wall.
+  [[nodiscard]] bool hasWall() const { return stiffness || young || shear; }
 };
 
 struct TissueTable {
@@ -56,13 +64,14 @@ struct TissueTable {
   std::optional<SourcedNumber>
       shaft_spring;  ///< [N/m^2] of a shaft that sticks; given if a tissue has `shaft`
   std::optional<SourcedNumber> shaft_young;  ///< [Pa] of a needle's shaft, a solid rod
+  std::string unknown;                       ///< the tissue of what nothing fits; or empty
   std::vector<Tissue> tissues;
 
-  /// The first tissue that fits a label's name, or null.
+  /// The first tissue with a pattern that fits a label's name, or null.
   [[nodiscard]] const Tissue* of(const std::string& label) const;
   /// By its own name, or null.
   [[nodiscard]] const Tissue* find(const std::string& name) const;
-  /// Of a tissue's wall: measured, derived or assumed, and how it came about.
+  /// Of a tissue that has a wall: measured, derived or assumed, and how it came about.
   [[nodiscard]] SourcedNumber wallStiffness(const Tissue& tissue) const;
   /// What holds a needle's shaft sideways in a tissue that can be cut, on each length of it.
   struct Lateral {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -170,6 +172,17 @@ ImageInfo readNrrdInfo(const std::string& path, const ImageOptions& options) {
   info.labels = segments.table();
   info.is_labels = !segments.empty();
   return info;
+}
+
+LabelCodes readLabelCodes(const std::string& path, const ImageOptions& options) {
+  const auto ends_in = [&](std::string_view extension) {
+    return path.size() >= extension.size() &&
+           std::equal(
+               extension.begin(), extension.end(), path.end() - static_cast<long>(extension.size()),
+               [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+  };
+  if (!ends_in(".nrrd") && !ends_in(".nhdr")) return {};
+  return segmentsOf(readNrrdHeader(path, options), path, options).codes();
 }
 
 }  // namespace palpate::vdb

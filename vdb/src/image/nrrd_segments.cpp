@@ -22,6 +22,28 @@ std::optional<int> numberOfKey(std::string_view key) {
   return numberIn<int>(key.substr(kPrefix.size(), bar - kPrefix.size()));
 }
 
+/// The type out of Slicer's tags, "...|TerminologyEntry:CONTEXT~CATEGORY~TYPE~...|", where each is SCHEME^VALUE^MEANING.
+std::optional<LabelCode> codeIn(std::string_view tags) {
+  constexpr std::string_view kKey = "TerminologyEntry:";
+  constexpr int kType = 2;
+  const std::size_t key = tags.find(kKey);
+  if (key == std::string_view::npos) return {};
+  std::string_view entry = tags.substr(key + kKey.size());
+  entry = entry.substr(0, entry.find('|'));
+  for (int field = 0; field < kType; ++field) {
+    const std::size_t tilde = entry.find('~');
+    if (tilde == std::string_view::npos) return {};
+    entry.remove_prefix(tilde + 1);
+  }
+  entry = entry.substr(0, entry.find('~'));
+  const std::size_t first = entry.find('^');
+  const std::size_t second = first == std::string_view::npos ? first : entry.find('^', first + 1);
+  if (second == std::string_view::npos || first == 0) return {};
+  return LabelCode{std::string(entry.substr(0, first)),
+                   std::string(entry.substr(first + 1, second - first - 1)),
+                   std::string(entry.substr(second + 1))};
+}
+
 }  // namespace
 
 Error Segments::fail(const char* code, std::string message, std::string hint) const {
@@ -70,6 +92,7 @@ void Segments::readOne(const std::map<std::string, std::string>& pairs, int numb
     }
     s.color = LabelColor{(*c)[0], (*c)[1], (*c)[2]};
   }
+  if (const std::string* text = find("Tags")) s.code = codeIn(*text);
   if (const std::string* text = find("Extent")) {
     const auto e = numbersIn<int>(*text);
     if (!e || e->size() != 6) throw wrong("Extent", *text);
@@ -119,6 +142,14 @@ LabelTable Segments::table() const {
     if (s.color) table.colors[s.label] = *s.color;
   }
   return table;
+}
+
+LabelCodes Segments::codes() const {
+  LabelCodes codes;
+  for (const Segment& s : segments_) {
+    if (s.code) codes[s.label] = *s.code;
+  }
+  return codes;
 }
 
 std::vector<float> Segments::merged(const std::vector<std::vector<float>>& layers,

@@ -10,6 +10,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/vdb/image.h"
+#include "palpate/vdb/label_codes.h"
 
 namespace palpate::vdb {
 
@@ -20,6 +21,7 @@ struct Segment {
   int layer = 0;
   int label = 1;  ///< value of its voxels in the image that is handed out
   std::optional<LabelColor> color;
+  std::optional<LabelCode> code;
   std::optional<std::array<int, 6>> extent;  ///< [voxels] first and last along i, j, k
 };
 
@@ -31,6 +33,7 @@ class Segments {
 
   [[nodiscard]] bool empty() const noexcept { return segments_.empty(); }
   [[nodiscard]] LabelTable table() const;
+  [[nodiscard]] LabelCodes codes() const;
   /// What was done to label values.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 

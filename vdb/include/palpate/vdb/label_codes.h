@@ -1,0 +1,25 @@
+#pragma once
+/// Codes of labels, as segmentations carry them beside names.
+
+#include <map>
+#include <string>
+
+#include "palpate/export.h"
+#include "palpate/vdb/image.h"
+
+namespace palpate::vdb {
+
+/// What a label is by a system of codes: SCT (SNOMED CT), 272673000, Bone.
+struct LabelCode {
+  std::string scheme;
+  std::string value;
+  std::string meaning;
+};
+using LabelCodes = std::map<int, LabelCode>;
+
+/// The type of each segment of a .seg.nrrd file, by the label values of readImage(), where the file has one; empty for
+/// other files. @throws Error (kInput) as readImage().
+[[nodiscard]] PALPATE_EXPORT LabelCodes readLabelCodes(const std::string& path,
+                                                       const ImageOptions& options = {});
+
+}  // namespace palpate::vdb
