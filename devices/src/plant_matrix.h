@@ -18,7 +18,7 @@ enum : int {
   kPath,      ///< [m] where the hand wants to be
   kPathRate,  ///< [m/s] constant
   kConstant,  ///< [N] constant on the device: a push, less the friction that acts
-  kCommand,   ///< [N] constant: what the amplifier was told; without a lag kForce is that itself
+  kCommand,   ///< [N] constant: what the amplifier is to give; without a lag kForce is that
   kSize
 };
 

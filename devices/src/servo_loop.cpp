@@ -44,7 +44,7 @@ class OpenDevice {
  public:
   explicit OpenDevice(Device& device) : device_(device) { device_.open(); }
   ~OpenDevice() {
-    // A device that is gone cannot be told; one that only timed out may still hold its motors.
+    // A device that is gone takes no command; one that only timed out may still hold its motors.
     static_cast<void>(device_.write(Vec3(0.0)));
     device_.close();
   }

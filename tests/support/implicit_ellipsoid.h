@@ -1,5 +1,5 @@
 #pragma once
-// An ellipsoid whose value is no distance.
+// An ellipsoid whose value is not a distance.
 
 #include "palpate/fields/implicit.h"
 

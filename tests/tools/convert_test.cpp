@@ -96,7 +96,7 @@ TEST(Convert, GltfIsMetresAsItsStandardSays) {
   const CommandResult query =
       runPalpate({"query", "scene.yaml", "--at", "0,0,0", "--json"}, folder.path());
   ASSERT_EQ(query.exit_code, 0) << query.err;
-  // Said otherwise, it counts: a file of millimetres that is no proper glTF.
+  // Said otherwise, it counts: a file of millimetres that is not a proper glTF.
   const Json said = converted(folder, {"ball.glb", "--units", "mm", "-o", "small.stl"});
   EXPECT_NEAR(said["volume_m3"], 1e-9 * kVolume, 1e-11 * kVolume);
 }

@@ -353,7 +353,7 @@ TEST(Import, StiffnessComesFromCtNumbersOnRequest) {
     EXPECT_NEAR(stiffness(3, "wall"), 2000.0, 0.1);
     EXPECT_NEAR(stiffness(4, "wall"), 1000.0, 0.1);
   }
-  // An image that is no CT, or does not reach as far as the labels, is told.
+  // An image that is not a CT, or does not reach as far as the labels, is reported.
   (void)writeLabels(folder, "mr.nii.gz", 21, [](int x, int y, int z) { return 100 + x + y + z; });
   const CommandResult told = runPalpate(
       {"import", "leg.nii.gz", "--image", "mr.nii.gz", "--hounsfield", "--dry-run"}, folder.path());
@@ -575,7 +575,7 @@ struct Bad {
   std::vector<std::string> arguments;
   int exit_code;
   std::string code;
-  std::string says;  // part of what is told
+  std::string says;  // part of the message
 };
 
 void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.code << " " << bad.says; }

@@ -135,7 +135,7 @@ TEST_F(TouchSet, APressThatMissesSaysSoAndEndsWith1) {
     EXPECT_EQ(hit.exit_code, 0);
     EXPECT_EQ(parseOnly(hit)["met_something"], true);
   }
-  // Into the syrup by the mouth is no miss, though no wall is there; and a stroke may well meet nothing.
+  // Into the syrup by the mouth is not a miss, though no wall is there; and a stroke may well meet nothing.
   EXPECT_EQ(touch({"--press", "0,0,15"}).exit_code, 0);
   EXPECT_EQ(touch({"--stroke", "0,100,0", "0,100,10"}).exit_code, 0);
 }

@@ -184,7 +184,7 @@ TEST(MeshDefects, SpindleIsNamedUnlessTheUserDecides) {
   EXPECT_EQ(problem.code, "mesh.ambiguous");
   EXPECT_NE(problem.message.find("passes through itself at ("), std::string::npos)
       << problem.message;
-  // By the lens's rim two walls meet: the larger of their distances is no distance there, and what is
+  // By the lens's rim two walls meet: the larger of their distances is not a distance there, and what is
   // filled is known to a voxel only.
   const auto by_rim = [](const Vec3& p) {
     return std::hypot(p.x - kCenter.x, p.y - kCenter.y) < 4e-3 && std::abs(p.z - kCenter.z) > 6e-3;

@@ -224,12 +224,12 @@ TEST(LabelSeam, NothingIsUnitedWhereNoLabelsMeet) {
   Image image = dividedBall(Mat3(1.0));
   LabelSurfaces alone(image, {{1, 2, 3}});
   EXPECT_FALSE(alone.united(0.0, {}).has_value());
-  // One within the other do not limit each other: they are no neighbors.
+  // One within the other do not limit each other: they are not neighbors.
   LabelSurfaces nested(image, {{1, 2, 3}, {2}});
   EXPECT_FALSE(nested.united(0.0, {}).has_value());
 }
 
-// A layer with a label in common is no neighbor, and what it holds is not the rest either: a part of two layers has the
+// A layer with a label in common is not a neighbor, and what it holds is not the rest either: a part of two layers has the
 // same surface as by itself where it meets only that one, and its wall to a third is shared.
 TEST(LabelSeam, ALayerWithinAnotherKeepsItsOwnSurface) {
   const Image image = dividedBall(Mat3(1.0));

@@ -446,7 +446,7 @@ TEST(LabelSurface, ThinPartsAreKeptOrTold) {
     const LevelSet kept = surfaceFromLabels(image, {.values = {1}}, {});
     const ScanLoss none = scanLoss(kept.info());
     EXPECT_EQ(none.filled, 0U) << thickness;
-    // What is rounded off at the rim is no voxel's center.
+    // What is rounded off at the rim is not a voxel's center.
     EXPECT_LE(none.lost, 4U) << thickness;
     const FieldPtr field = gridField(kept);
     for (int i = 8; i < 20; ++i) {

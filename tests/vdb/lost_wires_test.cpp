@@ -127,7 +127,7 @@ TEST(LostWires, AStubAHelixAHandleAndARibbonAreTold) {
   is_told(boxMesh(kCenter + Vec3(0.27e-3, 0.67e-3, 14e-3), Vec3(3e-3, 0.3e-3, 20e-3)), "ribbon");
 }
 
-/// A cone of a right angle and less on a ball is no wire, however much of its tip is lost.
+/// A cone of a right angle and less on a ball is not a wire, however much of its tip is lost.
 TEST(LostWires, TipsAndEdgesAreNone) {
   for (const double half_angle : {3.0, 6.0, 15.0, 30.0}) {
     const double radius = 20e-3 * std::tan(half_angle * std::numbers::pi / 180.0);

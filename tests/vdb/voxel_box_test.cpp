@@ -19,7 +19,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// Specks of a few labels in an oblique, sheared image; some voxels are no numbers.
+/// Specks of a few labels in an oblique, sheared image; some voxels are not numbers.
 Image randomImage(palpate::test::Random& random) {
   Image image;
   image.size = {7, 5, 6};

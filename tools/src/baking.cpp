@@ -287,7 +287,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
     tellLoss(options, grids.back().grid, console);
   }
   if (layers.size() < 2) return grids;
-  // Where labels meet, what is in none of them is told by the one grid of all.
+  // Where labels meet, the one grid of all says what is in none of them.
   vdb::BakeOptions whole =
       gridOptions(options, "united", voxel, unit, options.input, memoryOf(grids));
   whole.name = kUnitedGrid;

@@ -13,7 +13,7 @@ namespace palpate::tools {
 struct BakedGrid {
   vdb::LevelSet grid;
   double seconds = 0.0;
-  FieldPtr analytic = {};  ///< what it was made of, if that was no grid, mesh or image
+  FieldPtr analytic = {};  ///< what it was made of, if that was not a grid, mesh or image
 };
 
 /// The grid of all labels together. A point belongs to the label whose grid has the smallest value there, or

@@ -64,7 +64,7 @@ double voxelOr(const BakeOptions& options, const std::string& unit, double fallb
   return voxel;
 }
 
-/// A level set whose voxels are no cubes along the axes: the surface where its interpolated distances pass
+/// A level set whose voxels are not cubes along the axes: the surface where its interpolated distances pass
 /// zero, in new voxels.
 vdb::LevelSet straightened(const BakeOptions& options, Console& console) {
   const auto grid = summaryOf(options, askedName(options));

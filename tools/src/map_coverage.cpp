@@ -77,7 +77,7 @@ MapGap gapOf(const Scene& scene, RegionId region, const SceneParameter& found,
     }
     return gap;
   }
-  // Of a layer without end no share can be told, only whether the map lies in it at all.
+  // A layer without end has no share, only whether the map lies in it at all.
   double nearest = kInfinity;
   eachPlace(map, [&](const Vec3& p) { nearest = std::min(nearest, field->value(p)); });
   gap.share = nearest <= 0.0 ? 1.0 : 0.0;

@@ -61,7 +61,7 @@ class OutputFiles {
   std::vector<File> files_;
 };
 
-/// True once a run was told to write a file to standard output: its summary then goes to stderr.
+/// True once a run has been asked to write a file to standard output: its summary then goes to stderr.
 [[nodiscard]] bool standardOutputIsTaken() noexcept;
 
 /// "-" as a name that opens standard input; any other name as it is.

@@ -160,7 +160,7 @@ void addGrid(const TouchOptions& o, const std::string& file, Parts& parts) {
       continue;
     }
     const bool is_mask = o.above.has_value() || grid.type == "BoolGrid" || grid.type == "MaskGrid";
-    // Beside surfaces a file may hold maps of materials, which are no shapes.
+    // Beside surfaces a file may hold maps of materials, which are not shapes.
     if (asked.empty() && grids.size() > 1 && !is_mask && grid.grid_class != "level set") continue;
     found = true;
     std::string layer = grid.name.empty() ? stemOf(o.scene) : grid.name;

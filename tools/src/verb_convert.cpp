@@ -32,7 +32,7 @@ bool isTakenAsItIs(const BakeOptions& bake) {
          bake.labels.empty() && bake.voxel.empty();
 }
 
-/// Its level set; none if its voxels are no cubes along the axes, or no floats.
+/// Its level set; none if its voxels are not cubes along the axes, or no floats.
 vdb::LevelSet takenAsItIs(const BakeOptions& bake, Console& console) {
   try {
     return readLevelSet(bake, console).grid;

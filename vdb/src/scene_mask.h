@@ -18,7 +18,7 @@ struct MaskOptions {
 };
 
 /// A grid of booleans, integers or a mask holds the voxels that are not 0; a fog volume is cut where its
-/// density is `above`. @throws Error (kInput): a level set (it says how far, and is no mask), a grid of
+/// density is `above`. @throws Error (kInput): a level set (it says how far, and is not a mask), a grid of
 /// vectors, `above` for one without densities, nothing held.
 [[nodiscard]] LevelSet surfaceOfMask(const MaskOptions& options, const BakeOptions& bake,
                                      const Progress& progress = {});

@@ -99,7 +99,7 @@ bool hasAll(const std::bitset<kSize>& axes) {
 std::vector<std::uint16_t> buttonsOf(const Capabilities& has) {
   constexpr std::size_t kMost = 32;
   std::vector<std::uint16_t> out;
-  // Of miscellaneous devices, mice, joysticks and gamepads: the kernel's codes for buttons that are no tools of a pen.
+  // Of miscellaneous devices, mice, joysticks and gamepads: the kernel's codes for buttons that are not tools of a pen.
   for (std::uint16_t code = BTN_MISC; code < BTN_DIGI && out.size() < kMost; ++code) {
     if (has.keys[code]) out.push_back(code);
   }

@@ -48,7 +48,7 @@ struct InputMap {
   std::vector<std::uint16_t> buttons;  ///< codes, rising; the first 32
 };
 
-/// None if it is no SpaceMouse, gamepad or mouse.
+/// None if it is not a SpaceMouse, gamepad or mouse.
 [[nodiscard]] std::optional<InputMap> mapOf(const Capabilities& has);
 
 }  // namespace palpate::devices::evdev

@@ -30,7 +30,7 @@ class FalconDevice final : public Device {
   [[nodiscard]] DeviceStatus write(const Vec3& force) noexcept override;
   void cut() noexcept override;
 
-  /// Bytes that were no part of a reply since open().
+  /// Bytes that were not part of a reply since open().
   [[nodiscard]] std::uint64_t dropped() const noexcept { return parser_.dropped(); }
 
  private:

@@ -35,7 +35,7 @@ struct Reply {
 class Parser {
  public:
   [[nodiscard]] std::optional<Reply> push(std::uint8_t byte) noexcept;
-  /// Bytes that were no part of a reply.
+  /// Bytes that were not part of a reply.
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace palpate::fields {
 
-/// One number for each point of a batch. Where it is no plain square (isPlainSquare()), the loop was not
+/// One number for each point of a batch. Where it is not a plain square (isPlainSquare()), the loop was not
 /// made for the point.
 struct alignas(64) Squares : std::array<double, PointBatch::kCount> {};
 

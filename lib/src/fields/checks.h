@@ -8,7 +8,7 @@
 
 namespace palpate::fields {
 
-/// Lengths outside this range are no haptic object but a unit gone wrong, and their squares and
+/// Lengths outside this range are not a haptic object but a unit gone wrong, and their squares and
 /// cubes start to leave the range of double.
 inline constexpr double kSmallestLength = 1e-12;  ///< [m]
 inline constexpr double kLargestLength = 1e12;    ///< [m]

@@ -153,7 +153,7 @@ struct Partition::Builder {
     return id;
   }
 
-  /// Planes that are no solid's face take the scale of the scene, so that a scene in micrometers is the same scene.
+  /// Planes that are not the face of a solid take the scale of the scene, so that a scene in micrometers is the same scene.
   void sizePlanes() {
     double largest = 0.0;
     for (const Leaf& leaf : partition.leaves_) {

@@ -187,7 +187,7 @@ bool ProxySolver::goesOnInto(RegionId beyond, const CellProblem& problem) noexce
 }
 
 /// Near walls and cells within `radius` [m]. Where no cell holds the proxy (a field that lies about its bound
-/// let it through), the walker's sides say where it belongs. False if it cannot be told.
+/// let it through), the walker's sides say where it belongs. False if they do not say.
 bool ProxySolver::lookWithin(double radius) noexcept {
   trusts_sides_ = false;
   if (!near_.look(radius, false)) return false;

@@ -40,7 +40,7 @@ class Seams {
 
   Seams(const Scene& scene, CellWalker& walker) : scene_(scene), walker_(walker) {}
 
-  /// A new tick: which leaves are near the proxy has to be told by add(), for each of them.
+  /// A new tick: add() names each leaf that is near the proxy.
   void clear() noexcept { count_ = 0; }
   void add(LeafId leaf) noexcept {
     if (count_ < near_.size()) near_[count_++] = leaf;

@@ -35,7 +35,7 @@ Error wrongKind(const Document& document, const Node& node, const std::string& w
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-// What to write instead of a text that is no number; empty if nobody knows.
+// What to write instead of a text that is not a number; empty if nobody knows.
 std::string numberHint(std::string_view text) {
   if (text.find("\xC2\xA0") != std::string_view::npos) {
     return "there is a no-break space in it; write a plain one";

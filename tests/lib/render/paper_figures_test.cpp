@@ -235,7 +235,7 @@ class Valve : public Figured {
   [[nodiscard]] Vec3 flow() const override { return {0.02, 0, 0}; }
 };
 
-/// Figure 1.1: a cup, glass and liquid; the liquid's surface is no wall. Faces: outer, hollow, level.
+/// Figure 1.1: a cup, glass and liquid; the liquid's surface is not a wall. Faces: outer, hollow, level.
 class Cup : public Figured {
  public:
   Cup() {

@@ -1,4 +1,4 @@
-// Walls that give way to a force: when they do, what they leave behind, and what is told of it.
+// Walls that give way to a force: when they do, what they leave behind, and what the result says of it.
 
 #include <gtest/gtest.h>
 

@@ -162,7 +162,7 @@ FileCheck checkGridFile(const std::string& file, const CheckOptions& options, Co
   for (const vdb::GridCheck& check : checks) {
     const std::string& own = check.grid.info.length_unit;
     const std::string& name = own.empty() ? options.units : own;
-    // Without a unit, places are told in the grid's own numbers, which are then those in m.
+    // Without a unit, places are given in the grid's own numbers, which are then those in m.
     const LengthUnit unit = metresPer(name) ? lengthUnit(name) : LengthUnit{"units", 1.0};
     const GridVerdict verdict = judge(check, unit);
     any_yes = any_yes || verdict.is_yes;

@@ -31,7 +31,7 @@ class TableLoader final : public SceneLoader {
                             const std::string& hint = {}) const {
     return document_.error(mark, code_ + ".kind", message, hint);
   }
-  /// @throws Error if `node` is no map.
+  /// @throws Error if `node` is not a map.
   [[nodiscard]] const std::vector<Node::Entry>& entries(const Node& node, const char* of) const {
     if (node.kind != Node::Kind::kMap) {
       throw wrong(node.mark, std::string("'") + of + "' wants a map");

@@ -82,7 +82,7 @@ std::string sceneHelp(const Vocabulary& vocabulary, const std::string& word) {
     }
     if (dot != std::string::npos && map.name != word.substr(0, dot)) continue;
     const KeyWords* key = map.find(name);
-    // A kind of field is told by the map that it holds.
+    // The map that a kind of field holds tells which it is.
     if (key == nullptr ||
         (dot == std::string::npos && key->type == word && vocabulary.find(word))) {
       continue;

@@ -50,7 +50,7 @@ struct Ball {
 /// Inside the intersection (the lens): on either cap, or on the rim. One minimum, the lens is convex.
 [[nodiscard]] Minima lensInside(const Vec3& p, const Ball& a, const Ball& b);
 
-/// Outside the lens: on either cap; its rim is no minimum.
+/// Outside the lens: on either cap; its rim is not a minimum.
 [[nodiscard]] Minima lensOutside(const Vec3& p, const Ball& a, const Ball& b);
 
 /// The room between two planes through a line: x = P with n1.x >= 0 and n2.x >= 0, unit normals,

@@ -120,7 +120,7 @@ class Run {
     return out;
   }
 
-  /// Off a stationary point that is no minimum, the way it falls away. The caller runs both ways.
+  /// Off a stationary point that is not a minimum, the way it falls away. The caller runs both ways.
   Vec3 kicked(const Vec3& x, const Vec3& direction, double h) {
     was_kicked_ = true;
     return projectLocally(set_, x + kick_ * 0.1 * h * direction, h).point;

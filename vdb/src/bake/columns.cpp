@@ -63,7 +63,7 @@ void Columns::sortCrossings(std::vector<Crossing>& crossings) {
   const int bits = bitsFor(across(lo.y, hi.y));
   radixSort(crossings, bits + bitsFor(across(lo.x, hi.x)),
             [&](const Crossing& c) { return across(lo.x, c.x) << bits | across(lo.y, c.y); });
-  // Threads left crossings in any order, so that the rest of it must be told by the crossings.
+  // Threads left crossings in any order, so that the crossings must tell the rest of it.
   for (auto begin = crossings.begin(); begin != crossings.end();) {
     auto end = begin;
     while (end != crossings.end() && end->x == begin->x && end->y == begin->y) ++end;
@@ -107,7 +107,7 @@ void Columns::findRoles(const Solid& solid, const std::vector<Crossing>& crossin
     if (nest.container == kNone) continue;
     const SolidPart& inner = solid.parts[part];
     const SolidPart& outer = solid.parts[nest.container];
-    // A larger part that a smaller one sticks out of is no cavity; the smaller one may be.
+    // A larger part that a smaller one sticks out of is not a cavity; the smaller one may be.
     if (size(part) > size(nest.container)) continue;
     const bool opposite = signOf(inner.volume) != signOf(outer.volume);
     const bool whole = nest.enclosed == nest.crossings;

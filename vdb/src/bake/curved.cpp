@@ -150,7 +150,7 @@ class Patches {
       const Vec3 mean = unitOr(a + b, a);
       result = along - glm::dot(along, mean) * mean;
     }
-    // A surface that leaves its facet steeply is no smooth one.
+    // A surface that leaves its facet steeply is not a smooth one.
     const double length_of_side = glm::length(along);
     const double cosine = glm::length(result) / length_of_side;
     if (!(cosine > 0.5 && length_of_side > 0.0)) return along;

@@ -46,7 +46,7 @@ class Search {
   void lookInto(const LevelSet& grid) { grid_ = gridField(grid, Sampler::kAccessor); }
 
   [[nodiscard]] LostPlaces in(const Leaf& leaf) const {
-    // What decides at all points that are looked at from here; of fields that are no distances, these may
+    // What decides at all points that are looked at from here; of fields that are not distances, these may
     // be anywhere.
     constexpr double kReach = 0.5 * 1.7320508075688774 * 7.0 + kBySurface + kHeld + kGoesOn + 0.1;
     const openvdb::Coord first = leaf.origin();

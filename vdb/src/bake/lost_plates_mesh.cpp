@@ -23,7 +23,7 @@ constexpr double kHair = 1e-4;
 constexpr double kOpposite = 0.7;
 /// The same of a wire, which may have three sides.
 constexpr double kOppositeOfWire = 0.4;
-/// [voxels] Places nearer to one that is no wire are none either.
+/// [voxels] Places nearer to one that is not a wire are none either.
 constexpr double kSamePlace = 0.5;
 
 struct Place {

@@ -18,7 +18,7 @@ namespace palpate::vdb {
 ///   bool isInside(const Vec3&): of the solid;
 ///   bool isHeld(const Vec3&): by the grid.
 ///
-/// A cone is no wire: the tip of a needle of 5 degrees and more may be lost, as the last voxels of an edge.
+/// A cone is not a wire: the tip of a needle of 5 degrees and more may be lost, as the last voxels of an edge.
 template <class Solid>
 class ThinPart {
  public:

@@ -55,7 +55,7 @@ class LeafCheck {
       tally.marked_inside += 1.0;
     }
     std::array<float, 6> beside{};
-    // What is active and constant, as some tools leave the inside, is no band.
+    // What is active and constant, as some tools leave the inside, is not a band.
     const float band = grid_.background();
     bool in_band = active && std::abs(value) < band;
     bool breaks = false;
@@ -64,7 +64,7 @@ class LeafCheck {
       const bool other_active = accessor.probeValue(there, beside[n]);
       in_band = in_band && other_active && std::abs(beside[n]) < band;
       if (active && other_active) continue;
-      // Told at the negative one of the two, unless that is no voxel of a leaf.
+      // Told at the negative one of the two, unless that is not a voxel of a leaf.
       const bool is_break = (value < 0.0F) != (beside[n] < 0.0F);
       breaks = breaks || (is_break && (value < 0.0F || accessor.probeConstLeaf(there) == nullptr));
     }

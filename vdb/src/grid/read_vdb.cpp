@@ -173,7 +173,7 @@ LevelSet readVdb(const std::string& path, const std::string& name,
                  std::uint64_t max_memory) {
   VdbFile file(path);
   const VdbArchive::Entry& entry = file.choose(name);
-  // What the head of the grid tells is told before its voxels are read.
+  // Errors that the head of the grid shows come before its voxels are read.
   requireLevelSet(*entry.grid, unknown_class, path);
   static_cast<void>(unitOf(*entry.grid, unit_if_missing, path));
   requireMemory(file, entry, memoryLimit(max_memory), path);

@@ -110,7 +110,7 @@ void ByteStream::startNextMember() {
     ++zlib_.next_in;
     --zlib_.avail_in;
   }
-  if (*zlib_.next_in != 0x1f) {  // what follows is no gzip member; gzip -t ignores it too
+  if (*zlib_.next_in != 0x1f) {  // what follows is not a gzip member; gzip -t ignores it too
     ended_ = true;
     return;
   }

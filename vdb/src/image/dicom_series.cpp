@@ -213,7 +213,7 @@ bool needsNoPixels(const DicomElements& e) {
                      [&](const char* group) { return kind.starts_with(images + group); });
 }
 
-/// The series of the folder by UID, and how many files are no slices.
+/// The series of the folder by UID, and how many files are not slices.
 std::map<std::string, std::vector<DicomElements>> seriesIn(const fs::path& folder,
                                                            std::size_t& without_pixels) {
   std::map<std::string, std::vector<DicomElements>> out;
@@ -292,7 +292,7 @@ DicomSeries findDicomSeries(const std::string& path, const std::string& wanted) 
   for (DicomElements& elements : chosenSeries(path, wanted, without_pixels)) {
     slices.push_back(sliceOf(std::move(elements)));
   }
-  // By name first: what is told does not depend on the folder's order.
+  // By name first: the errors do not depend on the folder's order.
   std::sort(slices.begin(), slices.end(),
             [](const Slice& a, const Slice& b) { return a.elements.path < b.elements.path; });
   for (const Slice& s : slices) requireSame(slices.front(), s);

@@ -125,7 +125,7 @@ class TreeBuilder {
     return level % 2 == 0 ? intersect(std::move(operands)) : unite(std::move(operands));
   }
 
-  /// Faces that hang together across edges that are no edges of the hull of `points`.
+  /// Faces that hang together across edges that are not edges of the hull of `points`.
   std::vector<std::vector<std::uint32_t>> pocketsOf(const std::vector<std::uint32_t>& faces,
                                                     const std::vector<std::uint32_t>& points) {
     std::map<std::uint32_t, std::uint32_t> parent;

@@ -18,7 +18,7 @@ namespace {
 constexpr double kHold = 0.3;
 constexpr double kBeside = 1.8;  ///< voxels that share a corner
 /// Voxels by which the surface may be nearer than the nearest voxel of the other side: a smooth one by about
-/// one; and no less, or curved ones would be bent. Of voxels that are no cubes, those as long as their diagonal.
+/// one; and no less, or curved ones would be bent. Of voxels that are not cubes, those as long as their diagonal.
 constexpr double kSlack = 1.3;
 /// Where the surface is between two voxels, at first.
 constexpr double kHalf = 0.5;

@@ -173,7 +173,7 @@ float LabelPartition::Limits::leastAt(int x, int y, int z) const noexcept {
 LabelPartition::Limits LabelPartition::limitsOf(std::size_t index,
                                                 const std::vector<std::size_t>& neighbors,
                                                 const Progress& progress) {
-  // What has labels in common with the layer is no part of the rest, unless something else is.
+  // What has labels in common with the layer is not part of the rest, unless something else is.
   Labels labels = layers_[index];
   for (const Labels& other : layers_) {
     if (!haveCommonLabel(other, layers_[index])) labels = together(labels, other);

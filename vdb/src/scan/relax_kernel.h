@@ -16,7 +16,7 @@ PALPATE_KERNEL const float* rowOf(const Patch& patch, int row) noexcept {
          (row & 7) * kStepY;
 }
 
-/// NaN, which any voxel outside the band makes of a difference, is no difference.
+/// NaN, which any voxel outside the band makes of a difference, is not a difference.
 PALPATE_KERNEL Floats known(Floats a) noexcept { return whereLess(a, all(3e38F), a, all(0.0F)); }
 
 /// The second difference along one axis.

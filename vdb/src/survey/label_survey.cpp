@@ -128,7 +128,7 @@ class Survey {
 
   void addContacts(const LabelRuns& runs) {
     const auto& pieces = runs.pieces();
-    // Of small pieces it is told what is around them.
+    // Of small pieces the survey says what is around them.
     std::vector<std::unordered_map<std::size_t, std::uint64_t>> around(pieces.size());
     runs.forEachContact([&](std::size_t a, std::size_t b, int axis, int faces) {
       Faces these{};
@@ -322,7 +322,7 @@ std::vector<IslandChange> changeIslands(Image& image, const std::vector<std::vec
         if (p == 0) continue;
         if (rule == IslandRule::kDrop) to = survey.gap();
       } else if (piece.at_border || rule == IslandRule::kDrop || to >= regions.size()) {
-        continue;  // what is around is no label either, or it is no cavity
+        continue;  // what is around is not a label either, or it is not a cavity
       }
       becomes[piece.id] = label_of(to);
       changes.push_back({region, to, piece.voxels, piece.place});

@@ -34,7 +34,7 @@ namespace palpate {
 //
 // With more than two operands the order matters slightly: they are combined from the first on.
 // @throws Error (kInput) if there is no operand, one is null or a grid whose band ends nearer than
-// `radius` to its surface, or `radius` is no length; all three.
+// `radius` to its surface, or `radius` is not a length; all three.
 
 /// Fills the crease between the operands.
 [[nodiscard]] PALPATE_EXPORT FieldPtr smoothUnite(std::vector<FieldPtr> operands, double radius);

@@ -1,5 +1,5 @@
 #pragma once
-/// The nearest point of a field's surface, for fields whose value is no distance.
+/// The nearest point of a field's surface, for fields whose value is not a distance.
 
 #include <optional>
 
@@ -18,7 +18,7 @@ struct FootPoint {
 
 /// Newton's method on the conditions of the nearest point: x - p + lambda grad S(x) = 0 and S(x) = 0.
 /// For set-up and measurement: some ten evaluations and 14 values, but no allocation, and any thread.
-/// Nothing if it does not converge to rounding, if the foot is no nearest point (p lies beyond the
+/// Nothing if it does not converge to rounding, if the foot is not a nearest point (p lies beyond the
 /// centre of curvature), or if another part of the surface is nearer: the field is asked on the
 /// sphere around p that reaches almost to the foot, and has to have the sign of p there.
 /// The field must be twice differentiable between p and its foot.

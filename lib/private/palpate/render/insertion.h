@@ -93,7 +93,7 @@ class Insertion {
   std::size_t cut_count_ = 0;
   std::size_t next_cut_ = 0;  ///< when full: the oldest
   bool started_ = false;
-  bool is_lost_ = false;          ///< more tissues than can be told apart
+  bool is_lost_ = false;          ///< more tissues than it can keep apart
   RegionId region_ = kOutside;    ///< at the last step
   Vec3 tip_{0.0, 0.0, 0.0};       ///< [m] at the last step
   Vec3 velocity_{0.0, 0.0, 0.0};  ///< [m/s] at this step

@@ -38,7 +38,7 @@ struct BakeOptions {
   std::uint64_t max_memory = 0;    ///< [bytes] 0: 80 % of the machine's
   std::map<std::string, std::string> metadata = {};
   MeshSign mesh_sign = MeshSign::kVote;  ///< of bakeMesh()
-  /// [m] of bakeMesh(): if positive, the mesh is no solid but a surface, closed or not, in the middle
+  /// [m] of bakeMesh(): if positive, the mesh is not a solid but a surface, closed or not, in the middle
   /// of a shell of that thickness.
   double shell_thickness = 0.0;
   /// [rad] of bakeMesh(), up to pi: if positive, facets that meet at less than this angle become pieces of one
@@ -82,7 +82,7 @@ struct BakeOptions {
 /// Which parts of a field become grids.
 enum class Parts {
   kAuto,      ///< those that a grid holds within the tolerance and answers faster
-  kOperands,  ///< all that a grid holds within the tolerance and that are no exact distances
+  kOperands,  ///< all that a grid holds within the tolerance and that are not exact distances
   kWhole,     ///< one grid of everything; edges and thin parts suffer
 };
 

@@ -41,7 +41,7 @@ struct PALPATE_EXPORT Image {
   Mat3 axes{1.0};              ///< [m per voxel] columns: step along i, j, k
   Vec3 origin{0.0, 0.0, 0.0};  ///< [m] centre of voxel (0, 0, 0)
   std::vector<std::string>
-      notes;               ///< what was assumed ("unit code 0 taken as mm"), to be told once
+      notes;               ///< what was assumed ("unit code 0 taken as mm"), to be reported once
   LabelTable labels = {};  ///< out of the file itself
 
   [[nodiscard]] float at(int i, int j, int k) const noexcept {
@@ -67,7 +67,7 @@ enum class AffineChoice {
   kSpacing,  ///< NIfTI, NRRD: spacings only; axes along R, A, S, the first voxel's centre at the origin
 };
 
-/// What a reader is told where files leave room.
+/// What a caller says where files leave room.
 struct ImageOptions {
   AffineChoice affine = AffineChoice::kAuto;
   Space space = Space::kStated;  ///< of an NRRD file whose space is not an anatomical one
@@ -126,7 +126,7 @@ struct ImageInfo {
 [[nodiscard]] PALPATE_EXPORT std::string encodeNifti(const Image& image, bool gzip);
 
 /// The same for labels: voxels of 8 bits without sign, or of 16 where labels go beyond 255.
-/// @throws Error (kInput, "nifti.label") for a value that is no whole number from 0 to 65535.
+/// @throws Error (kInput, "nifti.label") for a value that is not a whole number from 0 to 65535.
 [[nodiscard]] PALPATE_EXPORT std::string encodeLabels(const Image& image, bool gzip);
 
 /// A table of label names, and colours if it has some:
@@ -137,7 +137,7 @@ struct ImageInfo {
 ///   an image with a table of its own (.seg.nrrd, .nii.gz)
 /// LF or CR LF; a byte order mark, blank lines and lines from # on are skipped. Lines that are not
 /// UTF-8 are taken for Latin-1.
-/// @throws Error (kInput, codes "labels.*") naming file and line: a value that is no integer or has
+/// @throws Error (kInput, codes "labels.*") naming file and line: a value that is not an integer or has
 /// two names, a missing name, a column that does not belong, a colour out of range.
 [[nodiscard]] PALPATE_EXPORT LabelTable readLabelTable(const std::string& path);
 

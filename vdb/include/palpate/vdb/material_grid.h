@@ -104,7 +104,7 @@ struct MaterialGridRequest {
 
 /// A fog volume of floats; any linear transform. Where it has no active voxel the nearest ones count.
 /// @throws Error (kInput, "vdb.*"): no such grid, another type or class, no unit or one of another dimension,
-/// values that are no numbers, a transform that is not linear, ...
+/// values that are not numbers, a transform that is not linear, ...
 [[nodiscard]] PALPATE_EXPORT MaterialGridPtr readMaterialGrid(const std::string& path,
                                                               const MaterialGridRequest& request);
 

@@ -30,7 +30,7 @@ using VoxelMask = std::vector<std::uint8_t>;
 [[nodiscard]] VoxelMask labelMask(const Image& image, const Image& grid);
 
 /// Voxels of each label, 0 included.
-/// @throws Error (kInput, "labels.not_labels"), naming a voxel, for values that are no whole numbers from
+/// @throws Error (kInput, "labels.not_labels"), naming a voxel, for values that are not whole numbers from
 /// 0 to 65535, and for images whose values change with almost every voxel, as grey values do.
 [[nodiscard]] std::map<int, std::uint64_t> countLabels(const Image& image);
 
