@@ -181,8 +181,8 @@ INSTANTIATE_TEST_SUITE_P(LimbAndHead, ImportCrossings, ::testing::Values(kLimb, 
 TEST(ImportCrossingsOfOne, EachWallRupturesBothWaysAtTheForceOfWhatIsEnteredOrLeft) {
   const TissueTable tissues = tools::ownTissueTable();
   const Numbers numbers = {4, 2, 6, 1, 5, 3};
-  const auto forceOf = [&](const char* tissue, auto Tissue_force) {
-    return (tissues.find(tissue)->*Tissue_force)->value;
+  const auto force_of = [&](const char* tissue, auto member) {
+    return (tissues.find(tissue)->*member)->value;
   };
   using tools::Tissue;
   const ScenePtr limb = compiled(scanOf(kLimb, numbers, tissues), numbers, tissues);
@@ -191,14 +191,15 @@ TEST(ImportCrossingsOfOne, EachWallRupturesBothWaysAtTheForceOfWhatIsEnteredOrLe
   };
   // Out of the muscle into fat is as hard as into it: the same fascia.
   EXPECT_EQ(between(limb, "subcutaneous fat", "vastus muscle"),
-            std::pair(forceOf("muscle", &Tissue::opens_at), forceOf("muscle", &Tissue::back)));
-  EXPECT_GE(forceOf("muscle", &Tissue::back), forceOf("muscle", &Tissue::opens_at));
-  EXPECT_EQ(between(limb, "outside", "skin").first, forceOf("skin", &Tissue::opens_at));
+            std::pair(force_of("muscle", &Tissue::opens_at), force_of("muscle", &Tissue::back)));
+  EXPECT_GE(force_of("muscle", &Tissue::back), force_of("muscle", &Tissue::opens_at));
+  EXPECT_EQ(between(limb, "outside", "skin").first, force_of("skin", &Tissue::opens_at));
   EXPECT_EQ(between(limb, "patellar ligament", "femur"), std::pair(-1.0, -1.0));
   const ScenePtr head = compiled(scanOf(kHead, numbers, tissues), numbers, tissues);
-  EXPECT_EQ(between(head, "white matter", "lateral ventricle"),
-            std::pair(forceOf("ependyma", &Tissue::opens_at), forceOf("ependyma", &Tissue::back)));
-  EXPECT_EQ(between(head, "CSF", "white matter").first, forceOf("brain", &Tissue::opens_at));
+  EXPECT_EQ(
+      between(head, "white matter", "lateral ventricle"),
+      std::pair(force_of("ependyma", &Tissue::opens_at), force_of("ependyma", &Tissue::back)));
+  EXPECT_EQ(between(head, "CSF", "white matter").first, force_of("brain", &Tissue::opens_at));
   EXPECT_EQ(between(head, "scalp", "skull"), std::pair(-1.0, -1.0));
   EXPECT_EQ(between(head, "skull", "dura mater"), std::pair(-1.0, -1.0));
 }
@@ -253,7 +254,7 @@ TEST(ImportCrossingsOfOne, ATableSaysWhatIsWrongWithIt) {
       "stiffest: {value: 2000 N/m, basis: assumed, source: x}\n";
   const std::string wall = "stiffness: {value: 9 N/m, basis: assumed, source: x}";
   const std::string opens = "opens_at: {value: 1 N, basis: assumed, source: x}";
-  const auto codeOf = [&](const std::string& rest) -> std::string {
+  const auto code_of = [&](const std::string& rest) -> std::string {
     try {
       (void)tools::readTissueTable(folder.file("t.yaml", head + rest));
       return "";
@@ -261,14 +262,14 @@ TEST(ImportCrossingsOfOne, ATableSaysWhatIsWrongWithIt) {
       return error.problem().code;
     }
   };
-  EXPECT_EQ(codeOf("tissues:\n  a: {class: rigid, " + wall + "}\n"), "");
-  EXPECT_EQ(codeOf("tissues:\n  a: {class: rigid, " + wall + ", " + opens + "}\n"),
+  EXPECT_EQ(code_of("tissues:\n  a: {class: rigid, " + wall + "}\n"), "");
+  EXPECT_EQ(code_of("tissues:\n  a: {class: rigid, " + wall + ", " + opens + "}\n"),
             "tissues.class");
-  EXPECT_EQ(codeOf("tissues:\n  a: {class: hard, " + wall + "}\n"), "tissues.class");
-  EXPECT_EQ(codeOf("tissues:\n  a: {class: gas, " + wall + "}\n"), "tissues.class");
-  EXPECT_EQ(codeOf("tissues:\n  a: {class: solid, lining: b, " + wall + "}\n"), "tissues.class");
-  EXPECT_EQ(codeOf("tissues:\n  a: {class: fluid, lining: b}\n"), "tissues.lining");
-  EXPECT_EQ(codeOf("unknown: b\ntissues:\n  a: {" + wall + "}\n"), "tissues.unknown");
+  EXPECT_EQ(code_of("tissues:\n  a: {class: hard, " + wall + "}\n"), "tissues.class");
+  EXPECT_EQ(code_of("tissues:\n  a: {class: gas, " + wall + "}\n"), "tissues.class");
+  EXPECT_EQ(code_of("tissues:\n  a: {class: solid, lining: b, " + wall + "}\n"), "tissues.class");
+  EXPECT_EQ(code_of("tissues:\n  a: {class: fluid, lining: b}\n"), "tissues.lining");
+  EXPECT_EQ(code_of("unknown: b\ntissues:\n  a: {" + wall + "}\n"), "tissues.unknown");
 }
 
 }  // namespace

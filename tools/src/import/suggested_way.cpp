@@ -70,7 +70,9 @@ class WayFinder {
 
   Walk walk(const Vec3& from, const Vec3& way, double reach) const {
     std::optional<double> first;
-    for (double s = 0.0; s < reach; s += step_) {
+    const auto steps = static_cast<int>(std::ceil(reach / step_));
+    for (int n = 0; n < steps; ++n) {
+      const double s = n * step_;
       const std::optional<std::array<int, 3>> voxel = voxelAt(from + s * way);
       if (!voxel) continue;
       const Tissue* tissue = tissueAt(*voxel);

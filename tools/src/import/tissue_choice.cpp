@@ -80,7 +80,7 @@ class Chooser {
                                                               : trimmed(text.substr(equals + 1)));
     if (pattern.empty() || tissue.empty()) {
       throw wrong("this is not LABELS=TISSUE",
-                  "write \"Outer-Table=bone\", \"rib*=bone\" or 5-28=muscle");
+                  R"(write "Outer-Table=bone", "rib*=bone" or 5-28=muscle)");
     }
     Rule result{std::string(text), simplified(pattern), labelRange(pattern), tissues_.find(tissue),
                 must_fit};
@@ -178,8 +178,9 @@ class Chooser {
   }
 
   TissueChoice one(const NamedLabels& region, const NameVerdict& by_name) {
-    for (auto rule = rules_.rbegin(); rule != rules_.rend(); ++rule) {
-      if (!fitsRule(*rule, region)) continue;
+    const auto rule = std::find_if(rules_.rbegin(), rules_.rend(),
+                                   [&](const Rule& each) { return fitsRule(each, region); });
+    if (rule != rules_.rend()) {
       return {rule->tissue, rule->must_fit ? "--tissue " + rule->text : "line " + rule->text, true};
     }
     if (const Tissue* tissue = tissues_.of(region.name))

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <ranges>
 #include <set>
 
 namespace palpate::tools {
@@ -179,11 +178,10 @@ NameVerdict TissueNames::ofPart(const Words& part, const Words& rest) const {
     return byWord(*tissue, said.front(), true);
   }
   for (const auto* list : {&nouns_, &names_}) {
-    for (const std::string& word : said | std::views::reverse) {
-      if (const std::string* tissue = find(*list, word)) {
-        return byWord(*tissue, word, list == &nouns_);
-      }
-    }
+    const auto word = std::find_if(said.rbegin(), said.rend(), [&](const std::string& each) {
+      return find(*list, each) != nullptr;
+    });
+    if (word != said.rend()) return byWord(*find(*list, *word), *word, list == &nouns_);
   }
   const bool has_number =
       std::any_of(part.begin(), part.end(), [](const std::string& w) { return isDigit(w[0]); });
@@ -195,10 +193,10 @@ NameVerdict TissueNames::ofPart(const Words& part, const Words& rest) const {
 }
 
 NameVerdict TissueNames::ofPlace(const Words& part) const {
-  for (const std::string& word : part | std::views::reverse) {
-    if (const std::string* tissue = find(places_, word)) return byWord(*tissue, word);
-  }
-  return {};
+  const auto word = std::find_if(part.rbegin(), part.rend(), [&](const std::string& each) {
+    return find(places_, each) != nullptr;
+  });
+  return word != part.rend() ? byWord(*find(places_, *word), *word) : NameVerdict{};
 }
 
 bool TissueNames::isBrain(const Words& words) const {
