@@ -42,9 +42,17 @@ int piecesOn(int processor) {
   return count;
 }
 
+void expectRefused(int processor) {
+  bool was_called = false;
+  const Error error = errorOf([&] { bakeOffProcessor(processor, [&] { was_called = true; }); });
+  EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+  EXPECT_EQ(error.problem().code, "bake.processor");
+  EXPECT_FALSE(was_called);
+}
+
 TEST(BakeOffProcessor, NoPieceOfABakeRunsThereAndAfterwardsAllIsAsBefore) {
   const std::vector<int> before = mine();
-  if (before.size() < 2) GTEST_SKIP() << "this machine has one processor";
+  if (before.size() == 1) return expectRefused(before.front());  // nothing would be left to bake on
   for (const int processor : before) {
     EXPECT_EQ(piecesOn(processor), kPieces);
     for (int n = 0; n < 10; ++n) {
@@ -64,20 +72,14 @@ TEST(BakeOffProcessor, NoPieceOfABakeRunsThereAndAfterwardsAllIsAsBefore) {
 
 TEST(BakeOffProcessor, AThrowingBakeLeavesAllAsBefore) {
   const std::vector<int> before = mine();
-  if (before.size() < 2) GTEST_SKIP() << "this machine has one processor";
+  if (before.size() == 1) return expectRefused(before.front());
   const auto broken = [] { throw std::runtime_error("broken bake"); };
   EXPECT_THROW(bakeOffProcessor(before.front(), broken), std::runtime_error);
   EXPECT_EQ(mine(), before);
 }
 
 TEST(BakeOffProcessor, AProcessorThatIsNotThereIsRefused) {
-  for (const int processor : {-1, CPU_SETSIZE - 1, CPU_SETSIZE + 5}) {
-    bool was_called = false;
-    const Error error = errorOf([&] { bakeOffProcessor(processor, [&] { was_called = true; }); });
-    EXPECT_EQ(error.kind(), ErrorKind::kUsage);
-    EXPECT_EQ(error.problem().code, "bake.processor");
-    EXPECT_FALSE(was_called);
-  }
+  for (const int processor : {-1, CPU_SETSIZE - 1, CPU_SETSIZE + 5}) expectRefused(processor);
 }
 
 }  // namespace

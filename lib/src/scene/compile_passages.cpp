@@ -45,7 +45,7 @@ std::vector<LeafId> SceneCompiler::facetLeaves(const PortDescription& given, con
     throw errorAt(
         given.place, "scene.port_face",
         "port " + inQuotes(given.name) + " is on " + inQuotes(given.on_name) +
-            ", which is no part of " + inQuotes(given.from) + " or " + inQuotes(given.to),
+            ", which is not part of " + inQuotes(given.from) + " or " + inQuotes(given.to),
         given.on_note.empty()
             ? "name a field that the layer's `inside` is made from, or use `where:` for an "
               "opening of any shape"

@@ -149,7 +149,7 @@ TEST(Compile, RefusesWithCodePlaceAndRemedy) {
          s.ports[0].on = s.layers[2].inside;
          s.ports[0].on_name = "far";
        },
-       "scene.port_face", "no part of 'shell' or 'core'"},
+       "scene.port_face", "which is not part of 'shell' or 'core'"},
       {"override of nothing",
        [](auto& s) {
          s.walls = {{"shell", "cor", {false, "bone"}, {}, {"test.yaml", 4, 2, {}}}};
