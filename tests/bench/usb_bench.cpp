@@ -7,9 +7,7 @@
 #include <sched.h>
 
 #include <array>
-#include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -22,6 +20,7 @@
 #include "devices/falcon_rig.h"
 #include "falcon/packet.h"
 #include "palpate/devices/latency_histogram.h"
+#include "support/busy_threads.h"
 #include "usb/ftdi.h"
 #include "usb/transport.h"
 
@@ -29,31 +28,6 @@ namespace palpate::devices {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Threads that compute until they go.
-class Load {
- public:
-  explicit Load(unsigned count) {
-    for (unsigned i = 0; i < count; ++i) {
-      threads_.emplace_back([this] {
-        double x = 1.0;
-        while (!is_over_.load(std::memory_order_relaxed)) x = std::sqrt(x + 1.0);
-        sink_.store(x, std::memory_order_relaxed);
-      });
-    }
-  }
-  ~Load() {
-    is_over_ = true;
-    for (std::thread& thread : threads_) thread.join();
-  }
-  Load(const Load&) = delete;
-  Load& operator=(const Load&) = delete;
-
- private:
-  std::atomic<bool> is_over_{false};
-  std::atomic<double> sink_{0.0};
-  std::vector<std::thread> threads_;
-};
 
 /// A real-time priority of this thread; those that were made before keep theirs.
 class Priority {
@@ -81,7 +55,7 @@ void measure(const char* what, unsigned load, bool wants_priority, double second
   // The kernel takes the processor from a real-time thread that computes for 0.95 s of a second.
   constexpr std::chrono::milliseconds kBusy(400);
   constexpr std::chrono::milliseconds kRest(100);
-  const Load others(load);
+  const BusyThreads others(load);
   std::optional<Priority> priority;
   if (wants_priority) priority.emplace();
   LatencyHistogram times;

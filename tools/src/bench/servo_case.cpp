@@ -3,14 +3,13 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <system_error>
-#include <thread>
 
 #include "palpate/devices/device.h"
 #include "realtime_report.h"
 #include "stop_signal.h"
+#include "support/busy_threads.h"
 
 namespace palpate::tools {
 namespace {
@@ -30,31 +29,6 @@ class NullDevice final : public devices::Device {
 
  private:
   devices::DeviceInfo info_{"null", 1.0, {}};
-};
-
-/// Threads that compute until they go.
-class Load {
- public:
-  explicit Load(int count) {
-    for (int i = 0; i < count; ++i) {
-      threads_.emplace_back([this] {
-        double x = 1.0;
-        while (!is_over_.load(std::memory_order_relaxed)) x = std::sqrt(x + 1.0);
-        sink_.store(x, std::memory_order_relaxed);
-      });
-    }
-  }
-  ~Load() {
-    is_over_ = true;
-    for (std::thread& thread : threads_) thread.join();
-  }
-  Load(const Load&) = delete;
-  Load& operator=(const Load&) = delete;
-
- private:
-  std::atomic<bool> is_over_{false};
-  std::atomic<double> sink_{0.0};
-  std::vector<std::thread> threads_;
 };
 
 std::string micros(std::int64_t ns) {
@@ -81,7 +55,7 @@ ServoFigures measureServo(double rate, int load, double seconds) {
   out.seconds = seconds;
   NullDevice device;
   std::atomic<bool> is_over{false};
-  const Load others(load);
+  const BusyThreads others(static_cast<unsigned>(load));
   const auto begin = std::chrono::steady_clock::now();
   const auto tick = [&](const devices::DeviceState& /*state*/) {
     const std::chrono::duration<double> since = std::chrono::steady_clock::now() - begin;

@@ -24,22 +24,7 @@ class PALPATE_EXPORT BoundsTree {
   /// Calls f(item) for each item whose box comes within `radius` [m] of `p` [m].
   template <typename F>
   void visit(const Vec3& p, double radius, F&& f) const noexcept {
-    if (nodes_.empty()) return;
-    std::uint32_t stack[kMaxDepth];
-    int depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      if (!isNear(node.box, p, radius)) continue;
-      if (node.count > 0) {
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-          if (isNear(boxes_[i], p, radius)) f(items_[i]);
-        }
-      } else {
-        stack[depth++] = node.first;
-        stack[depth++] = node.first + 1;
-      }
-    }
+    walk([&](const Box3& box) { return isNear(box, p, radius); }, f);
   }
 
   /// Whether they have a point in common.
@@ -51,22 +36,7 @@ class PALPATE_EXPORT BoundsTree {
   /// Calls f(item) for each item whose box has a point in common with `box` [m].
   template <typename F>
   void visitMeeting(const Box3& box, F&& f) const {
-    if (nodes_.empty()) return;
-    std::uint32_t stack[kMaxDepth];
-    int depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      if (!meet(node.box, box)) continue;
-      if (node.count > 0) {
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-          if (meet(boxes_[i], box)) f(items_[i]);
-        }
-      } else {
-        stack[depth++] = node.first + 1;
-        stack[depth++] = node.first;
-      }
-    }
+    walk([&](const Box3& each) { return meet(each, box); }, f);
   }
 
   /// Calls f(item), about the nearest boxes first, for the items whose boxes come within a radius of `p` that
@@ -110,6 +80,27 @@ class PALPATE_EXPORT BoundsTree {
     std::uint32_t first = 0;  ///< leaf: first item; inner: left child, the right one follows it
     std::uint32_t count = 0;  ///< items of a leaf; 0: inner
   };
+
+  /// Calls f(item) for each item whose box, and all boxes around it, `is_met` says yes to.
+  template <typename Met, typename F>
+  void walk(const Met& is_met, F& f) const {
+    if (nodes_.empty()) return;
+    std::uint32_t stack[kMaxDepth];
+    int depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+      const Node& node = nodes_[stack[--depth]];
+      if (!is_met(node.box)) continue;
+      if (node.count > 0) {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+          if (is_met(boxes_[i])) f(items_[i]);
+        }
+      } else {
+        stack[depth++] = node.first;
+        stack[depth++] = node.first + 1;
+      }
+    }
+  }
 
   static bool isNear(const Box3& box, const Vec3& p, double radius) noexcept {
     return squareTo(box, p) <= radius * radius;
