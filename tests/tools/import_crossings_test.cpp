@@ -4,7 +4,6 @@
 #include <array>
 #include <deque>
 #include <numeric>
-#include <regex>
 #include <set>
 
 #include "import/imported_scene.h"
@@ -72,10 +71,10 @@ ScenePtr compiled(const ImportedScan& scan, const Numbers& numbers, const Tissue
     const std::string shell = n + 1 == kLayers ? "s" + std::to_string(n)
                                                : "{difference: [s" + std::to_string(n) + ", s" +
                                                      std::to_string(n + 1) + "]}";
-    text = std::regex_replace(text,
-                              std::regex("labels: \\{image: labels, match: \\[" +
-                                         std::to_string(numbers[n]) + "\\], voxel: [0-9.]+\\}"),
-                              "inside: " + shell);
+    // "labels: {image: labels, match: [7], voxel: 0.5}"
+    const std::size_t labels =
+        text.find("labels: {image: labels, match: [" + std::to_string(numbers[n]) + "], voxel: ");
+    text.replace(labels, text.find('}', labels) + 1 - labels, "inside: " + shell);
   }
   return compile(parseScene(text + fields, "made.yaml"));
 }
