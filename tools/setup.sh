@@ -16,7 +16,7 @@ build_packages=(
 test_packages=(
   clang-format clang-tidy git
   libgtest-dev umockdev libumockdev-dev libbenchmark-dev libnanovdb-dev libcgal-dev
-  python3-nibabel python3-numpy python3-scipy python3-openvdb libopenvdb-tools
+  python3-nibabel python3-numpy python3-scipy python3-yaml python3-openvdb libopenvdb-tools
   libinsighttoolkit5-dev python3-pydicom python3-gdcm
   invesalius-examples fish zsh
 )

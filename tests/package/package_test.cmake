@@ -29,6 +29,28 @@ foreach(header IN LISTS installed)
   endif()
 endforeach()
 
+# What comes with it: license, history, scenes beside the schema that they name, and what the command brings.
+set(promised share/doc/palpate/LICENSE share/doc/palpate/CHANGELOG.md share/palpate/scenes/container.yaml
+  share/palpate/scenes/contrast.nrrd share/palpate/schema/scene-1.json)
+if(EXISTS "${SCRATCH}/installed/bin/palpate")
+  list(APPEND promised share/man/man1/palpate.1 share/bash-completion/completions/palpate
+    share/zsh/site-functions/_palpate share/fish/vendor_completions.d/palpate.fish)
+endif()
+foreach(file IN LISTS promised)
+  if(NOT EXISTS "${SCRATCH}/installed/${file}")
+    message(FATAL_ERROR "${file} was not installed")
+  endif()
+endforeach()
+file(STRINGS "${SCRATCH}/installed/share/palpate/scenes/container.yaml" schema REGEX "schema=" LIMIT_COUNT 1)
+string(REGEX REPLACE ".*[$]schema=" "" schema "${schema}")
+if(NOT EXISTS "${SCRATCH}/installed/share/palpate/scenes/${schema}")
+  message(FATAL_ERROR "the installed scenes name the schema ${schema}, which is not there")
+endif()
+if(EXISTS "${SCRATCH}/installed/bin/palpate")
+  run("${SCRATCH}/installed/bin/palpate" touch "${SCRATCH}/installed/share/palpate/scenes/contrast.yaml"
+    --press 0,0,0 --quiet)
+endif()
+
 # A shared library shows its face only.
 file(GLOB_RECURSE shared "${SCRATCH}/installed/libpalpate_core.so")
 if(shared)
@@ -50,3 +72,15 @@ file(READ "${SCRATCH}/build/readme.txt" promised)
 if(NOT printed STREQUAL promised)
   message(FATAL_ERROR "the README's example prints\n${printed}where the README says\n${promised}")
 endif()
+
+# The same outside project by pkg-config, without CMake.
+file(GLOB_RECURSE found "${SCRATCH}/installed/*/palpate-core.pc")
+cmake_path(GET found PARENT_PATH pkgconfig)
+list(TRANSFORM COMPONENTS PREPEND palpate- OUTPUT_VARIABLE packages)
+list(TRANSFORM COMPONENTS REPLACE "(.+)" "-DWITH_\\1" OUTPUT_VARIABLE definitions)
+list(JOIN packages " " packages)
+list(JOIN definitions " " definitions)
+cmake_path(GET pkgconfig PARENT_PATH libraries)
+run(${CMAKE_COMMAND} -E env "PKG_CONFIG_PATH=${pkgconfig}" "LD_LIBRARY_PATH=${libraries}" sh -c
+  "set -e; c++ -std=c++20 ${definitions} '${SOURCE}/tests/package/main.cpp' -o '${SCRATCH}/by_pkg_config' \
+    $(pkg-config --cflags --libs ${packages}); '${SCRATCH}/by_pkg_config'")
