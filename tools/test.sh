@@ -2,20 +2,22 @@
 # Installs what is missing, builds Palpate and passes its tests, lane by lane. Each lane sees what no other does:
 #   format    clang-format on every file
 #   arrows    no include against the arrows between modules and layers (cmake script, seconds)
-#   release   what users get: optimised code, installed and used by an outside project
-#   asan      assertions on, memory errors and undefined behaviour; every public header compiles alone;
+#   release   what users get: optimized code, installed and used by an outside project
+#   asan      assertions on, memory errors and undefined behavior; every public header compiles alone;
 #             lib and devices, and with --all everything: vdb and tools take half an hour more
 #   tsan      data races: the devices, and what threads do together (without vdb: TBB is not instrumented)
 #   tidy      names and bug patterns, by clang-tidy, in the sources that changed
 #   damage    damaged files of every format through the command, with limits (PALPATE_MUTANTS of each kind, default 100);
 #             with --all, or if it is asked for
-#   fuzz      every reader under libFuzzer with clang, address and undefined behaviour (PALPATE_FUZZ_SECONDS each, default
+#   fuzz      every reader under libFuzzer with clang, address and undefined behavior (PALPATE_FUZZ_SECONDS each, default
 #             60); with --all, or if it is asked for
 #   mutants   would the tests see it? Small slips in a copy of the sources of lib and devices, 90 % of which some test
 #             must see in each module (PALPATE_MUTANTS_PER_MODULE, default 40; PALPATE_MUTANTS_SEED, default 1);
 #             with --all, or if it is asked for
 #   dev       as asan without the sanitizers, quick to build; not run unless it is asked for
+# Without options: format, arrows and release, which prove an installation; with progress and the time left.
 # Options:
+#   --ci            format, arrows, release, asan, tsan and tidy: what has to pass before a change goes in
 #   --quick         format, arrows and dev only
 #   --lane NAME     only this lane; may be given several times
 #   --all           every lane; tidy and asan on everything, and the slow sweeps (PALPATE_SLOW_TESTS=1)
@@ -30,12 +32,14 @@ cd "$root" || exit 1
 source tools/setup.sh
 
 lanes=()
-default_lanes=(format arrows release asan tsan tidy)
-all_lanes=("${default_lanes[@]}" damage fuzz mutants dev)
+default_lanes=(format arrows release)
+ci_lanes=("${default_lanes[@]}" asan tsan tidy)
+all_lanes=("${ci_lanes[@]}" damage fuzz mutants dev)
 tidy_all=0 changed_since=
 usage() { printf 'error: %s; tools/test.sh --help lists the options\n' "$1" >&2; exit 2; }
 while [ $# -gt 0 ]; do
   case $1 in
+    --ci) lanes+=("${ci_lanes[@]}") ;;
     --quick) lanes+=(format arrows dev) ;;
     --lane)
       [[ " ${all_lanes[*]} " == *" ${2:-none} "* ]] || usage "--lane takes one of: ${all_lanes[*]}"
@@ -47,8 +51,9 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
+is_default=
 if [ ${#lanes[@]} = 0 ]; then
-  lanes=("${default_lanes[@]}")
+  lanes=("${default_lanes[@]}") is_default=1
 fi
 
 # Tests run elsewhere; and a folder that is asked for has to be there.
@@ -117,16 +122,30 @@ FOLDER holds the files above (now ${PALPATE_SCANS:-$(dirname "$root")/shared/dat
 EOF
 }
 
+progress() { # WHAT: passes lines on; of those that count ('[3/40] Building', '3/40 Test ... Passed') one in ten seconds, with the time left
+  local line at of began=$SECONDS shown=$SECONDS left
+  while IFS= read -r line; do
+    if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] || $line =~ ^\ *([0-9]+)/([0-9]+)\ Test.*(Passed|Skipped) ]]; then
+      at=${BASH_REMATCH[1]} of=${BASH_REMATCH[2]}
+      [ "$at" -gt 0 ] && { [ $((SECONDS - shown)) -ge 10 ] || [ "$at" = "$of" ]; } || continue
+      shown=$SECONDS left=$(((SECONDS - began) * (of - at) / at))
+      printf '%s %d of %d, about %d:%02d min left\n' "$1" "$at" "$of" $((left / 60)) $((left % 60))
+    elif ! [[ $line =~ ^\ *Start\ +[0-9]+: ]]; then
+      printf '%s\n' "$line"
+    fi
+  done
+}
+
 build_and_test() { # PRESET [CONFIGURE_OPTION...]
   local preset=$1 junit=$results/$1.xml
   shift
   rm -f "$junit"
-  if ! configure "$preset" -DPALPATE_TESTS=ON "$@" || ! cmake --build --preset "$preset" -- -k 0; then
+  if ! configure "$preset" -DPALPATE_TESTS=ON "$@" || ! cmake --build --preset "$preset" -- -k 0 | progress built; then
     lane_note="does not build"
     count_check 1
     return
   fi
-  ctest --preset "$preset" --output-junit "$junit"
+  ctest --preset "$preset" --output-junit "$junit" | progress tested
   local status=$?
   count_tests "$junit" && [ $status = 0 ]
 }
@@ -228,6 +247,9 @@ done
 say "Summary after $(elapsed)"
 printf '%s\n' "${report[@]}"
 tell_left_out
+if [ -n "$is_default" ]; then
+  echo "Not run: sanitizers and clang-tidy (tools/test.sh --ci), fuzzers, damaged files and mutants (--all); --help lists the lanes."
+fi
 [ ${#failed_lanes[@]} = 0 ] || echo "Failed: ${failed_lanes[*]}"
 echo "$passed passed, $failed failed$([ $skipped = 0 ] || echo ", $skipped skipped")"
 [ ${#failed_lanes[@]} = 0 ]
