@@ -150,7 +150,7 @@ class PALPATE_EXPORT SceneLoader {
   [[nodiscard]] virtual std::string resolvePath(const std::string& path) const = 0;
   /// A field written as a name, or inline as {kind: {...}}.
   [[nodiscard]] virtual FieldSourcePtr field(const Node& node) const = 0;
-  /// What the registry's image reader made of images.<name>; error at `place` if there is none.
+  /// What the registry's image reader made of `images.NAME`; error at `place` if there is none.
   [[nodiscard]] virtual std::shared_ptr<void> image(const std::string& name, Mark place) const = 0;
   /// The map of a parameter, written as {grid: {...}} or whatever kinds the registry has.
   [[nodiscard]] virtual MaterialMapPtr map(const Node& node, const ParameterKind& of) const = 0;
