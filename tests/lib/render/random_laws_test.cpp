@@ -188,8 +188,11 @@ TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
   small.scale = 1e-4;
   Pose moved;
   moved.move = mm(31, -12, 57);
-  const std::pair<const char*, Pose> poses[] = {
-      {"turned", turned}, {"mirrored", mirrored}, {"scaled", scaled}, {"small", small}, {"moved", moved}};
+  const std::pair<const char*, Pose> poses[] = {{"turned", turned},
+                                                {"mirrored", mirrored},
+                                                {"scaled", scaled},
+                                                {"small", small},
+                                                {"moved", moved}};
   for (const auto& [name, pose] : poses) {
     long ticks = 0;
     long off = 0;
