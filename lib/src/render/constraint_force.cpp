@@ -134,8 +134,8 @@ double Feel::stored(const ContactSet& c, const Vec3& hip) noexcept {
   if (walls_.differ(c, glm::length(press))) {
     return seriesForce(x, hip, walls_.stop(), walls_).energy;
   }
-  if (walls_.hasSeam()) return walls_.shared(c.wall[0], walker_.position()).energy(c.load());
-  return springOf(c.wall[0]).energy(c.load());
+  // Not the spring alone: texture and shading are part of what is stored.
+  return walls_.shared(c.wall[0], walker_.position()).energy(c.load());
 }
 
 /// A wall behind a softer one is felt from where they meet on: where the proxy comes to their edge, at once, as deep as

@@ -184,10 +184,15 @@ TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
   mirrored.turn = Mat3(Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1));
   Pose scaled;
   scaled.scale = 7.3;
+  Pose small;
+  small.scale = 1e-4;
   Pose moved;
   moved.move = mm(31, -12, 57);
-  const std::pair<const char*, Pose> poses[] = {
-      {"turned", turned}, {"mirrored", mirrored}, {"scaled", scaled}, {"moved", moved}};
+  const std::pair<const char*, Pose> poses[] = {{"turned", turned},
+                                                {"mirrored", mirrored},
+                                                {"scaled", scaled},
+                                                {"small", small},
+                                                {"moved", moved}};
   for (const auto& [name, pose] : poses) {
     long ticks = 0;
     long off = 0;
