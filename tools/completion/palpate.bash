@@ -76,7 +76,7 @@ _palpate() {
       esac
       ;;
     import)
-      options='-o --output --dry-run --labels --region --names --min-island --islands --image --skin --body --tissue --tissue-file --codes --strict --hounsfield --materials --voxel --affine --space --frame --series --json --quiet --force -h --help'
+      options='-o --output --dry-run --labels --region --names --min-island --islands --image --skin --body --tissue --tissue-file --codes --strict --to --hounsfield --materials --voxel --affine --space --frame --series --json --quiet --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -91,6 +91,7 @@ _palpate() {
         --tissue) words=NONE ;;
         --tissue-file) words=FILES ;;
         --codes) words='freesurfer' ;;
+        --to) words=NONE ;;
         --materials) words=FILES ;;
         --voxel) words=NONE ;;
         --affine) words='qform sform spacing' ;;

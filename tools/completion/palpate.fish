@@ -95,6 +95,7 @@ complete -c palpate -n '__fish_seen_subcommand_from import' -l tissue -x -d 'the
 complete -c palpate -n '__fish_seen_subcommand_from import' -l tissue-file -r -d 'lines of the same; --tissue goes before them'
 complete -c palpate -n '__fish_seen_subcommand_from import' -l codes -x -a 'freesurfer' -d 'the labels are numbers of FreeSurfer'\''s table, of SynthSeg'\''s too, and need no names'
 complete -c palpate -n '__fish_seen_subcommand_from import' -l strict -d 'what fits no tissue is an error'
+complete -c palpate -n '__fish_seen_subcommand_from import' -l to -x -d 'the shortest straight way to a region or a label that ports let through, clear of bone, vessels and nerves: told, and suggested in the scene'
 complete -c palpate -n '__fish_seen_subcommand_from import' -l hounsfield -d '--image is a CT in Hounsfield units: stiffness varies with it, where the table of tissues says how'
 complete -c palpate -n '__fish_seen_subcommand_from import' -l materials -r -d 'table of tissues (default: the project'\''s data/materials/tissues.yaml)'
 complete -c palpate -n '__fish_seen_subcommand_from import' -l voxel -x -d 'voxel size of the grids, in mm or with a unit (default: of the same volume as the scan'\''s)'

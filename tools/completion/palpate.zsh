@@ -114,6 +114,7 @@ _palpate() {
         '*--tissue-file[lines of the same; --tissue goes before them]:value:_files' \
         '*--codes[the labels are numbers of FreeSurfer'\''s table, of SynthSeg'\''s too, and need no names]:value:(freesurfer)' \
         '*--strict[what fits no tissue is an error]' \
+        '*--to[the shortest straight way to a region or a label that ports let through, clear of bone, vessels and nerves\: told, and suggested in the scene]:value:' \
         '*--hounsfield[--image is a CT in Hounsfield units\: stiffness varies with it, where the table of tissues says how]' \
         '*--materials[table of tissues (default\: the project'\''s data/materials/tissues.yaml)]:value:_files' \
         '*--voxel[voxel size of the grids, in mm or with a unit (default\: of the same volume as the scan'\''s)]:value:' \

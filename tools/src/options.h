@@ -153,6 +153,7 @@ struct ImportOptions {
   std::string codes;      ///< whose numbers the labels are: "freesurfer"; empty: nobody's
   bool strict = false;    ///< what no tissue fits is an error
   std::string materials;  ///< table of tissues; empty: the project's
+  std::string to;         ///< a region or label that a way is looked for to; empty: none
   std::string voxel;
   ScanOptions reading;  ///< of all images
 };

@@ -6,6 +6,7 @@
 
 #include "import/import_report.h"
 #include "import/imported_scene.h"
+#include "import/needle_way.h"
 #include "input_kind.h"
 #include "output_files.h"
 #include "palpate/vdb/label_codes.h"
@@ -128,8 +129,8 @@ void leaveOutAir(ImportedScan& scan, Console& console) {
 }
 
 /// A body that lies elsewhere is a mistake; one that some labels stick out of gets a note.
-void checkBody(const ImportOptions& options, const ImportedScan& scan, const vdb::VoxelMask& body,
-               Console& console) {
+void checkBody(const ImportOptions& options, const ImportedScan& scan, Console& console) {
+  const vdb::VoxelMask& body = scan.body;
   std::uint64_t labelled = 0;
   std::uint64_t outside = 0;
   std::set<int> around;
@@ -185,14 +186,14 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
     scan.ct_voxels = grey->values.size();
   }
   scan.image_voxels = scan.labels.values.size() + (grey ? grey->values.size() : 0);
-  const vdb::VoxelMask body = bodyOf(options, grey ? &*grey : nullptr, scan, console);
+  scan.body = bodyOf(options, grey ? &*grey : nullptr, scan, console);
   grey.reset();
-  scan.has_body = !body.empty();
-  const vdb::VoxelMask* const in_body = scan.has_body ? &body : nullptr;
+  scan.has_body = !scan.body.empty();
+  const vdb::VoxelMask* const in_body = scan.has_body ? &scan.body : nullptr;
   std::vector<std::vector<int>> labels = labelsOf(scan.plan);
   scan.survey = vdb::surveyLabels(scan.labels, labels, in_body, console.progress());
   leaveOutAir(scan, console);
-  checkBody(options, scan, body, console);
+  checkBody(options, scan, console);
   if (!scan.open_air.empty()) {
     labels = labelsOf(scan.plan);
     scan.survey = vdb::surveyLabels(scan.labels, labels, in_body, console.progress());
@@ -262,6 +263,16 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
   if (!scan.has_body) {
     console.note("no --skin and no --body: what has no label is outside");
   }
+  std::optional<NeedleWay> way;
+  if (!options.to.empty()) {
+    report(console.progress(), "way to " + options.to, -1.0);
+    way = needleWay(scan, tissues, options.to);
+    scan.way = suggestedWay(*way);
+    if (way->clearance == 0.0) {
+      console.note("the way to '" + way->target + "' passes within " +
+                   formatNumber(kClearance * 1e3) + " mm of what it must not touch");
+    }
+  }
   std::vector<std::string> written;
   if (is_written) {
     const bool is_changed = options.min_island.has_value();
@@ -281,7 +292,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
     checkStop();
     files.commit();
   }
-  return importReport(options, scan, tissues, written);
+  return importReport(options, scan, tissues, way ? &*way : nullptr, written);
 }
 
 }  // namespace palpate::tools

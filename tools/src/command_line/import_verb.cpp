@@ -44,6 +44,11 @@ void defineImport(CLI::App& app, Invocation& invocation) {
       "the labels are numbers of FreeSurfer's table, of SynthSeg's too, and need no names")
       ->check(CLI::IsMember({"freesurfer"}));
   addFlag(app, g, "--strict", o.strict, "what fits no tissue is an error");
+  g = "A way for a needle";
+  add(app, g, "--to", "TARGET", o.to,
+      "the shortest straight way to a region or a label that ports let through, clear of bone, "
+      "vessels and "
+      "nerves: told, and suggested in the scene");
   g = "Materials and grids";
   addFlag(app, g, "--hounsfield", o.hounsfield,
           "--image is a CT in Hounsfield units: stiffness varies with it, where the table of "

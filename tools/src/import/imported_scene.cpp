@@ -79,7 +79,7 @@ class SceneWriter {
       return formatNumber(p.x * 1e3) + "," + formatNumber(p.y * 1e3) + "," +
              formatNumber(p.z * 1e3);
     };
-    const SuggestedWay way = suggestedWay(scan_);
+    const SuggestedWay way = scan_.way ? *scan_.way : suggestedWay(scan_);
     line("# A probe " + way.what + ", and back:");
     line("#   palpate touch SCENE.yaml --insert " + point(way.from) + " " + point(way.to) +
          " --back --image SCENE.png");

@@ -205,6 +205,7 @@ class TableReader {
     const std::string class_name = reader.textOr("class", "");
     const std::string parcels = reader.textOr("parcels", "apart");
     made.lining = reader.textOr("lining", "");
+    made.is_spared = reader.boolOr("spared", false);
     const auto read = [&](const char* key, NumberKind kind) -> std::optional<SourcedNumber> {
       const Node* node = reader.optional(key);
       if (node == nullptr) return std::nullopt;
