@@ -1,5 +1,7 @@
 // palpate import of structures that were segmented one by one: folders and lists of masks, DICOM SEG and RTSTRUCT.
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -34,14 +36,21 @@ void writeMask(const TempFolder& folder, const std::string& name,
                     std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-/// A leg: muscle around a bone, which both masks hold.
+/// Muscle from 8 mm down along y and a bone from -3 mm, which the muscle's mask holds as well.
 void writeLeg(const TempFolder& folder, const std::string& below) {
   std::filesystem::create_directory(folder.path(below));
-  writeMask(folder, below + "/a_vastus muscle.nii.gz",
-            [](int x, int y, int) { return x * x + y * y < 64; });
-  writeMask(folder, below + "/femur.nii.gz", [](int x, int y, int) { return x * x + y * y < 9; });
+  const auto from = [](int top) {
+    return [top](int x, int y, int z) {
+      return std::max(std::abs(x), std::abs(z)) < 10 && y > -10 && y <= top;
+    };
+  };
+  writeMask(folder, below + "/a_vastus muscle.nii.gz", from(8));
+  writeMask(folder, below + "/femur.nii.gz", from(-3));
   writeMask(folder, below + "/liver.nii.gz", [](int, int, int) { return false; });
 }
+
+/// Voxels of a millimeter across: 19 along x and along z.
+constexpr std::uint64_t kLayer = 19 * 19;
 
 /// Region -> voxels.
 std::map<std::string, std::uint64_t> voxelsOf(const Json& json) {
@@ -58,17 +67,17 @@ TEST(ImportMasks, AFolderIsASceneThatAHandFeels) {
   ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
   EXPECT_NE(result.err.find("femur has"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("1 of 3 masks have no voxel: liver"), std::string::npos) << result.err;
-  // Circles of radius 8 and 3 have 193 and 25 whole points inside, on each of 21 slices.
   EXPECT_EQ(voxelsOf(parseOnly(result)),
-            (std::map<std::string, std::uint64_t>{{"a_vastus muscle", (193 - 25) * 21},
-                                                  {"femur", 25 * 21}}));
-  // The scene names the folder; a needle goes through the muscle and stands on the bone, whose border is at 2.5 mm.
-  EXPECT_NE(textOf(folder.path("leg.yaml")).find("file: segmentations"), std::string::npos);
+            (std::map<std::string, std::uint64_t>{{"a_vastus muscle", 11 * kLayer},
+                                                  {"femur", 7 * kLayer}}));
+  // The scene names the folder; a needle goes through the muscle and stands on the bone, whose border is at -2.5 mm.
+  EXPECT_NE(textOf(folder.path("leg.yaml")).find("labels: {file: \"segmentations\"}"),
+            std::string::npos);
   const std::vector<TracedTick> ticks =
-      touched(folder, "leg.yaml", {Vec3(0, 12, 0), Vec3(0, -1, 0)}, "20mm/s");
+      touched(folder, "leg.yaml", {Vec3(0, 12, 0), Vec3(0, -9, 0)}, "20mm/s");
   ASSERT_FALSE(ticks.empty());
   EXPECT_EQ(ticks.back().region, "a_vastus muscle");
-  EXPECT_NEAR(ticks.back().proxy.y, 2.5, 0.5);
+  EXPECT_NEAR(ticks.back().proxy.y, -2.5, 0.5);
 }
 
 TEST(ImportMasks, ListedOnesAreReadAgainAsTheSceneSays) {
@@ -77,17 +86,19 @@ TEST(ImportMasks, ListedOnesAreReadAgainAsTheSceneSays) {
   const Json json = run(folder, {"import", "m/femur.nii.gz", "m/a_vastus muscle.nii.gz",
                                  "--priority", "a_vastus muscle", "-o", "leg.yaml", "--json"});
   // The muscle has all that both hold, so that nothing is left of the bone.
-  EXPECT_EQ(voxelsOf(json), (std::map<std::string, std::uint64_t>{{"a_vastus muscle", 193 * 21}}));
+  EXPECT_EQ(voxelsOf(json),
+            (std::map<std::string, std::uint64_t>{{"a_vastus muscle", 18 * kLayer}}));
   const std::string scene = textOf(folder.path("leg.yaml"));
-  EXPECT_NE(scene.find("file: m/femur.nii.gz, with: [m/a_vastus muscle.nii.gz], priority: "
-                       "[a_vastus muscle]"),
-            std::string::npos)
+  const std::string with = R"(with: ["m/a_vastus muscle.nii.gz"])";
+  EXPECT_NE(
+      scene.find(R"({file: "m/femur.nii.gz", )" + with + R"(, priority: ["a_vastus muscle"]})"),
+      std::string::npos)
       << scene;
   EXPECT_EQ(run(folder, {"query", "leg.yaml", "--at", "0,0,0", "--json"})["points"][0]["region"],
             "a_vastus muscle");
   // A scene in which a word stands for a list is refused at its place.
-  const std::string with = "with: [m/a_vastus muscle.nii.gz]";
   std::string wrong = scene;
+  ASSERT_NE(wrong.find(with), std::string::npos);
   wrong.replace(wrong.find(with), with.size(), "with: m/femur.nii.gz");
   (void)folder.file("wrong.yaml", wrong);
   const CommandResult refused = runPalpate({"explain", "wrong.yaml"}, folder.path());

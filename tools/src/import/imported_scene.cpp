@@ -67,7 +67,9 @@ class SceneWriter {
 
   void header() {
     const vdb::Image& image = scan_.labels;
-    line("# Made by `palpate import` from " + options_.scan() + ": " +
+    const std::size_t more = options_.scans.size() - 1;
+    line("# Made by `palpate import` from " + options_.scan() +
+         (more > 0 ? " and " + std::to_string(more) + " more" : "") + ": " +
          std::to_string(image.size[0]) + " x " + std::to_string(image.size[1]) + " x " +
          std::to_string(image.size[2]) + " voxels of " + millimetres(glm::length(image.axes[0])) +
          " x " + millimetres(glm::length(image.axes[1])) + " x " +
