@@ -243,5 +243,33 @@ TEST(DicomContours, BetweenSlicesOrMiscountedAreRefused) {
   }
 }
 
+// Bytes changed at random: a file is read or refused, and nothing else happens.
+TEST(DicomStructures, WithAnyByteChangedAreReadOrRefused) {
+  const TempFolder folder;
+  const std::string segments = folder.path("seg.dcm");
+  (void)askScript(kStructuresOracle, "write_seg", {writeVolume(folder, 4), "implicit", segments});
+  const std::string contours = writeContoured(folder, 4);
+  std::size_t refused = 0;
+  for (const std::string& whole : {textOf(segments), textOf(contours)}) {
+    std::mt19937 random(11);
+    for (int n = 0; n < 300; ++n) {
+      std::string changed = whole;
+      for (auto bytes = 1 + random() % 3; bytes > 0; --bytes) {
+        changed[132 + random() % (changed.size() - 132)] = static_cast<char>(random() % 256);
+      }
+      const std::string file = folder.file("changed.dcm", changed);
+      try {
+        (void)readLabelCodes(file);
+        (void)readImage(file);
+      } catch (const Error& error) {
+        ++refused;
+        EXPECT_EQ(error.problem().file, file) << error.what();
+      }
+    }
+  }
+  // Most bytes are pixels and digits, but not all.
+  EXPECT_GT(refused, 60U);
+}
+
 }  // namespace
 }  // namespace palpate::vdb

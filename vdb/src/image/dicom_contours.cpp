@@ -42,6 +42,8 @@ constexpr std::uint32_t kRoiCode = 0x30060086;
 constexpr double kOnSlice = 0.1;
 /// [mm] The widest pixels of a grid that no series gives.
 constexpr double kOwnPixel = 1.0;
+/// Of such a grid: a coordinate that was damaged makes more.
+constexpr double kMostVoxels = 1e9;
 
 using Contour = std::vector<Vec3>;  ///< [mm], LPS
 
@@ -219,14 +221,15 @@ ContourGrid ownGrid(StructureSet& set) {
   const double pixel = std::min(kOwnPixel, glm::length(along.step));
   planes.row_spacing = planes.column_spacing = pixel;
   ContourGrid grid;
+  double voxels = along.count;
   for (int axis = 0; axis < 2; ++axis) {
     const double pixels = std::ceil((box.hi[axis] - box.lo[axis]) / pixel) + 5.0;
-    constexpr double kMostPixels = 32767.0;
-    if (!(pixels < kMostPixels)) {
+    voxels *= pixels;
+    if (!(voxels < kMostVoxels)) {
       throw inputError("dicom.contours",
                        "the contours reach over " + shortNumber(box.hi[axis] - box.lo[axis], 4) +
-                           " mm, which cannot be",
-                       "fetch or write the file again", set.path);
+                           " mm, which would be " + shortNumber(voxels, 4) + " voxels",
+                       "put the series that they were drawn on beside them", set.path);
     }
     grid.size[static_cast<std::size_t>(axis)] = static_cast<int>(pixels);
     along.first[axis] = box.lo[axis] - 2.0 * pixel;

@@ -14,7 +14,7 @@ constexpr double kSamePlane = 1e-3;
 /// [share of a step] As for slices of a series.
 constexpr double kEvenSteps = 0.05;
 /// More planes than any scan has: a position that was damaged.
-constexpr double kMostPlanes = 8192.0;
+constexpr double kMostPlanes = 4096.0;
 
 /// By how much of a step the farthest of `heights` is off a multiple of `step`.
 double unevenness(const std::vector<double>& heights, double step) {
