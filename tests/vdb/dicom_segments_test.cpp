@@ -1,4 +1,4 @@
-// DICOM segmentations and structure sets that pydicom writes, as pydicom and numpy read them, and what is refused.
+// DICOM segmentations and structure sets that pydicom writes, against pydicom and numpy; damaged ones are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -125,7 +125,7 @@ TEST(DicomSegmentation, BesideItsSeriesIsReadByItsOwnName) {
     return note.find("1 DICOM segmentations are passed over") != std::string::npos;
   }));
   EXPECT_EQ(readImage(series + "/a_seg.dcm").labels.names.size(), 3U);
-  // Alone in a folder it is what the folder holds; of two, one has to be named.
+  // A folder may stand for the only one in it; of two, one has to be named.
   std::filesystem::create_directory(folder.path("alone"));
   (void)folder.file("alone/seg", textOf(series + "/a_seg.dcm"));
   EXPECT_EQ(readImage(folder.path("alone")).labels.names.size(), 3U);
@@ -217,7 +217,7 @@ TEST(DicomContours, WithoutTheirSeriesHaveAGridOfTheirOwn) {
       return static_cast<double>(std::count(image.values.begin(), image.values.end(), of)) *
              std::abs(glm::determinant(image.axes)) * 1e9;
     };
-    // 250 mm^2 on each of 6 slices, an outline of 60 to 90 mm in pixels of 1 mm: each slice is off by a few mm^2 at random.
+    // 250 mm^2 on each of 6 slices, an outline of 60 to 90 mm in pixels of 1 mm: a slice is off by a few mm^2 at random.
     EXPECT_NEAR(cubic_mm(moved) / cubic_mm(file), 1.0, 0.03) << name;
   }
 }

@@ -178,7 +178,7 @@ TEST(Masks, OnAnotherGridAreRefusedWithTheShift) {
   mirrored.sform[0][0] = -2.0;
   EXPECT_NE(message_of(mirrored).find("axes LAS, there 6 x 5 x 4 voxels of 2 x 2 x 2 mm, axes RAS"),
             std::string::npos);
-  // What two programs write of one place differs in the last digits.
+  // Two programs write one place with different last digits.
   NiftiFile close = maskOf({7});
   close.sform[0][3] += 0.002;
   ImageOptions options;
@@ -207,7 +207,7 @@ TEST(Masks, GreyValuesAndDamageAreRefusedByFileAndPlace) {
     EXPECT_EQ(error.kind(), ErrorKind::kInput);
     EXPECT_EQ(error.problem().file, file) << error.what();
   }
-  // What a file manager or another program left there is no mask.
+  // Files that a file manager or another program left there are passed over.
   std::filesystem::remove(file);
   (void)folder.file("m/._a.nii.gz", "not an image");
   (void)folder.file("m/statistics.json", "{}");

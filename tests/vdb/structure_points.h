@@ -14,8 +14,8 @@ namespace palpate::vdb::test {
 
 inline constexpr const char* kStructuresOracle = "vdb/structures_oracle.py";
 
-/// Each row of `points` is `x y z label` [mm], RAS, of a voxel's center: `image` has a voxel there, to a hundredth of its
-/// size, and it is of this label. A quarter of them at least must be of a structure, so that the rest is no answer.
+/// Each row of `points` is `x y z label` [mm], RAS, of a voxel's center: `image` has a voxel there, to a hundredth of
+/// its size, and it is of this label. At least a quarter of them are of a structure: an empty image does not pass.
 inline void expectLabelsAt(const Image& image, const std::vector<std::vector<double>>& points,
                            std::size_t count) {
   ASSERT_EQ(points.size(), count);

@@ -6,8 +6,10 @@ masks FOLDER COUNT SEED        COUNT voxels of a folder of masks: `x y z label` 
 seg FILE COUNT SEED            the same of a DICOM segmentation; labels are its segments' numbers
 contours FILE SERIES COUNT SEED
                                the same of an RT structure set on the slices of a DICOM folder; labels are its ROIs from 1
-nrrd FILE COUNT SEED           the same of a .seg.nrrd with gzip; labels are its segments from 1, of those that overlap the last
-write_older FILE OLDER         a .seg.nrrd as programs wrote it before segments shared layers: a layer for each, of ones, no label values
+nrrd FILE COUNT SEED           the same of a .seg.nrrd with gzip; labels are its segments from 1, where several overlap
+                               the last
+write_older FILE OLDER         a .seg.nrrd as programs wrote it before segments shared layers: a layer for each, of ones,
+                               without label values
 write_seg LABELS KIND FILE     a NIfTI file of labels as a DICOM segmentation, KIND: binary, implicit, fractional, labelmap,
                                packed (a label map in RLE); but for label maps without the planes where a segment is not
 write_contours SEED SLICES FILE

@@ -67,12 +67,13 @@ Verb importVerb() {
       "Turn a segmented scan into a scene: regions, materials, ports",
       "palpate import labels.nii.gz --names labels.csv --body mask.nii.gz -o scan.yaml",
       "palpate import SCAN... -o SCENE.yaml [OPTIONS]",
-      R"(SCAN is a label image, a folder of masks, or several masks: a structure each, called as its file. Where
-masks overlap, the first by --priority has the voxel, then the smallest. Each label becomes a region, with the tissue that the words of its name or its
-code mean; what fits none is listed. What stands between two regions their tissues' classes say: bone
-never opens, flesh and membranes give way both ways at their forces, fluids and air have no walls, and
-parcels of one tissue none between them. The scene says of every number whether it was measured,
-derived or assumed, and by whom. It is text to be edited; grids are made when it is touched or baked.)",
+      R"(SCAN is a label image, a folder of masks, or several masks: a structure each, called as its file.
+Masks, and segments of DICOM, may overlap: the first that --priority names has the voxel, then the
+smallest. Each label becomes a region, with the tissue that the words of its name or its code mean;
+what fits none is listed. What stands between two regions their tissues' classes say: bone never opens,
+flesh and membranes give way both ways at their forces, fluids and air have no walls, and parcels of
+one tissue none between them. The scene says of every number whether it was measured, derived or
+assumed, and by whom. It is text to be edited; grids are made when it is touched or baked.)",
       {},
       defineImport,
       [](const Invocation& i) {

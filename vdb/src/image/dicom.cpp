@@ -21,7 +21,7 @@ DicomKind kindOf(const DicomElements& file) {
   return isDicomStructureSet(file) ? DicomKind::kStructureSet : DicomKind::kSlices;
 }
 
-/// What `path` stands for, and the file if it is one: that itself, or the only one of a folder without slices.
+/// The kind of `path`, and its file: that itself, or the only one of a folder without slices.
 std::pair<DicomKind, std::string> chosenFile(const std::string& path, const ImageOptions& options) {
   std::error_code failure;
   if (std::filesystem::is_regular_file(path, failure)) {

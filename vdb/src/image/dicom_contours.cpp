@@ -65,7 +65,7 @@ Error fail(const DicomItem& of, const char* code, std::string message, std::stri
   return inputError(code, std::move(message), std::move(hint), of.path);
 }
 
-/// What a whole number in text is.
+/// A whole number, which DICOM writes as text.
 int wholeAt(const DicomItem& item, std::uint32_t tag, const char* name) {
   if (item.text(tag).empty()) {
     throw fail(item, "dicom.contours", std::string("a structure has no ") + name);
@@ -187,7 +187,7 @@ std::optional<ContourGrid> gridOfSeries(StructureSet& set) {
     set.notes.insert(set.notes.end(), series.notes.begin(), series.notes.end());
     return ContourGrid{series.size, series.place};
   } catch (const Error& error) {
-    // What is damaged is told; that the series is elsewhere is no fault.
+    // The series may lie elsewhere; damage to it is told.
     const std::string& code = error.problem().code;
     if (code != "dicom.series" && code != "dicom.missing") throw;
     return {};

@@ -126,7 +126,7 @@ void readTable(SegmentFile& out) {
   }
 }
 
-/// What is said of frame `n` by itself, else of all.
+/// The group of frame `n` itself, else that of all frames; null if neither has one.
 const DicomItem* groupOf(const SegmentFile& file, std::size_t n, std::uint32_t tag) {
   const std::vector<DicomItem>& frames = file.elements.items(kPerFrame);
   if (n < frames.size()) {

@@ -17,7 +17,8 @@ namespace palpate::vdb {
 [[nodiscard]] Image readMetaImage(const std::string& path, const ImageOptions& options);
 [[nodiscard]] ImageInfo readMetaImageInfo(const std::string& path, const ImageOptions& options);
 
-/// A DICOM series: a folder, or one file of it; or a segmentation or structure set. @throws Error (kInput, codes "dicom.*").
+/// A DICOM series: a folder, or one file of it; or a segmentation or structure set.
+/// @throws Error (kInput, codes "dicom.*").
 [[nodiscard]] Image readDicom(const std::string& path, const ImageOptions& options);
 [[nodiscard]] ImageInfo readDicomInfo(const std::string& path, const ImageOptions& options);
 [[nodiscard]] LabelCodes readDicomCodes(const std::string& path, const ImageOptions& options);

@@ -75,8 +75,8 @@ struct ImageOptions {
   std::string series;            ///< DICOM: UID of the series, if a folder holds several
   /// Further files: each of them and the first is a mask, a structure of its own.
   std::vector<std::string> with = {};
-  /// Structures that were segmented one by one: where some overlap, the first of these names has the voxel. Where none of
-  /// these is, the one of fewer voxels has it.
+  /// Structures that were segmented one by one: where some overlap, the first of these names has the
+  /// voxel. Where none of these is, the one of fewer voxels has it.
   std::vector<std::string> priority = {};
 };
 
@@ -95,7 +95,8 @@ struct ImageInfo {
 };
 
 /// Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM series (a
-/// folder, or any file of it), and masks that together are a label image (a folder of the first three). What a file leaves open is asked for, by an error that names the option, or
+/// folder, or any file of it), DICOM segmentations and structure sets, and masks that together are a label
+/// image (a folder of the first three). What a file leaves open is asked for, by an error that names the option, or
 /// told in `notes`; what it contradicts itself in, and what is cut short or damaged, is refused. Each format's
 /// rules are in vdb/README.md.
 /// @throws Error (kInput, codes "nifti.*", "nrrd.*", "metaimage.*", "dicom.*", "masks.*", "image.*").
