@@ -136,7 +136,7 @@ struct ConvertOptions {
 };
 
 struct ImportOptions {
-  std::string scan;  ///< the label image
+  std::vector<std::string> scans;  ///< the label image; or masks, a structure each
   std::string output;
   bool dry_run = false;
   std::vector<std::string> labels;   ///< values, ranges, names, globs; empty: all
@@ -155,7 +155,10 @@ struct ImportOptions {
   std::string materials;  ///< table of tissues; empty: the project's
   std::string to;         ///< a region or label that a way is looked for to; empty: none
   std::string voxel;
-  ScanOptions reading;  ///< of all images
+  ScanOptions reading;                ///< of all images
+  std::vector<std::string> priority;  ///< where structures overlap: the first has the voxel
+
+  [[nodiscard]] const std::string& scan() const { return scans.front(); }
 };
 
 struct InfoOptions {

@@ -21,16 +21,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-vdb::Image readScan(const std::string& path, const ImportOptions& options, Console& console) {
-  if (inputKind(path) != InputKind::kImage) {
-    throw inputError("import.kind", "this is no image",
-                     std::string("give ") + (path == options.scan ? "a label image" : "an image") +
-                         ": .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd or a folder of DICOM files",
-                     path);
-  }
-  vdb::Image image = vdb::readImage(path, imageOptions(options.reading));
+void requireImage(const std::string& path, const std::string& what) {
+  if (inputKind(path) == InputKind::kImage) return;
+  throw inputError("import.kind", "this is no image",
+                   "give " + what +
+                       ": .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, a folder of DICOM files or of "
+                       "masks",
+                   path);
+}
+
+vdb::Image readNoted(const std::string& path, const vdb::ImageOptions& how, Console& console) {
+  vdb::Image image = vdb::readImage(path, how);
   for (const std::string& note : image.notes) console.note(path + ": " + note);
   return image;
+}
+
+/// How the labels are read; other images are one file each.
+vdb::ImageOptions labelOptions(const ImportOptions& options) {
+  vdb::ImageOptions how = imageOptions(options.reading);
+  how.with.assign(options.scans.begin() + 1, options.scans.end());
+  how.priority = options.priority;
+  return how;
+}
+
+vdb::Image readScan(const std::string& path, const ImportOptions& options, Console& console) {
+  requireImage(path, "an image");
+  return readNoted(path, imageOptions(options.reading), console);
 }
 
 /// `path`, as seen from the folder of the scene. One that was given as absolute stays so, unless it is in that folder or
@@ -165,15 +181,17 @@ void refuseUnknown(const ImportOptions& options, const ImportedScan& scan) {
   }
   if (count == 0) return;
   throw inputError("tissues.unmatched", formatCount(count) + " regions fit no tissue: " + text,
-                   "give them one: --tissue \"NAME=bone\", or leave out --strict", options.scan);
+                   "give them one: --tissue \"NAME=bone\", or leave out --strict", options.scan());
 }
 
 ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, Console& console) {
   ImportedScan scan;
-  scan.labels = readScan(options.scan, options, console);
+  for (const std::string& file : options.scans) requireImage(file, "a label image");
+  const vdb::ImageOptions how = labelOptions(options);
+  scan.labels = readNoted(options.scan(), how, console);
   const LabelNames table = {
       options.names.empty() ? scan.labels.labels.names : vdb::readLabelTable(options.names).names,
-      vdb::readLabelCodes(options.scan, imageOptions(options.reading))};
+      vdb::readLabelCodes(options.scan(), how)};
   scan.names = table.names;
   report(console.progress(), "labels", 0.0);
   scan.counts = vdb::countLabels(scan.labels);
@@ -250,8 +268,9 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
       throw Error(ErrorKind::kUsage,
                   {"usage.import", "the output " + options.output + " must end in .yaml", ""});
     }
-    const std::vector<std::string> inputs = {options.scan, options.names,     options.image,
-                                             options.body, options.materials, options.tissue_file};
+    std::vector<std::string> inputs = {options.names, options.image, options.body,
+                                       options.materials, options.tissue_file};
+    inputs.insert(inputs.end(), options.scans.begin(), options.scans.end());
     files.announce(options.output, inputs);
     if (options.min_island) files.announce(changed_labels, inputs);
   }
@@ -277,11 +296,14 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
   if (is_written) {
     const bool is_changed = options.min_island.has_value();
     const std::string output = options.output;
-    const SceneFiles seen = {
-        is_changed ? vdb::fileName(changed_labels) : seenFrom(output, options.scan),
-        seenFrom(output, options.names),
-        seenFrom(output, options.skin ? options.image : options.body),
-        seenFrom(output, options.image)};
+    std::vector<std::string> labels = {vdb::fileName(changed_labels)};
+    if (!is_changed) {
+      labels.clear();
+      for (const std::string& file : options.scans) labels.push_back(seenFrom(output, file));
+    }
+    const SceneFiles seen = {labels, seenFrom(output, options.names),
+                             seenFrom(output, options.skin ? options.image : options.body),
+                             seenFrom(output, options.image)};
     files.write(output, writeScene(options, scan, tissues, seen));
     written.push_back(output);
     if (is_changed) {

@@ -34,7 +34,7 @@ class ImportReport {
   Report make(const std::vector<std::string>& written) {
     const vdb::Image& image = scan_.labels;
     report_.json = {{"schema", "palpate.import/1"},
-                    {"scan", options_.scan},
+                    {"scan", options_.scan()},
                     {"output", written.empty() ? Json() : Json(written.front())},
                     {"size", image.size},
                     {"voxel_size_m", scan_.voxel}};

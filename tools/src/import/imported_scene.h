@@ -74,7 +74,7 @@ struct GridEstimate {
 
 /// Files as the scene names them.
 struct SceneFiles {
-  std::string labels;
+  std::vector<std::string> labels;  ///< one image, or masks
   std::string names;  ///< may be empty
   std::string body;   ///< mask, or the image with `skin`; empty: no body
   std::string image;  ///< with grey values; may be empty

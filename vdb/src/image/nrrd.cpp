@@ -148,7 +148,8 @@ Image readNrrd(const std::string& path, const ImageOptions& options) try {
     }
     if (!header.other) layers.push_back(std::move(image.values));
     image.notes.insert(image.notes.end(), segments.notes().begin(), segments.notes().end());
-    image.values = segments.merged(layers, image.size, image.notes);
+    image.values =
+        segments.merged(layers, image.size, std::abs(glm::determinant(image.axes)), image.notes);
     image.labels = segments.table();
   } else if (header.other) {
     image.values = volume(image.values, header, frame);
@@ -174,14 +175,7 @@ ImageInfo readNrrdInfo(const std::string& path, const ImageOptions& options) {
   return info;
 }
 
-LabelCodes readLabelCodes(const std::string& path, const ImageOptions& options) {
-  const auto ends_in = [&](std::string_view extension) {
-    return path.size() >= extension.size() &&
-           std::equal(
-               extension.begin(), extension.end(), path.end() - static_cast<long>(extension.size()),
-               [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
-  };
-  if (!ends_in(".nrrd") && !ends_in(".nhdr")) return {};
+LabelCodes readNrrdCodes(const std::string& path, const ImageOptions& options) {
   return segmentsOf(readNrrdHeader(path, options), path, options).codes();
 }
 

@@ -73,6 +73,11 @@ struct ImageOptions {
   Space space = Space::kStated;  ///< of an NRRD file whose space is not an anatomical one
   std::optional<int> frame;      ///< of a 4-D file, from 0; not given: 4-D is refused
   std::string series;            ///< DICOM: UID of the series, if a folder holds several
+  /// Further files: each of them and the first is a mask, a structure of its own.
+  std::vector<std::string> with = {};
+  /// Structures that were segmented one by one: where some overlap, the first of these names has the
+  /// voxel. Where none of these is, the one of fewer voxels has it.
+  std::vector<std::string> priority = {};
 };
 
 /// All but the voxels.
@@ -89,11 +94,12 @@ struct ImageInfo {
   bool is_labels = false;        ///< the file says, or has a table of names
 };
 
-/// Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd) and DICOM series (a
-/// folder, or any file of it). What a file leaves open is asked for, by an error that names the option, or
+/// Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM series (a
+/// folder, or any file of it), DICOM segmentations and structure sets, and masks that together are a label
+/// image (a folder of the first three). What a file leaves open is asked for, by an error that names the option, or
 /// told in `notes`; what it contradicts itself in, and what is cut short or damaged, is refused. Each format's
 /// rules are in vdb/README.md.
-/// @throws Error (kInput, codes "nifti.*", "nrrd.*", "metaimage.*", "dicom.*", "image.*").
+/// @throws Error (kInput, codes "nifti.*", "nrrd.*", "metaimage.*", "dicom.*", "masks.*", "image.*").
 [[nodiscard]] PALPATE_EXPORT Image readImage(const std::string& path,
                                              const ImageOptions& options = {});
 
