@@ -67,7 +67,7 @@ struct SceneFiles {
   std::string labels;
   std::string names;  ///< may be empty
   std::string body;   ///< mask, or the image with `skin`; empty: no body
-  std::string image;  ///< with grey values; may be empty
+  std::string image;  ///< with gray values; may be empty
 };
 [[nodiscard]] std::string writeScene(const ImportOptions& options, const ImportedScan& scan,
                                      const TissueTable& tissues, const SceneFiles& files);
