@@ -14,7 +14,7 @@ build_packages=(
 
 # To test and measure it as well (NanoVDB: a rival in tests/bench). git tells what changed; umockdev stands for input devices; Python, CGAL, ITK and OpenVDB's own tools are what results are held against; invesalius-examples: a scanned head (CT); fish, zsh: what completion is written for beside bash.
 test_packages=(
-  clang-format clang-tidy doxygen git
+  clang-format clang-tidy codespell doxygen git
   libgtest-dev umockdev libumockdev-dev libbenchmark-dev libnanovdb-dev libcgal-dev
   python3-nibabel python3-numpy python3-scipy python3-yaml python3-openvdb libopenvdb-tools
   libinsighttoolkit5-dev python3-pydicom python3-gdcm

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds Palpate and passes its tests, lane by lane. Each lane sees what no other does:
-#   format    clang-format on every file
+#   format    clang-format on every file, and the English: spelling by codespell, phrases by tests/words
 #   arrows    no include against the arrows between modules and layers (cmake script, seconds)
 #   release   what users get: optimized code, installed and used by an outside project
 #   asan      assertions on, memory errors and undefined behavior; every public header compiles alone;
@@ -150,7 +150,12 @@ build_and_test() { # PRESET [CONFIGURE_OPTION...]
   count_tests "$junit" && [ $status = 0 ]
 }
 
-lane_format() { sources | xargs --no-run-if-empty clang-format --dry-run --Werror; count_check $?; }
+lane_format() {
+  local status=0
+  sources | xargs --no-run-if-empty clang-format --dry-run --Werror || status=1
+  python3 -B tests/words/check_words.py || status=1
+  count_check $status
+}
 lane_arrows() { cmake -D ROOT="$root" -P tests/architecture/check_arrows.cmake; count_check $?; }
 lane_dev() { build_and_test dev; }
 lane_release() { build_and_test release; }

@@ -83,7 +83,7 @@ endif()
 foreach(file IN LISTS files)
   place("${file}" module layer)
   if(module STREQUAL "lib" AND NOT file MATCHES "^lib/include/palpate/export.h$" AND NOT DEFINED "layers_${layer}")
-    complain("${file}" "'${layer}' is no layer of lib that this check knows")
+    complain("${file}" "'${layer}' is not a layer of lib that this check knows")
     continue()
   endif()
 

@@ -272,7 +272,7 @@ TEST(SimulatedDevice, FollowsAFineIntegrationThroughStickAndSlip) {
 }
 
 TEST(SimulatedDevice, EnergyBalances) {
-  // Of a rigid hand at rest nothing is told by a formula here: motor = friction + viscous + kinetic
+  // No formula here says anything of a rigid hand at rest: motor = friction + viscous + kinetic
   // + what the hand got, and what it got is the integral of its own force, summed finely.
   SimulationSettings settings = bare(0.2, 0.8, 0.25);
   settings.push = Vec3(0.1, 0.0, 0.0);

@@ -235,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(
                   [](Lines& l) { set(l, "sizes", "4 3"); }},
         BadHeader{"NegativeSize", "nrrd.dimensions", "-3",
                   [](Lines& l) { set(l, "sizes", "4 -3 2"); }},
-        BadHeader{"Colour", "nrrd.data_type", "rgb-color",
+        BadHeader{"Color", "nrrd.data_type", "rgb-color",
                   [](Lines& l) {
                     set(l, "dimension", "4");
                     set(l, "sizes", "3 2 2 2");

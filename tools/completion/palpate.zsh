@@ -74,7 +74,7 @@ _palpate() {
         '*--names[image\: table of names of its labels]:value:_files' \
         '*--layer[grid\: this one of a file (default\: every level set)]:value:' \
         '*--voxel[mesh, image\: of the grid that is made, in mm or with a unit (default\: as in a scene)]:value:' \
-        '*--units[mesh, or grid that does not say\: what one unit is (default\: mm; glTF and GLB are metres)]:value:' \
+        '*--units[mesh, or grid that does not say\: what one unit is (default\: mm; glTF and GLB are meters)]:value:' \
         '*--affine[NIfTI\: which form counts (default\: sform, else qform; if both, they must agree); NIfTI, NRRD\: spacings only, axes along R, A, S from 0]:value:(qform sform spacing)' \
         '*--space[which way the axes of a mesh run (default\: as the file says, else RAS), or of a NRRD image that does not say]:value:(LPS RAS)' \
         '*--frame[which volume of a 4-D image, from 0]:value:' \
@@ -106,8 +106,8 @@ _palpate() {
         '*--region[one region of all of these labels, may be repeated]:value:' \
         '*--names[table of names\: `index name`, `value,name`, of Slicer, ITK-SNAP or FreeSurfer (default\: the image'\''s own)]:value:_files' \
         '*--min-island[change pieces and cavities of less than this; the changed image goes to FILE.labels.nii.gz (default\: none, they are only told)]:value:' \
-        '*--islands[--min-island\: they become part of what is around (default), or pieces become unlabelled and cavities stay]:value:(drop merge)' \
-        '*--image[grey values of the same scan\: CT, MR]:value:_files' \
+        '*--islands[--min-island\: they become part of what is around (default), or pieces become unlabeled and cavities stay]:value:(drop merge)' \
+        '*--image[gray values of the same scan\: CT, MR]:value:_files' \
         '*--skin[--image\: the body is brighter than this; its largest piece, cavities filled (CT\: -300)]:value:' \
         '*--body[or a mask of the body\: what is not 0]:value:_files' \
         '*--tissue[the tissue of a value, a range, a name or a pattern\: "Outer-Table=bone", may be repeated]:value:' \
@@ -208,7 +208,7 @@ _palpate() {
     check)
       _arguments \
         '*--units[what one unit is, of a mesh or of a grid that does not say\: mm (a mesh'\''s default), cm, m, um, in]:value:' \
-        '*--space[mesh\: which way its axes run (default\: as the file says, else RAS); places are told in RAS]:value:(LPS RAS)' \
+        '*--space[mesh\: which way its axes run (default\: as the file says, else RAS); places are printed in RAS]:value:(LPS RAS)' \
         '*--voxel[mesh\: voxel size of the bake that is tried (default\: 1/128 of the longest side)]:value:' \
         '*--layer[grid\: only this one of the file]:value:' \
         '*--level-set[a grid that does not say its class holds signed distances, negative inside]' \
@@ -256,7 +256,7 @@ _palpate() {
         '*--plane[across an axis\: x=12 (the scene'\''s unit)]:value:' \
         '*--cut[any plane\: a point and a normal; looked at against it]:value:' \
         '*--trace[the path and the forces of a `touch --trace`]:value:_files' \
-        '*--image[grey values of this scan, or of this image of the scene (default\: the scene'\''s first that has no names)]:value:_files' \
+        '*--image[gray values of this scan, or of this image of the scene (default\: the scene'\''s first that has no names)]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
         '*--force[replace existing output files]' \

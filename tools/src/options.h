@@ -142,7 +142,7 @@ struct ImportOptions {
   std::vector<std::string> labels;   ///< values, ranges, names, globs; empty: all
   std::vector<std::string> regions;  ///< NAME=LABELS
   std::string names;
-  std::string image;                 ///< grey values
+  std::string image;                 ///< gray values
   std::optional<double> skin;        ///< the body is where `image` is brighter
   bool hounsfield = false;           ///< `image` is a CT, from which stiffness comes
   std::string body;                  ///< mask of the body

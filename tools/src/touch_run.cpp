@@ -17,7 +17,7 @@ namespace {
 std::string hintOf(const std::string& kept, std::uint64_t ticks) {
   if (kept.empty()) return {};
   if (ticks == 0) return "no tick was felt yet, and none is in " + kept;
-  return "what was felt until then is in " + kept;
+  return "the ticks until then are in " + kept;
 }
 
 /// None if the path was followed to its end.
@@ -44,7 +44,7 @@ std::optional<Error> errorOf(const devices::ServoReport& servo, const std::strin
 Error failureOf(const Error& failure) {
   Problem problem = failure.problem();
   problem.message += "; the session went on without it";
-  problem.hint = "what was written before is whole and can be read; " + problem.hint;
+  problem.hint = "everything written before is whole and can be read; " + problem.hint;
   return {ErrorKind::kOperation, std::move(problem)};
 }
 

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 void requireImage(const std::string& path, const std::string& what) {
   if (inputKind(path) == InputKind::kImage) return;
-  throw inputError("import.kind", "this is no image",
+  throw inputError("import.kind", "this is not an image",
                    "give " + what +
                        ": .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, a folder of DICOM files or of "
                        "masks",
@@ -91,7 +91,7 @@ void tellOfStiffness(const vdb::Image& image, const vdb::Image& labels,
   }
 }
 
-/// Empty if none is asked for. `image`: the one with grey values, or null.
+/// Empty if none is asked for. `image`: the one with gray values, or null.
 vdb::VoxelMask bodyOf(const ImportOptions& options, const vdb::Image* image, ImportedScan& scan,
                       Console& console) {
   if (!options.body.empty()) {
@@ -160,11 +160,11 @@ void checkBody(const ImportOptions& options, const ImportedScan& scan, Console& 
   if (outside == 0) return;
   const std::string& file = options.skin ? options.image : options.body;
   if (outside == labelled) {
-    throw inputError("import.body", "no labelled voxel is in the body: the two lie apart",
+    throw inputError("import.body", "no labeled voxel is in the body: the two lie apart",
                      "give the body of the same scan", file);
   }
   console.note(file + ": " + formatCount(outside) + " of " + formatCount(labelled) +
-               " labelled voxels are not in the body");
+               " labeled voxels are not in the body");
 }
 
 /// @throws Error that lists what fits no tissue.
@@ -227,7 +227,7 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
   // Slices are often thicker than their voxels are wide; a grid of the same volume holds what is there.
   const double same_volume = std::cbrt(std::abs(glm::determinant(scan.labels.axes)));
   scan.voxel = options.voxel.empty()
-                   ? std::round(same_volume * 1e5) * 1e-5  // hundredths of a millimetre
+                   ? std::round(same_volume * 1e5) * 1e-5  // hundredths of a millimeter
                    : parseLength(options.voxel, {}, "--voxel");
   if (!(scan.voxel > 0.0)) {
     throw Error(ErrorKind::kUsage, {"usage.import", "--voxel must be greater than 0", ""});
@@ -280,7 +280,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
   for (const std::string& note : scan.plan.notes) console.note(note);
   tellUnknown(scan, console);
   if (!scan.has_body) {
-    console.note("no --skin and no --body: what has no label is outside");
+    console.note("no --skin and no --body: voxels without a label are outside");
   }
   std::optional<NeedleWay> way;
   if (!options.to.empty()) {

@@ -27,10 +27,10 @@ void defineImport(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1, 1000000000));
   addChoice(
       app, g, "--islands", {"merge", "drop"}, o.islands,
-      "--min-island: they become part of what is around (default), or pieces become unlabelled "
+      "--min-island: they become part of what is around (default), or pieces become unlabeled "
       "and cavities stay");
-  g = "The body, whose unlabelled rest becomes the region soft_tissue";
-  add(app, g, "--image", "FILE", o.image, "grey values of the same scan: CT, MR");
+  g = "The body, whose unlabeled rest becomes the region soft_tissue";
+  add(app, g, "--image", "FILE", o.image, "gray values of the same scan: CT, MR");
   add(app, g, "--skin", "VALUE", o.skin,
       "--image: the body is brighter than this; its largest piece, cavities filled (CT: -300)");
   add(app, g, "--body", "FILE", o.body, "or a mask of the body: what is not 0");
@@ -43,12 +43,11 @@ void defineImport(CLI::App& app, Invocation& invocation) {
   add(app, g, "--codes", "freesurfer", o.codes,
       "the labels are numbers of FreeSurfer's table, of SynthSeg's too, and need no names")
       ->check(CLI::IsMember({"freesurfer"}));
-  addFlag(app, g, "--strict", o.strict, "what fits no tissue is an error");
+  addFlag(app, g, "--strict", o.strict, "a label that fits no tissue is an error");
   g = "A way for a needle";
   add(app, g, "--to", "TARGET", o.to,
       "the shortest straight way to a region or a label that ports let through, clear of bone, "
-      "vessels and "
-      "nerves: told, and suggested in the scene");
+      "vessels and nerves: reported, and suggested in the scene");
   g = "Materials and grids";
   addFlag(app, g, "--hounsfield", o.hounsfield,
           "--image is a CT in Hounsfield units: stiffness varies with it, where the table of "

@@ -147,7 +147,7 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   add(app, g, "--voxel", "LENGTH", o.voxel,
       "mesh, image: of the grid that is made, in mm or with a unit (default: as in a scene)");
   add(app, g, "--units", "UNIT", o.units,
-      "mesh, or grid that does not say: what one unit is (default: mm; glTF and GLB are metres)");
+      "mesh, or grid that does not say: what one unit is (default: mm; glTF and GLB are meters)");
   addScan(app, "What an image or a mesh leaves open", o.scan, true);
 }
 
@@ -187,7 +187,7 @@ void defineRender(CLI::App& app, Invocation& invocation) {
   g = "What to show";
   add(app, g, "--trace", "FILE.csv", o.trace, "the path and the forces of a `touch --trace`");
   add(app, g, "--image", "IMAGE", o.image,
-      "grey values of this scan, or of this image of the scene (default: the scene's first "
+      "gray values of this scan, or of this image of the scene (default: the scene's first "
       "that has no names)");
 }
 
@@ -251,7 +251,7 @@ Verb queryVerb() {
       "Value, gradient, region and material at points; or an image's intensity",
       "palpate query data/scenes/container.yaml --at 0,0,14 0,0,16",
       "palpate query SCENE|IMAGE POINTS [OPTIONS]",
-      R"(An image (NIfTI, NRRD, MetaImage, a DICOM series) is read at RAS points in mm, trilinear between voxel centres; outside
+      R"(An image (NIfTI, NRRD, MetaImage, a DICOM series) is read at RAS points in mm, trilinear between voxel centers; outside
 these there is no value.)",
       {"--at"},
       defineQuery,

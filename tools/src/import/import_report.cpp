@@ -232,7 +232,7 @@ class ImportReport {
     std::string text;
     for (const vdb::IslandChange& change : scan_.changes) {
       const std::string to =
-          change.to >= scan_.survey.gap() ? "unlabelled" : scan_.nameOf(change.to);
+          change.to >= scan_.survey.gap() ? "unlabeled" : scan_.nameOf(change.to);
       if (changed.size() < kMostTold) {
         text += "  " + scan_.nameOf(change.from) + ": " + formatCount(change.voxels) + " at " +
                 placeText(change.place) + " became " + to + "\n";

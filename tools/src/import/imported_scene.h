@@ -75,9 +75,9 @@ struct GridEstimate {
 /// Files as the scene names them.
 struct SceneFiles {
   std::vector<std::string> labels;  ///< one image, or masks
-  std::string names;  ///< may be empty
-  std::string body;   ///< mask, or the image with `skin`; empty: no body
-  std::string image;  ///< with grey values; may be empty
+  std::string names;                ///< may be empty
+  std::string body;                 ///< mask, or the image with `skin`; empty: no body
+  std::string image;                ///< with gray values; may be empty
 };
 [[nodiscard]] std::string writeScene(const ImportOptions& options, const ImportedScan& scan,
                                      const TissueTable& tissues, const SceneFiles& files);

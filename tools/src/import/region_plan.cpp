@@ -47,8 +47,8 @@ std::vector<int> labelsOf(const std::string& entry, const ImportOptions& options
   } else {
     wanted = vdb::resolveLabels({entry}, names, options.names);
     if (wanted == std::vector<int>{0}) {
-      throw inputError("labels.background", "label 0 is what is not labelled, no region",
-                       "--body or --skin makes a region of what in the body is not labelled",
+      throw inputError("labels.background", "label 0 means 'not labeled', so it cannot be a region",
+                       "--body or --skin makes a region of what in the body is not labeled",
                        options.scan());
     }
     std::erase_if(wanted, [&](int label) { return label == 0 || !counts.contains(label); });

@@ -35,7 +35,7 @@ class WayFinder {
       box_.include(bounds.lo);
       box_.include(bounds.hi);
     }
-    // Whole millimetres read well.
+    // Whole millimeters read well.
     for (int axis = 0; axis < 3; ++axis)
       middle_[axis] = std::round(box_.center()[axis] * 1e3) * 1e-3;
     step_ = 0.5 * std::cbrt(std::abs(glm::determinant(scan.labels.axes)));

@@ -88,7 +88,7 @@ struct TissueTable {
   [[nodiscard]] static double poissonOf(const Tissue& tissue);
 };
 
-/// @throws Error (kInput), with file, line and column, for what is no such table.
+/// @throws Error (kInput), with file, line and column, for anything but such a table.
 [[nodiscard]] TissueTable readTissueTable(const std::string& path);
 /// The project's own.
 [[nodiscard]] TissueTable ownTissueTable();

@@ -45,7 +45,7 @@ std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& ori
   return std::pair{enter, leave};
 }
 
-/// What a ray met. Neighbours with different `part` are set apart by a dark edge, and so are those of the cut face
+/// What a ray met. Neighbors with different `part` are set apart by a dark edge, and so are those of the cut face
 /// between which it cuts a sheet.
 struct Hit {
   Color color = rgb(0xFFFFFF);

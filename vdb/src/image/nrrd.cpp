@@ -35,7 +35,8 @@ std::vector<float> readText(const NrrdHeader& header, Oddities& odd) {
     const auto value =
         lower == "nan" ? std::numeric_limits<double>::quiet_NaN() : numberIn<double>(word);
     if (!value) {
-      throw inputError("nrrd.damaged", "`" + word.substr(0, 40) + "` among the voxels is no number",
+      throw inputError("nrrd.damaged",
+                       "`" + word.substr(0, 40) + "` among the voxels is not a number",
                        "fetch or write the file again", header.data_path);
     }
     values.push_back(static_cast<float>(*value));

@@ -1,5 +1,5 @@
 #pragma once
-/// Segments of a .seg.nrrd file: names, colours, and which voxels are whose.
+/// Segments of a .seg.nrrd file: names, colors, and which voxels are whose.
 
 #include <array>
 #include <map>
