@@ -102,14 +102,18 @@ Json handLimitsJson(const devices::LoopModel& loop) {
   return json;
 }
 
-std::string handLimitsText(const devices::LoopModel& loop) {
+Table handLimitsTable(const devices::LoopModel& loop) {
   Table table({"hand (assumed)", "linear limit", "passive up to", "encoder limit", "budget, N/m"});
   for (const HandLimits& each : limitsByHand(loop)) {
     table.add({each.hand, number(each.budget.linear), number(each.budget.passive),
                number(each.budget.friction),
                number(each.budget.stiffness()) + " (" + nameOf(each.budget.ruledBy()) + ")"});
   }
-  return "Walls without damping\n" + table.text("  ");
+  return table;
+}
+
+std::string handLimitsText(const devices::LoopModel& loop) {
+  return "Walls without damping\n" + handLimitsTable(loop).text("  ");
 }
 
 std::string delayText(int delay) {
@@ -148,10 +152,9 @@ Json budgetJson(std::span<const BudgetItem> items) {
   return json;
 }
 
-std::string budgetText(std::span<const BudgetItem> items) {
+Table budgetTable(std::span<const BudgetItem> items) {
   Table table({"felt as", "parameter", "at the hand", "linear limit", "passive up to",
                "encoder limit", "budget", "takes"});
-  std::string above;
   for (const BudgetItem& each : items) {
     const bool is_spring = isSpring(each);
     table.add({kindName(each.item.kind), nameOf(each), number(askedOf(each)) + unitOf(each),
@@ -160,6 +163,14 @@ std::string budgetText(std::span<const BudgetItem> items) {
                is_spring ? number(each.budget.friction) : "-",
                number(each.allowed) + " (" + ruleOf(each) + ")",
                std::isfinite(each.share) ? formatNumber(100.0 * each.share, 3) + " %" : "ALL"});
+  }
+  return table;
+}
+
+std::string budgetText(std::span<const BudgetItem> items) {
+  const Table table = budgetTable(items);
+  std::string above;
+  for (const BudgetItem& each : items) {
     if (!each.isAbove()) continue;
     above += "  " + nameOf(each) + " (" + joined(each.item.places) + "): " + sizeOf(each.share);
     if (!each.item.note.empty()) above += ", " + each.item.note;

@@ -79,8 +79,7 @@ std::string LoadedScene::lossText() const {
   return text;
 }
 
-std::string LoadedScene::gridsText() const {
-  if (grids_.empty()) return {};
+Table LoadedScene::gridsTable() const {
   Table table({"grid", "voxel", "active voxels", "memory", "made in"});
   for (const auto& grid : grids_) {
     table.add({grid.what,
@@ -89,7 +88,12 @@ std::string LoadedScene::gridsText() const {
                formatCount(grid.info.active_voxels), formatBytes(grid.info.memory),
                formatSeconds(grid.seconds)});
   }
-  return table.text("  ") + lossText();
+  return table;
+}
+
+std::string LoadedScene::gridsText() const {
+  if (grids_.empty()) return {};
+  return gridsTable().text("  ") + lossText();
 }
 
 }  // namespace palpate::tools

@@ -47,6 +47,7 @@ class LoadedScene {
   [[nodiscard]] ScenePtr compile(Purpose purpose = Purpose::kShow) const;
 
   [[nodiscard]] Json gridsJson() const;
+  [[nodiscard]] Table gridsTable() const;
   [[nodiscard]] std::string gridsText() const;  ///< empty if there is none; lossText() at its end
   /// What grids could not hold of scans, a line for each; empty if nothing was lost.
   [[nodiscard]] std::string lossText() const;

@@ -14,7 +14,8 @@ namespace palpate::tools {
 struct GeneralOptions {
   bool json = false;
   bool quiet = false;
-  bool force = false;  ///< verbs that write files only
+  bool force = false;        ///< verbs that write files only
+  std::string command = {};  ///< as a shell takes it, for what names how it was made
 };
 
 /// What a scan or a mesh leaves open.
@@ -203,6 +204,13 @@ struct RenderOptions {
   std::string image;
 };
 
+struct ReportOptions {
+  std::vector<std::string> inputs;  ///< traces, records, scenes, JSON of benches
+  std::string output;
+  DeviceOptions device;        ///< of the stability budget
+  std::optional<double> rate;  ///< [Hz] of it; none: 1000
+};
+
 struct BenchOptions {
   std::string what;  ///< "contact", "stability" or "servo"
   std::vector<std::string> scenes;
@@ -259,6 +267,6 @@ struct HelpOptions {
 using VerbOptions =
     std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions, ImportOptions, InfoOptions,
                  CheckOptions, QueryOptions, ExplainOptions, RenderOptions, BenchOptions,
-                 AccuracyOptions, ReplayOptions, DevicesOptions, DoctorOptions>;
+                 AccuracyOptions, ReplayOptions, ReportOptions, DevicesOptions, DoctorOptions>;
 
 }  // namespace palpate::tools

@@ -23,6 +23,7 @@ class ReportRows {
                const std::string& none = {}) {
     report.json[key] = std::move(json_);
     if (table_.empty() && none.empty()) return;
+    if (!table_.empty()) report.tables.push_back({title, table_.rows()});
     report.text += "\n" + title + "\n" + (table_.empty() ? none : table_.text("  "));
   }
 

@@ -52,6 +52,8 @@ class Table {
   explicit Table(std::vector<std::string> heading) { rows_.push_back(std::move(heading)); }
   void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
   [[nodiscard]] bool empty() const noexcept { return rows_.size() == 1; }
+  /// The heading first.
+  [[nodiscard]] const std::vector<std::vector<std::string>>& rows() const noexcept { return rows_; }
   [[nodiscard]] std::string text(std::string_view indent) const;
 
  private:

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/svg.h"
+#include "even_scale.h"
 #include "text.h"
 
 namespace palpate::tools {
@@ -25,63 +26,13 @@ constexpr const char* kAcross = "#2a8a4a";
 constexpr const char* kIn = "#1f5fa8";
 constexpr const char* kOut = "#c4571b";
 
-/// A stretch of the page for values from `least` to `most`, with round numbers at even steps.
-struct Scale {
-  double least = 0.0;
-  double most = 1.0;
-  double from = 0.0;
-  double to = 1.0;
-  double step = 1.0;
-
-  Scale(double lowest, double highest, double begin, double end) : from(begin), to(end) {
-    if (!(highest > lowest)) highest = lowest + 1.0;
-    const double rough = (highest - lowest) / 8.0;
-    const double decade = std::pow(10.0, std::floor(std::log10(rough)));
-    step = decade;
-    for (const double round : {2.0, 5.0, 10.0}) {
-      if (step < rough) step = round * decade;
-    }
-    least = step * std::floor(lowest / step);
-    most = step * std::ceil(highest / step);
-  }
-  [[nodiscard]] double at(double value) const {
-    return from + (to - from) * (value - least) / (most - least);
-  }
-  [[nodiscard]] int count() const { return static_cast<int>(std::lround((most - least) / step)); }
-  [[nodiscard]] double number(int i) const {
-    const double value = least + i * step;
-    return std::fabs(value) < 1e-9 * step ? 0.0 : value;
-  }
-};
-
 struct Sample {
   double depth = 0.0;  ///< in the scene's unit
   double force = 0.0;  ///< [N]
 };
 
-std::string axes(const Frame& frame, const Scale& x, const Scale& y, const std::string& x_label,
-                 const std::string& y_label) {
-  std::string out;
-  for (int i = 0; i <= x.count(); ++i) {
-    const double at = x.at(x.number(i));
-    out += svgLine(at, frame.top, at, frame.bottom, "#ddd");
-    out += svgText(at, frame.bottom + 22.0, "text-anchor='middle'", formatNumber(x.number(i), 4));
-  }
-  for (int i = 0; i <= y.count(); ++i) {
-    const double at = y.at(y.number(i));
-    out += svgLine(frame.left, at, frame.right, at, y.number(i) == 0.0 ? "#888" : "#ddd");
-    out += svgText(frame.left - 8.0, at + 5.0, "text-anchor='end'", formatNumber(y.number(i), 4));
-  }
-  out += svgText(0.5 * (frame.left + frame.right), frame.bottom + 52.0, "text-anchor='middle'",
-                 x_label);
-  const double middle = 0.5 * (frame.top + frame.bottom);
-  return out + svgText(28.0, middle,
-                       "text-anchor='middle' transform='rotate(-90 28 " + svgNumber(middle) + ")'",
-                       y_label);
-}
-
 std::string curve(const std::vector<Sample>& samples, std::size_t first, std::size_t last,
-                  const Scale& x, const Scale& y, const char* color) {
+                  const EvenScale& x, const EvenScale& y, const char* color) {
   std::string points;
   for (std::size_t i = first; i <= last && i < samples.size(); ++i) {
     points += svgNumber(x.at(samples[i].depth)) + "," + svgNumber(y.at(samples[i].force)) + " ";
@@ -116,9 +67,9 @@ std::string wayPanel(const Trace& trace, const Scene& scene) {
     highest.force = std::max({highest.force, forward, across.back().force});
     if (rows[i].result.event_count > 0) port_at.push_back(way);
   }
-  const Scale x(0.0, way, kWayFrame.left, kWayFrame.right);
-  const Scale y(lowest.force, highest.force, kWayFrame.bottom, kWayFrame.top);
-  std::string out = axes(kWayFrame, x, y, "way of the hand, " + scene.lengthUnit(), "force, N");
+  const EvenScale x(0.0, way, kWayFrame.left, kWayFrame.right);
+  const EvenScale y(lowest.force, highest.force, kWayFrame.bottom, kWayFrame.top);
+  std::string out = evenAxes(kWayFrame, x, y, "way of the hand, " + scene.lengthUnit(), "force, N");
   const double label = kWayFrame.top - 12.0;
   out += svgText(kWayFrame.left, label, "fill='" + std::string(kAlong) + "'",
                  "along its way (less than 0: held back)");
@@ -168,8 +119,8 @@ std::string forcePlot(const Trace& trace, const Scene& scene, const std::string&
     lowest = {std::min(lowest.depth, s.depth), std::min(lowest.force, s.force)};
     highest = {std::max(highest.depth, s.depth), std::max(highest.force, s.force)};
   }
-  const Scale x(lowest.depth, highest.depth, kFrame.left, kFrame.right);
-  const Scale y(lowest.force, highest.force, kFrame.bottom, kFrame.top);
+  const EvenScale x(lowest.depth, highest.depth, kFrame.left, kFrame.right);
+  const EvenScale y(lowest.force, highest.force, kFrame.bottom, kFrame.top);
 
   double off = 0.0;
   for (const TraceRow& row : rows) {
@@ -183,8 +134,8 @@ std::string forcePlot(const Trace& trace, const Scene& scene, const std::string&
   if (turn + 1 < rows.size()) {
     out += svgText(kFrame.left + 90.0, 58.0, "fill='" + std::string(kOut) + "'", "coming back");
   }
-  out +=
-      axes(kFrame, x, y, "depth of the hand, " + scene.lengthUnit(), "force against the way in, N");
+  out += evenAxes(kFrame, x, y, "depth of the hand, " + scene.lengthUnit(),
+                  "force against the way in, N");
   // Ports passed on the way in hang from the top, those on the way back stand on the bottom; names that would
   // run into each other stand one above the other.
   constexpr double kNameWidth = 130.0;

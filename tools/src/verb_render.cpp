@@ -57,7 +57,9 @@ Report run(const RenderOptions& options, const GeneralOptions& general, Console&
   picture.title = vdb::fileName(options.scene);
 
   const ScenePtr scene = loaded.compile();
-  const CutPlane plane = drawPicture(*scene, picture, files.temporary(options.output), console);
+  const Picture drawn = drawPicture(*scene, picture, console);
+  const CutPlane& plane = drawn.plane;
+  files.write(options.output, drawn.png);
   checkStop();
   files.commit();
 

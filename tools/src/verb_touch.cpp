@@ -185,7 +185,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
     picture.image = pictureImage(loaded, "");
     picture.colors = loaded.colors();
     picture.anatomical = !loaded.images().empty();
-    (void)drawPicture(*scene, picture, files.temporary(options.image), console);
+    files.write(options.image, drawPicture(*scene, picture, console).png);
   }
   if (!options.plot.empty()) {
     const std::string title = vdb::fileName(options.scene);

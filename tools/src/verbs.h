@@ -33,6 +33,8 @@ namespace palpate::tools {
                          Console& console);
 [[nodiscard]] Report run(const DoctorOptions& options, const GeneralOptions& general,
                          Console& console);
+[[nodiscard]] Report run(const ReportOptions& options, const GeneralOptions& general,
+                         Console& console);
 [[nodiscard]] Report run(const ReplayOptions& options, const GeneralOptions& general,
                          Console& console);
 

@@ -5,28 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "markup.h"
+
 namespace palpate::tools {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 std::string decade(int exponent) {
   return "10<tspan dy='-6' font-size='10'>" + std::to_string(exponent) + "</tspan>";
@@ -53,7 +35,7 @@ std::string svgNumber(double value) {
 
 std::string svgText(double x, double y, const std::string& attributes, const std::string& text) {
   return "<text x='" + svgNumber(x) + "' y='" + svgNumber(y) + "' " + attributes + ">" +
-         escaped(text) + "</text>\n";
+         markupText(text) + "</text>\n";
 }
 
 std::string svgLine(double x1, double y1, double x2, double y2, const char* stroke) {

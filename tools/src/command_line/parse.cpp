@@ -60,13 +60,29 @@ std::vector<std::string> spreadPoints(const Verb& verb, const std::vector<std::s
   return out;
 }
 
+/// `argument` as one word of a shell.
+std::string inShell(const std::string& argument) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
+  if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
+  std::string out = "'";
+  for (const char c : argument) {
+    if (c == '\'') {
+      out += "'\\''";
+    } else {
+      out += c;
+    }
+  }
+  return out + "'";
+}
+
 }  // namespace
 
 const std::vector<Verb>& verbs() {
-  static const std::vector<Verb> all = {touchVerb(),   replayVerb(), importVerb(), bakeVerb(),
-                                        convertVerb(), infoVerb(),   checkVerb(),  queryVerb(),
-                                        explainVerb(), renderVerb(), benchVerb(),  accuracyVerb(),
-                                        devicesVerb(), doctorVerb(), helpVerb()};
+  static const std::vector<Verb> all = {touchVerb(),    replayVerb(),  importVerb(), bakeVerb(),
+                                        convertVerb(),  infoVerb(),    checkVerb(),  queryVerb(),
+                                        explainVerb(),  renderVerb(),  reportVerb(), benchVerb(),
+                                        accuracyVerb(), devicesVerb(), doctorVerb(), helpVerb()};
   return all;
 }
 
@@ -86,6 +102,10 @@ Error unknownVerb(const std::string& word) {
 
 Invocation parseCommandLine(const std::vector<std::string>& arguments) {
   Invocation invocation;
+  invocation.general.command = "palpate";
+  for (const std::string& argument : arguments) {
+    invocation.general.command += " " + inShell(argument);
+  }
   // General options may stand before the verb as well.
   std::size_t at = 0;
   std::vector<std::string> rest;

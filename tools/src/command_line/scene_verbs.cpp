@@ -208,6 +208,17 @@ void defineExplain(CLI::App& app, Invocation& invocation) {
       "draw the table of transitions: regions, and the ports between them");
 }
 
+void defineReport(CLI::App& app, Invocation& invocation) {
+  auto& o = choose<ReportOptions>(invocation);
+  app.add_option("inputs", o.inputs);
+  add(app, "Output", "-o,--output", "FILE.html", o.output, "the page (required)");
+  const char* g = "The device that the scene is for";
+  addDevice(app, g, o.device,
+            "list what is felt beside what this device can hold, as palpate explain does");
+  add(app, g, "--rate", "HZ", o.rate, "device: ticks a second (default 1000)")
+      ->check(CLI::Range(1.0, 100000.0));
+}
+
 }  // namespace
 
 Verb touchVerb() {
@@ -293,6 +304,30 @@ Verb renderVerb() {
             if (!o.plane.empty() && !o.cut.empty()) {
               throw usageError("--plane and --cut exclude one another", "");
             }
+          },
+          true};
+}
+
+Verb reportVerb() {
+  return {"report",
+          "Write a page about touches, scenes and benches (.html)",
+          "palpate report trace.csv data/scenes/container.yaml -o report.html",
+          "palpate report FILE... -o OUT.html [OPTIONS]",
+          R"(A chapter for each FILE:
+  trace.csv, record.npy   of palpate touch: what was touched, regions, force and energy over time,
+                          ports passed, time of a tick; of a record also what it was made with
+  scene.yaml              the scene cut open, its regions, walls and table of states, its grids and
+                          what they lost; with --device the budget of stability
+  bench.json              what palpate bench or palpate accuracy printed with --json: times, errors,
+                          the machine
+The path of a trace is drawn into the scene that is given with it; a record brings its own scene. The
+page holds its pictures and plots and loads nothing. Exit code 3 if a FILE cannot be read.)",
+          {},
+          defineReport,
+          [](const Invocation& i) {
+            const auto& o = chosen<ReportOptions>(i);
+            need(!o.inputs.empty(), "a trace, record, scene or bench");
+            need(!o.output.empty(), "-o OUT.html");
           },
           true};
 }

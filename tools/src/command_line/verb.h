@@ -40,6 +40,7 @@ struct Verb {
 [[nodiscard]] Verb explainVerb();
 [[nodiscard]] Verb renderVerb();
 [[nodiscard]] Verb replayVerb();
+[[nodiscard]] Verb reportVerb();
 // file_verbs.cpp
 [[nodiscard]] Verb bakeVerb();
 [[nodiscard]] Verb convertVerb();

@@ -34,7 +34,8 @@ void addMaps(const Scene& scene, const SceneDescription& description, Report& re
   rows.writeTo(report, "maps", "Parameters that differ from place to place");
   report.json["map_gaps"] = Json::array();
   for (const MapGap& gap : mapGaps(description, scene)) {
-    report.text += "  " + gapText(gap, scene.lengthUnit(), scene.metresPerUnit()) + "\n";
+    report.notes.push_back(gapText(gap, scene.lengthUnit(), scene.metresPerUnit()));
+    report.text += "  " + report.notes.back() + "\n";
     report.json["map_gaps"].push_back({{"name", gap.parameter},
                                        {"source", gap.source},
                                        {"share", gap.share},
@@ -49,6 +50,7 @@ void addWallNotes(const Scene& scene, Report& report) {
   std::string notes;
   for (WallNote& note : wallNotes(scene)) {
     notes += "  " + note.text + "\n";
+    report.notes.push_back(note.text);
     report.json[note.code == "scene.contrast" ? "contrasts" : "shading_gaps"].push_back(
         std::move(note.json));
   }
@@ -65,8 +67,11 @@ void addStability(const Scene& scene, const DeviceOptions& device, double rate, 
   const auto items = devices::sceneBudget(scene, loop);
   report.json["hand_limits"] = handLimitsJson(loop);
   report.json["budget"] = budgetJson(items);
-  report.text += "\nStability at " + formatNumber(rate) + " Hz" + delayText(simulation->delay) +
-                 "\n" + deviceText(device) + handLimitsText(loop) +
+  const std::string at = "at " + formatNumber(rate) + " Hz" + delayText(simulation->delay);
+  report.tables.push_back({"What is felt, at the hand, beside what " + device.name + " holds " + at,
+                           budgetTable(items).rows()});
+  report.tables.push_back({"Walls without damping that it holds", handLimitsTable(loop).rows()});
+  report.text += "\nStability " + at + "\n" + deviceText(device) + handLimitsText(loop) +
                  "What is felt, at the hand in N/m or N.s/m\n" + budgetText(items);
 }
 

@@ -76,6 +76,7 @@ void addRegions(const Scene& scene, Report& report) {
           r.left_out.empty() ? whyUnreachable(scene, static_cast<RegionId>(i)) : r.left_out;
       json["why_unreachable"] = why;
       unreachable += "  " + r.name + ": " + why + "\n";
+      report.notes.push_back("The probe can never get into " + r.name + ": " + why);
     }
     rows.add({r.name, source, content == nullptr ? "-" : contentText(*content),
               i == kOutside ? "-" : wallText(scene, {r.wall_absent, r.wall}),

@@ -180,14 +180,21 @@ void Canvas::clip(double x, double y, double w, double h) {
 
 void Canvas::unclip() { cairo_restore(impl_->cr()); }
 
-void Canvas::writePng(const std::string& path) {
-  const cairo_status_t status = cairo_surface_write_to_png(impl_->surface.get(), path.c_str());
+std::string Canvas::png() const {
+  std::string bytes;
+  const auto take = [](void* to, const unsigned char* data, unsigned length) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), length);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  const cairo_status_t status =
+      cairo_surface_write_to_png_stream(impl_->surface.get(), take, &bytes);
   if (status != CAIRO_STATUS_SUCCESS) {
     throw Error(
         ErrorKind::kOperation,
-        {"output.write", std::string("cannot write the picture: ") + cairo_status_to_string(status),
-         "look for room on the disk", path});
+        {"picture.png", std::string("cannot make the picture: ") + cairo_status_to_string(status),
+         "try a smaller picture"});
   }
+  return bytes;
 }
 
 }  // namespace palpate::tools

@@ -72,8 +72,8 @@ class Canvas {
   /// Everything until unclip() stays within the rectangle.
   void clip(double x, double y, double w, double h);
   void unclip();
-  /// @throws Error (kOperation).
-  void writePng(const std::string& path);
+  /// The sheet as a PNG file. @throws Error (kOperation).
+  [[nodiscard]] std::string png() const;
 
  private:
   struct Impl;

@@ -154,8 +154,7 @@ std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
   return std::make_shared<const vdb::Image>(vdb::readImage(wanted, {}));
 }
 
-CutPlane drawPicture(const Scene& scene, const PictureOptions& options, const std::string& file,
-                     Console& console) {
+Picture drawPicture(const Scene& scene, const PictureOptions& options, Console& console) {
   Sheet s(scene, options);
   const Box3 box = contentBox(scene, options.track);
   s.plane = choosePlane(s, box);
@@ -171,8 +170,7 @@ CutPlane drawPicture(const Scene& scene, const PictureOptions& options, const st
   drawTitle(s);
   drawPanel(s);
   drawLegend(s, drawInset(s, box, console));
-  s.canvas.writePng(file);
-  return s.plane;
+  return {s.canvas.png(), s.plane};
 }
 
 }  // namespace palpate::tools

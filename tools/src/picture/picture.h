@@ -32,8 +32,13 @@ struct PictureOptions {
 [[nodiscard]] std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
                                                              const std::string& wanted);
 
-/// Draws to a PNG file; returns the plane that was cut along. @throws Error: kOperation, kCancelled.
-[[nodiscard]] CutPlane drawPicture(const Scene& scene, const PictureOptions& options,
-                                   const std::string& file, Console& console);
+struct Picture {
+  std::string png;  ///< the file's bytes
+  CutPlane plane;   ///< that was cut along
+};
+
+/// @throws Error: kOperation, kCancelled.
+[[nodiscard]] Picture drawPicture(const Scene& scene, const PictureOptions& options,
+                                  Console& console);
 
 }  // namespace palpate::tools

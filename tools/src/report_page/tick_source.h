@@ -1,0 +1,30 @@
+#pragma once
+/// The ticks of a trace or a record, with the names that they go by.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "palpate/devices/record.h"
+#include "record_about.h"
+
+namespace palpate::tools {
+
+struct TickSource {
+  std::vector<std::string> regions;  ///< names by RegionId
+  std::vector<std::string> ports;    ///< names by PortId
+  std::uint64_t ticks = 0;
+  std::optional<RecordAbout> about;  ///< of a record
+  std::uint64_t promised = 0;  ///< ticks of a record by its header; more than `ticks`: it was cut
+};
+
+/// Of a `touch --trace`: ids are given in the order in which the names come.
+/// @throws Error (kInput, trace.*; kCancelled).
+[[nodiscard]] TickSource readTrace(const std::string& file,
+                                   std::span<devices::RecordSink* const> sinks);
+/// Of a `touch --record`. @throws Error (kInput, record.*; kCancelled).
+[[nodiscard]] TickSource readRecord(const std::string& file, const RecordAbout& about,
+                                    std::span<devices::RecordSink* const> sinks);
+
+}  // namespace palpate::tools
