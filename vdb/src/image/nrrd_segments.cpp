@@ -201,11 +201,12 @@ std::vector<float> Segments::merged(const std::vector<std::vector<float>>& layer
           here.push_back(&s);
           if (last == nullptr || last->number < s.number) last = &s;
         }
+        if (last == nullptr) continue;
         shared += here.size() > 1 ? 1 : 0;
         for (const Segment* const one : here) {
           if (one != last) overlaps.add(last->label, one->label, 1);
         }
-        if (last != nullptr) out[at] = static_cast<float>(last->label);
+        out[at] = static_cast<float>(last->label);
       }
     }
   }
