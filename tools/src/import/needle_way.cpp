@@ -21,7 +21,7 @@ namespace {
 constexpr int kDirections = 10'000;  // 2 degrees apart
 constexpr double kBefore = 0.02;     // [m] in front of the body
 constexpr int kAround = 8;           // points around the way that must be clear as well
-constexpr double kGrain = 1e-4;      // [m] ends of a way are written in tenths of a millimetre
+constexpr double kGrain = 1e-4;      // [m] ends of a way are written in tenths of a millimeter
 
 /// What it takes to go from one region to another.
 class Borders {
@@ -253,7 +253,7 @@ class NeedleWayFinder {
     }
   }
 
-  /// Its ends in tenths of a millimetre, if the way between those is open too.
+  /// Its ends in tenths of a millimeter, if the way between those is open too.
   NeedleWay rounded(const NeedleWay& way) {
     const auto grain = [](const Vec3& p) { return glm::round(p / kGrain) * kGrain; };
     const Vec3 from = grain(way.from);

@@ -187,7 +187,7 @@ std::optional<ContourGrid> gridOfSeries(StructureSet& set) {
     set.notes.insert(set.notes.end(), series.notes.begin(), series.notes.end());
     return ContourGrid{series.size, series.place};
   } catch (const Error& error) {
-    // The series may lie elsewhere; damage to it is told.
+    // The series may lie elsewhere; damage to it is reported.
     const std::string& code = error.problem().code;
     if (code != "dicom.series" && code != "dicom.missing") throw;
     return {};

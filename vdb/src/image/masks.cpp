@@ -157,7 +157,7 @@ Structure structureOf(const Image& image, const std::string& name, int label) {
       throw inputError("masks.values",
                        "it is not a mask: its values are " + place(first) + " and " + place(at),
                        "a mask has one value besides 0; give an image of several labels alone, and "
-                       "keep grey values out of the folder of masks",
+                       "keep gray values out of the folder of masks",
                        image.source);
     }
     out.add(at, at + 1);
