@@ -14,6 +14,7 @@
 #   mutants   would the tests see it? Small slips in a copy of the sources of lib and devices, 90 % of which some test
 #             must see in each module (PALPATE_MUTANTS_PER_MODULE, default 40; PALPATE_MUTANTS_SEED, default 1);
 #             with --all, or if it is asked for
+#   page      the page of `palpate view` in a browser without a window (chromium, npm); with --all, or if it is asked for
 #   dev       as asan without the sanitizers, quick to build; not run unless it is asked for
 # Without options: format, arrows and release, which prove an installation; with progress and the time left.
 # Options:
@@ -34,7 +35,7 @@ source tools/setup.sh
 lanes=()
 default_lanes=(format arrows release)
 ci_lanes=("${default_lanes[@]}" asan tsan tidy)
-all_lanes=("${ci_lanes[@]}" damage fuzz mutants dev)
+all_lanes=("${ci_lanes[@]}" damage fuzz mutants page dev)
 tidy_all=0 changed_since=
 usage() { printf 'error: %s; tools/test.sh --help lists the options\n' "$1" >&2; exit 2; }
 while [ $# -gt 0 ]; do
@@ -194,6 +195,19 @@ lane_mutants() { # what survives is listed
   python3 -B tests/mutants/mutants.py | tee "$results/mutants.txt"
   local status=${PIPESTATUS[0]}
   lane_note=$(tail -n 1 "$results/mutants.txt")
+  count_check "$status"
+}
+
+lane_page() { # pictures go to build/test-results/page
+  # Debian's npm and others' Node exclude each other: whoever has one keeps it.
+  command -v npm > /dev/null || install_packages npm
+  install_packages "${page_packages[@]}"
+  tools/page/build.sh && configure release -DPALPATE_TESTS=ON &&
+    cmake --build --preset release --target palpate_command || {
+    lane_note="does not build"; count_check 1; return; }
+  node tests/page/page_test.mjs "$root/build/release/bin/palpate" build/page "$results/page" | tee "$results/page.txt"
+  local status=${PIPESTATUS[0]}
+  lane_note=$(tail -n 1 "$results/page.txt")
   count_check "$status"
 }
 

@@ -101,6 +101,13 @@ struct TouchOptions {
   std::string write_scene;
 };
 
+struct ViewOptions {
+  TouchOptions touch;  ///< scene, renderer, device, real, seconds and record only
+  std::string replay;  ///< a trace or a record; empty: a hand
+  int port = 0;        ///< 0: any that is free
+  bool no_open = false;
+};
+
 struct ReplayOptions {
   std::string record;
   std::string scene;       ///< empty: that of the record
@@ -267,6 +274,7 @@ struct HelpOptions {
 using VerbOptions =
     std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions, ImportOptions, InfoOptions,
                  CheckOptions, QueryOptions, ExplainOptions, RenderOptions, BenchOptions,
-                 AccuracyOptions, ReplayOptions, ReportOptions, DevicesOptions, DoctorOptions>;
+                 AccuracyOptions, ReplayOptions, ReportOptions, DevicesOptions, DoctorOptions,
+                 ViewOptions>;
 
 }  // namespace palpate::tools

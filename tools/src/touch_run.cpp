@@ -66,10 +66,12 @@ void announceRecords(OutputFiles& files, const TouchOptions& options,
 }
 
 TouchRun runTouch(devices::Session& session, devices::Device& device, const TouchOptions& options,
-                  const RecordAbout& about, OutputFiles& files, Console& console, bool wants_thin) {
+                  const RecordAbout& about, OutputFiles& files, Console& console, bool wants_thin,
+                  const std::vector<devices::RecordSink*>& more) {
   const bool is_paper = about.renderer == "paper";
   TouchMeter meter(is_paper ? RendererKind::kPaper : RendererKind::kConstraint);
   std::vector<devices::RecordSink*> sinks = {&meter};
+  sinks.insert(sinks.end(), more.begin(), more.end());
   ThinTrace thin;
   if (wants_thin) sinks.push_back(&thin);
   std::unique_ptr<TraceFile> trace;

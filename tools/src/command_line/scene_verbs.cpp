@@ -6,14 +6,11 @@
 #include "palpate/devices/simulated_device.h"
 
 namespace palpate::tools {
-namespace {
 
-/// The names of the simulated devices.
-std::string models() {
+std::string deviceModels() {
   return joined(devices::devicePresets(), ", ", &devices::DevicePreset::name);
 }
 
-/// What the hand holds.
 void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::string& what) {
   add(app, group, "--device", "NAME", o.name, what.c_str());
   add(app, group, "--hand", "HAND", o.hand,
@@ -23,8 +20,9 @@ void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::st
       ->check(CLI::Range(0, devices::SimulatedDevice::kMostDelay));
 }
 
-/// "" for a file that has a name.
 std::string named(const std::string& text) { return text.empty() ? "a name is missing" : ""; }
+
+namespace {
 
 /// "" for the number of a tick.
 std::string tickNumber(const std::string& text) {
@@ -71,7 +69,7 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       app, g, o.device,
       std::string("follow the motion with a simulated device, in a hand that feels the force: "
                   "virtual:NAME, NAME one of ") +
-          models() +
+          deviceModels() +
           "; virtual: may be left out unless NAME is falcon or inverse3. Or let a hand move "
           "a device: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension), evdev (SpaceMouse, "
           "gamepad or mouse, whose force is shown, not felt; evdev:/dev/input/eventN: that one). "
@@ -201,7 +199,7 @@ void defineExplain(CLI::App& app, Invocation& invocation) {
   addDevice(app, g, o.device,
             std::string("list what is felt beside what this device can hold, and what cures what "
                         "it cannot: ") +
-                models() + " (virtual:NAME means the same)");
+                deviceModels() + " (virtual:NAME means the same)");
   add(app, g, "--rate", "HZ", o.rate, "device: ticks a second (default 1000)")
       ->check(CLI::Range(1.0, 100000.0));
   add(app, "Output files", "--svg", "FILE.svg", o.svg,
