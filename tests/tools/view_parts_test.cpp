@@ -130,7 +130,7 @@ TEST(SteeredHand, GoesThereSmoothlyAndNoFasterThanAHand) {
   EXPECT_NEAR(last.x, 0.1, 0.1 * std::exp(-(2.0 - 0.2) / SteeredHand::kTime) + 1e-12);
   hand.steer(Vec3(NAN, 0.0, 0.0));
   EXPECT_NEAR(hand.at(2.1).x, 0.1, 1e-9);
-  // A machine that slept is no reason to leap.
+  // A machine that slept does not make the hand leap.
   hand.steer(Vec3(0.0));
   EXPECT_GE(hand.at(100.0).x, 0.1 - SteeredHand::kSpeed * SteeredHand::kLongest - 1e-9);
 }

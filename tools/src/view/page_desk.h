@@ -37,7 +37,7 @@ class PageDesk {
   [[nodiscard]] std::shared_ptr<const ShownScene> shown() const;
 
   PageSubject subject_;
-  Vec3 told_;            ///< [m, world] where the hand was told to go
+  Vec3 told_;            ///< [m, world] where the page leads the hand
   std::size_t row_ = 0;  ///< of the recorded run
   mutable std::mutex mutex_;
   std::shared_ptr<const ShownScene> shown_;
