@@ -162,7 +162,6 @@ TEST(SteeredHand, TheServoThreadNeitherWaitsNorAllocatesWhileItIsToldThings) {
 class ViewedRecord : public ::testing::Test {
  protected:
   ViewedRecord() {
-    (void)folder_.file("cup.yaml", testing::kContainer);
     const auto touched =
         runPalpate({"touch", "cup.yaml", "--insert", "0,0,60", "0,0,-45", "--back", "--speed",
                     "200mm/s", "--record", "felt.npy", "--trace", "felt.csv", "--json"},
@@ -172,7 +171,7 @@ class ViewedRecord : public ::testing::Test {
 
   TempFolder folder_;
   Console console_{true};
-  LoadedScene loaded_{folder_.path("cup.yaml"), console_};
+  LoadedScene loaded_{folder_.file("cup.yaml", testing::kContainer), console_};
   ScenePtr scene_ = loaded_.compile();
 };
 

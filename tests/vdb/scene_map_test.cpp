@@ -177,7 +177,7 @@ TEST_F(SceneMaps, WhatCannotBeIsRefusedAtItsPlaceWithARemedy) {
            Row{"{grid: {file: no_length.vdb}}", "vdb.no_unit", "length unit", "units: mm", 35},
            Row{"{grid: {file: level_set.vdb}}", "vdb.class", "level set", "fog volume", 35},
            Row{"{grid: {file: bools.vdb}}", "vdb.type", "BoolGrid", "FloatGrid", 35},
-           Row{"{grid: {file: nan.vdb}}", "vdb.not_finite", "no numbers", "damaged", 35},
+           Row{"{grid: {file: nan.vdb}}", "vdb.not_finite", "not numbers", "damaged", 35},
            Row{"{grid: {file: empty.vdb}}", "vdb.empty", "no active voxels", "", 35},
            Row{"{grid: {file: negative.vdb}}", "scene.range", "-5", "mend", 21},
            Row{"{grid: {file: nowhere.vdb}}", "scene.no_file", "nowhere.vdb", "folder", 35},

@@ -75,7 +75,7 @@ std::optional<PageAnswer> PageDesk::get(std::string_view path) {
   const auto scene = shown();
   if (path == "scene.json") {
     Json json = scene->json();
-    json.update(subject_.about);
+    if (!subject_.about.is_null()) json.update(subject_.about);
     json["mode"] = subject_.run != nullptr    ? "replay"
                    : subject_.hand != nullptr ? "hand"
                                               : "device";

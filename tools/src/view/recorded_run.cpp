@@ -1,16 +1,15 @@
 #include "view/recorded_run.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
+#include <limits>
 
 #include "palpate/core/error.h"
 #include "palpate/devices/record.h"
-#include "palpate/render/trace.h"
 #include "palpate/vdb/text.h"
 #include "record_about.h"
 #include "text.h"
+#include "trace_reader.h"
 
 namespace palpate::tools {
 namespace {
@@ -29,25 +28,6 @@ PortId portNamed(const std::string& name, const Scene& scene, const std::string&
   }
   throw inputError("view.port", "the scene has no port '" + name + "', which was passed here",
                    "view it with the scene that it was recorded in", file);
-}
-
-/// The cells of a line of CSV; cells in quotes may have commas in them (RFC 4180).
-std::vector<std::string> cellsOf(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool is_quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && is_quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      cells.back() += line[++i];
-    } else if (c == '"') {
-      is_quoted = !is_quoted;
-    } else if (c == ',' && !is_quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
-    }
-  }
-  return cells;
 }
 
 Vec3 vectorOf(const devices::TickRecord::Vector& v) { return {v[0], v[1], v[2]}; }
@@ -93,51 +73,23 @@ void RecordedRun::readRecord(const std::string& file, const Scene& scene) {
 }
 
 void RecordedRun::readTrace(const std::string& file, const Scene& scene) {
-  std::ifstream in(file);
-  if (!in) throw inputError("trace.missing", "cannot read the file", "check the path", file);
-  int number = 0;
-  std::string line;
-  const auto bad = [&](std::string message) {
-    return Error(ErrorKind::kInput,
-                 {"trace.line", std::move(message),
-                  "write one with palpate touch SCENE ... --trace FILE.csv, or --record FILE.npy",
-                  file, number, 1, line});
-  };
-  constexpr std::size_t kColumns = 14;
-  constexpr std::size_t kNumbers = 10;
-  const auto next_line = [&] {
-    ++number;
-    if (!std::getline(in, line)) return false;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    return true;
-  };
-  if (!next_line() || line != TraceText::header()) throw bad("this is not a trace");
-  while (next_line()) {
-    if (line.empty()) continue;
-    const std::vector<std::string> cells = cellsOf(line);
-    if (cells.size() != kColumns) throw bad("a row of a trace has 14 columns");
-    std::array<double, kNumbers> v{};
-    for (std::size_t i = 0; i < kNumbers; ++i) {
-      const char* end = cells[i].data() + cells[i].size();
-      const auto read = std::from_chars(cells[i].data(), end, v[i]);
-      if (read.ec != std::errc() || read.ptr != end)
-        throw bad("'" + cells[i] + "' is not a number");
-    }
+  TraceReader reader(file);
+  for (TraceLine from; reader.next(from);) {
     Row row;
     row.tick = rows_.size();
-    row.t = v[0];
-    row.hip = {v[1], v[2], v[3]};
-    row.proxy = {v[4], v[5], v[6]};
-    row.force = {v[7], v[8], v[9]};
-    row.region = scene.regionNamed(cells[10]);
-    row.contact = cells[11] == "1";
-    if (!cells[12].empty()) {
-      for (const std::string_view port : split(cells[12], ';')) {
+    row.t = from.t;
+    // What a broken sensor read has no place.
+    row.hip = from.is_finite ? from.hip : Vec3(std::numeric_limits<double>::quiet_NaN());
+    row.proxy = from.proxy;
+    row.force = from.force;
+    row.ns = from.tick_ns;
+    row.contact = from.contact;
+    row.region = scene.regionNamed(from.region);
+    if (!from.ports.empty()) {
+      for (const std::string_view port : split(from.ports, ';')) {
         row.events.push_back(portNamed(std::string(port), scene, file));
       }
     }
-    const std::string& ns = cells[13];
-    (void)std::from_chars(ns.data(), ns.data() + ns.size(), row.ns);
     rows_.push_back(std::move(row));
   }
 }
