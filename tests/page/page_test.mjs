@@ -141,7 +141,7 @@ const tests = {
       await page.waitForFunction((before) => window.palpatePage.last.tick.n > before + 30, n, { polling: 5 });
       note(await tick(page));
       if (i === moves / 2) {
-        // The hand is held back by the force: it is not where it was told to go.
+        // The hand is held back by the force: it is not where it is led.
         const now = await tick(page);
         assert.ok(now.hip[2] > now.told[2] + 1e-3, JSON.stringify(now));
         assert.ok(now.wall.startsWith("glass"), now.wall);
