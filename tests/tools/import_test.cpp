@@ -717,7 +717,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "transfer_0.yaml"},
             3,
             "tissues.transfer",
-            "no stiffness above 0"},
+            "not a stiffness above 0"},
         Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "transfer_1.yaml"},
             3,
             "tissues.transfer",
