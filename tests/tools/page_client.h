@@ -87,8 +87,14 @@ class PageLine {
     stream_.write(boost::asio::buffer(text), error);
     return !error;
   }
-  /// The next message; none once the server has hung up.
+  /// The next message, which is said to be seen; none once the server has hung up.
   [[nodiscard]] std::optional<std::string> hear() {
+    std::optional<std::string> heard = hearOnly();
+    if (heard) (void)say(R"({"seen":true})");
+    return heard;
+  }
+  /// The next message; none once the server has hung up.
+  [[nodiscard]] std::optional<std::string> hearOnly() {
     boost::beast::flat_buffer buffer;
     boost::system::error_code error;
     stream_.read(buffer, error);

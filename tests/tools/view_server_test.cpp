@@ -292,7 +292,7 @@ TEST(PageServer, ASlowReaderGetsFewMessagesAndHoldsUpNobody) {
                            return filling;
                          },
                      .command = {}},
-                    {.rate = 1000.0});
+                    {.rate = 1000.0, .unseen = 0.0});
   PageLine slow(server.port());
   ASSERT_TRUE(slow.open(server.token()));
   ASSERT_TRUE(waitUntil([&] {
@@ -313,6 +313,27 @@ TEST(PageServer, ASlowReaderGetsFewMessagesAndHoldsUpNobody) {
   } while (made_for_slow() != before);
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(quick.hear().has_value());
   EXPECT_EQ(made_for_slow(), before);
+}
+
+TEST(PageServer, APageThatHasNotShownAMessageGetsNoOther) {
+  std::atomic<int> made{0};
+  PageServer server(
+      {.get = {},
+       .snapshot = [&](std::uint64_t&, const PagePlace&) { return std::to_string(++made); },
+       .command = {}},
+      {.rate = 1000.0, .unseen = 3600.0});
+  PageLine line(server.port());
+  ASSERT_TRUE(line.open(server.token()));
+  ASSERT_EQ(line.hearOnly(), "1");
+  // Other pages go on, hundreds of messages of theirs, and this one is still in its first.
+  PageLine other(server.port());
+  ASSERT_TRUE(other.open(server.token()));
+  for (int i = 2; i < 300; ++i) ASSERT_EQ(other.hear(), std::to_string(i));
+  ASSERT_TRUE(line.say(R"({"seen":true})"));
+  // What comes then is of now: the other's next may have been made before it.
+  const std::optional<std::string> next = line.hearOnly();
+  ASSERT_TRUE(next);
+  EXPECT_GE(std::stoi(*next), 300);
 }
 
 TEST(PageServer, APortThatIsTakenIsAnError) {

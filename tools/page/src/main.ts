@@ -10,6 +10,8 @@ import { Line, fetchScene, fetchSurface, type SceneWords, type Snapshot, type Ve
 
 const byId = (id: string): HTMLElement => document.getElementById(id)!;
 
+const sayEvery = 15; // [ms] at most as often as there are frames
+
 class Page {
   readonly canvas = byId("space") as HTMLCanvasElement;
   readonly space = new Space(this.canvas);
@@ -27,6 +29,7 @@ class Page {
   /** Surfaces that are shown. */
   shown = 0;
   private hasMoved = false;
+  private saidAt = 0;
   private isLoading = false;
   private isOver = false;
   private hasAsked = false;
@@ -53,16 +56,23 @@ class Page {
     this.canvas.focus();
   }
 
-  /** Of Steering. */
+  /** Of Steering. However long a frame takes, the hand hears of it soon. */
   changed(): void {
     this.hasMoved = true;
+    if (performance.now() - this.saidAt > sayEvery) this.say();
+  }
+
+  private say(): void {
+    if (!this.hasMoved || this.last?.steers !== true) return;
+    this.hasMoved = false;
+    this.saidAt = performance.now();
+    this.line.to(this.told);
   }
 
   private frame(): void {
     this.steering.step();
     this.scrubber.step();
-    if (this.hasMoved && this.last?.steers === true) this.line.to(this.told);
-    this.hasMoved = false;
+    this.say();
     this.space.draw();
     this.felt.draw();
   }

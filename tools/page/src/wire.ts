@@ -111,7 +111,11 @@ export class Line {
     const address = new URL("live", location.href);
     address.protocol = "ws:";
     this.socket = new WebSocket(address);
-    this.socket.onmessage = (event) => onSnapshot(JSON.parse(event.data as string) as Snapshot);
+    this.socket.onmessage = (event) => {
+      onSnapshot(JSON.parse(event.data as string) as Snapshot);
+      // Only then comes the next, so that a slow page shows what is, not what was.
+      this.say('{"seen":true}');
+    };
     this.socket.onclose = onEnd;
   }
 

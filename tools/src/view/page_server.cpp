@@ -32,7 +32,8 @@ constexpr std::size_t kLongestHeader = 8192;           // [bytes]
 constexpr auto kPatience = std::chrono::seconds(20);   // for a request, and for an answer's way
 constexpr auto kNap = std::chrono::milliseconds(100);  // before the next try, out of descriptors
 constexpr auto kQuiet = std::chrono::seconds(30);      // of a page, its pings included
-constexpr const char* kLine = "live";                  // the path of the WebSocket
+constexpr const char* kSeen = R"({"seen":true})";
+constexpr const char* kLine = "live";  // the path of the WebSocket
 
 http::status statusOf(PageVerdict verdict) {
   return verdict == PageVerdict::kServe ? http::status::not_found : http::status::forbidden;
@@ -63,6 +64,8 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
         files_(settings.files),
         period_(std::chrono::duration_cast<Clock::duration>(
             std::chrono::duration<double>(1.0 / settings.rate))),
+        unseen_(std::chrono::duration_cast<Clock::duration>(
+            std::chrono::duration<double>(settings.unseen))),
         token_(randomToken()),
         acceptor_(context_),
         timer_(context_),
@@ -146,6 +149,8 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
     return host_.get ? host_.get(wanted) : std::nullopt;
   }
 
+  [[nodiscard]] Clock::duration unseen() const { return unseen_; }
+
   /// False: there are pages enough.
   [[nodiscard]] bool join(const std::shared_ptr<Line>& line) {
     if (lines_.size() >= static_cast<std::size_t>(kMostPages)) return false;
@@ -191,6 +196,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
   PageHost host_;
   std::span<const PageFile> files_;
   Clock::duration period_;
+  Clock::duration unseen_;
   std::string token_;
   std::uint16_t port_ = 0;
   std::atomic<int> open_{0};
@@ -229,10 +235,14 @@ class PageServer::Work::Line : public std::enable_shared_from_this<Line> {
     });
   }
 
-  /// Sends what there is now, unless the last message is still under way.
+  /// Sends what there is now, unless the last message is still under way, or waits in a page that is busy: what is behind it
+  /// there would be old when it is shown.
   void tick() {
-    if (is_writing_) return;
+    const auto now = Clock::now();
+    if (is_writing_ || (!is_seen_ && now - sent_ < work_.unseen())) return;
     is_writing_ = true;
+    is_seen_ = false;
+    sent_ = now;
     out_ = work_.snapshot(shared_from_this(), seen_);
     stream_.text(true);
     stream_.async_write(asio::buffer(out_),
@@ -248,7 +258,12 @@ class PageServer::Work::Line : public std::enable_shared_from_this<Line> {
     stream_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error) return self->leave();
       if (self->isFlood()) return self->cutOff();
-      self->work_.take(self, beast::buffers_to_string(self->buffer_.data()));
+      const std::string message = beast::buffers_to_string(self->buffer_.data());
+      if (message == kSeen) {
+        self->is_seen_ = true;
+      } else {
+        self->work_.take(self, message);
+      }
       self->buffer_.consume(self->buffer_.size());
       self->readNext();
     });
@@ -282,6 +297,8 @@ class PageServer::Work::Line : public std::enable_shared_from_this<Line> {
   std::uint64_t seen_ = 0;
   bool is_joined_ = false;
   bool is_writing_ = false;
+  bool is_seen_ = true;
+  Clock::time_point sent_;
   Clock::time_point second_ = Clock::now();
   int commands_ = 0;
 };

@@ -39,6 +39,8 @@ struct PageHost {
 struct PageServerSettings {
   std::uint16_t port = 0;  ///< 0: any that is free
   double rate = 60.0;      ///< [Hz] messages to each page, if it takes them
+  double unseen =
+      0.25;  ///< [s] then a page that has not said {"seen":true} gets the next one all the same
   std::span<const PageFile> files = {};
 };
 
@@ -53,7 +55,8 @@ struct PageServerCounts {
 /// holds up nobody else, and takes bounded memory: so many connections, one message under way to each, messages of so many
 /// bytes and so many a second from each.
 ///
-/// The page that sends {"steer": true} steers, until it sends false or goes; commands of others are dropped.
+/// A page sends {"seen":true} for each message that it has shown, and gets the next one then, or after a while. The page
+/// that sends {"steer":true} steers, until it sends false or goes; commands of others are dropped.
 class PageServer {
  public:
   static constexpr int kMostConnections = 64;
