@@ -93,8 +93,12 @@ class Depths {
         }
       }
     }
+    if (last[0] < 0) {
+      throw inputError("import.target", "no voxel of the target is left",
+                       "--min-island changed them all: give a smaller one", image_.source);
+    }
     for (std::size_t a = 0; a < 3; ++a)
-      size_[a] = static_cast<std::size_t>(last[a] - first_[a] + 3);
+      size_[a] = static_cast<std::size_t>(last[a] - first_[a]) + 3;
   }
 
   [[nodiscard]] std::size_t at(std::size_t i, std::size_t j, std::size_t k) const {
