@@ -18,7 +18,11 @@ const scene = (name) => path.join(root, "data/scenes", `${name}.yaml`);
 
 /** `palpate view` as it runs. */
 class Served {
+  /** Those that run; a test that fails leaves its own behind. */
+  static running = new Set();
+
   constructor(...options) {
+    Served.running.add(this);
     this.process = spawn(palpate, ["view", ...options, "--no-open", "--json"], { stdio: ["ignore", "pipe", "pipe"] });
     this.out = "";
     this.err = "";
@@ -33,6 +37,7 @@ class Served {
     });
     this.url.catch(() => {});
     this.ended = new Promise((resolve) => this.process.on("exit", resolve));
+    void this.ended.then(() => Served.running.delete(this));
   }
   async stop() {
     this.process.kill("SIGINT");
@@ -129,6 +134,12 @@ const tests = {
       // ... and in 3, after ENTER_PORT, the wall from within: inward, here upward.
       if (state === 3) assert.ok(now.region === 1 && now.contact && now.force[2] > 0, JSON.stringify(now));
     };
+    // The hand begins where the scene is looked at from, which may be in any state.
+    await page.evaluate(() => {
+      window.palpatePage.told = [0, 0, 0.06];
+      window.palpatePage.changed();
+    });
+    await page.waitForFunction(() => window.palpatePage.last.tick.hip[2] > 0.055);
     const moves = 100;
     for (let i = 0; i < moves; ++i) {
       const share = i < moves / 2 ? i / (moves / 2 - 1) : (moves - 1 - i) / (moves / 2 - 1);
@@ -349,6 +360,7 @@ for (const [name, run] of Object.entries(tests)) {
     ++failed;
     console.log(`FAILED  ${name}: ${error.stack}`);
   }
+  for (const served of [...Served.running]) await served.stop();
 }
 await browser.close();
 console.log(`${passed} passed, ${failed} failed`);

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <optional>
 #include <set>
-#include <unordered_map>
 #include <utility>
 
 #include "import/crossings.h"
+#include "import/region_sampler.h"
 #include "import/way_target.h"
 #include "palpate/core/error.h"
 #include "text.h"
@@ -83,16 +83,7 @@ class NeedleWayFinder {
         tissues_(tissues),
         borders_(scan, tissues),
         target_(wayTarget(scan, target)),
-        to_index_(glm::inverse(scan.labels.axes)) {
-    for (std::size_t r = 0; r < scan.plan.regions.size(); ++r) {
-      for (const int label : scan.plan.regions[r].labels) region_of_[label] = r;
-    }
-    for (std::size_t r = 0; r < scan.survey.outside(); ++r) {
-      const Box3& bounds = scan.survey.regions[r].bounds;
-      if (bounds.isEmpty()) continue;
-      box_.include(bounds.lo);
-      box_.include(bounds.hi);
-    }
+        sampler_(scan) {
     const Mat3& axes = scan.labels.axes;
     step_ = 0.5 * std::min({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
   }
@@ -148,11 +139,11 @@ class NeedleWayFinder {
   std::optional<std::vector<Stretch>> walk(const Vec3& to, const Vec3& outwards) {
     const std::size_t outside = scan_.survey.outside();
     std::vector<Stretch> found;
-    const double reach = glm::length(box_.hi - box_.lo) + step_;
+    const double reach = glm::length(sampler_.box().hi - sampler_.box().lo) + step_;
     const auto steps = static_cast<int>(reach / step_);
     bool is_at_border = false;
     for (int n = 0; n <= steps; ++n) {
-      const Sample here = sampleAt(to + (n * step_) * outwards);
+      const RegionSampler::Sample here = sampler_.at(to + (n * step_) * outwards);
       if (here.region != outside && isForbidden(here.region)) return closedBy(here.region);
       if (found.empty() || found.back().region != here.region) {
         // In from outside is the way that is gone.
@@ -177,32 +168,6 @@ class NeedleWayFinder {
     return std::nullopt;
   }
 
-  struct Sample {
-    std::size_t region;
-    bool is_at_border;
-  };
-
-  [[nodiscard]] Sample sampleAt(const Vec3& world) const {
-    const vdb::Image& image = scan_.labels;
-    const Vec3 index = to_index_ * (world - image.origin);
-    std::size_t at = 0;
-    std::size_t stride = 1;
-    bool is_at_border = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int size = image.size[static_cast<std::size_t>(axis)];
-      const double nearest = std::round(index[axis]);
-      if (!(nearest >= 0.0 && nearest < size)) return {scan_.survey.outside(), true};
-      const auto n = static_cast<std::size_t>(nearest);
-      is_at_border = is_at_border || n == 0 || n + 1 == static_cast<std::size_t>(size);
-      at += stride * n;
-      stride *= static_cast<std::size_t>(size);
-    }
-    const auto found = region_of_.find(static_cast<int>(image.values[at]));
-    if (found != region_of_.end()) return {found->second, is_at_border};
-    const bool in_body = !scan_.body.empty() && scan_.body[at] != 0;
-    return {in_body ? scan_.survey.gap() : scan_.survey.outside(), is_at_border};
-  }
-
   [[nodiscard]] const Tissue* tissueOf(std::size_t region) const {
     if (region == scan_.survey.outside()) return nullptr;
     if (region == scan_.survey.gap()) return tissues_.find("fat");
@@ -225,7 +190,7 @@ class NeedleWayFinder {
       const Vec3 aside = clearance * (std::cos(angle) * u + std::sin(angle) * v);
       const auto steps = static_cast<int>(body / step_);
       for (int n = 0; n <= steps; ++n) {
-        const std::size_t region = sampleAt(to + aside + (n * step_) * outwards).region;
+        const std::size_t region = sampler_.at(to + aside + (n * step_) * outwards).region;
         if (!isForbidden(region)) continue;
         ++closed_[region];
         return false;
@@ -284,9 +249,7 @@ class NeedleWayFinder {
   const TissueTable& tissues_;
   Borders borders_;
   WayTarget target_;
-  Mat3 to_index_;
-  std::unordered_map<int, std::size_t> region_of_;
-  Box3 box_;
+  RegionSampler sampler_;
   double step_ = 1e-3;
   std::map<std::size_t, int> closed_;  ///< directions, by what closes them first
 };
