@@ -274,6 +274,21 @@ TEST_F(ViewedRecord, ASceneIsThereInWordsAndSurfaces) {
   }
 }
 
+TEST_F(ViewedRecord, EveryPageThatLooksSeesThePeakOfTheLastTicks) {
+  LiveFeed feed(*scene_);
+  const auto add = [&](double force) {
+    devices::RecordedTick tick;
+    tick.tick.result.force = Vec3(force, 0.0, 0.0);
+    feed.add(tick, {});
+  };
+  add(1.0);
+  add(7.0);
+  add(2.0);
+  for (int page = 0; page < 2; ++page) EXPECT_EQ(feed.look(0).strongest, 7.0) << page;
+  for (std::size_t i = 0; i < LiveFeed::kLast; ++i) add(3.0);
+  EXPECT_EQ(feed.look(0).strongest, 3.0);
+}
+
 TEST_F(ViewedRecord, APageTellsTheHandWhereToGoWithinReason) {
   LiveFeed feed(*scene_);
   SteeredHand hand(Vec3(0.0));

@@ -2,6 +2,7 @@
 /// LiveFeed: what a page may know of a session that runs.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <mutex>
@@ -46,10 +47,10 @@ struct FeedView {
   double time = 0.0;  ///< [s]
   Vec3 hip{0.0, 0.0, 0.0};
   TickResult result;
-  std::int64_t ns = 0;             ///< [ns] of the renderer, the longest tick since the look before
+  std::int64_t ns = 0;             ///< [ns] of the renderer, the longest of the last ticks
   std::int64_t worst_ns = 0;       ///< [ns] the longest so far
   std::uint64_t late = 0;          ///< ticks that ended after the next was due
-  double strongest = 0.0;          ///< [N] largest force since the look before
+  double strongest = 0.0;          ///< [N] the largest force of the last ticks
   double work = 0.0;               ///< [J] of the force on the hand so far
   std::vector<int> passed;         ///< by PortId, as PassedCounts has it
   std::vector<SeenEntry> entries;  ///< after the one that was asked for, as far as they are kept
@@ -59,6 +60,7 @@ struct FeedView {
 class LiveFeed final : public devices::RecordSink {
  public:
   static constexpr std::size_t kKept = 512;  ///< entries
+  static constexpr std::size_t kLast = 128;  ///< ticks, of which a look has the largest
 
   explicit LiveFeed(const Scene& scene) : passed_(scene) {}
 
@@ -75,9 +77,8 @@ class LiveFeed final : public devices::RecordSink {
     view_.number = now.number;
     view_.time = now.reading.time;
     view_.result = now.result;
-    view_.ns = std::max(view_.ns, now.renderer_ns);
+    last_[view_.ticks % kLast] = {now.renderer_ns, glm::length(now.result.force)};
     view_.worst_ns = std::max(view_.worst_ns, now.renderer_ns);
-    view_.strongest = std::max(view_.strongest, glm::length(now.result.force));
     if (tick.turn.is_late) ++view_.late;
     for (const RegionEntry& entry : entries) {
       passed_.add(entry);
@@ -88,11 +89,13 @@ class LiveFeed final : public devices::RecordSink {
   }
 
   /// With the entries after number `seen`.
-  [[nodiscard]] FeedView look(std::uint64_t seen) {
+  [[nodiscard]] FeedView look(std::uint64_t seen) const {
     const std::lock_guard lock(mutex_);
     FeedView out = view_;
-    view_.ns = 0;
-    view_.strongest = glm::length(view_.result.force);
+    for (const LastTick& tick : last_) {
+      out.ns = std::max(out.ns, tick.ns);
+      out.strongest = std::max(out.strongest, tick.force);
+    }
     out.passed = passed_.counts();
     for (const SeenEntry& entry : entries_) {
       if (entry.number > seen) out.entries.push_back(entry);
@@ -100,15 +103,15 @@ class LiveFeed final : public devices::RecordSink {
     return out;
   }
 
-  /// From the next entry on, ports are those of `scene`.
-  void restart(const Scene& scene) {
-    const std::lock_guard lock(mutex_);
-    passed_ = PassedCounts(scene);
-  }
-
  private:
-  std::mutex mutex_;
+  struct LastTick {
+    std::int64_t ns = 0;
+    double force = 0.0;  ///< [N]
+  };
+
+  mutable std::mutex mutex_;
   FeedView view_;
+  std::array<LastTick, kLast> last_{};  ///< the newest in the place of the oldest
   PassedCounts passed_;
   std::deque<SeenEntry> entries_;
   std::uint64_t entry_count_ = 0;
