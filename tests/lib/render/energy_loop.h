@@ -116,7 +116,8 @@ struct EnergyGiven {
   double moved = 0.0;   // [J] of half the absolute work of the lap: what went to and fro
 };
 
-/// The same, with the step halved until that changes it by less than 1e-10 J, or the steps are as many as `most`.
+/// The same, with the step halved until that changes it by less than 1e-10 J, or the steps are as many as `most`. Two laps of
+/// coarse steps may agree by chance: what seems to be given is looked at to the end.
 inline EnergyGiven energyGiven(const ScenePtr& scene, const Vec3& start, const EnergyLoop& loop,
                                int most = 64'000, double lap = 1.0) {
   EnergyGiven out;
@@ -127,7 +128,7 @@ inline EnergyGiven energyGiven(const ScenePtr& scene, const Vec3& start, const E
     const double finer = workOfLap(scene, start, loop, steps, lap);
     out.change = std::fabs(finer - out.work);
     out.work = finer;
-  } while (out.change > 1e-10 && steps < most);
+  } while ((out.change > 1e-10 || out.work > 1e-9) && steps < most);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "palpate/scene/scene_file.h"
+#include "scene/messages.h"
 
 namespace palpate {
 namespace {
@@ -32,6 +33,18 @@ TEST(Suggest, OneSlipOfAnyKindIsFound) {
       }
     }
   }
+}
+
+TEST(Messages, ListThirtyTwoNamesAndHowManyThereAre) {
+  const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (int i = 1; i <= 33; ++i) all.push_back("n" + std::to_string(i));
+    return all;
+  }();
+  const std::vector<std::string_view> few(names.begin(), names.begin() + 32);
+  const std::vector<std::string_view> many(names.begin(), names.end());
+  EXPECT_TRUE(listed(few).ends_with("n31, n32"));
+  EXPECT_EQ(listed(many), listed(few) + ", ... (33 in all)");
 }
 
 TEST(Suggest, CaseAndSeparatorsAreSlipsToo) {
