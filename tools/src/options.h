@@ -198,6 +198,11 @@ struct RenderOptions {
   std::string size;   ///< "WxH"
   std::string trace;
   std::string image;
+  // Of a picture in space.
+  std::string view;                  ///< "corner", "+x" ... "-z" or "X,Y,Z"; empty: a flat cut
+  std::vector<std::string> opacity;  ///< "LAYER=SHARE"
+  std::optional<int> turn;           ///< frames
+  std::optional<int> replay;         ///< frames
 };
 
 struct ReportOptions {

@@ -180,6 +180,13 @@ void Canvas::clip(double x, double y, double w, double h) {
 
 void Canvas::unclip() { cairo_restore(impl_->cr()); }
 
+Canvas::Bytes Canvas::bytes() const {
+  cairo_surface_t* const surface = impl_->surface.get();
+  cairo_surface_flush(surface);
+  return {cairo_image_surface_get_data(surface), cairo_image_surface_get_width(surface),
+          cairo_image_surface_get_height(surface), cairo_image_surface_get_stride(surface)};
+}
+
 std::string Canvas::png() const {
   std::string bytes;
   const auto take = [](void* to, const unsigned char* data, unsigned length) {

@@ -72,6 +72,14 @@ class Canvas {
   /// Everything until unclip() stays within the rectangle.
   void clip(double x, double y, double w, double h);
   void unclip();
+  /// Four bytes a pixel: blue, green, red and one that means nothing; valid until the canvas is drawn to or gone.
+  struct Bytes {
+    const unsigned char* data = nullptr;
+    int width = 0;
+    int height = 0;
+    int stride = 0;  ///< [bytes] from a row to the next
+  };
+  [[nodiscard]] Bytes bytes() const;
   /// The sheet as a PNG file. @throws Error (kOperation).
   [[nodiscard]] std::string png() const;
 

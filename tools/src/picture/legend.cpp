@@ -38,7 +38,7 @@ std::string shortened(Sheet& s, std::string text, const TextStyle& style, double
 
 }  // namespace
 
-void drawLegend(Sheet& s, double y) {
+double drawLegend(Sheet& s, double y) {
   const double x = s.options.width - s.side + s.px(4);
   const double limit = s.options.height - s.px(20);
   const double row = s.px(25);
@@ -91,7 +91,7 @@ void drawLegend(Sheet& s, double y) {
       s.canvas.line({{x, at}, {x + s.px(34), at}}, {kPortInk, s.px(4), {s.px(5), s.px(7)}});
     });
   }
-  if (s.options.track.points.empty()) return;
+  if (s.options.track.points.empty()) return y;
   entry("hand", "where the device was", stroke({kHipInk, s.px(1.7), {s.px(7), s.px(4)}}));
   entry("proxy", "the tip, held by the walls", stroke({kProxyInk, s.px(3)}));
   if (s.peak > 0.0) {
@@ -99,6 +99,7 @@ void drawLegend(Sheet& s, double y) {
       s.canvas.arrow({x, at}, {x + s.px(34), at}, {kForceInk, s.px(2)}, s.px(9));
     });
   }
+  return y;
 }
 
 }  // namespace palpate::tools

@@ -106,8 +106,10 @@ double drawInset(Sheet& s, const Box3& box, Console& console) {
   for (std::size_t i = 0; i < s.options.track.points.size(); i += stride) {
     path.push_back(s.options.track.points[i].proxy);
   }
-  const Camera camera = cameraFor(s.scene, s.plane, box, path, width, height);
-  const Raster raster = drawCutaway(s.scene, s.plane, box, camera, s.paint, console.progress());
+  const SpaceScene space{s.scene, s.paint, box, s.plane};
+  Camera camera = cameraOn(s.plane);
+  fitCamera(camera, space, path, width, height);
+  const Raster raster = drawSpace(space, camera, console.progress());
   s.canvas.image(raster, x, y);
   s.canvas.clip(x, y, width, height);
   const auto at = [&](const Vec3& p) {

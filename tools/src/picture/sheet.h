@@ -50,11 +50,11 @@ struct Sheet {
   }
 };
 
-void drawBoundaries(Sheet& s);        ///< walls, ports, sheets of the section
-void drawTrack(Sheet& s);             ///< hand, proxy and forces; sets `peak`
-void drawScaleBar(Sheet& s);          ///< in the section's lower left corner
-void drawAxes(Sheet& s);              ///< coordinates around the section
-void drawNames(Sheet& s);             ///< of regions and ports, where there is room
-void drawLegend(Sheet& s, double y);  ///< below `y` in the right column
+void drawBoundaries(Sheet& s);          ///< walls, ports, sheets of the section
+void drawTrack(Sheet& s);               ///< hand, proxy and forces; sets `peak`
+void drawScaleBar(Sheet& s);            ///< in the section's lower left corner
+void drawAxes(Sheet& s);                ///< coordinates around the section
+void drawNames(Sheet& s);               ///< of regions and ports, where there is room
+double drawLegend(Sheet& s, double y);  ///< below `y` in the right column; where it ends
 
 }  // namespace palpate::tools
