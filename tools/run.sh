@@ -12,6 +12,9 @@ source tools/setup.sh
 install_packages "${build_packages[@]}"
 use_ccache
 
+say "Building the page of palpate view (build/page)"
+build_page
+
 say "Building palpate (build/release)"
 # Without tests, which need more packages; if tools/test.sh has configured this folder, it stays as it is.
 [ -f build/release/build.ninja ] || configure release -DPALPATE_TESTS=OFF -DPALPATE_BENCH=OFF
@@ -29,3 +32,6 @@ command=(build/release/bin/palpate touch data/scenes/head.yaml
   --trace $out/trace.csv --image $out/head.png --force)
 printf '%s ' "${command[@]}"; printf '\n\n'
 "${command[@]}"
+
+say "To see and feel it yourself, in a browser"
+echo "build/release/bin/palpate view data/scenes/head.yaml"

@@ -14,7 +14,7 @@ build_packages=(
 
 # To test and measure it as well (NanoVDB: a rival in tests/bench). git tells what changed; umockdev stands for input devices; Python, CGAL, ITK and OpenVDB's own tools are what results are held against; invesalius-examples: a scanned head (CT); fish, zsh: what completion is written for beside bash.
 test_packages=(
-  clang-format clang-tidy doxygen git
+  clang-format clang-tidy codespell doxygen git
   libgtest-dev umockdev libumockdev-dev libbenchmark-dev libnanovdb-dev libcgal-dev
   python3-nibabel python3-numpy python3-scipy python3-yaml python3-openvdb libopenvdb-tools
   libinsighttoolkit5-dev python3-pydicom python3-gdcm
@@ -23,6 +23,9 @@ test_packages=(
 
 # To fuzz the readers (tools/test.sh --all): the sanitizers and libFuzzer come with clang's runtime.
 fuzz_packages=(clang-14 libclang-rt-14-dev)
+
+# To look at the page of `palpate view` (tools/test.sh --lane page).
+page_packages=(chromium)
 
 export LC_ALL=C.UTF-8
 
@@ -71,6 +74,14 @@ install_packages() { # NAME...: installs what is missing, as root or through sud
       fail "this system's package sources do not have: ${absent[*]}. Palpate is built on Debian 12 (bookworm)."
     fail "apt-get could not install: $(missing_packages "${missing[@]}" | paste --serial --delimiters=' '); see above"
   fi
+}
+
+build_page() { # the page of `palpate view`, where npm is; without it, the command says what is missing
+  if ! command -v npm > /dev/null; then
+    echo "There is no npm here, so the command gets no page for \`palpate view\`."
+    return 0
+  fi
+  "$root/tools/page/build.sh" || echo "The page of \`palpate view\` could not be built; see above. All else works without it."
 }
 
 use_ccache() { # what was compiled once, here or in another clone of this project, is not compiled again

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds Palpate and passes its tests, lane by lane. Each lane sees what no other does:
-#   format    clang-format on every file
+#   format    clang-format on every file, and the English: spelling by codespell, phrases by tests/words
 #   arrows    no include against the arrows between modules and layers (cmake script, seconds)
 #   release   what users get: optimized code, installed and used by an outside project
 #   asan      assertions on, memory errors and undefined behavior; every public header compiles alone;
@@ -14,6 +14,7 @@
 #   mutants   would the tests see it? Small slips in a copy of the sources of lib and devices, 90 % of which some test
 #             must see in each module (PALPATE_MUTANTS_PER_MODULE, default 40; PALPATE_MUTANTS_SEED, default 1);
 #             with --all, or if it is asked for
+#   page      the page of `palpate view` in a browser without a window (chromium, npm); with --all, or if it is asked for
 #   dev       as asan without the sanitizers, quick to build; not run unless it is asked for
 # Without options: format, arrows and release, which prove an installation; with progress and the time left.
 # Options:
@@ -34,7 +35,7 @@ source tools/setup.sh
 lanes=()
 default_lanes=(format arrows release)
 ci_lanes=("${default_lanes[@]}" asan tsan tidy)
-all_lanes=("${ci_lanes[@]}" damage fuzz mutants dev)
+all_lanes=("${ci_lanes[@]}" damage fuzz mutants page dev)
 tidy_all=0 changed_since=
 usage() { printf 'error: %s; tools/test.sh --help lists the options\n' "$1" >&2; exit 2; }
 while [ $# -gt 0 ]; do
@@ -150,7 +151,12 @@ build_and_test() { # PRESET [CONFIGURE_OPTION...]
   count_tests "$junit" && [ $status = 0 ]
 }
 
-lane_format() { sources | xargs --no-run-if-empty clang-format --dry-run --Werror; count_check $?; }
+lane_format() {
+  local status=0
+  sources | xargs --no-run-if-empty clang-format --dry-run --Werror || status=1
+  python3 -B tests/words/check_words.py || status=1
+  count_check $status
+}
 lane_arrows() { cmake -D ROOT="$root" -P tests/architecture/check_arrows.cmake; count_check $?; }
 lane_dev() { build_and_test dev; }
 lane_release() { build_and_test release; }
@@ -189,6 +195,19 @@ lane_mutants() { # what survives is listed
   python3 -B tests/mutants/mutants.py | tee "$results/mutants.txt"
   local status=${PIPESTATUS[0]}
   lane_note=$(tail -n 1 "$results/mutants.txt")
+  count_check "$status"
+}
+
+lane_page() { # pictures go to build/test-results/page
+  # Debian's npm and others' Node exclude each other: whoever has one keeps it.
+  command -v npm > /dev/null || install_packages npm
+  install_packages "${page_packages[@]}"
+  tools/page/build.sh && configure release -DPALPATE_TESTS=ON &&
+    cmake --build --preset release --target palpate_command || {
+    lane_note="does not build"; count_check 1; return; }
+  node tests/page/page_test.mjs "$root/build/release/bin/palpate" build/page "$results/page" | tee "$results/page.txt"
+  local status=${PIPESTATUS[0]}
+  lane_note=$(tail -n 1 "$results/page.txt")
   count_check "$status"
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where a hand wants to be at any time, by rows or by a formula.
+// Where a hand wants to be at any time: by rows, by a formula, or as somebody says meanwhile.
 
 #include <algorithm>
 #include <cstddef>
@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "palpate/devices/path.h"
+#include "palpate/devices/simulated_device.h"
 
 namespace palpate::devices {
 
@@ -15,13 +16,18 @@ class HandPath {
  public:
   explicit HandPath(Path rows) : rows_(std::move(rows)) {}
   explicit HandPath(PathFormula formula) : formula_(std::move(formula)) {}
+  explicit HandPath(LiveHand hand) : live_(std::move(hand)) {}
 
   [[nodiscard]] std::size_t size() const noexcept {
+    if (live_) return 1;
     return formula_ ? formula_->size() : rows_.size();
   }
-  [[nodiscard]] PathPoint row(std::size_t i) const { return formula_ ? formula_->at(i) : rows_[i]; }
-  [[nodiscard]] double begin() const { return row(0).t; }
-  [[nodiscard]] double end() const { return row(size() - 1).t; }
+  [[nodiscard]] PathPoint row(std::size_t i) const {
+    if (live_) return {0.0, live_->position(0.0)};
+    return formula_ ? formula_->at(i) : rows_[i];
+  }
+  [[nodiscard]] double begin() const { return live_ ? 0.0 : row(0).t; }
+  [[nodiscard]] double end() const { return live_ ? live_->end : row(size() - 1).t; }
 
   /// The next time is anywhere.
   void rewind() {
@@ -30,6 +36,10 @@ class HandPath {
   }
   /// [m]
   [[nodiscard]] Vec3 at(double t) {
+    if (live_) {
+      if (t > to_.t) to_ = {t, live_->position(t)};
+      return to_.position;
+    }
     while (to_.t < t && next_ + 1 < size()) {
       from_ = to_;
       to_ = row(++next_);
@@ -43,6 +53,7 @@ class HandPath {
  private:
   Path rows_;
   std::optional<PathFormula> formula_;  ///< none: rows_
+  std::optional<LiveHand> live_;        ///< none: the path is known beforehand
   std::size_t next_ = 0;                ///< row of to_
   PathPoint from_;
   PathPoint to_;

@@ -198,6 +198,10 @@ SimulatedDevice::SimulatedDevice(const SimulationSettings& settings, PathFormula
                                  DeviceFrame frame)
     : plant_(std::make_unique<Plant>(settings, HandPath(std::move(path)), frame)) {}
 
+SimulatedDevice::SimulatedDevice(const SimulationSettings& settings, LiveHand hand,
+                                 DeviceFrame frame)
+    : plant_(std::make_unique<Plant>(settings, HandPath(std::move(hand)), frame)) {}
+
 SimulatedDevice::~SimulatedDevice() = default;
 
 void SimulatedDevice::open() { plant_->open(); }

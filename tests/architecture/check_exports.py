@@ -19,7 +19,7 @@ def declared(text):
     text = re.sub(r"^#.*(?:\\\n.*)*$", "", without_comments(text), flags=re.M)
     spaces, classes, functions = [], set(), set()
     statement = ""
-    depth = 0  # of braces that are no namespace's
+    depth = 0  # of braces of anything but a namespace
     for char in text:
         if depth == 0 and char == "{":
             space = re.search(r"\bnamespace\s+([\w:]+)\s*$", statement)

@@ -97,7 +97,7 @@ int runAll(int count, char** arguments) {
   benchmark::Initialize(&count, arguments);
   if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 2;
   const tools::Machine machine = tools::thisMachine();
-  if (!machine.optimised) std::fputs("warning: not optimised: times say nothing\n", stderr);
+  if (!machine.optimized) std::fputs("warning: not optimized: times say nothing\n", stderr);
   Results results;
   benchmark::RunSpecifiedBenchmarks(&results);
   results.compareThreads();

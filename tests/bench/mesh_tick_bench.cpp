@@ -68,7 +68,7 @@ struct Row {
   double place = 0.0, normal = 0.0;  // [m], [degree] at most, by edges
 };
 
-/// Between random points of the surface's box, a millimetre within it.
+/// Between random points of the surface's box, a millimeter within it.
 Row measured(const FieldPtr& field, const FieldPtr& bricks, const Mesh& mesh) {
   Row row;
   // Beside the middles of sides, a fifth of a voxel off, the mesh's own face is the truth.

@@ -256,7 +256,7 @@ TEST(HardCases, AHandIsPushedOffABallByTheForceOverItsRadius) {
 
 TEST(HardCases, WhatADictatedHandGetsFallsWithThePeriod) {
   // In, along, and out again, closed. A force held for a tick gives (f_{k-1} - f_k) . dx / 2 more than the continuous one: where the
-  // force changes by no more than K per metre, K v^2 T^2 / 2 a tick, and so half as much in all at twice the rate.
+  // force changes by no more than K per meter, K v^2 T^2 / 2 a tick, and so half as much in all at twice the rate.
   for (const HardScene& scene : hardScenes()) {
     if (scene.friction > 0.0) continue;  // it takes more than sampling gives
     const ScenePtr compiled = compileHardScene(scene);

@@ -83,7 +83,7 @@ TEST(StrokePath, GoesThereAndBackAtConstantSpeed) {
   for (const PathPoint& point : path) {
     const double along = std::fabs(std::remainder(0.1 * point.t, 0.1)) / 0.05;
     const Vec3 expected = stroke.from + along * (stroke.to - stroke.from);
-    // The remainder of a travelled way of 0.3 m is rounded at 0.3 m.
+    // The remainder of a traveled way of 0.3 m is rounded at 0.3 m.
     EXPECT_LT(glm::length(point.position - expected), 1e-15 * 10) << point.t;
   }
   EXPECT_EQ(path.front().position, stroke.from);

@@ -56,6 +56,37 @@ TEST(SimulatedDevice, WithoutFrictionAHeldForceMovesItByTheClosedForm) {
   EXPECT_EQ(device.position().z, 0.0);
 }
 
+TEST(SimulatedDevice, AHandThatIsAskedMeanwhileGoesAsOneWhosePathIsKnown) {
+  SimulationSettings settings{.device = devicePreset("touch").model(),
+                              .hand = handPreset("relaxed")};
+  const auto place = [](double t) {
+    return Vec3(0.02 * std::sin(7.0 * t), 0.01 * t, -0.03 * t * t);
+  };
+  SimulatedDevice known(settings, PathFormula(500, 1000.0, place(0.5), place));
+  double last = -1.0;
+  const auto asked = [&](double t) {
+    EXPECT_GE(t, last);
+    last = t;
+    return place(t);
+  };
+  SimulatedDevice live(settings, LiveHand{.position = asked, .end = 0.5});
+  known.open();
+  live.open();
+  DeviceState a;
+  DeviceState b;
+  for (int k = 0; k <= 500; ++k) {
+    ASSERT_EQ(known.read(a), DeviceStatus::kOk) << k;
+    ASSERT_EQ(live.read(b), DeviceStatus::kOk) << k;
+    ASSERT_EQ(a.position, b.position) << k;
+    ASSERT_EQ(a.time, b.time) << k;
+    const Vec3 force = -200.0 * a.position;
+    ASSERT_EQ(known.write(force), DeviceStatus::kOk) << k;
+    ASSERT_EQ(live.write(force), DeviceStatus::kOk) << k;
+  }
+  EXPECT_EQ(known.read(a), DeviceStatus::kEnd);
+  EXPECT_EQ(live.read(b), DeviceStatus::kEnd);
+}
+
 TEST(SimulatedDevice, FrictionStopsItWhenAndWhereTheClosedFormSays) {
   // Pushed for 20 ms with 1 N against 0.3 N of friction, then let go: it stops within a tick and
   // stays.
@@ -272,7 +303,7 @@ TEST(SimulatedDevice, FollowsAFineIntegrationThroughStickAndSlip) {
 }
 
 TEST(SimulatedDevice, EnergyBalances) {
-  // Of a rigid hand at rest nothing is told by a formula here: motor = friction + viscous + kinetic
+  // No formula here says anything of a rigid hand at rest: motor = friction + viscous + kinetic
   // + what the hand got, and what it got is the integral of its own force, summed finely.
   SimulationSettings settings = bare(0.2, 0.8, 0.25);
   settings.push = Vec3(0.1, 0.0, 0.0);

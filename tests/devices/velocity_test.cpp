@@ -29,7 +29,7 @@ TEST(VelocityTracker, EvenMotionIsExactForAll) {
     EXPECT_EQ(tracker.add(0.0, Vec3(1.0)).value, Vec3(0.0));
     for (int n = 1; n < 200; ++n) {
       const double t = n * kTick;
-      // Rounding of positions of a metre, over one interval.
+      // Rounding of positions of a meter, over one interval.
       EXPECT_LT(glm::length(tracker.add(t, Vec3(1.0) + t * v).value - v), 1e-12);
     }
   }

@@ -59,15 +59,18 @@ const palpate::testing::TempFolder& folder() {
   return one;
 }
 
-/// A slice alone makes no volume; with a sound one beside it the pixels are read as well.
-void putSecondSlice(const std::string& own) {
-  const std::string path = own + "/second.dcm";
-  if (std::filesystem::exists(path)) return;
-  vdb::test::DicomFile slice;
-  slice.position = "0\\0\\1";
-  const std::string bytes = bytesOf(slice);
-  std::ofstream(path, std::ios::binary)
-      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+/// A slice alone makes no volume; with sound ones beside it the pixels are read as well, and structure sets have a
+/// series to lie in.
+void putMoreSlices(const std::string& own) {
+  for (const char* const z : {"1", "2"}) {
+    const std::string path = own + "/slice" + z + ".dcm";
+    if (std::filesystem::exists(path)) continue;
+    vdb::test::DicomFile slice;
+    slice.position = std::string("0\\0\\") + z;
+    const std::string bytes = bytesOf(slice);
+    std::ofstream(path, std::ios::binary)
+        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
 }
 
 }  // namespace
@@ -87,7 +90,7 @@ Outcome readBytes(const Reader& reader, std::string_view bytes) {
   const std::string path = own + "/input" + reader.extension;
   std::ofstream(path, std::ios::binary)
       .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (std::string_view(reader.name) == "dicom") putSecondSlice(own);
+  if (std::string_view(reader.name) == "dicom") putMoreSlices(own);
   try {
     reader.read(path);
     return Outcome::kRead;

@@ -136,7 +136,9 @@ std::vector<std::string> dicoms() {
   other.is_implicit = true;
   other.with_sequence = true;
   other.bits_stored = 12;
-  return {bytesOf(plain), bytesOf(other), packedDicom()};
+  std::vector<std::string> out = segmentSeeds();
+  out.insert(out.end(), {bytesOf(plain), bytesOf(other), packedDicom()});
+  return out;
 }
 
 vdb::Mesh cube() {

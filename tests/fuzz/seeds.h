@@ -22,4 +22,7 @@ struct Find {
 /// .vdb files with grids of many kinds, packed in every way.
 [[nodiscard]] std::vector<std::string> vdbSeeds();
 
+/// DICOM segmentations of every kind, and a structure set.
+[[nodiscard]] std::vector<std::string> segmentSeeds();
+
 }  // namespace palpate::fuzz

@@ -25,7 +25,7 @@ message(STATUS "${count} headers were installed")
 foreach(header IN LISTS installed)
   file(GLOB public "${SOURCE}/*/include/${header}" "${BINARY}/include/${header}")
   if(NOT public)
-    message(FATAL_ERROR "${header} is no public header, and was installed")
+    message(FATAL_ERROR "${header} is not a public header, and was installed")
   endif()
 endforeach()
 

@@ -406,7 +406,7 @@ AssertionResult checkJet(const FieldCase& field_case) {
     }
     if (!s.in_band) {
       if (largestEntry(jet.hessian) != 0.0) {
-        return AssertionFailure() << "at " << text(p) << " out of band, yet with a Hessian";
+        return AssertionFailure() << "at " << text(p) << " outside the band, yet with a Hessian";
       }
       continue;
     }
@@ -505,7 +505,7 @@ AssertionResult checkAwkward(const FieldCase& field_case) {
       return AssertionFailure() << "at " << text(p) << " the gradient has length " << slope;
     }
     if (!s.in_band && slope != 0.0) {
-      return AssertionFailure() << "at " << text(p) << " out of band, yet with a gradient";
+      return AssertionFailure() << "at " << text(p) << " outside the band, yet with a gradient";
     }
     // Zero and minus zero are one point.
     const FieldSample again = field->sample(p + Vec3(0.0));

@@ -38,7 +38,7 @@ struct Nearby {
   std::vector<int> literals;  ///< that can change their sign in the ball; at most 32
   std::vector<std::uint32_t>
       cells;                 ///< conjunctions, a bit for each of `literals`; any of them allows
-  bool is_too_much = false;  ///< more literals or cells than can be told
+  bool is_too_much = false;  ///< more literals or cells than it can list
 };
 
 class RegionTree {

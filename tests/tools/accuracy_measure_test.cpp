@@ -132,7 +132,7 @@ TEST(AccuracyTruth, TheFootOfAnImplicitFieldIsItsNearestPoint) {
   const PointSet set = pointsNear(Truth(exact), 2e-3, 2000, 0.1e-3);
   for (const JudgedPoint& point : set.points) {
     const auto found = truth.at(point.at);
-    ASSERT_TRUE(found);  // no centre of curvature is nearer than 4 mm
+    ASSERT_TRUE(found);  // no center of curvature is nearer than 4 mm
     ASSERT_NEAR(found->value, point.truth.value, 1e-15);
     ASSERT_LT(glm::length(found->normal - point.truth.normal), 1e-10);
     // The exact field's Hessian is by differences here: a millionth of it.
@@ -147,7 +147,7 @@ TEST(AccuracyTruth, EdgesAndTightBendsAreToldFromSmoothParts) {
   EXPECT_FALSE(isSmoothAround(*brick, Vec3(20e-3, 18e-3, 0.0), 1e-3));    // the edge
   EXPECT_FALSE(isSmoothAround(*brick, Vec3(21e-3, 19.5e-3, 0.0), 1e-3));  // outside of it
   EXPECT_TRUE(isSmoothAround(*brick, Vec3(20e-3, 18e-3, 0.0), 0.25e-3));
-  // A ball of 6 voxels is smooth, though its centre is an axis; of 1 voxel it is as good as a corner.
+  // A ball of 6 voxels is smooth, though its center is an axis; of 1 voxel it is as good as a corner.
   EXPECT_TRUE(isSmoothAround(*sphere(Vec3(0.0), 7e-3), Vec3(7e-3, 0.0, 0.0), 1e-3));
   EXPECT_FALSE(isSmoothAround(*sphere(Vec3(0.0), 1e-3), Vec3(1.5e-3, 0.2e-3, 0.0), 1e-3));
   // A crease of 4 degrees.

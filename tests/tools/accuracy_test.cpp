@@ -160,7 +160,7 @@ TEST(Accuracy, ImplicitFieldsAreJudgedByTheExactDistance) {
   EXPECT_EQ(gyroid["metric"], "implicit");
   EXPECT_EQ(gyroid["truth"], "projection");
   EXPECT_EQ(gyroid["layer"], true);
-  // S / |grad S| is off by second order: some micrometres and a degree, as measured elsewhere (reference:
+  // S / |grad S| is off by second order: some micrometers and a degree, as measured elsewhere (reference:
   // 3.8e-3 mm and 0.69 degree). The grid holds the exact distance, and is better than the field.
   const Json& analytic = gyroid["analytic"]["errors"];
   EXPECT_NEAR(number(analytic["value_error_m"]["rms"]), 3.8e-6, 0.5e-6);

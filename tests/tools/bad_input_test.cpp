@@ -75,7 +75,7 @@ std::vector<Bad> badInputs() {
        asText(bytesOf(fourDimensional())),
        threshold,
        {"four.nii"}},
-      {"NiftiIsText", "note.nii", "this is no image at all", threshold, {"note.nii"}},
+      {"NiftiIsText", "note.nii", "this is not an image at all", threshold, {"note.nii"}},
       {"MeshMissing", "missing.stl", "", mesh, {"missing.stl"}},
       {"MeshWithoutFaces", "points.obj", vertices, mesh, {"points.obj"}},
       {"MeshOpen",

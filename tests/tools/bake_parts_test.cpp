@@ -167,7 +167,7 @@ TEST_F(BakeParts, EdgesAndThinShellsStayExactThroughTheCommand) {
                      "  - {name: box, inside: {grid: {file: whole.vdb, name: box/surface}}}\n"
                      "  - {name: peel, inside: {grid: {file: whole.vdb, name: peel/surface}}}\n");
 
-  // To rounding of a few centimetres: 1e-16 of them, in mm.
+  // To rounding of a few centimeters: 1e-16 of them, in mm.
   const Errors box = compare(ask(folder_, "s.yaml", "box"), ask(folder_, "hybrid.yaml", "box"));
   const Errors box_grid = compare(ask(folder_, "s.yaml", "box"), ask(folder_, "whole.yaml", "box"));
   EXPECT_LE(box.value, 1e-12);

@@ -205,11 +205,11 @@ layers:
 
 TEST(Bake, AnImageByThresholdOrByLabel) {
   const TempFolder folder;
-  const std::string grey = writeImage(folder, "grey.nii", balls(false));
+  const std::string grey = writeImage(folder, "gray.nii", balls(false));
   const CommandResult skin =
       runPalpate({"bake", grey, "-o", folder.path("g.vdb"), "--above", "50", "--json"});
   ASSERT_EQ(skin.exit_code, 0) << skin.err << skin.out;
-  EXPECT_EQ(parseOnly(skin)["grids"][0]["name"], "grey/surface");
+  EXPECT_EQ(parseOnly(skin)["grids"][0]["name"], "gray/surface");
   // Only the large ball, whose radius is 6.5 mm about (9, 10, 11) mm.
   EXPECT_LT(parseOnly(skin)["grids"][0]["bounds_m"]["hi"][0], 0.0215);
 
@@ -324,8 +324,8 @@ layers:
 }
 
 TEST(Bake, AnInterruptStopsItAndLeavesNothing) {
-  // A heart, for which closest points are searched: far longer than the two seconds after which progress
-  // is told.
+  // A heart, for which closest points are searched: far longer than the two seconds after which
+  // progress is shown.
   const TempFolder folder;
   (void)folder.file("heart.yaml", R"(palpate: 1
 length: mm

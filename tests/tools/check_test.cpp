@@ -71,7 +71,7 @@ TEST(Check, ASoundMeshIsAYes) {
   EXPECT_NEAR(c.file["area_m2"], 6e-4, 1e-10);
   EXPECT_TRUE(c.file["bake"]["ok"]);
   EXPECT_EQ(c.file["bake"]["voxel_size_m"], 0.5e-3);
-  // Faces pass through voxel centres; edges are rounded by a share of a voxel.
+  // Faces pass through voxel centers; edges are rounded by a share of a voxel.
   EXPECT_NEAR(c.file["bake"]["volume_m3"], 1e-6, 0.02e-6);
   EXPECT_NE(c.text.find("yes: nothing is wrong"), std::string::npos) << c.text;
   EXPECT_NE(c.text.find("encloses 1000 mm^3"), std::string::npos) << c.text;
@@ -113,12 +113,12 @@ TEST(Check, AMeshThatABakeRefusesIsANo) {
 
 TEST(Check, AnUnlikelySizeIsAskedAbout) {
   const TempFolder folder;
-  (void)folder.file("metres.obj", cube(0.1, 0.0, 1));
-  const Checked c = checked(folder, {"metres.obj"});
+  (void)folder.file("meters.obj", cube(0.1, 0.0, 1));
+  const Checked c = checked(folder, {"meters.obj"});
   EXPECT_EQ(c.exit_code, 0);
   EXPECT_EQ(codes(c.file), std::vector<std::string>{"mesh.size"});
   EXPECT_NE(c.text.find("is its unit"), std::string::npos) << c.text;
-  EXPECT_TRUE(codes(checked(folder, {"metres.obj", "--units", "m"}).file).empty());
+  EXPECT_TRUE(codes(checked(folder, {"meters.obj", "--units", "m"}).file).empty());
 }
 
 TEST(Check, SeveralFilesAndBadOnes) {

@@ -68,11 +68,11 @@ TEST(Convert, UnitsOfMeshes) {
   const Json inches = converted(folder, {"ball.obj", "-o", "inches.stl", "--to-units", "in"});
   EXPECT_EQ(inches["unit"], "in");
   EXPECT_NEAR(described(folder, "inches.stl", "in")["volume_m3"], kVolume, 0.01 * kVolume);
-  const Json metres = converted(folder, {"inches.stl", "--units", "in", "-o", "metres.glb"});
+  const Json metres = converted(folder, {"inches.stl", "--units", "in", "-o", "meters.glb"});
   EXPECT_EQ(metres["unit"], "m");
   EXPECT_NEAR(metres["volume_m3"], kVolume, 0.01 * kVolume);
   const Json back =
-      converted(folder, {"metres.glb", "--units", "m", "-o", "b.vdb", "--voxel", "1mm"});
+      converted(folder, {"meters.glb", "--units", "m", "-o", "b.vdb", "--voxel", "1mm"});
   EXPECT_EQ(back["schema"], "palpate.bake/1");
 }
 
@@ -96,7 +96,7 @@ TEST(Convert, GltfIsMetresAsItsStandardSays) {
   const CommandResult query =
       runPalpate({"query", "scene.yaml", "--at", "0,0,0", "--json"}, folder.path());
   ASSERT_EQ(query.exit_code, 0) << query.err;
-  // Said otherwise, it counts: a file of millimetres that is not a proper glTF.
+  // Said otherwise, it counts: a file of millimeters that is not a proper glTF.
   const Json said = converted(folder, {"ball.glb", "--units", "mm", "-o", "small.stl"});
   EXPECT_NEAR(said["volume_m3"], 1e-9 * kVolume, 1e-11 * kVolume);
 }
@@ -148,7 +148,7 @@ layers:
       {{"two.yaml", "-o", "two.stl", "--voxel", "1"}, 2, "a/surface, b/surface"},
       {{"ball.vdb", "-o", "other.vdb"}, 2, "already"},
       {{"ball.vdb", "-o", "a.txt"}, 3, ".stl, .obj, .ply or .glb"},
-      {{"ball.vdb", "-o", "a.glb", "--to-units", "mm"}, 2, "metres"},
+      {{"ball.vdb", "-o", "a.glb", "--to-units", "mm"}, 2, "meters"},
       {{"ball.vdb", "-o", "a.nii", "--to-units", "mm"}, 2, "meshes"},
       {{"ball.vdb", "-o", "ball.stl"}, 1, "--force"},
       {{"ball.vdb", "-o", "a.stl", "--layer", "bal"}, 3, "ball/surface"},

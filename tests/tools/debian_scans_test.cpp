@@ -70,7 +70,7 @@ TEST(DebianScans, RegionsOfAnAtlasAreItsVoxelsUnderTheirNames) {
   EXPECT_EQ(sides, 108);
 }
 
-// A voxelised nucleus of 1 mm voxels as a solid wall of 200 N/m, pressed on from six sides.
+// A voxelized nucleus of 1 mm voxels as a solid wall of 200 N/m, pressed on from six sides.
 TEST(DebianScans, ANucleusIsFeltWhereItsVoxelsBegin) {
   constexpr double kStiffness = 200.0;  // [N/m]
   constexpr int kPutamen = 73;

@@ -61,7 +61,9 @@ ImportedScan scanOf(const Names& names, const Numbers& numbers, const TissueTabl
 
 /// The scene that is written, with spheres for what would be made of labels: the same layers, walls and ports.
 ScenePtr compiled(const ImportedScan& scan, const Numbers& numbers, const TissueTable& tissues) {
-  std::string text = tools::writeScene({}, scan, tissues, {"labels.nii.gz", "", "", ""});
+  tools::ImportOptions options;
+  options.scans = {"labels.nii.gz"};
+  std::string text = tools::writeScene(options, scan, tissues, {{"labels.nii.gz"}, "", "", ""});
   const std::size_t images = text.find("images:\n");
   text.erase(images, text.find("# measured", images) - images);
   std::string fields = "fields:\n";

@@ -21,7 +21,7 @@ const Json& regionOf(const Json& json, const std::string& name) {
   return json;
 }
 
-// Labels for bone and muscle, grey values for the skin, both oblique; walls that the lightest touch opens but that of bone.
+// Labels for bone and muscle, gray values for the skin, both oblique; walls that the lightest touch opens, but bone's.
 TEST(ImportMade, LayersOfALimbAreFeltAtTheRadiiOfItsCylinders) {
   const TempFolder folder;
   const Limb limb;
@@ -88,7 +88,7 @@ tissues:
     const double force = glm::length(last.force);
     std::printf("  skin at %.2f mm, muscle at %.2f mm, bone at %.2f mm, %.3f N\n", radii[0],
                 radii[1], limb.radius(last.proxy), force);
-    // Grey values say it to a tenth of a voxel and a tick, labels to a quarter of a voxel.
+    // Gray values say it to a tenth of a voxel and a tick, labels to a quarter of a voxel.
     EXPECT_NEAR(radii[0], Limb::kBody, 0.1);
     EXPECT_NEAR(radii[1], Limb::kMuscle, 0.25);
     EXPECT_NEAR(limb.radius(last.proxy), Limb::kBone, 0.25);
@@ -201,7 +201,7 @@ TEST(ImportMade, AFolderOfSlicesIsAnImageOfTheCommandToo) {
                   made.axes[static_cast<int>(a)][static_cast<int>(r)], 1e-9);
     }
   }
-  // Deep within bone and muscle grey values are level.
+  // Deep within bone and muscle gray values are level.
   const Json query = run(folder, {"query", "series", "--json", "--at", pointText(limb.center),
                                   pointText(limb.center + 12.0 * limb.outwards(1.0))});
   EXPECT_NEAR(query["points"][0]["value"].get<double>(), Limb::kBoneHu, 1e-6);

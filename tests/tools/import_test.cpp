@@ -98,7 +98,7 @@ TEST(Import, AProbeGoesThroughSkinFatAndMuscleAndStopsAtTheBone) {
   }
   ASSERT_EQ(order, (std::vector<std::string>{"outside", "soft_tissue", "vastus muscle"}));
   EXPECT_NEAR(hip, -9.0, 0.1);
-  // It stands on the bone: its surface is between the centres at 5 and 6 mm.
+  // It stands on the bone: its surface is between the centers at 5 and 6 mm.
   EXPECT_NEAR(last_y, 5.5, 0.5);
 
   // The peak in front of each wall is what its port opens at; friction acts along the wall only. A needle in the fat
@@ -190,7 +190,7 @@ TEST(Import, IslandsAreToldAndChangedOnRequest) {
   const Json dropped =
       imported(folder, {"l.nii.gz", "--min-island", "2", "--islands", "drop", "--dry-run"});
   ASSERT_EQ(dropped["changed"].size(), 1U);
-  EXPECT_EQ(dropped["changed"][0]["to"], "unlabelled");
+  EXPECT_EQ(dropped["changed"][0]["to"], "unlabeled");
 }
 
 TEST(Import, TheSkinIsFoundInGreyValues) {
@@ -446,7 +446,7 @@ TEST(Import, NumbersOfFreeSurferNeedNoNames) {
 
 TEST(Import, AirThatReachesTheBorderIsOutside) {
   const TempFolder folder;
-  // A head in air, with a sinus that is labelled as air too.
+  // A head in air, with a sinus that is labeled as air too.
   const auto labels = [&](bool has_sinus) {
     (void)writeLabels(folder, "head.nii.gz", 31, [&](int x, int y, int z) {
       if (has_sinus && std::hypot(x, y, z) < 4) return 1;
@@ -509,7 +509,7 @@ TEST(Import, TheSuggestedTouchIsOneThatAHandCanHold) {
   for (const Json& region : told["regions"])
     peak = std::max(peak, region["peak_force_N"].get<double>());
   EXPECT_GT(told["regions"].size(), 2U);
-  // A millimetre into a wall of at most 2000 N/m, on top of what the needle feels on its way.
+  // A millimeter into a wall of at most 2000 N/m, on top of what the needle feels on its way.
   EXPECT_LT(peak, 5.0);
 }
 
@@ -541,12 +541,12 @@ TEST(Import, RangesOfLabelsAreThoseOfBakeToo) {
 
 TEST(Import, InfoCountsManyLabelsWithoutNames) {
   const TempFolder folder;
-  // 125 parcels of 5^3 voxels, and grey values of as many kinds.
+  // 125 parcels of 5^3 voxels, and gray values of as many kinds.
   const auto parcel = [](int x, int y, int z) {
     return 1 + (x + 12) / 5 + 5 * ((y + 12) / 5) + 25 * ((z + 12) / 5);
   };
   (void)writeLabels(folder, "parcels.nii.gz", 25, parcel);
-  (void)writeLabels(folder, "grey.nii.gz", 25, [](int x, int y, int z) {
+  (void)writeLabels(folder, "gray.nii.gz", 25, [](int x, int y, int z) {
     return 1 + (7 * x * x + 11 * y * y + 13 * z * z) % 125;
   });
   const auto info = [&](const char* file) {
@@ -555,7 +555,7 @@ TEST(Import, InfoCountsManyLabelsWithoutNames) {
   const Json labels = info("parcels.nii.gz")["labels"];
   ASSERT_EQ(labels.size(), 125U);
   for (const Json& label : labels) EXPECT_EQ(label["voxels"], 125);
-  EXPECT_FALSE(info("grey.nii.gz").contains("labels"));
+  EXPECT_FALSE(info("gray.nii.gz").contains("labels"));
 }
 
 TEST(Import, AStopLeavesNothingBehind) {
@@ -585,7 +585,7 @@ class ImportRefuses : public ::testing::TestWithParam<Bad> {};
 TEST_P(ImportRefuses, WithOneErrorAndNoFile) {
   const TempFolder folder;
   writeLeg(folder);
-  (void)writeLabels(folder, "grey.nii.gz", 11, [](int x, int y, int z) { return x * y * z + 0.5; });
+  (void)writeLabels(folder, "gray.nii.gz", 11, [](int x, int y, int z) { return x * y * z + 0.5; });
   (void)writeLabels(folder, "zero.nii.gz", 11, [](int, int, int) { return 0; });
   (void)writeLabels(folder, "apart.nii.gz", 41, [](int x, int, int) { return x > 14 ? 1 : 0; });
   (void)folder.file("there.yaml", "palpate: 1\n");
@@ -640,11 +640,11 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{{"leg.nii.gz"}, 2, "usage.command_line", "-o SCENE.yaml is missing"},
         Bad{{"leg.nii.gz", "-o", "s.vdb"}, 2, "usage.import", "must end in .yaml"},
         Bad{{"leg.nii.gz", "-o", "s.yaml", "--skin", "3"}, 2, "usage.command_line", "--image"},
-        Bad{{"leg.nii.gz", "-o", "s.yaml", "--image", "grey.nii.gz"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--image", "gray.nii.gz"},
             2,
             "usage.command_line",
             "--skin"},
-        Bad{{"leg.nii.gz", "-o", "s.yaml", "--image", "grey.nii.gz", "--skin", "3", "--body",
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--image", "gray.nii.gz", "--skin", "3", "--body",
              "body.nii.gz"},
             2,
             "usage.command_line",
@@ -673,7 +673,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{{"none.nii.gz", "-o", "s.yaml"}, 3, "file.missing", "none.nii.gz"},
         Bad{{"names.csv", "-o", "s.yaml"}, 3, "file.unknown_kind", "names.csv"},
         Bad{{"there.yaml", "-o", "s.yaml"}, 3, "import.kind", "label image"},
-        Bad{{"grey.nii.gz", "-o", "s.yaml"}, 3, "labels.not_labels", "voxel (0, 0, 0)"},
+        Bad{{"gray.nii.gz", "-o", "s.yaml"}, 3, "labels.not_labels", "voxel (0, 0, 0)"},
         Bad{{"zero.nii.gz", "-o", "s.yaml"}, 3, "labels.none", "all of its voxels are 0"},
         Bad{{"leg.nii.gz", "-o", "s.yaml", "--labels", "7"},
             3,
@@ -693,15 +693,15 @@ INSTANTIATE_TEST_SUITE_P(
             3,
             "scan.empty",
             "0 everywhere"},
-        Bad{{"leg.nii.gz", "-o", "s.yaml", "--body", "grey.nii.gz"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--body", "gray.nii.gz"},
             3,
             "labels.not_labels",
-            "grey.nii.gz"},
+            "gray.nii.gz"},
         Bad{{"leg.nii.gz", "-o", "s.yaml", "--body", "apart.nii.gz"},
             3,
             "import.body",
             "lie apart"},
-        Bad{{"leg.nii.gz", "-o", "s.yaml", "--image", "grey.nii.gz", "--skin", "1e9"},
+        Bad{{"leg.nii.gz", "-o", "s.yaml", "--image", "gray.nii.gz", "--skin", "1e9"},
             3,
             "scan.empty",
             "lower threshold"},
@@ -717,7 +717,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "transfer_0.yaml"},
             3,
             "tissues.transfer",
-            "no stiffness above 0"},
+            "not a stiffness above 0"},
         Bad{{"leg.nii.gz", "-o", "s.yaml", "--materials", "transfer_1.yaml"},
             3,
             "tissues.transfer",

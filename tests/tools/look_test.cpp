@@ -34,7 +34,7 @@ TEST(Info, AnImageWithItsPlaceInSpace) {
   EXPECT_EQ(one["orientation"], "RAS");
   EXPECT_NEAR(one["spacing_m"][0], 0.002, 1e-9);
   EXPECT_NEAR(one["origin_m"][2], -0.005, 1e-9);
-  EXPECT_NEAR(one["bounds_m"]["hi"][0], 0.003, 1e-9);  // centre of the last voxel: -3 + 3 * 2
+  EXPECT_NEAR(one["bounds_m"]["hi"][0], 0.003, 1e-9);  // center of the last voxel: -3 + 3 * 2
   EXPECT_NE(runPalpate({"info", file}).out.find("right, front, up"), std::string::npos);
 }
 

@@ -6,7 +6,7 @@
 namespace palpate::testing {
 namespace {
 
-/// 12 voxels of `voxel` [mm] a side, about `center` [mm]; grey values of 0 and 100.
+/// 12 voxels of `voxel` [mm] a side, about `center` [mm]; gray values of 0 and 100.
 std::string image(double center, double voxel) {
   vdb::test::NiftiFile file;
   file.dim = {12, 12, 12};
@@ -21,11 +21,11 @@ class MapCoverage : public ::testing::Test {
  protected:
   /// A ball of 10 mm whose stiffness is a map out of that image.
   void write(const std::string& nifti, const std::string& more = {}) {
-    (void)folder_.file("grey.nii", nifti);
+    (void)folder_.file("gray.nii", nifti);
     (void)folder_.file(
         "scene.yaml",
-        "palpate: 1\nlength: mm\nimages: {grey: {file: grey.nii}}\nmaterials:\n"
-        "  flesh: {stiffness: {image: grey, transfer: [[0, 200 N/m], [99, 900 N/m]]}}\nlayers:\n"
+        "palpate: 1\nlength: mm\nimages: {gray: {file: gray.nii}}\nmaterials:\n"
+        "  flesh: {stiffness: {image: gray, transfer: [[0, 200 N/m], [99, 900 N/m]]}}\nlayers:\n"
         "  - {name: ball, inside: {sphere: {center: [0, 0, 0], radius: 10}}, wall: flesh}\n" +
             more);
   }
@@ -39,7 +39,7 @@ class MapCoverage : public ::testing::Test {
 };
 
 TEST_F(MapCoverage, AMapElsewhereIsToldByTouchCheckAndExplain) {
-  write(image(500.0, 2.0));  // half a metre away: nothing was said
+  write(image(500.0, 2.0));  // half a meter away: nothing was said
   const CommandResult touched = touch();
   EXPECT_EQ(touched.exit_code, 0) << touched.err;
   // From 10 mm, the ball's end, to 500 - 6 * 2 mm, the map's.
@@ -67,7 +67,7 @@ TEST_F(MapCoverage, AMapOfHalfItsLayerIsTold) {
 }
 
 TEST_F(MapCoverage, MetresReadAsMillimetresAreDoubted) {
-  write(image(0.0, 0.002));  // an image whose author counted in metres
+  write(image(0.0, 0.002));  // an image whose author counted in meters
   const std::string said = touch().err;
   EXPECT_NE(said.find("times as long as the layer: is its length unit right"), std::string::npos)
       << said;

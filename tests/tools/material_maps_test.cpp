@@ -6,7 +6,7 @@
 namespace palpate::testing {
 namespace {
 
-/// 16^3 voxels of 2 mm, about the origin; grey values from 0 to 150, rising along x, in waves along y.
+/// 16^3 voxels of 2 mm, about the origin; gray values from 0 to 150, rising along x, in waves along y.
 std::string greyImage(const TempFolder& folder) {
   vdb::test::NiftiFile file;
   file.dim = {16, 16, 16};
@@ -19,12 +19,12 @@ std::string greyImage(const TempFolder& folder) {
     }
   }
   const auto bytes = vdb::test::bytesOf(file);
-  return folder.file("grey.nii", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return folder.file("gray.nii", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 std::string sceneText(const std::string& inside, const std::string& stiffness,
                       const std::string& viscosity, const std::string& opens_at) {
-  return "palpate: 1\nlength: mm\nimages: {grey: {file: grey.nii}}\nmaterials:\n  flesh: "
+  return "palpate: 1\nlength: mm\nimages: {gray: {file: gray.nii}}\nmaterials:\n  flesh: "
          "{stiffness: " +
          stiffness + ", viscosity: " + viscosity + "}\nlayers:\n  - {name: ball, inside: {" +
          inside +
@@ -34,9 +34,9 @@ std::string sceneText(const std::string& inside, const std::string& stiffness,
 }
 
 std::string mapped(const std::string& inside) {
-  return sceneText(inside, "{image: grey, transfer: [[0, 200 N/m], [150, 900 N/m]]}",
-                   "{image: grey, transfer: [[0, 1 N.s/m], [150, 4 N.s/m]], tolerance: 0.01 N.s/m}",
-                   "{image: grey, transfer: [[0, 0.4 N], [150, 0.8 N]]}");
+  return sceneText(inside, "{image: gray, transfer: [[0, 200 N/m], [150, 900 N/m]]}",
+                   "{image: gray, transfer: [[0, 1 N.s/m], [150, 4 N.s/m]], tolerance: 0.01 N.s/m}",
+                   "{image: gray, transfer: [[0, 0.4 N], [150, 0.8 N]]}");
 }
 const char* const kBall = "sphere: {center: [0, 0, 0], radius: 12}";
 

@@ -15,7 +15,7 @@ void expectTenPointsAsScipyHasThem(const std::string& scan) {
   const vdb::Image image = vdb::readNifti(scan);
   const Vec3 last(image.size[0] - 1, image.size[1] - 1, image.size[2] - 1);
 
-  // Ten places well inside, at thousandths of a millimetre so that both sides read the same numbers.
+  // Ten places well inside, at thousandths of a millimeter so that both sides read the same numbers.
   std::vector<std::string> arguments{"query", scan, "--json", "--at"};
   std::string lines;
   for (int i = 0; i < 10; ++i) {
@@ -39,7 +39,7 @@ void expectTenPointsAsScipyHasThem(const std::string& scan) {
   ASSERT_EQ(json["points"].size(), 10U);
   double brightest = 0.0;
   for (std::size_t i = 0; i < 10; ++i) {
-    // The same formula in the same precision; grey values go to some hundreds.
+    // The same formula in the same precision; gray values go to some hundreds.
     EXPECT_NEAR(json["points"][i]["value"].get<double>(), expected[i].at(0), 1e-8) << i;
     brightest = std::max(brightest, expected[i][0]);
   }

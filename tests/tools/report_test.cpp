@@ -153,7 +153,8 @@ TEST(TickColumns, KeepPeaksAndWorkOfAnyNumberOfTicks) {
     }
     const auto& all = columns.columns();
     ASSERT_LE(all.size(), tools::TickColumns::kMost);
-    ASSERT_GE(all.size(), std::min<std::size_t>(ticks, tools::TickColumns::kMost / 2));
+    ASSERT_GE(all.size(), std::min<std::size_t>(static_cast<std::size_t>(ticks),
+                                                tools::TickColumns::kMost / 2));
     double seen = 0.0;
     for (std::size_t i = 0; i < all.size(); ++i) {
       seen = std::max(seen, all[i].force.most);

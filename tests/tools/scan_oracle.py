@@ -162,7 +162,7 @@ elif command == "borders":
         low = numpy.maximum(place - 6, 0)
         part = mask[tuple(slice(a, b) for a, b in zip(low, place + 7))]
         others = numpy.argwhere(part != mask[tuple(place)]) + low
-        # To the nearest box of a voxel of the other kind; it begins half a voxel from its centre.
+        # To the nearest box of a voxel of the other kind; it begins half a voxel from its center.
         gap = numpy.maximum(numpy.abs(others - index) - 0.5, 0.0) * spacing
         print(numpy.sqrt((gap**2).sum(1)).min() if len(gap) else 1e9)
 elif command == "segments":

@@ -1,4 +1,4 @@
-// Scans of all formats through the verbs: what info tells of them, names and colours out of tables, and options that
+// Scans of all formats through the verbs: what info tells of them, names and colors out of tables, and options that
 // say what files leave open.
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace palpate::testing {
 namespace {
 
-/// 12^3 voxels of 1 mm, two blocks that touch, as a .seg.nrrd with names and colours.
+/// 12^3 voxels of 1 mm, two blocks that touch, as a .seg.nrrd with names and colors.
 std::string segmentation(const std::string& more = "") {
   std::string text =
       "NRRD0004\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\nsizes: 12 12 "

@@ -238,7 +238,7 @@ TEST_F(TouchRecord, AnInterruptKeepsWhatWasFelt) {
   EXPECT_EQ(result.out, "");
   EXPECT_NE(result.err.find("r.npy and t.csv"), std::string::npos) << result.err;
   // It may come before the first tick, and then nothing was felt.
-  const char* told = facts("r.npy").at(0) == 0.0 ? "no tick was felt" : "what was felt until then";
+  const char* told = facts("r.npy").at(0) == 0.0 ? "no tick was felt" : "the ticks until then";
   EXPECT_NE(result.err.find(told), std::string::npos) << result.err;
   EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"ball.yaml", "r.npy", "r.npy.json",
                                                                "r.npy.states", "t.csv"}));

@@ -289,7 +289,7 @@ TEST_F(Touch, WorkIsThatOfTheTrace) {
   const CommandResult result = touch({"--insert", "0,0,35", "0,0,-10", "--back", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   Json json = parseOnly(result);
-  // 25 mm of syrup at 4 N.s/m and 50 mm/s, twice; the first quarter millimetre behind the mouth fades.
+  // 25 mm of syrup at 4 N.s/m and 50 mm/s, twice; the first quarter millimeter behind the mouth fades.
   EXPECT_NEAR(json["work_on_hand_J"], -2 * 0.2 * 0.025, 0.2 * 0.5e-3);
   EXPECT_EQ(json["source_work_J"], 0.0);
 }

@@ -6,7 +6,7 @@
 namespace palpate::testing {
 namespace {
 
-/// 24 voxels of 0.5 mm a side about the origin, each half along x of one grey value.
+/// 24 voxels of 0.5 mm a side about the origin, each half along x of one gray value.
 std::string halves(double left, double right) {
   vdb::test::NiftiFile file;
   file.dim = {24, 24, 24};
@@ -22,7 +22,7 @@ class WallNotes : public ::testing::Test {
  protected:
   void write(const std::string& material, const std::string& field) {
     (void)folder_.file("scene.yaml",
-                       "palpate: 1\nlength: mm\nimages: {grey: {file: grey.nii}}\nmaterials:\n"
+                       "palpate: 1\nlength: mm\nimages: {gray: {file: gray.nii}}\nmaterials:\n"
                        "  flesh: {" +
                            material + "}\nlayers:\n  - {name: ball, inside: {" + field +
                            "}, wall: flesh}\n");
@@ -37,10 +37,10 @@ class WallNotes : public ::testing::Test {
 };
 
 const char* const kBall = "sphere: {center: [0, 0, 0], radius: 5}";
-const char* const kMap = "stiffness: {image: grey, transfer: [[0, 300 N/m], [100, 3000 N/m]]}";
+const char* const kMap = "stiffness: {image: gray, transfer: [[0, 300 N/m], [100, 3000 N/m]]}";
 
 TEST_F(WallNotes, AContrastWithinAVoxelIsToldWithItsPlace) {
-  (void)folder_.file("grey.nii", halves(0, 100));
+  (void)folder_.file("gray.nii", halves(0, 100));
   write(kMap, kBall);
   const CommandResult touched = touch();
   EXPECT_EQ(touched.exit_code, 0) << touched.err;
@@ -63,14 +63,14 @@ TEST_F(WallNotes, AContrastWithinAVoxelIsToldWithItsPlace) {
 }
 
 TEST_F(WallNotes, AnEvenMapIsNot) {
-  (void)folder_.file("grey.nii", halves(50, 50));
+  (void)folder_.file("gray.nii", halves(50, 50));
   write(kMap, kBall);
   EXPECT_TRUE(parseOnly(run({"explain", "scene.yaml", "--json"}))["contrasts"].empty());
   EXPECT_EQ(touch().err.find("changes by"), std::string::npos);
 }
 
 TEST_F(WallNotes, ShadingBeyondTheBandOfAGridIsTold) {
-  (void)folder_.file("grey.nii", halves(50, 50));
+  (void)folder_.file("gray.nii", halves(50, 50));
   write("stiffness: 900 N/m", kBall);
   const CommandResult baked = run({"bake", "scene.yaml", "-o", "ball.vdb", "--voxel", "0.25"});
   ASSERT_EQ(baked.exit_code, 0) << baked.err;

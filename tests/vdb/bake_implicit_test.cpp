@@ -126,7 +126,7 @@ TEST_P(BakeImplicit, VoxelsHoldTrueDistances) {
   EXPECT_GT(compared, 3000U);
   EXPECT_LE(nearer, compared / 100);
   EXPECT_LE(worst, tolerance);
-  // Beside a medial axis or a centre of curvature, a voxel that far knows of a nearer part by its neighbors' points only.
+  // Beside a medial axis or a center of curvature, so far a voxel knows a nearer part by its neighbors' points only.
   EXPECT_LE(worst_far, 0.13 * kMm);
 }
 

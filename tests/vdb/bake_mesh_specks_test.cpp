@@ -171,7 +171,7 @@ TEST(MeshSpecks, SoupWithGapsOfAHundredThousandthOfItsSizeIsClosed) {
 }
 
 TEST(MeshSpecks, NoVoxelInsideNamesItsCause) {
-  // A thousand times too small: metres read as millimetres.
+  // A thousand times too small: meters read as millimeters.
   const Problem small = refused(ballMesh(Vec3(0.3, 0.3, 0.3) * kMm, 0.02 * kMm, 3), 1 * kMm);
   EXPECT_EQ(small.code, "bake.empty");
   EXPECT_NE(small.message.find("only 0.04 mm (0.04 voxels) long"), std::string::npos)

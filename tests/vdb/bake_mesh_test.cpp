@@ -101,7 +101,7 @@ double distanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec
   return best;
 }
 
-/// Generalised winding number: the solid angle of the mesh over 4 pi, 1 inside
+/// Generalized winding number: the solid angle of the mesh over 4 pi, 1 inside
 /// and 0 outside.
 double windingNumber(const Vec3& p, const Mesh& mesh) {
   double sum = 0.0;
@@ -204,7 +204,7 @@ void expectSquares(void (*find_squares)(const LeafQuery&) noexcept, const Mesh& 
     const Vec3 p = Vec3(n / 64, n / 8 % 8, n % 8) - 3.5;
     const double wanted = std::abs(signedDistance(p, mesh));
     const double found = std::sqrt(squares[static_cast<std::size_t>(n)]);
-    // "Off by some 1e-6 of a voxel times the distance"; out of the band no more is known than that.
+    // "Off by some 1e-6 of a voxel times the distance"; outside the band no more is known than that.
     if (wanted < half_width) {
       ++near;
       EXPECT_NEAR(found, wanted, 1e-5) << n;

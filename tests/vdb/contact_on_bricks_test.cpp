@@ -133,7 +133,7 @@ TEST(ContactOnBricks, AHandFarBelowTheBandIsHeldOnTheSideItCameFrom) {
   for (int i = 0; i < 50; ++i) {
     const Vec3 u = random.direction();
     Drive drive(scene);
-    (void)drive.to(u * (radius + 1.5));  // far out of the band, too
+    (void)drive.to(u * (radius + 1.5));  // far outside the band, too
     const Vec3 hip = u * (10 * kMm);
     TickResult out = drive.to(hip);  // in one tick
     EXPECT_TRUE(out.contact);

@@ -214,7 +214,7 @@ INSTANTIATE_TEST_SUITE_P(All, DicomErrors,
                                        }},
                              BadSeries{"Frames", "dicom.multiframe", "12 frames",
                                        [](DicomFile& f, int) { f.frames = "12"; }},
-                             BadSeries{"Colour", "dicom.data_type", "RGB",
+                             BadSeries{"Color", "dicom.data_type", "RGB",
                                        [](DicomFile& f, int) { f.photometric = "RGB"; }}),
                          [](const auto& c) { return std::string(c.param.name); });
 

@@ -1,4 +1,4 @@
-// Grids as fields: the contract of all fields, convergence, and honesty out of the band.
+// Grids as fields: the contract of all fields, convergence, and honesty outside the band.
 
 #include <gtest/gtest.h>
 
@@ -119,7 +119,7 @@ TEST(GridField, BallConvergesWithTheVoxelSize) {
   }
 }
 
-/// |value| out of the band, and its sign, against the true distance.
+/// |value| outside the band, and its sign, against the true distance.
 TEST(GridField, OutOfTheBandItIsABoundWithTheRightSign) {
   struct Shape {
     FieldPtr exact;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMm = 1e-3;
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// Rounding of a value made of coordinates of some centimetres: 1e-16 of them, a few operations.
+/// Rounding of a value made of coordinates of some centimeters: 1e-16 of them, a few operations.
 constexpr double kRounding = 1e-12;  // [m]
 
 Hybrid made(const FieldPtr& field, double voxel, Parts parts, Sampler sampler = Sampler::kCubic) {

@@ -288,7 +288,7 @@ TEST(LabelSurvey, ABodyOnOtherVoxelsIsTakenFromTheNearest) {
     return i == 1 && j == 2 && k == 1 ? 9 : 0;
   });
   Image fine = imageOf({8, 8, 8}, Vec3(2.0 * kMm), [](int, int, int) { return 0; });
-  fine.origin = Vec3(-1.0 * kMm);  // centres at -1, 1, 3, ...: two in each coarse voxel
+  fine.origin = Vec3(-1.0 * kMm);  // centers at -1, 1, 3, ...: two in each coarse voxel
   const VoxelMask body = labelMask(coarse, fine);
   for (int k = 0; k < 8; ++k) {
     for (int j = 0; j < 8; ++j) {
@@ -319,7 +319,7 @@ TEST(LabelSurvey, CountsAndWhatIsNoLabelImage) {
   Image below = image;
   std::fill(below.values.begin(), below.values.begin() + 60, -1.0F);
   EXPECT_EQ(errorOf([&] { (void)countLabels(below); }).problem().code, "labels.not_labels");
-  // Grey values are whole numbers too.
+  // Gray values are whole numbers too.
   std::mt19937 random(7);
   const Image grey = imageOf({20, 20, 20}, Vec3(kMm),
                              [&](int, int, int) { return static_cast<int>(random() % 256); });

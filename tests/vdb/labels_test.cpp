@@ -98,7 +98,7 @@ TEST(LabelTable, ColorsOfEveryKindOfTableAreKept) {
     EXPECT_EQ(table.names, names) << text;
     EXPECT_EQ(table.colors, colors) << text;
   }
-  // A code is not a colour.
+  // A code is not a color.
   EXPECT_TRUE(readLabelTable(writeTemporary("t.txt", "2 lobe 7001\n")).colors.empty());
 }
 

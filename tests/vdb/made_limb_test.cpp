@@ -187,7 +187,7 @@ TEST(MadeLimb, WallsOfItsSlicesAreItsCylinders) {
         offsetOf(*gridField(surfaceFromThreshold(image, {.above = above}, {})), limb, radius);
     std::printf("  wall at %4.1f mm: %+.3f mm in the mean, %.3f at most\n", radius, offset.mean,
                 offset.worst);
-    // Grey values say where between two voxels a wall is: to a fiftieth of the smallest.
+    // Gray values say where between two voxels a wall is: to a fiftieth of the smallest.
     EXPECT_LT(std::abs(offset.mean), 0.005);
     EXPECT_LT(offset.worst, 0.02);
   }

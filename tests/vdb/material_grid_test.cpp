@@ -258,7 +258,7 @@ TEST(MaterialGridFile, ComesBackAsItWas) {
         EXPECT_EQ(back->range().least, grid->range().least);
         EXPECT_EQ(back->range().most, grid->range().most);
         for (const Vec3& p : pointsAround(*grid, 300)) {
-          // In metres the place comes back to the last bit; another unit rounds it once.
+          // In meters the place comes back to the last bit; another unit rounds it once.
           if (unit == "m") {
             ASSERT_EQ(back->value(p), grid->value(p));
           } else {

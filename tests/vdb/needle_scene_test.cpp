@@ -62,7 +62,7 @@ TEST(NeedleScene, BrainIsCutAndHoldsTheShaft) {
       EXPECT_GT(glm::dot(r.force, -way), 0.07);
     }
     last = glm::length(r.force);
-    // The first millimetre is pressed before it is cut (0.05 N / 90 N/m), and slides from 0.15 mm on.
+    // The first millimeter is pressed before it is cut (0.05 N / 90 N/m), and slides from 0.15 mm on.
     if (depth > entry + kMm && depth < nucleus) {
       ASSERT_EQ(r.region, brain);
       const double model = 0.05 + (depth - entry) * (1.0 + 10.0 * speed);

@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
                   f.dim = {4, 0, 6};
                 }},
         BadCase{"Complex", "nifti.data_type", "COMPLEX", [](auto& f) { f.datatype = 32; }},
-        BadCase{"Colour", "nifti.data_type", "RGB", [](auto& f) { f.datatype = 128; }},
+        BadCase{"Color", "nifti.data_type", "RGB", [](auto& f) { f.datatype = 128; }},
         BadCase{"NoForm", "nifti.no_affine", "sform", [](auto& f) { f.sform_code = 0; }},
         BadCase{"Conflict", "nifti.affine_conflict", "qform (code 1)",
                 [](auto& f) {

@@ -120,7 +120,7 @@ void expectInterpolatedAsScipyDoes(const std::string& path) {
       index[a] = std::uniform_real_distribution<double>(
           0.0, image.size[static_cast<std::size_t>(a)] - 1.0)(random);
     }
-    if (i % 10 == 0) index = glm::round(index);  // voxel centres too
+    if (i % 10 == 0) index = glm::round(index);  // voxel centers too
     points.push_back(image.toWorld(index));
     char line[128];
     std::snprintf(line, sizeof line, "%.17g %.17g %.17g\n", points.back().x * 1e3,
@@ -131,7 +131,7 @@ void expectInterpolatedAsScipyDoes(const std::string& path) {
   ASSERT_EQ(expected.size(), points.size());
   double brightest = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    // Same formula, grey values up to some thousand: round-off of the index (1e-13) times the steepest step.
+    // Same formula, gray values up to some thousand: round-off of the index (1e-13) times the steepest step.
     EXPECT_NEAR(image.interpolate(points[i]), expected[i].at(0), 1e-8) << i;
     brightest = std::max(brightest, expected[i][0]);
   }

@@ -82,7 +82,7 @@ void putValue(Writer& out, std::size_t at, int datatype, double value) {
     case 64:
       return out.put(at, value);
     default:
-      return;  // complex and colour: zeros will do
+      return;  // complex and color: zeros will do
   }
 }
 

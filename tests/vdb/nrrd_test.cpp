@@ -227,7 +227,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadHeader{"NoType", "nrrd.field", "'type'", [](Lines& l) { set(l, "type", "-"); }},
         BadHeader{"Twice", "nrrd.field", "given twice",
                   [](Lines& l) { l.emplace_back("sizes", "4 3 2"); }},
-        BadHeader{"NoColon", "nrrd.field", "no line of a NRRD header",
+        BadHeader{"NoColon", "nrrd.field", "not a line of a NRRD header",
                   [](Lines& l) { l.emplace_back("kinds domain", " "); }},
         BadHeader{"Flat", "nrrd.dimensions", "4 x 3 x 1",
                   [](Lines& l) { set(l, "sizes", "4 3 1"); }},
@@ -235,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(
                   [](Lines& l) { set(l, "sizes", "4 3"); }},
         BadHeader{"NegativeSize", "nrrd.dimensions", "-3",
                   [](Lines& l) { set(l, "sizes", "4 -3 2"); }},
-        BadHeader{"Colour", "nrrd.data_type", "rgb-color",
+        BadHeader{"Color", "nrrd.data_type", "rgb-color",
                   [](Lines& l) {
                     set(l, "dimension", "4");
                     set(l, "sizes", "3 2 2 2");

@@ -380,7 +380,7 @@ void expectVolumesKept(const Image& image, const NameTable& names,
     const double offset = (enclosed - counted) / area / spacing;
     std::printf(
         "  %-13s %6zu voxels, %8.2f ml counted, %8.2f ml enclosed (%+.1f %%: wall %+.3f voxel off "
-        "in the mean), %.1f %% of the voxel centres outside, by %.2f voxel at most\n",
+        "in the mean), %.1f %% of the voxel centers outside, by %.2f voxel at most\n",
         name.c_str(), voxels, counted * 1e6, enclosed * 1e6, 100 * (enclosed / counted - 1), offset,
         100.0 * static_cast<double>(outside) / static_cast<double>(voxels), worst / spacing);
     // The label ball of R = 20 mm above has 0.07 / 0.8 = 0.09; the aorta has a radius of 3.5 voxels.

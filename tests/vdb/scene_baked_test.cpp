@@ -1,4 +1,4 @@
-// `baked` in scene files: what is made when, what is told, ports on its faces, and where errors point.
+// `baked` in scene files: what is made when, what notes say, ports on its faces, and where errors point.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -50,7 +50,7 @@ TEST_F(SceneGrids, WhatIsSlowBecomesAGridWithinTheTolerance) {
   EXPECT_TRUE(grids_.empty());
   const ScenePtr scene = sceneWith("grids: {tolerance: 0.02, voxel: 0.5}\n", drops(), "");
   ASSERT_EQ(grids_.size(), 1U) << (notes_.empty() ? "" : notes_.front());
-  ASSERT_FALSE(notes_.empty()) << "the decision is told";
+  ASSERT_FALSE(notes_.empty()) << "a note tells the decision";
   const Field& grid = *scene->regions()[1].field;
   const Field& exact = *formula->regions()[1].field;
   // Both surfaces along rays from the middle, found by halving.

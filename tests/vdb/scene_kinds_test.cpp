@@ -1,4 +1,4 @@
-// Scene files that name meshes, grids and images: what is read when, what is told, and where errors point.
+// Scene files that name meshes, grids and images: what is read when, what notes say, and where errors point.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ constexpr double kMm = 1e-3;
 class SceneKinds : public ::testing::Test {
  protected:
   SceneKinds() {
-    // Two touching boxes of labels, 2 mm voxels, first centre at (-19, -19, -19) mm, unit code 0.
+    // Two touching boxes of labels, 2 mm voxels, first center at (-19, -19, -19) mm, unit code 0.
     test::NiftiFile file;
     file.dim = {20, 20, 20};
     file.units = 0;
@@ -85,7 +85,7 @@ TEST_F(SceneKinds, LayersOfAnImageAreMadeWhenAskedForAndShareTheirGroup) {
   EXPECT_EQ(scene.layers[1].inside->summary(), "labels 2 7 of labels.nii");
   EXPECT_EQ(scene.layers[2].inside->summary(), "labels.nii above 0.5");
   EXPECT_TRUE(grids_.empty());
-  // Unit code 0 is told once, although two images, three layers and their voxels come from the file.
+  // Unit code 0 is noted once, although two images, three layers and their voxels come from the file.
   ASSERT_EQ(notes_.size(), 1U);
   EXPECT_NE(notes_[0].find("labels.nii"), std::string::npos);
   EXPECT_NE(notes_[0].find("taken as mm"), std::string::npos);
@@ -211,7 +211,7 @@ TEST_F(SceneKinds, MeshesTakeASignAShellAndSmoothing) {
   EXPECT_LT(scene.fields[1].source->get()->value(Vec3(0)), 0.0);
   const Field& wall = *scene.fields[2].source->get();
   EXPECT_GT(wall.value(Vec3(0)), 0.0);
-  // Half a millimetre outside the middle of a face and of the wall, where distances have a ridge.
+  // Half a millimeter outside the middle of a face and of the wall, where distances have a ridge.
   const double from_center = (10.0 / std::sqrt(3.0) + 0.5) * kMm;
   const Vec3 in_wall = from_center * glm::normalize(Vec3(-1.0, 1.0, 1.0));
   EXPECT_NEAR(wall.value(in_wall), -0.5 * kMm, 0.02 * kMm);

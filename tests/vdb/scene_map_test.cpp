@@ -124,7 +124,7 @@ TEST_F(SceneMaps, AnImageIsFeltThroughItsTransferFunction) {
       text("{image: ct, transfer: [[-100, 200 N/m], [300, 2 N/mm]]}",
            ", friction: {static: {image: ct, transfer: [[0, 0.5], [300, 0.2]], tolerance: 0.01}}"));
   const Parameter& stiffness = description.materials[0].stiffness;
-  // At the third voxel: an eighth of each neighbour, three quarters of its own.
+  // At the third voxel: an eighth of each neighbor, three quarters of its own.
   EXPECT_NEAR(stiffness.at({4e-3, 0, 0}), 0.125 * 200.0 + 0.75 * 1100.0 + 0.125 * 2000.0, 0.02);
   EXPECT_EQ(stiffness.range().least, 200.0);
   EXPECT_NEAR(stiffness.range().most, 2000.0, 0.02);
@@ -177,7 +177,7 @@ TEST_F(SceneMaps, WhatCannotBeIsRefusedAtItsPlaceWithARemedy) {
            Row{"{grid: {file: no_length.vdb}}", "vdb.no_unit", "length unit", "units: mm", 35},
            Row{"{grid: {file: level_set.vdb}}", "vdb.class", "level set", "fog volume", 35},
            Row{"{grid: {file: bools.vdb}}", "vdb.type", "BoolGrid", "FloatGrid", 35},
-           Row{"{grid: {file: nan.vdb}}", "vdb.not_finite", "no numbers", "damaged", 35},
+           Row{"{grid: {file: nan.vdb}}", "vdb.not_finite", "not numbers", "damaged", 35},
            Row{"{grid: {file: empty.vdb}}", "vdb.empty", "no active voxels", "", 35},
            Row{"{grid: {file: negative.vdb}}", "scene.range", "-5", "mend", 21},
            Row{"{grid: {file: nowhere.vdb}}", "scene.no_file", "nowhere.vdb", "folder", 35},

@@ -259,7 +259,7 @@ TEST(SharpEdgesContact, AroundTheRimOfACanAsAroundTheTrueOne) {
   Drive sharp(sceneOfSolid(fields.sharp));
   Drive rounded(sceneOfSolid(fields.bricks));
   Drive truth(sceneOfSolid(trueCan()));
-  // Over the rim from the side to the top, a millimetre deep, 0.1 mm a tick, all around.
+  // Over the rim from the side to the top, a millimeter deep, 0.1 mm a tick, all around.
   double worst[2] = {0.0, 0.0};
   int contacts = 0;
   for (int line = 0; line < 40; ++line) {

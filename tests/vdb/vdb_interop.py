@@ -142,7 +142,7 @@ for item in source.iterOnValues():
         accessor.setValueOff(item.min, source.background)
 write("torn", torn)
 
-# Values in voxels where they should be in millimetres.
+# Values in voxels where they should be in millimeters.
 voxels = ball()
 voxels.mapAll(lambda value: value / 0.5)
 voxels.background = 3.0

@@ -349,7 +349,7 @@ TEST(VdbIo, DamagedFilesAreErrorsNotCrashes) {
   EXPECT_EQ(readError(folder.path("no.vdb")).problem().code, "vdb.missing");
   EXPECT_EQ(readError(folder.path()).problem().code, "vdb.unreadable");
   EXPECT_EQ(readError(folder.file("empty.vdb", "")).problem().code, "vdb.unreadable");
-  EXPECT_EQ(readError(folder.file("text.vdb", "This is no grid at all.")).problem().code,
+  EXPECT_EQ(readError(folder.file("text.vdb", "This is not a grid at all.")).problem().code,
             "vdb.unreadable");
   const std::string path = folder.path("a.vdb");
   BakeOptions options = voxels(1e-3, 2.0);

@@ -6,7 +6,7 @@ _palpate() {
   done
   local options= words=
   case $verb in
-    '') words='touch replay import bake convert info check query explain render bench accuracy devices doctor help'; options='--help --version --json --quiet --force' ;;
+    '') words='touch view replay import bake convert info check query explain render report bench accuracy devices doctor help'; options='--help --version --json --quiet --force' ;;
     touch)
       options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --device --hand --delay --seconds --realtime --set --serial --descriptor --firmware --calibration --library --service --epsilon --halvings --alpha --alpha-form --interior --passivity --hand-force --coupling --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --json --quiet --force -h --help'
       words=FILES
@@ -66,6 +66,26 @@ _palpate() {
         --series) words=NONE ;;
       esac
       ;;
+    view)
+      options='--device --hand --delay --replay --seconds --renderer --serial --descriptor --firmware --calibration --library --service --port --no-open --record --json --quiet --force -h --help'
+      words=FILES
+      case $last in
+        --device) words=NONE ;;
+        --hand) words=NONE ;;
+        --delay) words=NONE ;;
+        --replay) words=FILES ;;
+        --seconds) words=NONE ;;
+        --renderer) words='constraint paper' ;;
+        --serial) words=NONE ;;
+        --descriptor) words=NONE ;;
+        --firmware) words=FILES ;;
+        --calibration) words=FILES ;;
+        --library) words=FILES ;;
+        --service) words=NONE ;;
+        --port) words=NONE ;;
+        --record) words=FILES ;;
+      esac
+      ;;
     replay)
       options='--scene --renderer --from --json --quiet -h --help'
       words=FILES
@@ -76,7 +96,7 @@ _palpate() {
       esac
       ;;
     import)
-      options='-o --output --dry-run --labels --region --names --min-island --islands --image --skin --body --tissue --tissue-file --codes --strict --hounsfield --materials --voxel --affine --space --frame --series --json --quiet --force -h --help'
+      options='-o --output --dry-run --labels --region --names --min-island --islands --image --skin --body --tissue --tissue-file --codes --strict --to --hounsfield --materials --voxel --priority --affine --space --frame --series --json --quiet --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -91,8 +111,10 @@ _palpate() {
         --tissue) words=NONE ;;
         --tissue-file) words=FILES ;;
         --codes) words='freesurfer' ;;
+        --to) words=NONE ;;
         --materials) words=FILES ;;
         --voxel) words=NONE ;;
+        --priority) words=NONE ;;
         --affine) words='qform sform spacing' ;;
         --space) words='LPS RAS' ;;
         --frame) words=NONE ;;
@@ -205,6 +227,17 @@ _palpate() {
         --image) words=FILES ;;
       esac
       ;;
+    report)
+      options='-o --output --device --hand --delay --rate --json --quiet --force -h --help'
+      words=FILES
+      case $last in
+        -o|--output) words=FILES ;;
+        --device) words=NONE ;;
+        --hand) words=NONE ;;
+        --delay) words=NONE ;;
+        --rate) words=NONE ;;
+      esac
+      ;;
     bench)
       options='--scene --renderer --device --full --repeat --paced --cold --rate --seconds --load --csv --svg --curvature-svg --json --quiet --force -h --help'
       words=FILES
@@ -259,8 +292,8 @@ _palpate() {
       ;;
     help)
       options='--markdown --schema --man --completion -h --help'
-      if ((COMP_CWORD == i + 1)); then words='touch replay import bake convert info check query explain render bench accuracy devices doctor help scene'
-      elif [[ ${COMP_WORDS[i+1]} == scene ]]; then words='above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width workspace x xx xy xz y yy yz z zz'; else words=NONE; fi
+      if ((COMP_CWORD == i + 1)); then words='touch view replay import bake convert info check query explain render report bench accuracy devices doctor help scene'
+      elif [[ ${COMP_WORDS[i+1]} == scene ]]; then words='above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports priority quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width with workspace x xx xy xz y yy yz z zz'; else words=NONE; fi
       case $last in
         --completion) words='bash fish zsh' ;;
       esac

@@ -3,6 +3,7 @@
 _palpate() {
   local -a verbs=(
     'touch:Move a probe through a scene and feel it'
+    'view:Show a scene in the browser while a hand feels it'
     'replay:Feel a record anew, and say whether the same comes out'
     'import:Turn a segmented scan into a scene\: regions, materials, ports'
     'bake:Turn a scene, a mesh or a scan into narrow-band level sets (.vdb)'
@@ -12,6 +13,7 @@ _palpate() {
     'query:Value, gradient, region and material at points; or an image'\''s intensity'
     'explain:Show what a scene means\: regions, walls, ports, what can be reached'
     'render:Draw a scene cut open (.png)'
+    'report:Write a page about touches, scenes and benches (.html)'
     'bench:Measure contact (time and error of a tick), a hand in the loop, or how late a loop wakes'
     'accuracy:Compare fields with their grids\: error, time and memory by voxel size'
     'devices:List haptic and input devices, say what bars access to one, test it, calibrate it'
@@ -74,11 +76,35 @@ _palpate() {
         '*--names[image\: table of names of its labels]:value:_files' \
         '*--layer[grid\: this one of a file (default\: every level set)]:value:' \
         '*--voxel[mesh, image\: of the grid that is made, in mm or with a unit (default\: as in a scene)]:value:' \
-        '*--units[mesh, or grid that does not say\: what one unit is (default\: mm; glTF and GLB are metres)]:value:' \
+        '*--units[mesh, or grid that does not say\: what one unit is (default\: mm; glTF and GLB are meters)]:value:' \
         '*--affine[NIfTI\: which form counts (default\: sform, else qform; if both, they must agree); NIfTI, NRRD\: spacings only, axes along R, A, S from 0]:value:(qform sform spacing)' \
         '*--space[which way the axes of a mesh run (default\: as the file says, else RAS), or of a NRRD image that does not say]:value:(LPS RAS)' \
         '*--frame[which volume of a 4-D image, from 0]:value:' \
         '*--series[which DICOM series of a folder that holds several]:value:' \
+        '*--json[print one JSON object instead of text]' \
+        '*--quiet[no notes and no progress on stderr]' \
+        '*--force[replace existing output files]' \
+        '*-h[print this]' \
+        '*--help[print this]' \
+        '*:file:_files'
+      ;;
+    view)
+      _arguments \
+        '*--device[the simulated device that the page'\''s hand holds (default touch)\: excalibur, falcon, touch, touch_x, premium_1_0, premium_1_5, omega_3, delta_3, inverse3; virtual\:NAME means the same. Or let a hand move a device, and the page watch\: falcon, inverse3, hd, dhd, evdev]:value:' \
+        '*--hand[device\: how it is held\: none, relaxed (default) or firm]:value:' \
+        '*--delay[device\: samples from a force to when the motors give it (default 0)]:value:' \
+        '*--replay[nobody\: go through a record (.npy) or a trace (.csv) of `touch`, tick by tick]:value:_files' \
+        '*--seconds[for how long (default\: until Ctrl-C)]:value:' \
+        '*--renderer[constraint or paper (default\: as the scene says)]:value:(constraint paper)' \
+        '*--serial[falcon\: which one (default\: the first)]:value:' \
+        '*--descriptor[falcon\: the file descriptor of its node, which the caller has opened]:value:' \
+        '*--firmware[falcon\: image for a device that runs none; checked before a byte is sent]:value:_files' \
+        '*--calibration[falcon\: constants, as `palpate devices --calibrate` writes them]:value:_files' \
+        '*--library[hd, dhd\: the maker'\''s library (default\: libHD.so or libdhd.so, as the system finds it)]:value:_files' \
+        '*--service[inverse3\: its service (default 127.0.0.1\:10001)]:value:' \
+        '*--port[at this port of 127.0.0.1 (default\: any that is free)]:value:' \
+        '*--no-open[do not open a browser]' \
+        '*--record[write all that goes into each tick and comes out, for replay and NumPy; beside it FILE.npy.json and FILE.npy.states]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
         '*--force[replace existing output files]' \
@@ -106,17 +132,19 @@ _palpate() {
         '*--region[one region of all of these labels, may be repeated]:value:' \
         '*--names[table of names\: `index name`, `value,name`, of Slicer, ITK-SNAP or FreeSurfer (default\: the image'\''s own)]:value:_files' \
         '*--min-island[change pieces and cavities of less than this; the changed image goes to FILE.labels.nii.gz (default\: none, they are only told)]:value:' \
-        '*--islands[--min-island\: they become part of what is around (default), or pieces become unlabelled and cavities stay]:value:(drop merge)' \
-        '*--image[grey values of the same scan\: CT, MR]:value:_files' \
+        '*--islands[--min-island\: they become part of what is around (default), or pieces become unlabeled and cavities stay]:value:(drop merge)' \
+        '*--image[gray values of the same scan\: CT, MR]:value:_files' \
         '*--skin[--image\: the body is brighter than this; its largest piece, cavities filled (CT\: -300)]:value:' \
         '*--body[or a mask of the body\: what is not 0]:value:_files' \
         '*--tissue[the tissue of a value, a range, a name or a pattern\: "Outer-Table=bone", may be repeated]:value:' \
         '*--tissue-file[lines of the same; --tissue goes before them]:value:_files' \
         '*--codes[the labels are numbers of FreeSurfer'\''s table, of SynthSeg'\''s too, and need no names]:value:(freesurfer)' \
-        '*--strict[what fits no tissue is an error]' \
+        '*--strict[a label that fits no tissue is an error]' \
+        '*--to[the shortest straight way to a region or a label that ports let through, clear of bone, vessels and nerves\: reported, and suggested in the scene]:value:' \
         '*--hounsfield[--image is a CT in Hounsfield units\: stiffness varies with it, where the table of tissues says how]' \
         '*--materials[table of tissues (default\: the project'\''s data/materials/tissues.yaml)]:value:_files' \
         '*--voxel[voxel size of the grids, in mm or with a unit (default\: of the same volume as the scan'\''s)]:value:' \
+        '*--priority[of masks that overlap the first named here has the voxel (default\: the smallest)]:value:' \
         '*--affine[NIfTI\: which form counts (default\: sform, else qform; if both, they must agree); NIfTI, NRRD\: spacings only, axes along R, A, S from 0]:value:(qform sform spacing)' \
         '*--space[which way the axes of a NRRD image run that does not say]:value:(LPS RAS)' \
         '*--frame[which volume of a 4-D image, from 0]:value:' \
@@ -206,7 +234,7 @@ _palpate() {
     check)
       _arguments \
         '*--units[what one unit is, of a mesh or of a grid that does not say\: mm (a mesh'\''s default), cm, m, um, in]:value:' \
-        '*--space[mesh\: which way its axes run (default\: as the file says, else RAS); places are told in RAS]:value:(LPS RAS)' \
+        '*--space[mesh\: which way its axes run (default\: as the file says, else RAS); places are printed in RAS]:value:(LPS RAS)' \
         '*--voxel[mesh\: voxel size of the bake that is tried (default\: 1/128 of the longest side)]:value:' \
         '*--layer[grid\: only this one of the file]:value:' \
         '*--level-set[a grid that does not say its class holds signed distances, negative inside]' \
@@ -254,7 +282,22 @@ _palpate() {
         '*--plane[across an axis\: x=12 (the scene'\''s unit)]:value:' \
         '*--cut[any plane\: a point and a normal; looked at against it]:value:' \
         '*--trace[the path and the forces of a `touch --trace`]:value:_files' \
-        '*--image[grey values of this scan, or of this image of the scene (default\: the scene'\''s first that has no names)]:value:_files' \
+        '*--image[gray values of this scan, or of this image of the scene (default\: the scene'\''s first that has no names)]:value:_files' \
+        '*--json[print one JSON object instead of text]' \
+        '*--quiet[no notes and no progress on stderr]' \
+        '*--force[replace existing output files]' \
+        '*-h[print this]' \
+        '*--help[print this]' \
+        '*:file:_files'
+      ;;
+    report)
+      _arguments \
+        '*-o[the page (required)]:value:_files' \
+        '*--output[the page (required)]:value:_files' \
+        '*--device[list what is felt beside what this device can hold, as palpate explain does]:value:' \
+        '*--hand[device\: how it is held\: none, relaxed (default) or firm]:value:' \
+        '*--delay[device\: samples from a force to when the motors give it (default 0)]:value:' \
+        '*--rate[device\: ticks a second (default 1000)]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
         '*--force[replace existing output files]' \
@@ -330,8 +373,8 @@ _palpate() {
         '*:file:_files'
       ;;
     help)
-      if ((CURRENT == 3)); then compadd touch replay import bake convert info check query explain render bench accuracy devices doctor help scene; fi
-      if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width workspace x xx xy xz y yy yz z zz; fi
+      if ((CURRENT == 3)); then compadd touch view replay import bake convert info check query explain render report bench accuracy devices doctor help scene; fi
+      if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports priority quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width with workspace x xx xy xz y yy yz z zz; fi
       _arguments \
         '*--markdown[everything, as the reference in tools/README.md; of a map of scene files the table of its keys]' \
         '*--schema[scene\: the JSON Schema of scene files]' \

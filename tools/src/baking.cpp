@@ -215,7 +215,7 @@ void checkDistances(const BakeOptions& options, const vdb::Image& image, Console
   if (!vdb::looksLikeDistances(image)) {
     console.note(options.input + ": where its values are 0 they change by " +
                  formatNumber(*slope * 1e-3, 3) +
-                 " a mm, so they are no distances in mm; only where they are 0 counts");
+                 " a mm, so they are not distances in mm; only where they are 0 counts");
   }
 }
 

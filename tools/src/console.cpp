@@ -35,6 +35,11 @@ void Console::note(const std::string& text) {
   print("note: " + text + "\n");
 }
 
+void Console::say(const std::string& text) {
+  clearBar();
+  print(text + "\n");
+}
+
 void Console::warn(const std::string& text) {
   clearBar();
   print("warning: " + text + "\n");

@@ -19,6 +19,8 @@ class Console {
 
   /// Something assumed or worth knowing; the same note is printed once. Silent with --quiet.
   void note(const std::string& text);
+  /// Something that the user cannot do without; told even with --quiet.
+  void say(const std::string& text);
   /// Something that went wrong without stopping the work; told even with --quiet.
   void warn(const std::string& text);
 

@@ -52,8 +52,8 @@ std::optional<std::map<int, std::size_t>> countValues(const std::vector<float>& 
   return counts;
 }
 
-/// Whole values that are not grey: none is below 0, and a voxel beside another that is not 0 mostly has its value. A
-/// parcel is more than a few voxels wide, and grey values have noise.
+/// Whole values that are not gray: none is below 0, and a voxel beside another that is not 0 mostly has its value. A
+/// parcel is more than a few voxels wide, and gray values have noise.
 bool lookLikeLabels(const std::vector<float>& values) {
   constexpr double kSame = 0.7;
   std::size_t pairs = 0;
@@ -77,7 +77,7 @@ std::string colorText(const vdb::LabelColor& c) {
 void addLabels(const std::map<int, std::size_t>& counts, const vdb::LabelTable& table,
                FileReport& out) {
   out.json["labels"] = Json::array();
-  Table rows({"label", "name", "voxels", "colour"});
+  Table rows({"label", "name", "voxels", "color"});
   std::map<int, std::size_t> all = counts;
   for (const auto& [value, name] : table.names) all.try_emplace(value, 0);
   std::size_t without = 0;
@@ -170,7 +170,7 @@ FileReport imageReport(const std::string& file, const InfoOptions& options, Cons
   out.text += "  orientation  " + info.orientation + ": its axes run to the " +
               axisWords(info.orientation) +
               (glm::determinant(info.axes) < 0.0 ? "; left-handed" : "") + "\n";
-  out.text += "  centres      " + boxText(box, 1e-3, "mm (RAS)") + "\n";
+  out.text += "  centers      " + boxText(box, 1e-3, "mm (RAS)") + "\n";
   for (int row = 0; row < 3; ++row) {
     out.text += (row == 0 ? "  affine    " : "            ") +
                 rowText(info.axes, info.origin, row) + (row == 0 ? "  (mm, RAS)" : "") + "\n";

@@ -34,7 +34,7 @@ InputKind inputKind(const std::string& path) {
   }
   if (vdb::isImageFile(path)) return InputKind::kImage;
   if (std::filesystem::is_directory(path, failed)) {
-    throw inputError("file.is_folder", "this is a folder, and holds no DICOM images",
+    throw inputError("file.is_folder", "this is a folder, and holds no DICOM images and no masks",
                      "name a file in it", path);
   }
   for (const auto& [extension, kind] : kExtensions) {
@@ -43,7 +43,7 @@ InputKind inputKind(const std::string& path) {
   throw inputError(
       "file.unknown_kind", "cannot tell from its name what this file is",
       "known are scenes (.yaml .yml .json), grids (.vdb), meshes (.stl .obj .ply .vtk .gltf .glb) "
-      "and images (.nii .nii.gz .nrrd .nhdr .mha .mhd, folders of DICOM files)",
+      "and images (.nii .nii.gz .nrrd .nhdr .mha .mhd, folders of DICOM files or of masks)",
       path);
 }
 

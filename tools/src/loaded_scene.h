@@ -20,7 +20,7 @@ struct SceneImage {
   std::string name;
   std::string file;           ///< as this process can open it
   vdb::ImageOptions options;  ///< how the scene reads it
-  bool has_names = false;     ///< a label image, not grey values
+  bool has_names = false;     ///< a label image, not gray values
 };
 
 /// Stays where it is: the description's sources report back to it.
@@ -37,7 +37,7 @@ class LoadedScene {
   [[nodiscard]] const SceneDescription& description() const noexcept { return description_; }
   [[nodiscard]] LengthUnit unit() const;
   [[nodiscard]] const std::vector<SceneImage>& images() const noexcept { return images_; }
-  /// Of layers that come from labels with a colour.
+  /// Of layers that come from labels with a color.
   [[nodiscard]] const std::map<std::string, vdb::LabelColor>& colors() const noexcept {
     return colors_;
   }

@@ -39,7 +39,7 @@ double distanceBetween(const Box3& a, const Box3& b) {
   return glm::length(gap);
 }
 
-/// Half a voxel beyond the outermost centres is the map's still.
+/// Half a voxel beyond the outermost centers is the map's still.
 Box3 reachOf(const vdb::MaterialGridInfo& info) {
   return info.bounds.grownBy(0.5 * info.voxel_size);
 }

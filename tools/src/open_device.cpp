@@ -40,10 +40,6 @@ std::string handName(const DeviceOptions& options) {
   return options.hand.empty() ? "relaxed" : options.hand;
 }
 
-Vec3 toDevice(const DeviceMapping& mapping, const Vec3& world) {
-  return glm::transpose(mapping.rotation) * (world - mapping.offset) / mapping.scale;
-}
-
 /// The same motion in the device's own space.
 Motion inDevice(Motion motion, const DeviceMapping& mapping, double rate) {
   if (motion.formula) {
@@ -87,6 +83,10 @@ Json quantityJson(const devices::Quantity& quantity) {
 }
 
 }  // namespace
+
+Vec3 toDevice(const DeviceMapping& mapping, const Vec3& world) {
+  return glm::transpose(mapping.rotation) * (world - mapping.offset) / mapping.scale;
+}
 
 std::optional<devices::SimulationSettings> simulationOf(const DeviceOptions& options, double rate) {
   if (options.name.empty()) {

@@ -39,6 +39,9 @@ void checkDevice(const TouchOptions& options);
                                                           const DeviceMapping& mapping,
                                                           Console& console);
 
+/// Where the device is [m, device] when the probe is at `world` [m].
+[[nodiscard]] Vec3 toDevice(const DeviceMapping& mapping, const Vec3& world);
+
 /// The numbers of the device and the hand, each with what is known of it; null or empty without a
 /// device.
 [[nodiscard]] Json deviceJson(const DeviceOptions& options, double rate);

@@ -101,6 +101,13 @@ struct TouchOptions {
   std::string write_scene;
 };
 
+struct ViewOptions {
+  TouchOptions touch;  ///< scene, renderer, device, real, seconds and record only
+  std::string replay;  ///< a trace or a record; empty: a hand
+  int port = 0;        ///< 0: any that is free
+  bool no_open = false;
+};
+
 struct ReplayOptions {
   std::string record;
   std::string scene;       ///< empty: that of the record
@@ -137,13 +144,13 @@ struct ConvertOptions {
 };
 
 struct ImportOptions {
-  std::string scan;  ///< the label image
+  std::vector<std::string> scans;  ///< the label image; or masks, a structure each
   std::string output;
   bool dry_run = false;
   std::vector<std::string> labels;   ///< values, ranges, names, globs; empty: all
   std::vector<std::string> regions;  ///< NAME=LABELS
   std::string names;
-  std::string image;                 ///< grey values
+  std::string image;                 ///< gray values
   std::optional<double> skin;        ///< the body is where `image` is brighter
   bool hounsfield = false;           ///< `image` is a CT, from which stiffness comes
   std::string body;                  ///< mask of the body
@@ -154,8 +161,12 @@ struct ImportOptions {
   std::string codes;      ///< whose numbers the labels are: "freesurfer"; empty: nobody's
   bool strict = false;    ///< what no tissue fits is an error
   std::string materials;  ///< table of tissues; empty: the project's
+  std::string to;         ///< a region or label that a way is looked for to; empty: none
   std::string voxel;
-  ScanOptions reading;  ///< of all images
+  ScanOptions reading;                ///< of all images
+  std::vector<std::string> priority;  ///< where structures overlap: the first has the voxel
+
+  [[nodiscard]] const std::string& scan() const { return scans.front(); }
 };
 
 struct InfoOptions {
@@ -268,6 +279,7 @@ struct HelpOptions {
 using VerbOptions =
     std::variant<HelpOptions, TouchOptions, BakeOptions, ConvertOptions, ImportOptions, InfoOptions,
                  CheckOptions, QueryOptions, ExplainOptions, RenderOptions, BenchOptions,
-                 AccuracyOptions, ReplayOptions, ReportOptions, DevicesOptions, DoctorOptions>;
+                 AccuracyOptions, ReplayOptions, ReportOptions, DevicesOptions, DoctorOptions,
+                 ViewOptions>;
 
 }  // namespace palpate::tools

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
@@ -11,7 +12,10 @@
 #include <type_traits>
 
 #include "palpate/core/error.h"
+#include "palpate/devices/record.h"
+#include "palpate/version.h"
 #include "report.h"
+#include "scene_hash.h"
 
 namespace palpate::tools {
 namespace {
@@ -167,6 +171,24 @@ void checkOptions(const TouchOptions& options, const Values& all) {
 }
 
 }  // namespace
+
+void describe(RecordAbout& about, const TouchOptions& options, const devices::DeviceInfo& device,
+              const Scene& scene, const std::string& scene_text) {
+  about.version = PALPATE_VERSION_STRING;
+  about.build = devices::stateBuild();
+  about.scene = std::filesystem::absolute(options.scene).string();
+  about.scene_text = scene_text;
+  about.scene_hash = sceneHash(options.scene, scene_text);
+  about.device = device.name;
+  about.frame = device.frame;
+  about.max_force = device.max_force;
+  about.rate = options.rate;
+  about.realtime = options.realtime;
+  about.states_every = static_cast<std::uint64_t>(options.states);
+  about.options = options;
+  for (const Region& region : scene.regions()) about.regions.push_back(region.name);
+  for (const Port& port : scene.ports()) about.ports.push_back(port.name);
+}
 
 std::string aboutFile(const std::string& record) { return record + ".json"; }
 std::string statesFile(const std::string& record) { return record + ".states"; }

@@ -33,6 +33,10 @@ struct RecordAbout {
   std::vector<std::string> ports;    ///< names by PortId
 };
 
+/// What a record of a touch says that it was made with, but for `period` and the renderer.
+void describe(RecordAbout& about, const TouchOptions& options, const devices::DeviceInfo& device,
+              const Scene& scene, const std::string& scene_text);
+
 /// FILE.npy -> FILE.npy.json, FILE.npy.states.
 [[nodiscard]] std::string aboutFile(const std::string& record);
 [[nodiscard]] std::string statesFile(const std::string& record);

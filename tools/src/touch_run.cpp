@@ -17,7 +17,7 @@ namespace {
 std::string hintOf(const std::string& kept, std::uint64_t ticks) {
   if (kept.empty()) return {};
   if (ticks == 0) return "no tick was felt yet, and none is in " + kept;
-  return "what was felt until then is in " + kept;
+  return "the ticks until then are in " + kept;
 }
 
 /// None if the path was followed to its end.
@@ -44,7 +44,7 @@ std::optional<Error> errorOf(const devices::ServoReport& servo, const std::strin
 Error failureOf(const Error& failure) {
   Problem problem = failure.problem();
   problem.message += "; the session went on without it";
-  problem.hint = "what was written before is whole and can be read; " + problem.hint;
+  problem.hint = "everything written before is whole and can be read; " + problem.hint;
   return {ErrorKind::kOperation, std::move(problem)};
 }
 
@@ -66,10 +66,12 @@ void announceRecords(OutputFiles& files, const TouchOptions& options,
 }
 
 TouchRun runTouch(devices::Session& session, devices::Device& device, const TouchOptions& options,
-                  const RecordAbout& about, OutputFiles& files, Console& console, bool wants_thin) {
+                  const RecordAbout& about, OutputFiles& files, Console& console, bool wants_thin,
+                  const std::vector<devices::RecordSink*>& more) {
   const bool is_paper = about.renderer == "paper";
   TouchMeter meter(is_paper ? RendererKind::kPaper : RendererKind::kConstraint);
   std::vector<devices::RecordSink*> sinks = {&meter};
+  sinks.insert(sinks.end(), more.begin(), more.end());
   ThinTrace thin;
   if (wants_thin) sinks.push_back(&thin);
   std::unique_ptr<TraceFile> trace;

@@ -7,6 +7,7 @@
 
 #include "console.h"
 #include "output_files.h"
+#include "palpate/devices/record.h"
 #include "palpate/devices/session.h"
 #include "palpate/render/trace.h"
 #include "record_about.h"
@@ -25,11 +26,12 @@ void announceRecords(OutputFiles& files, const TouchOptions& options,
                      const std::vector<std::string>& inputs);
 
 /// Runs `session` until the device or a stop ends it. The record has its name from before the first tick; the trace is in the
-/// file that `files` says. `wants_thin`: rows for pictures are asked for.
+/// file that `files` says. `wants_thin`: rows for pictures are asked for. `more` gets the ticks as well.
 /// @throws Error: kOperation where a file took no more, once the session is over; kCancelled after a stop; kDevice if the
 /// device failed. What was felt until then is kept in either case: the trace then has its name too.
 [[nodiscard]] TouchRun runTouch(devices::Session& session, devices::Device& device,
                                 const TouchOptions& options, const RecordAbout& about,
-                                OutputFiles& files, Console& console, bool wants_thin);
+                                OutputFiles& files, Console& console, bool wants_thin,
+                                const std::vector<devices::RecordSink*>& more = {});
 
 }  // namespace palpate::tools

@@ -29,6 +29,7 @@ void TouchMeter::add(const devices::RecordedTick& recorded, std::span<const Regi
   if (force > summary_.peak_force) {
     summary_.peak_force = force;
     summary_.peak_force_at = r.proxy;
+    summary_.is_peak_at_wall = r.contact;
   }
   if (r.contact) ++summary_.contact_ticks;
   if (summary_.unsettled) summary_.unsettled->add(r.settled);
@@ -105,6 +106,7 @@ Json summaryJson(const TouchSummary& s, const Scene& scene) {
   json["longest_unsettled_ticks"] = s.unsettled ? Json(s.unsettled->longest()) : Json();
   json["peak_force_N"] = s.peak_force;
   json["peak_force_at_m"] = vectorJson(s.peak_force_at);
+  json["peak_force_at_wall"] = s.is_peak_at_wall;
   json["work_on_hand_J"] = s.work;
   json["source_work_J"] = s.source_work;
   json["regions"] = Json::array();
@@ -169,13 +171,15 @@ std::string summaryText(const TouchSummary& s, const Scene& scene) {
 
   text += "\nPeak force  " + formatNumber(s.peak_force, 4) + " N";
   if (s.peak_force > 0.0) text += " at " + formatVector(s.peak_force_at / unit) + " " + name;
+  if (s.peak_force > 0.0 && !s.is_peak_at_wall)
+    text += ", by contents (drag, for one): no wall is pressed there";
   text += "\nWork        " + formatNumber(s.work, 4) + " J on the hand";
   if (s.source_work != 0.0) {
     text += ", where flows, lattices and walls met behind others gave " +
             formatNumber(s.source_work, 4) + " J";
   }
   text += "\nTicks       " + formatCount(s.ticks) + " in " + formatNumber(s.seconds, 4) +
-          " s of hand time, " + formatCount(s.contact_ticks) + " in contact\n";
+          " s of hand time, " + formatCount(s.contact_ticks) + " in contact with a wall\n";
   if (s.unsettled) {
     text += "Unsettled   " + formatCount(s.unsettled->count()) + " ticks (" +
             formatNumber(100.0 * s.unsettled->share(), 3) + " %), at most " +

@@ -46,10 +46,11 @@ struct TouchSummary {
   std::uint64_t contact_ticks = 0;
   /// Ticks that ended before the proxy was at rest; the paper's renderer does not say.
   std::optional<UnsettledMeter> unsettled;
-  bool met_something = false;  ///< a wall, a port, another region or a force
-  double peak_force = 0.0;     ///< [N]
-  Vec3 peak_force_at{0.0};     ///< [m] proxy
-  double work = 0.0;           ///< [J] on the hand, each force held until the next tick
+  bool met_something = false;    ///< a wall, a port, another region or a force
+  double peak_force = 0.0;       ///< [N]
+  Vec3 peak_force_at{0.0};       ///< [m] proxy
+  bool is_peak_at_wall = false;  ///< or that of contents, with no wall pressed
+  double work = 0.0;             ///< [J] on the hand, each force held until the next tick
   double source_work =
       0.0;  ///< [J] HapticRenderer::sourceWork(), filled in by who has the renderer
   /// The first kMostListed of each; of those that came later, how many.

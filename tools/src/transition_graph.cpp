@@ -164,7 +164,7 @@ std::string transitionSvg(const std::string& title, std::span<const GraphState> 
   svg += svgText(kMargin, 34.0, "font-size='18' font-weight='bold' fill='#222'", title);
   svg +=
       svgText(kMargin, 54.0, "font-size='11' fill='#666'",
-              "green: ports; dashed grey: no wall; dashed red: cannot be reached; blue: the start");
+              "green: ports; dashed gray: no wall; dashed red: cannot be reached; blue: the start");
   std::map<std::pair<std::size_t, std::size_t>, int> drawn;
   std::string labels;
   for (const GraphArrow& arrow : arrows) {

@@ -97,7 +97,7 @@ Report run(const AccuracyOptions& options, const GeneralOptions& general, Consol
   const LengthUnit unit = loaded.unit();
   const std::vector<double> voxels = askedVoxels(options, unit);
   const Machine machine = thisMachine();
-  if (!machine.optimised) {
+  if (!machine.optimized) {
     console.warn("this is a " + machine.build_type +
                  " build: its errors are those of any other, its times say nothing");
   }
@@ -111,7 +111,7 @@ Report run(const AccuracyOptions& options, const GeneralOptions& general, Consol
     const AskedField& one = asked[i];
     if (!one.source.empty()) {
       console.note("'" + one.name + "' is a grid itself (" + one.source +
-                   "): what is compared is that grid, not what it was made from");
+                   "): the comparison is with that grid, not with its source");
     }
     LadderSettings settings;
     settings.voxels = voxels.empty() ? defaultVoxels(*one.field) : voxels;

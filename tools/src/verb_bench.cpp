@@ -121,7 +121,7 @@ Report run(const BenchOptions& options, const GeneralOptions& general, Console& 
     if (!path.empty()) files.announce(path, {}, OutputFiles::Streams::kYes);
   }
   const Machine machine = thisMachine();
-  if (!machine.optimised) {
+  if (!machine.optimized) {
     console.warn("this is a " + machine.build_type +
                  " build: its errors are those of any other, its times say nothing");
   }

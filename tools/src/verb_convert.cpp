@@ -81,7 +81,7 @@ Written asMesh(const ConvertOptions& options, Console& console) {
   }
   const bool metres = format == vdb::MeshFormat::kGlb;
   if (metres && !options.to_units.empty() && options.to_units != "m") {
-    throw usageError("a .glb file is always in metres", "leave --to-units out");
+    throw usageError("a .glb file is always in meters", "leave --to-units out");
   }
   const LengthUnit unit = lengthUnit(metres ? "m" : unitOf(options, grid));
   const vdb::MeshReport report = vdb::checkMesh(mesh);

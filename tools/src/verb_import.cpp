@@ -6,6 +6,7 @@
 
 #include "import/import_report.h"
 #include "import/imported_scene.h"
+#include "import/needle_way.h"
 #include "input_kind.h"
 #include "output_files.h"
 #include "palpate/vdb/label_codes.h"
@@ -20,16 +21,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-vdb::Image readScan(const std::string& path, const ImportOptions& options, Console& console) {
-  if (inputKind(path) != InputKind::kImage) {
-    throw inputError("import.kind", "this is no image",
-                     std::string("give ") + (path == options.scan ? "a label image" : "an image") +
-                         ": .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd or a folder of DICOM files",
-                     path);
-  }
-  vdb::Image image = vdb::readImage(path, imageOptions(options.reading));
+void requireImage(const std::string& path, const std::string& what) {
+  if (inputKind(path) == InputKind::kImage) return;
+  throw inputError("import.kind", "this is not an image",
+                   "give " + what +
+                       ": .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, a folder of DICOM files or of "
+                       "masks",
+                   path);
+}
+
+vdb::Image readNoted(const std::string& path, const vdb::ImageOptions& how, Console& console) {
+  vdb::Image image = vdb::readImage(path, how);
   for (const std::string& note : image.notes) console.note(path + ": " + note);
   return image;
+}
+
+/// How the labels are read; other images are one file each.
+vdb::ImageOptions labelOptions(const ImportOptions& options) {
+  vdb::ImageOptions how = imageOptions(options.reading);
+  how.with.assign(options.scans.begin() + 1, options.scans.end());
+  how.priority = options.priority;
+  return how;
+}
+
+vdb::Image readScan(const std::string& path, const ImportOptions& options, Console& console) {
+  requireImage(path, "an image");
+  return readNoted(path, imageOptions(options.reading), console);
 }
 
 /// `path`, as seen from the folder of the scene. One that was given as absolute stays so, unless it is in that folder or
@@ -74,7 +91,7 @@ void tellOfStiffness(const vdb::Image& image, const vdb::Image& labels,
   }
 }
 
-/// Empty if none is asked for. `image`: the one with grey values, or null.
+/// Empty if none is asked for. `image`: the one with gray values, or null.
 vdb::VoxelMask bodyOf(const ImportOptions& options, const vdb::Image* image, ImportedScan& scan,
                       Console& console) {
   if (!options.body.empty()) {
@@ -128,8 +145,8 @@ void leaveOutAir(ImportedScan& scan, Console& console) {
 }
 
 /// A body that lies elsewhere is a mistake; one that some labels stick out of gets a note.
-void checkBody(const ImportOptions& options, const ImportedScan& scan, const vdb::VoxelMask& body,
-               Console& console) {
+void checkBody(const ImportOptions& options, const ImportedScan& scan, Console& console) {
+  const vdb::VoxelMask& body = scan.body;
   std::uint64_t labelled = 0;
   std::uint64_t outside = 0;
   std::set<int> around;
@@ -143,11 +160,11 @@ void checkBody(const ImportOptions& options, const ImportedScan& scan, const vdb
   if (outside == 0) return;
   const std::string& file = options.skin ? options.image : options.body;
   if (outside == labelled) {
-    throw inputError("import.body", "no labelled voxel is in the body: the two lie apart",
+    throw inputError("import.body", "no labeled voxel is in the body: the two lie apart",
                      "give the body of the same scan", file);
   }
   console.note(file + ": " + formatCount(outside) + " of " + formatCount(labelled) +
-               " labelled voxels are not in the body");
+               " labeled voxels are not in the body");
 }
 
 /// @throws Error that lists what fits no tissue.
@@ -164,15 +181,17 @@ void refuseUnknown(const ImportOptions& options, const ImportedScan& scan) {
   }
   if (count == 0) return;
   throw inputError("tissues.unmatched", formatCount(count) + " regions fit no tissue: " + text,
-                   "give them one: --tissue \"NAME=bone\", or leave out --strict", options.scan);
+                   "give them one: --tissue \"NAME=bone\", or leave out --strict", options.scan());
 }
 
 ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, Console& console) {
   ImportedScan scan;
-  scan.labels = readScan(options.scan, options, console);
+  for (const std::string& file : options.scans) requireImage(file, "a label image");
+  const vdb::ImageOptions how = labelOptions(options);
+  scan.labels = readNoted(options.scan(), how, console);
   const LabelNames table = {
       options.names.empty() ? scan.labels.labels.names : vdb::readLabelTable(options.names).names,
-      vdb::readLabelCodes(options.scan, imageOptions(options.reading))};
+      vdb::readLabelCodes(options.scan(), how)};
   scan.names = table.names;
   report(console.progress(), "labels", 0.0);
   scan.counts = vdb::countLabels(scan.labels);
@@ -185,14 +204,14 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
     scan.ct_voxels = grey->values.size();
   }
   scan.image_voxels = scan.labels.values.size() + (grey ? grey->values.size() : 0);
-  const vdb::VoxelMask body = bodyOf(options, grey ? &*grey : nullptr, scan, console);
+  scan.body = bodyOf(options, grey ? &*grey : nullptr, scan, console);
   grey.reset();
-  scan.has_body = !body.empty();
-  const vdb::VoxelMask* const in_body = scan.has_body ? &body : nullptr;
+  scan.has_body = !scan.body.empty();
+  const vdb::VoxelMask* const in_body = scan.has_body ? &scan.body : nullptr;
   std::vector<std::vector<int>> labels = labelsOf(scan.plan);
   scan.survey = vdb::surveyLabels(scan.labels, labels, in_body, console.progress());
   leaveOutAir(scan, console);
-  checkBody(options, scan, body, console);
+  checkBody(options, scan, console);
   if (!scan.open_air.empty()) {
     labels = labelsOf(scan.plan);
     scan.survey = vdb::surveyLabels(scan.labels, labels, in_body, console.progress());
@@ -208,7 +227,7 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
   // Slices are often thicker than their voxels are wide; a grid of the same volume holds what is there.
   const double same_volume = std::cbrt(std::abs(glm::determinant(scan.labels.axes)));
   scan.voxel = options.voxel.empty()
-                   ? std::round(same_volume * 1e5) * 1e-5  // hundredths of a millimetre
+                   ? std::round(same_volume * 1e5) * 1e-5  // hundredths of a millimeter
                    : parseLength(options.voxel, {}, "--voxel");
   if (!(scan.voxel > 0.0)) {
     throw Error(ErrorKind::kUsage, {"usage.import", "--voxel must be greater than 0", ""});
@@ -249,8 +268,9 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
       throw Error(ErrorKind::kUsage,
                   {"usage.import", "the output " + options.output + " must end in .yaml", ""});
     }
-    const std::vector<std::string> inputs = {options.scan, options.names,     options.image,
-                                             options.body, options.materials, options.tissue_file};
+    std::vector<std::string> inputs = {options.names, options.image, options.body,
+                                       options.materials, options.tissue_file};
+    inputs.insert(inputs.end(), options.scans.begin(), options.scans.end());
     files.announce(options.output, inputs);
     if (options.min_island) files.announce(changed_labels, inputs);
   }
@@ -260,17 +280,30 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
   for (const std::string& note : scan.plan.notes) console.note(note);
   tellUnknown(scan, console);
   if (!scan.has_body) {
-    console.note("no --skin and no --body: what has no label is outside");
+    console.note("no --skin and no --body: voxels without a label are outside");
+  }
+  std::optional<NeedleWay> way;
+  if (!options.to.empty()) {
+    report(console.progress(), "way to " + options.to, -1.0);
+    way = needleWay(scan, tissues, options.to);
+    scan.way = suggestedWay(*way);
+    if (way->clearance == 0.0) {
+      console.note("the way to '" + way->target + "' passes within " +
+                   formatNumber(kClearance * 1e3) + " mm of what it must not touch");
+    }
   }
   std::vector<std::string> written;
   if (is_written) {
     const bool is_changed = options.min_island.has_value();
     const std::string output = options.output;
-    const SceneFiles seen = {
-        is_changed ? vdb::fileName(changed_labels) : seenFrom(output, options.scan),
-        seenFrom(output, options.names),
-        seenFrom(output, options.skin ? options.image : options.body),
-        seenFrom(output, options.image)};
+    std::vector<std::string> labels = {vdb::fileName(changed_labels)};
+    if (!is_changed) {
+      labels.clear();
+      for (const std::string& file : options.scans) labels.push_back(seenFrom(output, file));
+    }
+    const SceneFiles seen = {labels, seenFrom(output, options.names),
+                             seenFrom(output, options.skin ? options.image : options.body),
+                             seenFrom(output, options.image)};
     files.write(output, writeScene(options, scan, tissues, seen));
     written.push_back(output);
     if (is_changed) {
@@ -281,7 +314,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
     checkStop();
     files.commit();
   }
-  return importReport(options, scan, tissues, written);
+  return importReport(options, scan, tissues, way ? &*way : nullptr, written);
 }
 
 }  // namespace palpate::tools

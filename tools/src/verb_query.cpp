@@ -49,7 +49,7 @@ Report queryImage(const QueryOptions& options, Console& console) {
   }
   if (outside > 0) {
     console.note(std::to_string(outside) + " of " + std::to_string(points.size()) +
-                 " points lie outside the box of the voxel centres; there is no value there");
+                 " points lie outside the box of the voxel centers; there is no value there");
   }
   report.text = table.text("");
   return report;

@@ -1,4 +1,3 @@
-#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -14,12 +13,10 @@
 #include "palpate/devices/record.h"
 #include "palpate/devices/session.h"
 #include "palpate/vdb/text.h"
-#include "palpate/version.h"
 #include "picture/picture.h"
 #include "real_device.h"
 #include "realtime_report.h"
 #include "safety_report.h"
-#include "scene_hash.h"
 #include "shape_scene.h"
 #include "text.h"
 #include "touch_plot.h"
@@ -47,25 +44,6 @@ void pressOnSurface(const Scene& scene, TouchOptions& options, Console& console)
   console.note("pressing on its surface at " +
                formatVector(found.place / scene.metresPerUnit(), 6) + " " + scene.lengthUnit() +
                "; --press X,Y,Z presses elsewhere");
-}
-
-/// What a record says that it was made with.
-void describe(RecordAbout& about, const TouchOptions& options, const devices::DeviceInfo& device,
-              const Scene& scene, const std::string& scene_text) {
-  about.version = PALPATE_VERSION_STRING;
-  about.build = devices::stateBuild();
-  about.scene = std::filesystem::absolute(options.scene).string();
-  about.scene_text = scene_text;
-  about.scene_hash = sceneHash(options.scene, scene_text);
-  about.device = device.name;
-  about.frame = device.frame;
-  about.max_force = device.max_force;
-  about.rate = options.rate;
-  about.realtime = options.realtime;
-  about.states_every = static_cast<std::uint64_t>(options.states);
-  about.options = options;
-  for (const Region& region : scene.regions()) about.regions.push_back(region.name);
-  for (const Port& port : scene.ports()) about.ports.push_back(port.name);
 }
 
 }  // namespace

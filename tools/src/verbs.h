@@ -35,6 +35,7 @@ namespace palpate::tools {
                          Console& console);
 [[nodiscard]] Report run(const ReportOptions& options, const GeneralOptions& general,
                          Console& console);
+[[nodiscard]] Report run(const ViewOptions& asked, const GeneralOptions& general, Console& console);
 [[nodiscard]] Report run(const ReplayOptions& options, const GeneralOptions& general,
                          Console& console);
 

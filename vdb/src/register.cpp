@@ -59,7 +59,7 @@ CertifyOptions madeHere() {
   return options;
 }
 
-/// The field of a grid that is made when it is first asked for. What the maker finds wrong is told
+/// The field of a grid that is made when it is first asked for. The maker reports what it finds wrong
 /// at `place` of the scene; `what` names the grid in progress and records.
 FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string summary,
                          SourcePlace place, Sampler sampler, GridMaker make, Measurer measure,
@@ -319,7 +319,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, const MapReader
                                         const std::string& layer) {
   const LayerImage from(reader, layer, common->options.max_memory);
   const std::vector<int> values = readMatch(reader, *from.image);
-  // Several labels have the colour of the first that has one.
+  // Several labels have the color of the first that has one.
   for (const int value : values) {
     const auto color = from.image->labels.colors.find(value);
     if (color == from.image->labels.colors.end()) continue;

@@ -1,5 +1,7 @@
 #include "scene_image.h"
 
+#include <algorithm>
+
 #include "voxel_box.h"
 
 namespace palpate::vdb {
@@ -49,6 +51,23 @@ Error atKey(const MapReader& reader, std::string_view key, const Error& error) {
 
 namespace {
 
+/// The texts of a list.
+std::vector<std::string> readTexts(const MapReader& reader, std::string_view key) {
+  std::vector<std::string> texts;
+  if (!reader.has(key)) return texts;
+  const Node& list = *reader.find(key);
+  const auto is_text = [](const Node& item) {
+    return item.kind == Node::Kind::kScalar && !item.text.empty();
+  };
+  if (list.kind != Node::Kind::kSequence || list.items.empty() ||
+      !std::all_of(list.items.begin(), list.items.end(), is_text)) {
+    throw reader.errorAt(key, "scene.kind", "'" + std::string(key) + "' must be a list of texts",
+                         "write " + std::string(key) + ": [one, another]");
+  }
+  for (const Node& item : list.items) texts.push_back(item.text);
+  return texts;
+}
+
 ImageOptions readImageOptions(const MapReader& reader) {
   constexpr AffineChoice kAffines[] = {AffineChoice::kSform, AffineChoice::kQform,
                                        AffineChoice::kSpacing};
@@ -57,14 +76,22 @@ ImageOptions readImageOptions(const MapReader& reader) {
   options.space = readSpace(reader);
   if (reader.has("frame")) options.frame = static_cast<int>(reader.value("frame"));
   options.series = reader.text("series");
+  for (const std::string& file : readTexts(reader, "with")) {
+    options.with.push_back(reader.loader().resolvePath(file));
+  }
+  options.priority = readTexts(reader, "priority");
   return options;
 }
 
 /// What tells one way to read a file from another.
 std::string keyOf(const std::string& path, const ImageOptions& options) {
-  return path + '\n' + std::to_string(static_cast<int>(options.affine)) + '\n' +
-         std::to_string(static_cast<int>(options.space)) + '\n' +
-         std::to_string(options.frame.value_or(-1)) + '\n' + options.series;
+  std::string key = path + '\n' + std::to_string(static_cast<int>(options.affine)) + '\n' +
+                    std::to_string(static_cast<int>(options.space)) + '\n' +
+                    std::to_string(options.frame.value_or(-1)) + '\n' + options.series;
+  for (const std::string& file : options.with) key += '\n' + file;
+  key += '\n';
+  for (const std::string& name : options.priority) key += '\n' + name;
+  return key;
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace palpate::vdb {
 }
 
 /// [m] The box around the voxels of an image that hold(value), half a voxel and one more to each side of their
-/// centres.
+/// centers.
 template <typename F>
 Box3 boxWhere(const Image& image, const F& holds) {
   Box3 box;

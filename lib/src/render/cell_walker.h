@@ -202,7 +202,7 @@ class CellWalker {
   int crossings_left_ = 0;
   int evaluations_left_ = 0;
 
-  // A leaf whose |S| was measured cannot be met before the point has travelled |S| / L: `due_` is the
+  // A leaf whose |S| was measured cannot be met before the point has traveled |S| / L: `due_` is the
   // odometer reading at which it could. Hot are the leaves whose boxes came near the point when the
   // list was made; all others are further away than the point can go before cold_due_.
   double travel_ = 0.0;

@@ -1,6 +1,6 @@
 #pragma once
 /// The `paper` renderer: the source paper's states and ports, driven by the HIP, with Algorithms I and II. Its
-/// Table I, for a container of a sphere A with an opening in a half-space B, is generalised to layers and
+/// Table I, for a container of a sphere A with an opening in a half-space B, is generalized to layers and
 /// ports thus (tools/docs/paper.md says why). Of every layer, A are the faces that are walls for a probe in
 /// the present state, and B those that a port leaves open for it.
 ///

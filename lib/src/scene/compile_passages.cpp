@@ -161,7 +161,7 @@ void SceneCompiler::requireTouching(const PortDescription& given, const Port& po
   throw errorAt(given.place, "scene.regions_do_not_touch",
                 "port " + inQuotes(given.name) + " joins " + inQuotes(given.from) + " and " +
                     inQuotes(given.to) + ", which do not touch",
-                "a port opens the wall between two neighbours; `palpate explain` lists them");
+                "a port opens the wall between two neighbors; `palpate explain` lists them");
 }
 
 void SceneCompiler::refuse(const PortDescription& given) {

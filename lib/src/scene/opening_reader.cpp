@@ -149,7 +149,7 @@ void RegionReader::readSheets(const std::vector<MapReader>& sheets) {
     if (const Node* wall = reader.find("wall")) {
       const WallDescription made_of = readWall(*wall);
       if (made_of.absent) {
-        throw reader.errorAt("wall", "scene.kind", "a sheet that is absent is no sheet",
+        throw reader.errorAt("wall", "scene.kind", "a sheet cannot be absent",
                              "name a material, or leave the sheet out");
       }
       sheet.material = made_of.material;

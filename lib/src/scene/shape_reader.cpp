@@ -63,7 +63,7 @@ Make capsuleOf(Reader r) {
   return later(capsule, from, to, r.value("radius"));
 }
 
-// The file's polynomial takes its x, y, z as numbers in the file's length unit, the library's in metres.
+// The file's polynomial takes its x, y, z as numbers in the file's length unit, the library's in meters.
 Make quadricOf(Reader r) {
   using Q = QuadricCoefficients;
   Q q;

@@ -9,11 +9,11 @@
 
 namespace palpate {
 
-/// What makes the shape of `kind` that `reader` has; null if it is no such kind. Making may throw Error
+/// What makes the shape of `kind` that `reader` has; null if that is not a kind that it makes. Making may throw Error
 /// (kInput) without a place. @throws Error (kInput) at the offending value.
 [[nodiscard]] std::function<FieldPtr()> readShape(std::string_view kind, const MapReader& reader);
 
-/// `metres` in the unit of the file, for messages: "12.5 mm".
+/// `meters` in the unit of the file, for messages: "12.5 mm".
 [[nodiscard]] std::string inUnitOf(const SceneLoader& loader, double metres);
 
 }  // namespace palpate

@@ -12,7 +12,7 @@ constexpr std::size_t kLongestWord = 64;  // longer texts are not slips of a nam
 
 char folded(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// Insertions, deletions, replacements and swaps of neighbours that lead from a to b, letter case set
+// Insertions, deletions, replacements and swaps of neighbors that lead from a to b, letter case set
 // aside (the restricted Damerau-Levenshtein distance, by its usual three-row recurrence).
 std::size_t distance(std::string_view a, std::string_view b) noexcept {
   using Row = std::array<std::size_t, kLongestWord + 1>;

@@ -86,7 +86,7 @@ Error badUnit(const Document& document, const Node& node, Dimension dimension,
   if (quantity.status == Quantity::Status::kWrongDimension) {
     return document.error(
         node.mark, "scene.unit",
-        what + " wants " + wanted + ", and " + inQuotes(quantity.unit) + " is no unit of that",
+        what + " wants " + wanted + ", and " + inQuotes(quantity.unit) + " is not a unit of that",
         "units: " + help);
   }
   return document.error(node.mark, "scene.unit",
@@ -260,7 +260,7 @@ void checkBounds(const Document& document, const Node& node, const KeyWords& key
 void checkUnit(const Document& document, const Node& node, const std::string& what) {
   const std::string unit = readText(document, node, what);
   if (metresPer(unit)) return;
-  throw document.error(node.mark, "scene.unit", inQuotes(unit) + " is no length unit",
+  throw document.error(node.mark, "scene.unit", inQuotes(unit) + " is not a length unit",
                        "units: " + std::string(unitHelp(Dimension::kLength)));
 }
 

@@ -234,7 +234,7 @@ class TreeBuilder final : public YAML::EventHandler {
       return;
     }
     if (node.kind != Node::Kind::kScalar) {
-      throw document_.error(node.mark, "document.key", "a key that is no plain text",
+      throw document_.error(node.mark, "document.key", "a key that is not plain text",
                             "a key is one word, with ': ' behind it");
     }
     if (!top.keys.insert(node.text).second) {

@@ -29,7 +29,7 @@ TEST(FootPoint, OfAnEllipsoidIsItsNearestPoint) {
   for (int i = 0; i < 4000; ++i) {
     const Vec3 p = random.in(exact->bounds().grownBy(4e-3));
     const double distance = exact->value(p);
-    if (distance < -2e-3) continue;  // no centre of curvature is nearer than 6^2 / 9 = 4 mm
+    if (distance < -2e-3) continue;  // no center of curvature is nearer than 6^2 / 9 = 4 mm
     ++near;
     const auto foot = footPoint(*implicit, p);
     ASSERT_TRUE(foot);

@@ -7,7 +7,7 @@
 namespace palpate::oracle {
 namespace {
 
-// Everything is some tens of millimetres large.
+// Everything is some tens of millimeters large.
 constexpr double kSize = 0.05;
 
 /// `x` is allowed, and nothing allowed nearby is nearer to `p`; each found by values alone.

@@ -42,7 +42,7 @@ TEST(Contents, LatticeSceneIsItsFormula) {
       if (p.z > 18e-3) {
         EXPECT_EQ(r.force, Vec3(0.0));
       } else if (p.z <
-                 17.7e-3) {  // a quarter of a millimetre below the mouth the drag is there in full
+                 17.7e-3) {  // a quarter of a millimeter below the mouth the drag is there in full
         EXPECT_TRUE(isNear(r.force, latticeAt(p) - 0.5 * velocity, 1e-12)) << i;
         ++compared;
       }
@@ -138,7 +138,7 @@ ports: [{name: bank, between: [outside, river]}]
   EXPECT_GT(meter.work(), 0.02);
   const double source = hand.renderer().sourceWork();
   EXPECT_GT(source, meter.work());
-  // In full: 4 N s/m * 0.1 m/s = 0.4 N along 40 mm, five times; of it the first quarter millimetre fades.
+  // In full: 4 N s/m * 0.1 m/s = 0.4 N along 40 mm, five times; of it the first quarter millimeter fades.
   EXPECT_NEAR(source, 5 * 0.4 * 0.04, 5 * 0.4 * 0.5e-3);
   hand.renderer().reset();
   EXPECT_EQ(hand.renderer().sourceWork(), 0.0);
@@ -191,7 +191,7 @@ TEST(Contents, LatticeAndCuttingAreChangedWithinTheirLimits) {
   EXPECT_NEAR(needle.last().force.z, 2e-3 * 16 + 10e-3 * 3, 1e-6);
 }
 
-// What of a needle's tissue varies, along its way by so much per metre.
+// What of a needle's tissue varies, along its way by so much per meter.
 TEST(Contents, WhatHoldsANeedleMayVaryFromPlaceToPlace) {
   SceneDescription description = parseScene(R"(
 palpate: 1

@@ -50,7 +50,7 @@ TEST(ExampleScenes, EveryThingOnTheTableIsFelt) {
     const double stiffness = wall.stiffness.at(pressed.proxy);
     EXPECT_GT(pressed.force.z, 0.02 * stiffness * 0.001);
     EXPECT_LT(glm::length(pressed.force), 2.0 * stiffness * 0.001);
-    // The proxy is on the surface: within a hundredth of a micrometre, or its share of the feature.
+    // The proxy is on the surface: within a hundredth of a micrometer, or its share of the feature.
     const FieldSample s = region.field->sample(pressed.proxy);
     EXPECT_LT(std::fabs(s.value) / std::max(glm::length(s.gradient), 1e-9), 1e-7);
     const TickResult gone = hand.walk({1e-3 * thing.x, 1e-3 * thing.y, top + 0.005});

@@ -29,7 +29,7 @@ bool isAtRegion(const Figure& figure, int region, const Vec3& p) {
 }
 
 /// Places just behind the crossings told, where these lie on the straight way from a to b [mm]: a way that cuts a corner
-/// by micrometres is seen there, and nowhere else. (0 at a, 1 at b)
+/// by micrometers is seen there, and nowhere else. (0 at a, 1 at b)
 std::vector<double> behind(std::span<const PortCrossing> told, const Vec3& a, const Vec3& b) {
   std::vector<double> places;
   const Vec3 way = b - a;

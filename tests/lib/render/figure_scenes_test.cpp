@@ -23,7 +23,7 @@ Vec3 directionOf(int i, int count) {
   return {r * std::cos(around), r * std::sin(around), z};
 }
 
-/// Nowhere near the proxy, in its region, is it closer to the hand: the proxy minimises the distance.
+/// Nowhere near the proxy, in its region, is it closer to the hand: the proxy minimizes the distance.
 void expectNoCloserPlace(const Figure& figure, const Drive& drive, Random& random) {
   const Vec3 proxy = 1e3 * drive.last().proxy;
   const Vec3 hip = 1e3 * drive.hip();
@@ -34,7 +34,7 @@ void expectNoCloserPlace(const Figure& figure, const Drive& drive, Random& rando
     if (figure.region(beside) != drive.last().region) continue;
     // Only what can be got to: a thin wall's far side is in the same region too.
     if (!crossingsOf(figure, beside, proxy + 1e-5 * (beside - proxy), 8).empty()) continue;
-    // The hearts' polynomial and the felt one differ by a few micrometres off the tip.
+    // The hearts' polynomial and the felt one differ by a few micrometers off the tip.
     const double slack = figure.name == "heart" ? 0.02 : 1e-5;
     EXPECT_GT(glm::length(hip - beside), distance - slack) << figure.name << " beside by " << r;
   }
@@ -191,7 +191,7 @@ TEST(CupWithLiquid, IsGlassAroundAndDragsWithin) {
   EXPECT_EQ(drive.region(), "outside") << "above the liquid, in the cup";
   (void)drive.walk(mm(0, 0, 10));
   EXPECT_EQ(drive.region(), "liquid");
-  EXPECT_EQ(drive.events(), "") << "its surface is no port";
+  EXPECT_EQ(drive.events(), "") << "its surface is not a port";
   (void)drive.to(mm(0, 0.2, 10));
   EXPECT_TRUE(isNear(drive.last().force, {0, -2.0 * 0.2, 0}, 1e-9));
   // The glass from within: bottom and side; and over the rim by its flat top.

@@ -181,7 +181,7 @@ std::vector<Tissue> randomTissues(Random& random) {
   for (int i = 0; i < count; ++i) {
     Tissue t;
     t.top = top;
-    // From a film of 20 um, which a hand goes through within a tick, to centimetres.
+    // From a film of 20 um, which a hand goes through within a tick, to centimeters.
     top += 2e-5 * std::pow(1000.0, random.uniform(0.0, 1.0));
     const double which = random.uniform(0.0, 1.0);
     t.kind = which < 0.7 ? Kind::kPierced : which < 0.85 ? Kind::kOpen : Kind::kAbsent;

@@ -190,7 +190,7 @@ TEST(Puncture, ARestEndsFarAwayOrUnderAHandFarBeyondTheWall) {
   Drive drive(sceneOf(skin("opens_at: 0.1 N, back: 0.1 N, rearm: 0.5 mm")));
   (void)drive.to(mm(0, 0, 1));
   ASSERT_TRUE(pressTo(drive, mm(0, 0, -0.3)));
-  // Never far in: the way out takes a pull of as many millimetres.
+  // Never far in: the way out takes a pull of as many millimeters.
   auto crossing = pressTo(drive, mm(0, 0, 2));
   ASSERT_TRUE(crossing);
   EXPECT_NEAR(crossing->force, 0.5, 0.011);

@@ -111,7 +111,7 @@ class Parts {
   ScenePtr scene_;
 };
 
-/// A hand that wanders about the parts, mostly where it presses on them a millimetre or two.
+/// A hand that wanders about the parts, mostly where it presses on them a millimeter or two.
 std::vector<Vec3> wander(std::uint64_t seed, int ticks) {
   Random random(seed * 31 + 5);
   std::vector<Vec3> out;

@@ -28,7 +28,7 @@ std::string list(const Vec3& v) {
 }
 
 std::string halfSpaceText(const Vec3& normal) {
-  char out[96];
+  char out[128];
   std::snprintf(out, sizeof out, "{half_space: {point: [0, 0, 0], normal: [%.17g, %.17g, %.17g]}}",
                 normal.x, normal.y, normal.z);
   return out;

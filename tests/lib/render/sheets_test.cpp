@@ -103,7 +103,7 @@ layers: [{name: floor, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]
   EXPECT_EQ(file.texture.wavelength, 0.008);
   Drive hand(scene);
   (void)hand.walk(mm(0, 0, 5));
-  // A crest in x and y: sin = 1 at a quarter of the wave; z is 0. The proxy stands some nanometres
+  // A crest in x and y: sin = 1 at a quarter of the wave; z is 0. The proxy stands some nanometers
   // above the plane, and the wave in z there counts K 2 pi amplitude / wavelength / 3 of that.
   EXPECT_NEAR(hand.walk(mm(2, 2, -2)).force.z, 1000 * (0.002 + 0.0003 * 2 / 3), 1e-7);
   EXPECT_NEAR(hand.walk(mm(6, 6, -2)).force.z, 1000 * (0.002 - 0.0003 * 2 / 3), 1e-7);

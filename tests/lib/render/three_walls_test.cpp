@@ -56,7 +56,7 @@ void expectSteady(const Held& held, double depth) {
 struct Tally {
   int pressed = 0;
   int wrong =
-      0;  ///< not at rest after 30 ticks, or its force is not K (x - P), or no contact is told
+      0;  ///< not at rest after 30 ticks, or its force is not K (x - P), or it reports no contact
   int unsteady = 0;  ///< the force changes by 1 mN in the next 30
   int first = 0;     ///< which one was wrong first
 

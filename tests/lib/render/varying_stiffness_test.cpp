@@ -15,7 +15,7 @@ namespace {
 
 using testing::FunctionMap;
 
-/// 600 N/m, and 300 N/m up and down over some centimetres, along all axes.
+/// 600 N/m, and 300 N/m up and down over some centimeters, along all axes.
 MaterialMapPtr hills() {
   return std::make_shared<FunctionMap>(
       [](const Vec3& p) {

@@ -102,7 +102,7 @@ TEST(Compile, RefusesWithCodePlaceAndRemedy) {
        "did you mean 'core'"},
       {"apart", [](auto& s) { s.ports = {port("p", "core", "far")}; }, "scene.regions_do_not_touch",
        "'core' and 'far'"},
-      {"not neighbours", [](auto& s) { s.ports = {port("p", "outside", "core")}; },
+      {"not neighbors", [](auto& s) { s.ports = {port("p", "outside", "core")}; },
        "scene.regions_do_not_touch", "outside"},
       {"sheet on nothing",
        [](auto& s) { s.sheets = {{.name = "foil", .on = nullptr, .place = s.layers[0].place}}; },
@@ -155,7 +155,7 @@ TEST(Compile, RefusesWithCodePlaceAndRemedy) {
          s.walls = {{"shell", "cor", {false, "bone"}, {}, {"test.yaml", 4, 2, {}}}};
        },
        "scene.unknown_layer", "cor"},
-      {"override with what is no wall",
+      {"override where there is no wall",
        [](auto& s) {
          s.walls = {{"shell", "core", {false, "air"}, {}, {"test.yaml", 4, 2, {}}}};
        },

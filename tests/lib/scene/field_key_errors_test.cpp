@@ -176,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(
         marked("WallSoft", sheet("  - {name: a, on: ball, wall: @fat}\n"), "scene.range", "'fat'",
                "stiffness"),
         marked("WallAbsent", sheet("  - {name: a, on: ball, wall: @absent}\n"), "scene.kind",
-               "no sheet", "leave the sheet out"),
+               "a sheet cannot be absent", "leave the sheet out"),
         marked("Key", sheet("  - {name: a, on: ball, @material: steel}\n"), "scene.unknown_key",
                "'material'", "keys here: name, on, where, wall")),
     refusalName);

@@ -143,9 +143,9 @@ TEST_F(Need, FromWithinOnlyWhatIsNearCounts) {
       compile(read("layers:\n"
                    "  - {name: room, inside: {costly: {center: [0, 0, 0], radius: 40}}}\n"
                    "  - {name: stove, inside: {costly: {center: [10, 0, 0], radius: 5}}}\n"
-                   "  - {name: neighbour, inside: {costly: {center: [100, 0, 0], radius: 40}}}\n"
+                   "  - {name: neighbor, inside: {costly: {center: [100, 0, 0], radius: 40}}}\n"
                    "start: {region: room}\n"));
-  EXPECT_EQ(leftOut(*scene), "neighbour");
+  EXPECT_EQ(leftOut(*scene), "neighbor");
   EXPECT_EQ(made_, 2);
 }
 

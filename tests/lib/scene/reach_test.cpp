@@ -215,7 +215,7 @@ TEST(ReachOfScenes, APortWhoseExtentIsNotAtItsWallIsNoCertainWay) {
   const std::string shells = kShells;
   EXPECT_EQ(reachOf(shells + "  - {name: a, between: [outside, shell], where: gate}\n"), "yyn");
   EXPECT_EQ(reachOf(shells + "  - {name: a, between: [outside, shell], where: far}\n"), "y?n")
-      << "nothing of the wall was seen there, which is no proof";
+      << "nothing of the wall was seen there, which proves nothing";
 }
 
 TEST(ReachOfScenes, AfterAPortBackAndAfterSeveralTimes) {

@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
         marked("UnknownLengthUnit", "palpate: 1\nlength: @mmm\n", "scene.choice", "'mmm'", "'mm'"),
         marked("NoLengthUnit", "palpate: 1\nlength: @parsec\n", "scene.choice", "m, mm, cm, um, in",
                ""),
-        marked("UnknownKey", scene("@colour: red\n"), "scene.unknown_key", "'colour'",
+        marked("UnknownKey", scene("@color: red\n"), "scene.unknown_key", "'color'",
                "keys here: palpate, length"),
         marked("KeySlip", scene("@layer: []\n"), "scene.unknown_key", "'layer'", "'layers'"),
         marked("MergeKey", scene("@<<: {a: 1}\n"), "scene.unknown_key", "'<<'", "keys here"),

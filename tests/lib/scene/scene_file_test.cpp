@@ -81,7 +81,7 @@ TEST(SceneFile, ContainerOfTheDesign) {
   EXPECT_EQ(liquid.wall.material, "glass");
   EXPECT_FALSE(liquid.wall.absent);
   EXPECT_EQ(liquid.place.line, 10);
-  // Inside the bowl and below the brim, in metres.
+  // Inside the bowl and below the brim, in meters.
   const FieldPtr inside = liquid.inside->get();
   EXPECT_NEAR(inside->value(Vec3(0.0)), -0.015, 1e-15);
   EXPECT_NEAR(inside->value(Vec3(0.0, 0.0, -0.05)), 0.01, 1e-15);
@@ -152,7 +152,7 @@ TEST(SceneFile, LengthsAreInTheUnitNamed) {
 }
 
 TEST(SceneFile, EveryKindOfField) {
-  // Distances at a point where each is simple; in metres.
+  // Distances at a point where each is simple; in meters.
   const Vec3 p(0.010, 0.0, 0.0);
   const auto value = [&](const std::string& text) { return fieldOf(text)->value(p); };
   EXPECT_NEAR(value("{half_space: {point: [0, 0, 0], normal: [2, 0, 0]}}"), 0.010, 1e-15);
@@ -341,7 +341,7 @@ TEST(SceneFile, ReadsTheFileItIsGiven) {
   EXPECT_EQ(problem.file, folder.path("other.yaml"));
 }
 
-// The analytic scenes of the project hold together: every port joins neighbours, every region is reached.
+// The analytic scenes of the project hold together: every port joins neighbors, every region is reached.
 TEST(SceneFile, TheProjectsScenesCompile) {
   for (const std::string name : {"container", "csg_part", "valve_tube", "sponge", "flag"}) {
     const ScenePtr scene =

@@ -36,7 +36,7 @@ double clockCost() {
   return least;
 }
 
-bool isOptimised() {
+bool isOptimized() {
 #if defined(__OPTIMIZE__) && defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
   return true;
@@ -58,7 +58,7 @@ Machine thisMachine() {
   machine.compiler = "GCC " __VERSION__;
 #endif
   machine.build_type = PALPATE_BUILD_TYPE;
-  machine.optimised = isOptimised();
+  machine.optimized = isOptimized();
   machine.clock_ns = clockCost();
   return machine;
 }

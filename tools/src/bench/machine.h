@@ -11,7 +11,7 @@ struct Machine {
   std::string system;    ///< kernel and architecture
   std::string compiler;
   std::string build_type;
-  bool optimised = false;  ///< false: times say nothing
+  bool optimized = false;  ///< false: times say nothing
   double clock_ns = 0.0;   ///< [ns] that reading the clock adds to a tick's time
 };
 

@@ -10,7 +10,7 @@ namespace palpate::tools {
 [[nodiscard]] inline Json machineJson(const Machine& machine) {
   return {{"cpu", machine.cpu},           {"threads", machine.threads},
           {"system", machine.system},     {"compiler", machine.compiler},
-          {"build", machine.build_type},  {"optimised", machine.optimised},
+          {"build", machine.build_type},  {"optimized", machine.optimized},
           {"clock_ns", machine.clock_ns}, {"palpate", PALPATE_VERSION_STRING}};
 }
 

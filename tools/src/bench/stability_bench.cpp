@@ -129,7 +129,7 @@ Report runStabilityBench(const BenchOptions& options, const GeneralOptions& gene
     if (!path.empty()) files.announce(path, {}, OutputFiles::Streams::kYes);
   }
   const Machine machine = thisMachine();
-  if (!machine.optimised) {
+  if (!machine.optimized) {
     console.warn("this is a " + machine.build_type + " build: its times say nothing");
   }
 

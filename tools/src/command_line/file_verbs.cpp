@@ -109,9 +109,9 @@ void defineCheck(CLI::App& app, Invocation& invocation) {
       "what one unit is, of a mesh or of a grid that does not say: mm (a mesh's default), cm, m, "
       "um, "
       "in");
-  addChoice(
-      app, g, "--space", {"RAS", "LPS"}, o.scan.space,
-      "mesh: which way its axes run (default: as the file says, else RAS); places are told in RAS");
+  addChoice(app, g, "--space", {"RAS", "LPS"}, o.scan.space,
+            "mesh: which way its axes run (default: as the file says, else RAS); places are "
+            "printed in RAS");
   add(app, g, "--voxel", "LENGTH", o.voxel,
       "mesh: voxel size of the bake that is tried (default: 1/128 of the longest side)");
   add(app, g, "--layer", "NAME", o.layer, "grid: only this one of the file");
@@ -184,7 +184,7 @@ written as one grid, `united`: a point belongs to the label whose value is small
 the opposite of `united` is smaller still.
 
 No grid holds an edge: its normal is some ten degrees off there, however small the voxels are.
-Where a layer has edges, how far its grid is off is told. With --parts, only what a grid holds
+Where a layer has edges, a note says how far its grid is off. With --parts, only what a grid holds
 and is not exact by itself becomes one, `<layer>/surface/<part>`; unions, intersections, differences
 and placements stay, and so do boxes and the like. FILE.yaml is INPUT with the grids in those
 places: as exact at its edges as INPUT, for every verb that takes a scene.)",
@@ -241,8 +241,8 @@ Verb checkVerb() {
       R"(A mesh: holes, edges with three triangles or more, triangles turned, doubled, without area or
 passing through others (exactly), parts inside out, size; and a bake is tried, as only that
 tells what is solid. A grid (.vdb): class, unit, band, |gradient| (1 for distances), voxels that
-are no numbers, holes in the band, and an inside that is not marked as such. A scene: all of it is
-made, and what grids could not hold of its meshes and scans is told, with a place.
+are not numbers, holes in the band, and an inside that is not marked as such. A scene: all of it is
+made, and a note names, with a place, all that grids could not hold of its meshes and scans.
 Exit code 0 if all can be touched, baking mending what is wrong; 1 if one cannot.)",
       {},
       defineCheck,

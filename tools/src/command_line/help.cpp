@@ -64,7 +64,7 @@ std::string verbHelp(const Verb& verb) {
 
 std::string overview() {
   std::string text =
-      "palpate - feel what is inside a scanned or modelled object\n\nUsage: palpate VERB "
+      "palpate - feel what is inside a scanned or modeled object\n\nUsage: palpate VERB "
       "[OPTIONS]\n\n";
   for (const Verb& verb : verbs()) {
     text += "  " + std::string(verb.name) + std::string(10 - std::string(verb.name).size(), ' ') +

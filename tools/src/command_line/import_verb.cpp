@@ -7,7 +7,7 @@ namespace {
 
 void defineImport(CLI::App& app, Invocation& invocation) {
   auto& o = choose<ImportOptions>(invocation);
-  app.add_option("scan", o.scan);
+  app.add_option("scan", o.scans);
   const char* g = "Output";
   add(app, g, "-o,--output", "FILE.yaml", o.output, "where the scene goes (required)");
   addFlag(app, g, "--dry-run", o.dry_run,
@@ -27,10 +27,10 @@ void defineImport(CLI::App& app, Invocation& invocation) {
       ->check(CLI::Range(1, 1000000000));
   addChoice(
       app, g, "--islands", {"merge", "drop"}, o.islands,
-      "--min-island: they become part of what is around (default), or pieces become unlabelled "
+      "--min-island: they become part of what is around (default), or pieces become unlabeled "
       "and cavities stay");
-  g = "The body, whose unlabelled rest becomes the region soft_tissue";
-  add(app, g, "--image", "FILE", o.image, "grey values of the same scan: CT, MR");
+  g = "The body, whose unlabeled rest becomes the region soft_tissue";
+  add(app, g, "--image", "FILE", o.image, "gray values of the same scan: CT, MR");
   add(app, g, "--skin", "VALUE", o.skin,
       "--image: the body is brighter than this; its largest piece, cavities filled (CT: -300)");
   add(app, g, "--body", "FILE", o.body, "or a mask of the body: what is not 0");
@@ -43,7 +43,11 @@ void defineImport(CLI::App& app, Invocation& invocation) {
   add(app, g, "--codes", "freesurfer", o.codes,
       "the labels are numbers of FreeSurfer's table, of SynthSeg's too, and need no names")
       ->check(CLI::IsMember({"freesurfer"}));
-  addFlag(app, g, "--strict", o.strict, "what fits no tissue is an error");
+  addFlag(app, g, "--strict", o.strict, "a label that fits no tissue is an error");
+  g = "A way for a needle";
+  add(app, g, "--to", "TARGET", o.to,
+      "the shortest straight way to a region or a label that ports let through, clear of bone, "
+      "vessels and nerves: reported, and suggested in the scene");
   g = "Materials and grids";
   addFlag(app, g, "--hounsfield", o.hounsfield,
           "--image is a CT in Hounsfield units: stiffness varies with it, where the table of "
@@ -52,7 +56,11 @@ void defineImport(CLI::App& app, Invocation& invocation) {
       "table of tissues (default: the project's data/materials/tissues.yaml)");
   add(app, g, "--voxel", "LENGTH", o.voxel,
       "voxel size of the grids, in mm or with a unit (default: of the same volume as the scan's)");
-  addScan(app, "What a scan leaves open", o.reading, false);
+  g = "What a scan leaves open";
+  addList(app, g, "--priority", "NAMES", o.priority,
+          "of masks that overlap the first named here has the voxel (default: the smallest)")
+      ->delimiter(',');
+  addScan(app, g, o.reading, false);
 }
 
 }  // namespace
@@ -62,17 +70,19 @@ Verb importVerb() {
       "import",
       "Turn a segmented scan into a scene: regions, materials, ports",
       "palpate import labels.nii.gz --names labels.csv --body mask.nii.gz -o scan.yaml",
-      "palpate import SCAN -o SCENE.yaml [OPTIONS]",
-      R"(SCAN is a label image. Each label becomes a region, with the tissue that the words of its name or its
-code mean; what fits none is listed. What stands between two regions their tissues' classes say: bone
-never opens, flesh and membranes give way both ways at their forces, fluids and air have no walls, and
-parcels of one tissue none between them. The scene says of every number whether it was measured,
-derived or assumed, and by whom. It is text to be edited; grids are made when it is touched or baked.)",
+      "palpate import SCAN... -o SCENE.yaml [OPTIONS]",
+      R"(SCAN is a label image, a folder of masks, or several masks: a structure each, called as its file.
+Masks, and segments of DICOM, may overlap: the first that --priority names has the voxel, then the
+smallest. Each label becomes a region, with the tissue that the words of its name or its code mean;
+what fits none is listed. What stands between two regions their tissues' classes say: bone never opens,
+flesh and membranes give way both ways at their forces, fluids and air have no walls, and parcels of
+one tissue none between them. The scene says of every number whether it was measured, derived or
+assumed, and by whom. It is text to be edited; grids are made when it is touched or baked.)",
       {},
       defineImport,
       [](const Invocation& i) {
         const auto& o = chosen<ImportOptions>(i);
-        need(!o.scan.empty(), "SCAN");
+        need(!o.scans.empty(), "SCAN");
         need(o.dry_run || !o.output.empty(), "-o SCENE.yaml");
         if (o.image.empty() && (o.skin || o.hounsfield)) {
           throw usageError(std::string(o.skin ? "--skin" : "--hounsfield") + " needs --image", "");

@@ -67,7 +67,7 @@ std::string manPage(const std::vector<VerbWords>& verbs) {
       ".\\\" Made by `palpate help --man`.\n"
       ".TH PALPATE 1 \"\" \"palpate " PALPATE_VERSION_STRING
       "\" \"User Commands\"\n"
-      ".SH NAME\npalpate \\- feel what is inside a scanned or modelled object\n"
+      ".SH NAME\npalpate \\- feel what is inside a scanned or modeled object\n"
       ".SH SYNOPSIS\n.B palpate\n.I VERB\n[\\fIOPTIONS\\fR]\n"
       ".SH DESCRIPTION\n"
       "Results go to stdout, everything else to stderr; \\fB\\-\\-json\\fR gives one JSON object.\n"

@@ -79,10 +79,10 @@ std::string inShell(const std::string& argument) {
 }  // namespace
 
 const std::vector<Verb>& verbs() {
-  static const std::vector<Verb> all = {touchVerb(),    replayVerb(),  importVerb(), bakeVerb(),
-                                        convertVerb(),  infoVerb(),    checkVerb(),  queryVerb(),
-                                        explainVerb(),  renderVerb(),  reportVerb(), benchVerb(),
-                                        accuracyVerb(), devicesVerb(), doctorVerb(), helpVerb()};
+  static const std::vector<Verb> all = {
+      touchVerb(), viewVerb(),     replayVerb(),  importVerb(),  bakeVerb(),   convertVerb(),
+      infoVerb(),  checkVerb(),    queryVerb(),   explainVerb(), renderVerb(), reportVerb(),
+      benchVerb(), accuracyVerb(), devicesVerb(), doctorVerb(),  helpVerb()};
   return all;
 }
 

@@ -6,14 +6,11 @@
 #include "palpate/devices/simulated_device.h"
 
 namespace palpate::tools {
-namespace {
 
-/// The names of the simulated devices.
-std::string models() {
+std::string deviceModels() {
   return joined(devices::devicePresets(), ", ", &devices::DevicePreset::name);
 }
 
-/// What the hand holds.
 void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::string& what) {
   add(app, group, "--device", "NAME", o.name, what.c_str());
   add(app, group, "--hand", "HAND", o.hand,
@@ -23,8 +20,9 @@ void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::st
       ->check(CLI::Range(0, devices::SimulatedDevice::kMostDelay));
 }
 
-/// "" for a file that has a name.
 std::string named(const std::string& text) { return text.empty() ? "a name is missing" : ""; }
+
+namespace {
 
 /// "" for the number of a tick.
 std::string tickNumber(const std::string& text) {
@@ -71,7 +69,7 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
       app, g, o.device,
       std::string("follow the motion with a simulated device, in a hand that feels the force: "
                   "virtual:NAME, NAME one of ") +
-          models() +
+          deviceModels() +
           "; virtual: may be left out unless NAME is falcon or inverse3. Or let a hand move "
           "a device: falcon, inverse3, hd (OpenHaptics), dhd (Force Dimension), evdev (SpaceMouse, "
           "gamepad or mouse, whose force is shown, not felt; evdev:/dev/input/eventN: that one). "
@@ -147,7 +145,7 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   add(app, g, "--voxel", "LENGTH", o.voxel,
       "mesh, image: of the grid that is made, in mm or with a unit (default: as in a scene)");
   add(app, g, "--units", "UNIT", o.units,
-      "mesh, or grid that does not say: what one unit is (default: mm; glTF and GLB are metres)");
+      "mesh, or grid that does not say: what one unit is (default: mm; glTF and GLB are meters)");
   addScan(app, "What an image or a mesh leaves open", o.scan, true);
 }
 
@@ -188,7 +186,7 @@ void defineRender(CLI::App& app, Invocation& invocation) {
   g = "What to show";
   add(app, g, "--trace", "FILE.csv", o.trace, "the path and the forces of a `touch --trace`");
   add(app, g, "--image", "IMAGE", o.image,
-      "grey values of this scan, or of this image of the scene (default: the scene's first "
+      "gray values of this scan, or of this image of the scene (default: the scene's first "
       "that has no names)");
   g = "In space, instead of a flat cut (whole, or with --plane or --cut what is behind that)";
   add(app, g, "--view", "FROM", o.view,
@@ -212,7 +210,7 @@ void defineExplain(CLI::App& app, Invocation& invocation) {
   addDevice(app, g, o.device,
             std::string("list what is felt beside what this device can hold, and what cures what "
                         "it cannot: ") +
-                models() + " (virtual:NAME means the same)");
+                deviceModels() + " (virtual:NAME means the same)");
   add(app, g, "--rate", "HZ", o.rate, "device: ticks a second (default 1000)")
       ->check(CLI::Range(1.0, 100000.0));
   add(app, "Output files", "--svg", "FILE.svg", o.svg,
@@ -273,7 +271,7 @@ Verb queryVerb() {
       "Value, gradient, region and material at points; or an image's intensity",
       "palpate query data/scenes/container.yaml --at 0,0,14 0,0,16",
       "palpate query SCENE|IMAGE POINTS [OPTIONS]",
-      R"(An image (NIfTI, NRRD, MetaImage, a DICOM series) is read at RAS points in mm, trilinear between voxel centres; outside
+      R"(An image (NIfTI, NRRD, MetaImage, a DICOM series) is read at RAS points in mm, trilinear between voxel centers; outside
 these there is no value.)",
       {"--at"},
       defineQuery,

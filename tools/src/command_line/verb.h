@@ -41,6 +41,12 @@ struct Verb {
 [[nodiscard]] Verb renderVerb();
 [[nodiscard]] Verb replayVerb();
 [[nodiscard]] Verb reportVerb();
+/// What the hand holds.
+void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::string& what);
+/// The names of the simulated devices.
+[[nodiscard]] std::string deviceModels();
+/// "" for a file that has a name.
+[[nodiscard]] std::string named(const std::string& text);
 // file_verbs.cpp
 [[nodiscard]] Verb bakeVerb();
 [[nodiscard]] Verb convertVerb();
@@ -51,6 +57,9 @@ struct Verb {
 
 /// What a scan or, if `meshes`, a mesh leaves open.
 void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes);
+
+// view_verb.cpp
+[[nodiscard]] Verb viewVerb();
 
 // import_verb.cpp
 [[nodiscard]] Verb importVerb();

@@ -7,7 +7,7 @@
 namespace palpate::tools {
 namespace {
 
-/// Regions of one tissue; what is outside and the unlabelled rest of a body are one each.
+/// Regions of one tissue; what is outside and the unlabeled rest of a body are one each.
 struct Group {
   const Tissue* tissue = nullptr;  ///< null: outside
   TissueClass kind = TissueClass::kOutside;

@@ -27,13 +27,14 @@ std::string labelList(const std::vector<int>& labels) {
 
 class ImportReport {
  public:
-  ImportReport(const ImportOptions& options, const ImportedScan& scan, const TissueTable& tissues)
-      : options_(options), scan_(scan), tissues_(tissues) {}
+  ImportReport(const ImportOptions& options, const ImportedScan& scan, const TissueTable& tissues,
+               const NeedleWay* way)
+      : options_(options), scan_(scan), tissues_(tissues), way_(way) {}
 
   Report make(const std::vector<std::string>& written) {
     const vdb::Image& image = scan_.labels;
     report_.json = {{"schema", "palpate.import/1"},
-                    {"scan", options_.scan},
+                    {"scan", options_.scan()},
                     {"output", written.empty() ? Json() : Json(written.front())},
                     {"size", image.size},
                     {"voxel_size_m", scan_.voxel}};
@@ -47,6 +48,7 @@ class ImportReport {
     const auto ports = crossings(scan_, tissues_).ports.size();
     report_.json["ports"] = ports;
     report_.text += formatCount(ports) + " ports between regions that touch\n";
+    way();
     if (written.empty()) {
       report_.text += "Nothing was written (--dry-run)\n";
     } else {
@@ -230,7 +232,7 @@ class ImportReport {
     std::string text;
     for (const vdb::IslandChange& change : scan_.changes) {
       const std::string to =
-          change.to >= scan_.survey.gap() ? "unlabelled" : scan_.nameOf(change.to);
+          change.to >= scan_.survey.gap() ? "unlabeled" : scan_.nameOf(change.to);
       if (changed.size() < kMostTold) {
         text += "  " + scan_.nameOf(change.from) + ": " + formatCount(change.voxels) + " at " +
                 placeText(change.place) + " became " + to + "\n";
@@ -246,6 +248,37 @@ class ImportReport {
     report_.text +=
         formatCount(count) + " islands and cavities were changed. Voxels of each:\n" + text;
     if (count > kMostTold) report_.text += "  and " + formatCount(count - kMostTold) + " more\n";
+  }
+
+  /// The way that was asked for: what it leads through, and what is felt.
+  void way() {
+    if (way_ == nullptr) return;
+    Table table({"tissues on the way", "tissue", "mm", "N to get in", "N at its end"});
+    Json parts = Json::array();
+    for (const WayPart& part : way_->parts) {
+      const bool is_gap = part.region == scan_.survey.gap();
+      const std::string tissue =
+          is_gap ? "skin, fat" : scan_.plan.regions[part.region].tissue->name;
+      table.add({scan_.nameOf(part.region), tissue, formatNumber(part.length * 1e3, 3),
+                 formatNumber(part.rupture, 3), formatNumber(part.force, 3)});
+      parts.push_back({{"region", scan_.nameOf(part.region)},
+                       {"tissue", tissue},
+                       {"length_m", part.length},
+                       {"rupture_N", part.rupture},
+                       {"force_N", part.force}});
+    }
+    report_.json["way"] = {{"target", way_->target},
+                           {"from_m", vectorJson(way_->from)},
+                           {"entry_m", vectorJson(way_->entry)},
+                           {"to_m", vectorJson(way_->to)},
+                           {"length_m", way_->length()},
+                           {"clearance_m", way_->clearance},
+                           {"peak_force_N", way_->peak},
+                           {"parts", parts}};
+    report_.text += "To " + way_->target + ": " + formatNumber(way_->length() * 1e3, 4) +
+                    " mm from " + placeText(way_->entry) + " to " + placeText(way_->to) +
+                    ", at most " + formatNumber(way_->peak, 3) + " N (predicted)\n" +
+                    table.text("") + "\n";
   }
 
   void cost() {
@@ -278,14 +311,16 @@ class ImportReport {
   const ImportOptions& options_;
   const ImportedScan& scan_;
   const TissueTable& tissues_;
+  const NeedleWay* way_;
   Report report_;
 };
 
 }  // namespace
 
 Report importReport(const ImportOptions& options, const ImportedScan& scan,
-                    const TissueTable& tissues, const std::vector<std::string>& written) {
-  return ImportReport(options, scan, tissues).make(written);
+                    const TissueTable& tissues, const NeedleWay* way,
+                    const std::vector<std::string>& written) {
+  return ImportReport(options, scan, tissues, way).make(written);
 }
 
 }  // namespace palpate::tools

@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "import/imported_scene.h"
+#include "import/needle_way.h"
 #include "report.h"
 
 namespace palpate::tools {
 
-/// `written`: the files that were; none if it was a dry run.
+/// `way`: the one that was asked for, or null. `written`: the files that were; none if it was a dry run.
 [[nodiscard]] Report importReport(const ImportOptions& options, const ImportedScan& scan,
-                                  const TissueTable& tissues,
+                                  const TissueTable& tissues, const NeedleWay* way,
                                   const std::vector<std::string>& written);
 
 }  // namespace palpate::tools

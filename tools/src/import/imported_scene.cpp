@@ -67,11 +67,13 @@ class SceneWriter {
 
   void header() {
     const vdb::Image& image = scan_.labels;
-    line("# Made by `palpate import` from " + options_.scan + ": " + std::to_string(image.size[0]) +
-         " x " + std::to_string(image.size[1]) + " x " + std::to_string(image.size[2]) +
-         " voxels of " + millimetres(glm::length(image.axes[0])) + " x " +
-         millimetres(glm::length(image.axes[1])) + " x " + millimetres(glm::length(image.axes[2])) +
-         " mm.");
+    const std::size_t more = options_.scans.size() - 1;
+    line("# Made by `palpate import` from " + options_.scan() +
+         (more > 0 ? " and " + std::to_string(more) + " more" : "") + ": " +
+         std::to_string(image.size[0]) + " x " + std::to_string(image.size[1]) + " x " +
+         std::to_string(image.size[2]) + " voxels of " + millimetres(glm::length(image.axes[0])) +
+         " x " + millimetres(glm::length(image.axes[1])) + " x " +
+         millimetres(glm::length(image.axes[2])) + " mm.");
     line(
         "# It is yours to edit. Lengths are in mm, in the scan's axes "
         "(RAS): x right, y front, z head.");
@@ -79,7 +81,7 @@ class SceneWriter {
       return formatNumber(p.x * 1e3) + "," + formatNumber(p.y * 1e3) + "," +
              formatNumber(p.z * 1e3);
     };
-    const SuggestedWay way = suggestedWay(scan_);
+    const SuggestedWay way = scan_.way ? *scan_.way : suggestedWay(scan_);
     line("# A probe " + way.what + ", and back:");
     line("#   palpate touch SCENE.yaml --insert " + point(way.from) + " " + point(way.to) +
          " --back --image SCENE.png");
@@ -89,7 +91,7 @@ class SceneWriter {
     }
     if (!scan_.changes.empty()) {
       line("# " + std::to_string(scan_.changes.size()) + " pieces and cavities of less than " +
-           std::to_string(*options_.min_island) + " voxels were changed; " + files_.labels +
+           std::to_string(*options_.min_island) + " voxels were changed; " + files_.labels.front() +
            " is what came of it.");
     }
     line("palpate: 1");
@@ -109,7 +111,22 @@ class SceneWriter {
 
   void images() {
     line("images:");
-    line("  labels: {file: " + sceneWord(files_.labels) +
+    std::string labels = sceneWord(files_.labels.front());
+    if (files_.labels.size() > 1) {
+      labels += ", with: [";
+      for (std::size_t n = 1; n < files_.labels.size(); ++n) {
+        labels += (n > 1 ? ", " : "") + sceneWord(files_.labels[n]);
+      }
+      labels += "]";
+    }
+    if (!options_.priority.empty() && !options_.min_island) {
+      labels += ", priority: [";
+      for (std::size_t n = 0; n < options_.priority.size(); ++n) {
+        labels += (n > 0 ? ", " : "") + sceneWord(options_.priority[n]);
+      }
+      labels += "]";
+    }
+    line("  labels: {file: " + labels +
          (files_.names.empty() ? "" : ", names: " + sceneWord(files_.names)) +
          (options_.min_island ? "" : reading()) + "}");
     if (!files_.body.empty()) line("  body: {file: " + sceneWord(files_.body) + reading() + "}");

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,13 @@ struct OpenAir {
   double volume = 0.0;  ///< [m3]
 };
 
+/// That a scene's header suggests.
+struct SuggestedWay {
+  std::string what;  ///< "from the front to the middle"
+  Vec3 from{0.0};    ///< [m]
+  Vec3 to{0.0};      ///< [m]
+};
+
 /// All that the scene is written from.
 struct ImportedScan {
   vdb::Image labels;
@@ -30,6 +38,8 @@ struct ImportedScan {
   std::vector<OpenAir> open_air;
   vdb::LabelSurvey survey;  ///< of the plan's regions
   bool has_body = false;
+  vdb::VoxelMask body;                     ///< the voxels of the body; empty without one
+  std::optional<SuggestedWay> way;         ///< not given: one of six is looked for
   std::vector<int> body_labels;            ///< of its mask, if it is from one
   std::uint64_t image_voxels = 0;          ///< of all images that the scene reads
   std::uint64_t ct_voxels = 0;             ///< of the one that stiffness comes from; 0: none
@@ -64,10 +74,10 @@ struct GridEstimate {
 
 /// Files as the scene names them.
 struct SceneFiles {
-  std::string labels;
-  std::string names;  ///< may be empty
-  std::string body;   ///< mask, or the image with `skin`; empty: no body
-  std::string image;  ///< with grey values; may be empty
+  std::vector<std::string> labels;  ///< one image, or masks
+  std::string names;                ///< may be empty
+  std::string body;                 ///< mask, or the image with `skin`; empty: no body
+  std::string image;                ///< with gray values; may be empty
 };
 [[nodiscard]] std::string writeScene(const ImportOptions& options, const ImportedScan& scan,
                                      const TissueTable& tissues, const SceneFiles& files);

@@ -69,7 +69,7 @@ class NamesReader {
     const std::string text = loader_.text(node, "numbers");
     const auto range = labelRange(text);
     if (!range || range->first > range->second) {
-      throw loader_.wrong(node.mark, "'" + text + "' is no number and no range");
+      throw loader_.wrong(node.mark, "'" + text + "' is neither a number nor a range");
     }
     return {range->first, range->second, tissue};
   }

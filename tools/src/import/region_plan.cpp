@@ -47,15 +47,15 @@ std::vector<int> labelsOf(const std::string& entry, const ImportOptions& options
   } else {
     wanted = vdb::resolveLabels({entry}, names, options.names);
     if (wanted == std::vector<int>{0}) {
-      throw inputError("labels.background", "label 0 is what is not labelled, no region",
-                       "--body or --skin makes a region of what in the body is not labelled",
-                       options.scan);
+      throw inputError("labels.background", "label 0 means 'not labeled', so it cannot be a region",
+                       "--body or --skin makes a region of what in the body is not labeled",
+                       options.scan());
     }
     std::erase_if(wanted, [&](int label) { return label == 0 || !counts.contains(label); });
   }
   if (wanted.empty()) {
     throw inputError("labels.no_voxels", "no voxel of the image is of label `" + entry + "`",
-                     "the image holds " + listOf(counts), options.scan);
+                     "the image holds " + listOf(counts), options.scan());
   }
   return wanted;
 }
@@ -102,7 +102,7 @@ class Planner {
     }
     if (plan_.regions.empty()) {
       throw inputError("labels.none", "the image holds no label: all of its voxels are 0", "",
-                       options_.scan);
+                       options_.scan());
     }
     setTissues();
     if (names_.empty() && plan_.regions.size() > joined && !plan_.regions.back().is_known) {
@@ -161,7 +161,7 @@ class Planner {
     const auto named = names_.find(label);
     if (named == names_.end() && !names_.empty()) {
       plan_.notes.push_back("label " + std::to_string(label) + " has no name in " +
-                            (options_.names.empty() ? options_.scan : options_.names) +
+                            (options_.names.empty() ? options_.scan() : options_.names) +
                             "; it is called label_" + std::to_string(label));
     }
     const std::string name =

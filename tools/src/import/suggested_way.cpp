@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <optional>
+
+#include "import/region_sampler.h"
 
 namespace palpate::tools {
 namespace {
@@ -25,19 +26,10 @@ const std::array<Side, 6> kSides = {{{"front", {0, 1, 0}},
 
 class WayFinder {
  public:
-  explicit WayFinder(const ImportedScan& scan) : scan_(scan), to_index_(inverse(scan.labels)) {
-    for (const PlannedRegion& region : scan.plan.regions) {
-      for (const int label : region.labels) tissue_of_[label] = region.tissue;
-    }
-    for (std::size_t r = 0; r < scan.survey.outside(); ++r) {
-      const Box3& bounds = scan.survey.regions[r].bounds;
-      if (bounds.isEmpty()) continue;
-      box_.include(bounds.lo);
-      box_.include(bounds.hi);
-    }
-    // Whole millimetres read well.
+  explicit WayFinder(const ImportedScan& scan) : scan_(scan), sampler_(scan) {
+    // Whole millimeters read well.
     for (int axis = 0; axis < 3; ++axis)
-      middle_[axis] = std::round(box_.center()[axis] * 1e3) * 1e-3;
+      middle_[axis] = std::round(sampler_.box().center()[axis] * 1e3) * 1e-3;
     step_ = 0.5 * std::cbrt(std::abs(glm::determinant(scan.labels.axes)));
   }
 
@@ -45,7 +37,7 @@ class WayFinder {
     SuggestedWay best;
     double longest = -1.0;
     for (const Side& side : kSides) {
-      const Vec3 half = 0.5 * (box_.hi - box_.lo);
+      const Vec3 half = 0.5 * (sampler_.box().hi - sampler_.box().lo);
       const double reach = std::abs(glm::dot(half, side.outwards)) + kBefore;
       const double whole = std::round(reach * 1e3) * 1e-3;
       const Vec3 from = middle_ + whole * side.outwards;
@@ -61,8 +53,6 @@ class WayFinder {
   }
 
  private:
-  static Mat3 inverse(const vdb::Image& image) { return glm::inverse(image.axes); }
-
   struct Walk {
     double end;    // [m] from where it begins
     double depth;  // [m] of it that is in tissue
@@ -73,47 +63,19 @@ class WayFinder {
     const auto steps = static_cast<int>(std::ceil(reach / step_));
     for (int n = 0; n < steps; ++n) {
       const double s = n * step_;
-      const std::optional<std::array<int, 3>> voxel = voxelAt(from + s * way);
-      if (!voxel) continue;
-      const Tissue* tissue = tissueAt(*voxel);
-      if (tissue == nullptr) continue;
+      const RegionSampler::Sample here = sampler_.at(from + s * way);
+      if (here.region >= scan_.survey.gap()) continue;  // no label
+      const Tissue* const tissue = scan_.plan.regions[here.region].tissue;
       // Where the image ends there is a closed wall.
-      if (!first && isAtBorder(*voxel)) return {s + kInto, 0.0};
+      if (!first && here.is_at_border) return {s + kInto, 0.0};
       if (!first) first = s;
       if (tissue->kind == TissueClass::kRigid) return {std::min(s + kInto, reach), s - *first};
     }
     return {reach, first ? reach - *first : 0.0};
   }
 
-  std::optional<std::array<int, 3>> voxelAt(const Vec3& world) const {
-    const Vec3 index = to_index_ * (world - scan_.labels.origin);
-    std::array<int, 3> voxel{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const double nearest = std::round(index[axis]);
-      if (!(nearest >= 0.0 && nearest < scan_.labels.size[a])) return std::nullopt;
-      voxel[a] = static_cast<int>(nearest);
-    }
-    return voxel;
-  }
-
-  bool isAtBorder(const std::array<int, 3>& voxel) const {
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (voxel[a] == 0 || voxel[a] + 1 == scan_.labels.size[a]) return true;
-    }
-    return false;
-  }
-
-  const Tissue* tissueAt(const std::array<int, 3>& voxel) const {
-    const auto at =
-        tissue_of_.find(static_cast<int>(scan_.labels.at(voxel[0], voxel[1], voxel[2])));
-    return at == tissue_of_.end() ? nullptr : at->second;
-  }
-
   const ImportedScan& scan_;
-  Mat3 to_index_;
-  std::map<int, const Tissue*> tissue_of_;
-  Box3 box_;
+  RegionSampler sampler_;
   Vec3 middle_{0.0};
   double step_ = 1e-3;
 };

@@ -36,7 +36,7 @@ class TissueNames {
   /// Each tissue that is named anywhere, once.
   [[nodiscard]] std::vector<std::string> tissues() const;
 
-  /// The project's own. @throws Error (kInput) for what is no such table.
+  /// The project's own. @throws Error (kInput) for anything but such a table.
   [[nodiscard]] static const TissueNames& own();
 
  private:

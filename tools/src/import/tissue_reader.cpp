@@ -166,7 +166,7 @@ class TableReader {
         throw wrong(item.items[0].mark, "'" + item.items[0].text + "' is no CT number");
       }
       if (!to || !(*to > 0.0)) {
-        throw wrong(item.items[1].mark, "'" + item.items[1].text + "' is no stiffness above 0");
+        throw wrong(item.items[1].mark, "'" + item.items[1].text + "' is not a stiffness above 0");
       }
       if (!result.points.empty() && !(*from > result.points.back().first)) {
         throw wrong(item.items[0].mark, "the CT numbers do not rise");
@@ -205,6 +205,7 @@ class TableReader {
     const std::string class_name = reader.textOr("class", "");
     const std::string parcels = reader.textOr("parcels", "apart");
     made.lining = reader.textOr("lining", "");
+    made.is_spared = reader.boolOr("spared", false);
     const auto read = [&](const char* key, NumberKind kind) -> std::optional<SourcedNumber> {
       const Node* node = reader.optional(key);
       if (node == nullptr) return std::nullopt;
@@ -272,7 +273,7 @@ class TableReader {
     if (!table.unknown.empty() && table.find(table.unknown) == nullptr) {
       throw document().error(
           document().root.mark, "tissues.unknown",
-          "'unknown' names '" + table.unknown + "', which is no tissue of this table");
+          "'unknown' names '" + table.unknown + "', which is not a tissue of this table");
     }
     for (const Tissue& tissue : table.tissues) {
       if (tissue.lining.empty()) continue;

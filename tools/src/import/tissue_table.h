@@ -33,6 +33,7 @@ struct Tissue {
   std::string name;
   TissueClass kind = TissueClass::kSolid;
   bool parcels_joined = false;      ///< two regions of it have no wall between them
+  bool is_spared = false;           ///< a planned way keeps clear of it
   std::string lining;               ///< of a fluid or a gas: a membrane of the table; or empty
   std::vector<std::string> labels;  ///< patterns of label names
   std::optional<SourcedNumber> stiffness;  ///< [N/m]
@@ -87,7 +88,7 @@ struct TissueTable {
   [[nodiscard]] static double poissonOf(const Tissue& tissue);
 };
 
-/// @throws Error (kInput), with file, line and column, for what is no such table.
+/// @throws Error (kInput), with file, line and column, for anything but such a table.
 [[nodiscard]] TissueTable readTissueTable(const std::string& path);
 /// The project's own.
 [[nodiscard]] TissueTable ownTissueTable();

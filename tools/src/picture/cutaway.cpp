@@ -16,7 +16,7 @@ constexpr double kPitch = 24.0 * std::numbers::pi / 180.0;
 constexpr int kTrial = 64;  // [pixels] of the first look
 constexpr double kEdgeShade = 0.4;
 constexpr int kBlock = 8;           // [pixels] whose rays share the way through free space
-constexpr double kContrast = 0.06;  // between neighbours; above it a pixel gets finer rays
+constexpr double kContrast = 0.06;  // between neighbors; above it a pixel gets finer rays
 
 double differenceOf(const Color& a, const Color& b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});

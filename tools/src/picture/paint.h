@@ -1,5 +1,5 @@
 #pragma once
-/// The colour of a point of a cut face: its region's, darkened and lightened by a scan's grey values.
+/// The color of a point of a cut face: its region's, darkened and lightened by a scan's gray values.
 
 #include <map>
 #include <memory>
@@ -14,13 +14,13 @@ namespace palpate::tools {
 
 class Paint {
  public:
-  /// Without an image: plain colours. Grey runs from the 1st to the 99th percentile of the voxels. `colors` of
+  /// Without an image: plain colors. Gray runs from the 1st to the 99th percentile of the voxels. `colors` of
   /// regions, by their names, go before those of the palette.
   Paint(std::shared_ptr<const vdb::Image> image, const Scene& scene,
         const std::map<std::string, vdb::LabelColor>& colors);
 
   [[nodiscard]] Color at(RegionId region, const Vec3& p) const;
-  /// Without grey values.
+  /// Without gray values.
   [[nodiscard]] Color of(RegionId region) const { return colors_.at(region); }
   [[nodiscard]] bool hasImage() const noexcept { return image_ != nullptr; }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The pictures' colours.
+/// The pictures' colors.
 
 #include "palpate/interior/partition.h"
 #include "picture/canvas.h"

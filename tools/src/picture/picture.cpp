@@ -72,7 +72,7 @@ void drawTitle(Sheet& s) {
   head.bold = true;
   s.canvas.text({s.left, s.px(38)}, s.options.title, head);
   std::string line = "cut " + s.plane.name;
-  if (s.options.image) line += "; grey values of " + vdb::fileName(s.options.image->source);
+  if (s.options.image) line += "; gray values of " + vdb::fileName(s.options.image->source);
   if (s.zoomed) line += "; close to where the hand moved (the frame on the right)";
   s.canvas.text({s.left, s.px(64)}, line, s.font(15, kFaintInk));
 }
@@ -131,7 +131,7 @@ double drawInset(Sheet& s, const Box3& box, Console& console) {
   return y + height;
 }
 
-/// A mask has two values, and no grey ones.
+/// A mask has two values, and no gray ones.
 bool isMask(const vdb::Image& image) {
   std::array<float, 2> seen{};
   std::size_t count = 0;

@@ -22,12 +22,12 @@ struct PictureOptions {
   int width = 1600;                         ///< [pixels]
   int height = 1000;                        ///< [pixels]
   Track track;                              ///< may be empty
-  std::shared_ptr<const vdb::Image> image;  ///< grey values; may be null
+  std::shared_ptr<const vdb::Image> image;  ///< gray values; may be null
   std::map<std::string, vdb::LabelColor> colors = {};  ///< of layers that have one of their own
   bool anatomical = false;  ///< x, y, z run to the right, the front and up
 };
 
-/// The grey values to show: of the scene's image called `wanted`, of the file `wanted`, or if it is empty
+/// The gray values to show: of the scene's image called `wanted`, of the file `wanted`, or if it is empty
 /// of the scene's first image without names; null if there is none. @throws Error (kInput).
 [[nodiscard]] std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
                                                              const std::string& wanted);

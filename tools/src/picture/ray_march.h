@@ -23,7 +23,7 @@ struct SpaceScene {
   std::vector<double> opacity = {};
 };
 
-/// What a ray met first. Neighbours with different `part` are set apart by a dark edge, and so are those of the cut face
+/// What a ray met first. Neighbors with different `part` are set apart by a dark edge, and so are those of the cut face
 /// between which it cuts a sheet.
 struct Hit {
   Color color = rgb(0xFFFFFF);  ///< of all that it met, down to what is opaque

@@ -23,7 +23,7 @@ bool sheetBetween(const Scene& scene, const Signs& here, const Signs& there) {
   return ((sheetSides(scene, here).inner ^ beyond.inner) & beyond.extent) != 0;
 }
 
-/// Finds the lines by looking at every square of four pixel centres: each side whose ends are in different
+/// Finds the lines by looking at every square of four pixel centers: each side whose ends are in different
 /// regions is crossed once, at a point found by halving.
 class Tracer {
  public:

@@ -57,7 +57,7 @@ struct Boundary {
 struct Section {
   int width = 0;
   int height = 0;
-  /// Of the pixels' centres: the region, and above it one bit for each sheet, set on its inner side.
+  /// Of the pixels' centers: the region, and above it one bit for each sheet, set on its inner side.
   std::vector<std::uint64_t> cells;
   std::vector<Boundary> boundaries;
 
@@ -87,7 +87,7 @@ struct SheetSides {
 };
 [[nodiscard]] SheetSides sheetSides(const Scene& scene, const Signs& signs);
 
-/// What is crossed between two points in neighbouring cells; points are left empty.
+/// What is crossed between two points in neighboring cells; points are left empty.
 [[nodiscard]] Boundary classify(const Scene& scene, const Signs& here, const Signs& there);
 
 }  // namespace palpate::tools

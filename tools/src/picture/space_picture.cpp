@@ -164,7 +164,7 @@ class SpaceSheet {
     for (std::size_t i = 0; i < count; ++i) line.push_back(at(shown_[i].proxy));
     s.canvas.line(line, {rgb(0xFFFFFF, 0.85), s.px(6.5)});
     for (std::size_t i = 0; i + 1 < count;) {
-      // Neighbours of one shade are one stroke.
+      // Neighbors of one shade are one stroke.
       const int shade = shadeAt(i);
       std::size_t end = i + 1;
       while (end + 1 < count && shadeAt(end) == shade) ++end;

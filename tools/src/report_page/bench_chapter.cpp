@@ -222,7 +222,7 @@ void addBenchChapter(HtmlPage& page, const Json& bench, const std::string& file)
        {"with", "palpate " + textAt(bench, "/machine/palpate") + ", " +
                     textAt(bench, "/machine/compiler") + ", " + textAt(bench, "/machine/build") +
                     " build"}});
-  if (textAt(bench, "/machine/optimised") == "no") {
+  if (textAt(bench, "/machine/optimized") == "no") {
     page.note("This was not an optimized build: its times say nothing.");
   }
   const std::vector<Json> rows = objectsOf(valueAt(bench, "/results"));

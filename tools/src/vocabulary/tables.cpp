@@ -10,7 +10,7 @@ namespace {
 using Form = KeyWords::Form;
 using Count = KeyWords::Count;
 
-/// Maps with a table of their own; the keys of others are told where they stand.
+/// Maps with a table of their own; the keys of others are explained where they stand.
 constexpr std::string_view kTables[] = {"field_kind", "image", "material", "layer",
                                         "wall",       "port",  "sheet"};
 

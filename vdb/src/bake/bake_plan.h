@@ -33,7 +33,7 @@ struct BakePlan {
 [[nodiscard]] openvdb::CoordBBox voxelRange(const Box3& bounds, const BakePlan& plan,
                                             const std::string& name);
 
-/// A grid without voxels; voxel (0, 0, 0) has its centre at the world's origin.
+/// A grid without voxels; voxel (0, 0, 0) has its center at the world's origin.
 [[nodiscard]] openvdb::FloatGrid::Ptr emptyGrid(const BakePlan& plan, const BakeOptions& options);
 
 /// Metadata, name and class. @throws Error (kInput) if no voxel is inside.

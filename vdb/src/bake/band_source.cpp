@@ -32,7 +32,7 @@ Verdict BandSource::judge(const FieldPart& from, const Vec3& center, double radi
     if (wall > reach) return Verdict::kOutside;
     if (wall >= -reach) return Verdict::kKeep;
   }
-  // Out there withWall() lifts all values out of the band.
+  // Out there withWall() lifts all values outside the band.
   if (!is_cut_ && !exact_ && boxDistance(center) > (radius + band_) * (1.0 + 1e-9)) {
     return Verdict::kOutside;
   }

@@ -56,7 +56,7 @@ std::optional<Vec3> onModel(const FieldJet& jet, const Vec3& apart, double voxel
     const double vv = glm::dot(v, bent_v);
     const double size = uu * vv - uv * uv;
     const double flat = glm::dot(u, u) * glm::dot(v, v);
-    // Beyond a centre of curvature the matrix turns indefinite; there the point on the tangent plane leads.
+    // Beyond a center of curvature the matrix turns indefinite; there the point on the tangent plane leads.
     Vec3 move = rest - lambda * g + down;
     if (uu > 0.0 && size > 1e-3 * flat) {
       const Vec3 pull = rest - down - hessian * down;

@@ -33,7 +33,7 @@ class CubeSearch {
   [[nodiscard]] const FieldPart& partOf(const Cube& cube) const noexcept {
     return parts_[cube.part];
   }
-  /// Blocks that lie inside, out of the band.
+  /// Blocks that lie inside, outside the band.
   [[nodiscard]] std::vector<BandBlock>& inside() noexcept { return inside_; }
 
   /// [m] of the cube of `size`^3 voxels that begins at `origin`.

@@ -25,7 +25,7 @@ GridError worse(const GridError& a, const GridError& b) {
   return out;
 }
 
-/// A place in the voxel at `at`, each of whose coordinates is -0.5 to 0.5 voxels from the centre, always the
+/// A place in the voxel at `at`, each of whose coordinates is -0.5 to 0.5 voxels from the center, always the
 /// same: on a lattice, errors of interpolation would vanish at every point alike.
 Vec3 scattered(const openvdb::Coord& at) noexcept {
   Vec3 out(0.0);

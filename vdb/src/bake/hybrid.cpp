@@ -233,7 +233,7 @@ class HybridBaker {
   /// Where to bake what lies within `bounds`, so that it is right where it is needed.
   static void setBox(BakeOptions& bake_options, const Box3& needed, const Box3& bounds) {
     const double band = bake_options.half_width * bake_options.voxel_size;
-    // Twice the band around what is needed: the cuts are then out of the band there.
+    // Twice the band around what is needed: the cuts are then outside the band there.
     const Box3 around = needed.grownBy(2.0 * band + 2.0 * bake_options.voxel_size);
     bake_options.box.reset();
     if (around.contains(bounds.lo) && around.contains(bounds.hi)) return;

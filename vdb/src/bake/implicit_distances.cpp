@@ -100,7 +100,7 @@ class Spreading {
     const Around around(leaves_, leaf);
     const bool is_inside = isInside(b, leaf, around, place, step);
     const double wall = source_.boxDistance(leaf.positionOf(place) * plan_.voxel) / plan_.voxel;
-    // Leaves reach out of the band of the whole.
+    // Leaves reach outside the band of the whole.
     if (wall > plan_.half_width + kBeyond) return {place, start, kOutOfReach, is_inside};
     const double nearest = glm::length(start);
     // Beyond a face that cuts, the wall tells unless the surface is farther off than that; so a

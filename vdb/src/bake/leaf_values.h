@@ -18,7 +18,7 @@ struct LeafValues {
   bool any_outside = false;
   bool is_broken = false;  ///< some value is not a number
 
-  /// One value for a cube, out of the band. `local` is its first voxel in the leaf.
+  /// One value for a cube, outside the band. `local` is its first voxel in the leaf.
   void fill(const openvdb::Coord& local, float value) noexcept;
 
   /// Distances [m], z fastest. In the band are those below `background` [units]; the others become that, with

@@ -59,7 +59,7 @@ class Search {
     if (parts_.isUnionOf(part, [&](const Field& field) { return !mayBeThin(field, held); })) {
       return lost;
     }
-    // What is out of the band is further off.
+    // What is outside the band is further off.
     const auto near = static_cast<float>(kBySurface * plan_.voxel / plan_.metres_per_unit);
     const float* const values = leaf.buffer().data();
     for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {

@@ -12,10 +12,10 @@
 
 namespace palpate::vdb {
 
-/// [voxels] No point of the surface is further than that from the centre of some voxel.
+/// [voxels] No point of the surface is further than that from the center of some voxel.
 inline constexpr double kBySurface = 0.9;
 /// [voxels] Plates from here on are held wherever they pass between voxels: a cell's half diagonal
-/// and its mirror image, 1.73, are the longest way that can be free of centres; trilinear values close it at less.
+/// and its mirror image, 1.73, are the longest way that can be free of centers; trilinear values close it at less.
 inline constexpr double kHeld = 1.75;
 /// [voxels] How far the shape must go on to all sides.
 inline constexpr double kGoesOn = 2.0;
@@ -52,7 +52,7 @@ class LostPlaces {
 /// falls through; a wire is broken there, and a crumb gone. Looks for such places from every voxel by the surface; a
 /// plate counts where it goes on for two voxels to all sides, so that the last voxel of a sharp edge does not, a wire
 /// where it does so to both (lost_wires.h).
-/// Wires and crumbs are no reason to refuse: meshes of scans have some.
+/// Wires and crumbs alone are not refused: meshes of scans have some.
 /// @throws Error (kInput) naming a plate, the thickness there and a voxel size that holds it.
 /// @return LostPlaces::wiresAndCrumbs()
 [[nodiscard]] std::string refuseLostPlates(const Field& field, const LevelSet& grid,

@@ -45,8 +45,8 @@ struct BrickView {
   Vec3 shift{0.0};  ///< [voxels] p * per_voxel + shift is 0 in the middle of the box's first cell
   std::uint64_t size[3] = {0, 0, 0};  ///< [voxels] of the box, whole blocks
   double voxel = 0.0;                 ///< [m]
-  Vec3 origin{0.0};                   ///< [m] centre of the box's first voxel
-  double plateau = 0.0;               ///< [m] value out of the band, and least value beyond the box
+  Vec3 origin{0.0};                   ///< [m] center of the box's first voxel
+  double plateau = 0.0;  ///< [m] value outside the band, and least value beyond the box
 };
 
 /// One look into bricks.

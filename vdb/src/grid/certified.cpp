@@ -251,7 +251,8 @@ std::string roughNote(const LevelSet& grid, const BandCertificate& c) {
          " % of its surface has edges, or bends within a voxel of " +
          inMillimetres(grid.info().voxel_size, 3) + ", one place at " +
          inMillimetres(c.slope_place) +
-         "; what is felt there is off by a large share of a voxel; smaller voxels hold it";
+         "; there the surface that is felt is off by a large share of a voxel; smaller voxels hold "
+         "it";
 }
 
 }  // namespace palpate::vdb

@@ -52,7 +52,7 @@ Cell readCell(const Accessor& accessor, const Coord& base) noexcept {
   return cell;
 }
 
-/// Trilinear interpolation of the voxels: one continuous function everywhere. Out of the band the
+/// Trilinear interpolation of the voxels: one continuous function everywhere. Outside the band the
 /// voxels stand at a plateau, and outside of all voxels it rises with the distance to them.
 class AccessorField final : public Field {
  public:
@@ -131,7 +131,7 @@ class AccessorField final : public Field {
 
   LevelSet grid_;
   const Tree& tree_;
-  Vec3 origin_;             ///< [m] centre of voxel (0, 0, 0)
+  Vec3 origin_;             ///< [m] center of voxel (0, 0, 0)
   double voxel_;            ///< [m]
   double metres_per_unit_;  ///< [m]
   float plateau_;           ///< [units]

@@ -93,7 +93,7 @@ void requireSoundBlocks(const openvdb::FloatGrid& grid, const std::string& path)
   }
   if (not_finite) {
     throw inputError("vdb.not_finite",
-                     "grid '" + grid.getName() + "' has voxels that are no numbers", hint, path);
+                     "grid '" + grid.getName() + "' has voxels that are not numbers", hint, path);
   }
 }
 

@@ -24,9 +24,15 @@ constexpr std::size_t kPreamble = 128;
 constexpr std::size_t kLongestText = 4096;
 constexpr int kDeepest = 32;
 
+/// Where values have no representation, nothing else tells these from bytes: of segmentations, then of structure sets.
+constexpr std::array<std::uint32_t, 16> kSequences = {
+    0x00620002, 0x0062000A, 0x0062000F, 0x00209113, 0x00209116, 0x00289110, 0x52009229, 0x52009230,
+    0x30060010, 0x30060012, 0x30060014, 0x30060020, 0x30060039, 0x30060040, 0x30060080, 0x30060086};
+
 class Walker {
  public:
-  Walker(const std::string& bytes, DicomElements& out) : bytes_(bytes), out_(out) {}
+  Walker(const std::string& bytes, DicomElements& out, DicomDepth depth)
+      : bytes_(bytes), out_(out), into_(&out), is_deep_(depth == DicomDepth::kSequencesToo) {}
 
   void walk() {
     at_ = kPreamble + 4;
@@ -124,16 +130,19 @@ class Walker {
       // An unknown sequence within an explicit file is implicit.
       const bool was_explicit = explicit_;
       if (vr == "UN") explicit_ = false;
-      items(bytes_.size(), true, depth);
+      items(bytes_.size(), true, depth, tag);
       explicit_ = was_explicit;
       return;
     }
     const std::size_t begin = at_;
     skip(length, end);
-    if (vr == "SQ") {
+    const bool is_sequence =
+        vr == "SQ" || (is_deep_ && vr.empty() &&
+                       std::find(kSequences.begin(), kSequences.end(), tag) != kSequences.end());
+    if (is_sequence) {
       at_ = begin;
-      items(begin + length, false, depth);
-    } else if (depth == 0 && length <= kLongestText) {
+      items(begin + length, false, depth, tag);
+    } else if (is_deep_ || (depth == 0 && length <= kLongestText)) {
       keep(tag, bytes_.substr(begin, length));
     }
   }
@@ -142,27 +151,35 @@ class Walker {
     if (tag == kTransferSyntax) {
       out_.transfer_syntax = trimmed(value.substr(0, value.find('\0')));
     }
-    out_.texts[tag] = std::move(value);
+    into_->texts[tag] = std::move(value);
   }
 
-  /// The items of a sequence up to `end`, or to where it says that it ends.
-  void items(std::size_t end, bool until_mark, int depth) {
+  /// The items of the sequence `of` up to `end`, or to where it says that it ends.
+  void items(std::size_t end, bool until_mark, int depth, std::uint32_t of) {
+    DicomItem& holder = *into_;
     while (until_mark || at_ < end) {
       const std::uint32_t tag = takeTag();
       const std::uint32_t length = takeLength();
       if (tag == kSequenceEnd && until_mark) return;
       if (tag != kItem) failDamaged("no item in a sequence");
+      if (is_deep_) {
+        into_ = &holder.sequences[of].emplace_back();
+        into_->path = out_.path;
+        into_->big_endian = big_;
+      }
       if (length != kUndefined) {
         const std::size_t item_begin = at_;
         skip(length, end);
         const std::size_t item_end = at_;
         at_ = item_begin;
         while (at_ < item_end) element(item_end, depth + 1);
+        into_ = &holder;
         continue;
       }
       while (number(at_, 2) != 0xFFFE) element(end, depth + 1);
       if (takeTag() != kItemEnd) failDamaged("an item without an end");
       takeLength();
+      into_ = &holder;
     }
   }
 
@@ -188,6 +205,8 @@ class Walker {
 
   const std::string& bytes_;
   DicomElements& out_;
+  DicomItem* into_;  ///< what the present element belongs to
+  bool is_deep_;     ///< sequences are kept as well
   std::size_t at_ = 0;
   std::uint64_t elements_ = 0;
   bool explicit_ = true;
@@ -202,39 +221,65 @@ std::string tagName(std::uint32_t tag) {
 
 }  // namespace
 
-std::string DicomElements::text(std::uint32_t tag) const {
+std::string DicomItem::text(std::uint32_t tag) const {
   const auto at = texts.find(tag);
   if (at == texts.end()) return {};
   return std::string(trimmed(std::string_view(at->second).substr(0, at->second.find('\0'))));
 }
 
-std::vector<double> DicomElements::numbers(std::uint32_t tag, std::size_t count) const {
+std::vector<double> DicomItem::numbers(std::uint32_t tag, std::size_t count) const {
   std::string words = text(tag);
   std::replace(words.begin(), words.end(), '\\', ' ');
   const auto list = numbersIn<double>(words);
   const bool finite =
       list && std::all_of(list->begin(), list->end(), [](double v) { return std::isfinite(v); });
-  if (!finite || list->size() != count) {
+  if (!finite || (count > 0 && list->size() != count)) {
+    constexpr std::size_t kMostShown = 80;
     throw inputError("dicom.value",
-                     tagName(tag) + " is '" + text(tag) + "', not " + std::to_string(count) +
-                         (count == 1 ? " number" : " numbers"),
+                     tagName(tag) + " is '" + text(tag).substr(0, kMostShown) + "', not " +
+                         (count > 0 ? std::to_string(count) + " " : "") +
+                         (count == 1 ? "number" : "numbers"),
                      {}, path);
   }
   return *list;
 }
 
-std::optional<int> DicomElements::shortAt(std::uint32_t tag) const {
+std::vector<int> DicomItem::shorts(std::uint32_t tag, std::size_t count) const {
   const auto at = texts.find(tag);
   if (at == texts.end()) return {};
-  if (at->second.size() != 2) {
-    throw inputError("dicom.value", tagName(tag) + " is not of two bytes", {}, path);
+  if (at->second.size() != 2 * count) {
+    throw inputError(
+        "dicom.value",
+        tagName(tag) + " is not of " +
+            (count == 1 ? "two bytes" : std::to_string(count) + " numbers of two bytes"),
+        {}, path);
   }
-  const auto first = static_cast<unsigned char>(at->second[0]);
-  const auto second = static_cast<unsigned char>(at->second[1]);
-  return big_endian ? first * 256 + second : second * 256 + first;
+  std::vector<int> out;
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto first = static_cast<unsigned char>(at->second[2 * n]);
+    const auto second = static_cast<unsigned char>(at->second[2 * n + 1]);
+    out.push_back(big_endian ? first * 256 + second : second * 256 + first);
+  }
+  return out;
 }
 
-DicomElements readDicomElements(const std::string& path) {
+std::optional<int> DicomItem::shortAt(std::uint32_t tag) const {
+  const std::vector<int> one = shorts(tag, 1);
+  return one.empty() ? std::nullopt : std::optional(one.front());
+}
+
+const std::vector<DicomItem>& DicomItem::items(std::uint32_t tag) const {
+  static const std::vector<DicomItem> none;
+  const auto at = sequences.find(tag);
+  return at == sequences.end() ? none : at->second;
+}
+
+const DicomItem* DicomItem::first(std::uint32_t tag) const {
+  const std::vector<DicomItem>& all = items(tag);
+  return all.empty() ? nullptr : &all.front();
+}
+
+DicomElements readDicomElements(const std::string& path, DicomDepth depth) {
   std::error_code failure;
   std::ifstream file;
   if (std::filesystem::is_regular_file(path, failure)) file.open(path, std::ios::binary);
@@ -254,7 +299,7 @@ DicomElements readDicomElements(const std::string& path) {
   }
   DicomElements out;
   out.path = path;
-  Walker(bytes, out).walk();
+  Walker(bytes, out, depth).walk();
   return out;
 }
 

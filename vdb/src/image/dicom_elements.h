@@ -15,36 +15,54 @@ struct PixelPart {
   std::uint64_t size = 0;
 };
 
+/// A data set: the whole of a file, or an item of a sequence.
+struct DicomItem {
+  std::string path;  ///< of its file
+  bool big_endian = false;
+  std::map<std::uint32_t, std::string> texts;  ///< values, without padding
+  std::map<std::uint32_t, std::vector<DicomItem>> sequences;
+
+  [[nodiscard]] bool has(std::uint32_t tag) const { return texts.contains(tag); }
+  /// The text, without the blanks around it; empty if there is none.
+  [[nodiscard]] std::string text(std::uint32_t tag) const;
+  /// The numbers of a text such as "1\-2.5"; `count` 0: however many there are. @throws Error (kInput, dicom.value)
+  [[nodiscard]] std::vector<double> numbers(std::uint32_t tag, std::size_t count) const;
+  /// An unsigned short. @throws Error (kInput, dicom.value)
+  [[nodiscard]] std::optional<int> shortAt(std::uint32_t tag) const;
+  /// So many unsigned shorts; empty if the element is not there. @throws Error (kInput, dicom.value)
+  [[nodiscard]] std::vector<int> shorts(std::uint32_t tag, std::size_t count) const;
+  /// The items of a sequence; empty if it is not there.
+  [[nodiscard]] const std::vector<DicomItem>& items(std::uint32_t tag) const;
+  /// The first of them; null if there is none.
+  [[nodiscard]] const DicomItem* first(std::uint32_t tag) const;
+};
+
 /// GDCM takes what is missing of a file for zeros, or ends the process on an assertion. So every
 /// file is walked by this code: every length must fit, every sequence end. GDCM sees none of these
-/// bytes but those of packed pixels.
-struct DicomElements {
-  std::string path;
-  std::map<std::uint32_t, std::string>
-      texts;  ///< short values of the outermost level, without padding
+/// bytes but those of packed pixels. The outermost level has short values only, and no sequences, unless they are asked
+/// for.
+struct DicomElements : DicomItem {
   std::string transfer_syntax;
-  bool big_endian = false;
   bool has_pixels = false;
   bool packed = false;            ///< pixel data in fragments
   bool pixels_are_words = false;  ///< written as words of 16 bits (OW)
   std::uint64_t pixel_bytes = 0;  ///< of pixel data that are not packed
   std::vector<PixelPart> pixels;  ///< one part, or the fragments with their table of offsets first
-
-  [[nodiscard]] bool has(std::uint32_t tag) const { return texts.contains(tag); }
-  /// The text, without the blanks around it; empty if there is none.
-  [[nodiscard]] std::string text(std::uint32_t tag) const;
-  /// The numbers of a text such as "1\-2.5". @throws Error (kInput, dicom.value)
-  [[nodiscard]] std::vector<double> numbers(std::uint32_t tag, std::size_t count) const;
-  /// An unsigned short. @throws Error (kInput, dicom.value)
-  [[nodiscard]] std::optional<int> shortAt(std::uint32_t tag) const;
 };
 
+enum class DicomDepth { kOutermost, kSequencesToo };
+
 /// @throws Error (kInput): dicom.format, dicom.truncated, dicom.damaged, dicom.encoding.
-[[nodiscard]] DicomElements readDicomElements(const std::string& path);
+[[nodiscard]] DicomElements readDicomElements(const std::string& path,
+                                              DicomDepth depth = DicomDepth::kOutermost);
 
 namespace dicom {
 
 inline constexpr std::uint32_t kStorageClass = 0x00020002;
+inline constexpr std::uint32_t kSopClass = 0x00080016;
+inline constexpr std::uint32_t kCodeValue = 0x00080100;
+inline constexpr std::uint32_t kCodeScheme = 0x00080102;
+inline constexpr std::uint32_t kCodeMeaning = 0x00080104;
 inline constexpr std::uint32_t kModality = 0x00080060;
 inline constexpr std::uint32_t kSeriesDescription = 0x0008103E;
 inline constexpr std::uint32_t kGantryTilt = 0x00181120;

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "image/dicom_segments.h"
 #include "image/readers.h"
 #include "palpate/core/error.h"
 #include "palpate/core/text.h"
@@ -213,19 +214,29 @@ bool needsNoPixels(const DicomElements& e) {
                      [&](const char* group) { return kind.starts_with(images + group); });
 }
 
-/// The series of the folder by UID, and how many files are not slices.
+/// How many files of a folder are not slices.
+struct LeftOut {
+  std::size_t without_pixels = 0;
+  std::size_t segmentations = 0;
+};
+
+/// The series of the folder by UID, and what is not of one.
 std::map<std::string, std::vector<DicomElements>> seriesIn(const fs::path& folder,
-                                                           std::size_t& without_pixels) {
+                                                           LeftOut& left_out) {
   std::map<std::string, std::vector<DicomElements>> out;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (!entry.is_regular_file() || !isDicomFile(entry.path().string())) continue;
     DicomElements elements = readDicomElements(entry.path().string());
+    if (isDicomSegmentation(elements)) {
+      ++left_out.segmentations;
+      continue;
+    }
     if (!elements.has_pixels) {
       if (!needsNoPixels(elements)) {
         throw inputError("dicom.truncated", "the file has no pixel data",
                          "fetch or write the file again", elements.path);
       }
-      ++without_pixels;
+      ++left_out.without_pixels;
       continue;
     }
     out[elements.text(kSeriesUid)].push_back(std::move(elements));
@@ -234,13 +245,13 @@ std::map<std::string, std::vector<DicomElements>> seriesIn(const fs::path& folde
 }
 
 std::vector<DicomElements> chosenSeries(const std::string& path, const std::string& wanted,
-                                        std::size_t& without_pixels) {
+                                        LeftOut& left_out) {
   const bool is_folder = fs::is_directory(path);
   fs::path folder = is_folder ? fs::path(path) : fs::path(path).parent_path();
   if (folder.empty()) folder = ".";
   std::string uid = wanted;
   if (!is_folder && uid.empty()) uid = readDicomElements(path).text(kSeriesUid);
-  auto series = seriesIn(folder, without_pixels);
+  auto series = seriesIn(folder, left_out);
   if (series.empty()) {
     throw inputError("dicom.missing", "the folder holds no DICOM images", {}, path);
   }
@@ -287,9 +298,9 @@ DicomSeries findDicomSeries(const std::string& path, const std::string& wanted) 
   std::error_code failure;
   if (!fs::exists(path, failure))
     throw inputError("dicom.missing", "no such file or folder", {}, path);
-  std::size_t without_pixels = 0;
+  LeftOut left_out;
   std::vector<Slice> slices;
-  for (DicomElements& elements : chosenSeries(path, wanted, without_pixels)) {
+  for (DicomElements& elements : chosenSeries(path, wanted, left_out)) {
     slices.push_back(sliceOf(std::move(elements)));
   }
   // By name first: the errors do not depend on the folder's order.
@@ -321,9 +332,13 @@ DicomSeries findDicomSeries(const std::string& path, const std::string& wanted) 
   }
   out.size = {columns, rows, static_cast<int>(slices.size())};
   tell(slices, step, out.notes);
-  if (without_pixels > 0) {
-    out.notes.push_back(std::to_string(without_pixels) +
+  if (left_out.without_pixels > 0) {
+    out.notes.push_back(std::to_string(left_out.without_pixels) +
                         " DICOM files without pixels are passed over");
+  }
+  if (left_out.segmentations > 0) {
+    out.notes.push_back(std::to_string(left_out.segmentations) +
+                        " DICOM segmentations are passed over: named as a file they are read");
   }
   for (Slice& s : slices) out.slices.push_back(std::move(s.elements));
   return out;

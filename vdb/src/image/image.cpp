@@ -7,7 +7,7 @@
 namespace palpate::vdb {
 
 double Image::interpolate(const Vec3& world) const noexcept {
-  // A point computed to lie on the box of centres may miss it by round-off; it still counts as in.
+  // A point computed to lie on the box of centers may miss it by round-off; it still counts as in.
   constexpr double kRoundOff = 1e-9;  // [voxels]
   const Vec3 index = toIndex(world);
   int cell[3];

@@ -45,8 +45,8 @@ bool looksLikeDistances(const Image& image) {
 
 std::string distancesNote(const Image& image) {
   if (!looksLikeDistances(image)) return {};
-  return "its values look like signed distances in mm, negative inside; what is greater than a "
-         "threshold is the outside of these";
+  return "its values look like signed distances in mm, negative inside; their outside is "
+         "greater than a threshold";
 }
 
 }  // namespace palpate::vdb

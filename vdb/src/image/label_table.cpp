@@ -119,7 +119,7 @@ class TableReader {
     const std::size_t close = line.rfind('"');
     if (columns.size() < 8 || open == close || columns[7].front() != '"' ||
         close + 1 != line.size()) {
-      throw fail("labels.table_row", "this is no line of ITK-SNAP's",
+      throw fail("labels.table_row", "this is not a line of ITK-SNAP's",
                  "index R G B A visible mesh \"name\"");
     }
     for (std::size_t i = 1; i < 7; ++i) {
@@ -145,7 +145,7 @@ class TableReader {
     add(fields[0], fields.size() > 1 ? fields[1] : "", color);
   }
 
-  /// Where a header line says that the colours are.
+  /// Where a header line says that the colors are.
   void findColors(const std::vector<std::string>& fields) {
     for (const char* name : {"color_r", "color_g", "color_b"}) {
       for (std::size_t i = 2; i < fields.size(); ++i) {
@@ -193,7 +193,7 @@ class TableReader {
       const auto c = numberIn<double>(color[i]);
       if (!c || !(*c >= 0.0 && *c <= 255.0)) {
         throw fail("labels.table_color",
-                   "`" + color[i] + "` is no colour: red, green and blue are from 0 to 255");
+                   "`" + color[i] + "` is not a color: red, green and blue are from 0 to 255");
       }
       rgb[i] = static_cast<float>(*c / 255.0);
     }

@@ -61,7 +61,7 @@ std::vector<float> readText(const MetaImageHeader& header, const std::string& pa
     const auto value = numberIn<double>(word);
     if (!value) {
       throw fail(path, "metaimage.damaged",
-                 "`" + word.substr(0, 40) + "` among the voxels is no number");
+                 "`" + word.substr(0, 40) + "` among the voxels is not a number");
     }
     if (met < passed) continue;
     values.push_back(static_cast<float>(*value * header.coding.slope + header.coding.intercept));

@@ -21,7 +21,7 @@ constexpr std::size_t kLongestLine = std::size_t{1} << 20U;
 class Fields {
  public:
   explicit Fields(const std::string& path) : path_(path) {
-    const ByteStream whole(path, "metaimage", 0, Packing::kNone);  // refuses what is no file
+    const ByteStream whole(path, "metaimage", 0, Packing::kNone);  // refuses anything but a file
     std::ifstream file(path, std::ios::binary);
     std::string line;
     for (int number = 1; std::getline(file, line); ++number) {
@@ -211,7 +211,7 @@ void placeInSpace(const Fields& fields, std::size_t dimensions, MetaImageHeader&
   const std::string offset_key = fields.key({"Offset", "Origin", "Position"});
   if (offset_key.empty()) {
     out.notes.emplace_back(
-        "the header has no Offset: the first voxel's centre is taken as 0, 0, 0");
+        "the header has no Offset: the first voxel's center is taken as 0, 0, 0");
   } else {
     const auto offset = fields.numbers<double>(offset_key, dimensions, "metaimage.offset");
     lps.origin = {offset[0], offset[1], offset[2]};

@@ -35,7 +35,8 @@ std::vector<float> readText(const NrrdHeader& header, Oddities& odd) {
     const auto value =
         lower == "nan" ? std::numeric_limits<double>::quiet_NaN() : numberIn<double>(word);
     if (!value) {
-      throw inputError("nrrd.damaged", "`" + word.substr(0, 40) + "` among the voxels is no number",
+      throw inputError("nrrd.damaged",
+                       "`" + word.substr(0, 40) + "` among the voxels is not a number",
                        "fetch or write the file again", header.data_path);
     }
     values.push_back(static_cast<float>(*value));
@@ -148,7 +149,8 @@ Image readNrrd(const std::string& path, const ImageOptions& options) try {
     }
     if (!header.other) layers.push_back(std::move(image.values));
     image.notes.insert(image.notes.end(), segments.notes().begin(), segments.notes().end());
-    image.values = segments.merged(layers, image.size, image.notes);
+    image.values =
+        segments.merged(layers, image.size, std::abs(glm::determinant(image.axes)), image.notes);
     image.labels = segments.table();
   } else if (header.other) {
     image.values = volume(image.values, header, frame);
@@ -174,14 +176,7 @@ ImageInfo readNrrdInfo(const std::string& path, const ImageOptions& options) {
   return info;
 }
 
-LabelCodes readLabelCodes(const std::string& path, const ImageOptions& options) {
-  const auto ends_in = [&](std::string_view extension) {
-    return path.size() >= extension.size() &&
-           std::equal(
-               extension.begin(), extension.end(), path.end() - static_cast<long>(extension.size()),
-               [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
-  };
-  if (!ends_in(".nrrd") && !ends_in(".nhdr")) return {};
+LabelCodes readNrrdCodes(const std::string& path, const ImageOptions& options) {
   return segmentsOf(readNrrdHeader(path, options), path, options).codes();
 }
 

@@ -58,7 +58,7 @@ Error NrrdFields::fail(const char* code, const std::string& name, std::string me
 }
 
 NrrdFields readNrrdFields(const std::string& path) {
-  ByteStream(path, "nrrd", 0, Packing::kNone);  // refuses what is no file
+  ByteStream(path, "nrrd", 0, Packing::kNone);  // refuses anything but a file
   std::ifstream file(path, std::ios::binary);
   char magic[8] = {};
   file.read(magic, sizeof magic);
@@ -92,7 +92,7 @@ NrrdFields readNrrdFields(const std::string& path) {
     if (line.size() > kLongestLine) throw fail("a line of the header is too long");
     const std::size_t colon = line.find(':');
     if (colon == std::string::npos || colon + 1 >= line.size()) {
-      throw fail("`" + line.substr(0, 40) + "` is no line of a NRRD header");
+      throw fail("`" + line.substr(0, 40) + "` is not a line of a NRRD header");
     }
     if (line[colon + 1] == '=') {
       out.pairs[line.substr(0, colon)] =
@@ -101,7 +101,7 @@ NrrdFields readNrrdFields(const std::string& path) {
     }
     const std::string key = canonical(std::string_view(line).substr(0, colon));
     if (std::find(std::begin(kFields), std::end(kFields), key) == std::end(kFields)) {
-      throw fail("`" + line.substr(0, 40) + "` is no line of a NRRD header");
+      throw fail("`" + line.substr(0, 40) + "` is not a line of a NRRD header");
     }
     if (!out.fields.emplace(key, trimmed(std::string_view(line).substr(colon + 1))).second) {
       throw fail("the field '" + key + "' is given twice");

@@ -60,7 +60,7 @@ Vec3 readOrigin(const NrrdFields& fields, std::vector<std::string>& notes) {
   const std::string* const text = fields.find("spaceorigin");
   if (text == nullptr) {
     notes.emplace_back(
-        "the header has no space origin: the first voxel's centre is taken as 0, 0, 0");
+        "the header has no space origin: the first voxel's center is taken as 0, 0, 0");
     return Vec3(0.0);
   }
   std::string numbers = *text;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "image/header_text.h"
+#include "image/structures.h"
 #include "palpate/core/error.h"
 
 namespace palpate::vdb {
@@ -153,11 +154,13 @@ LabelCodes Segments::codes() const {
 }
 
 std::vector<float> Segments::merged(const std::vector<std::vector<float>>& layers,
-                                    const std::array<int, 3>& size,
+                                    const std::array<int, 3>& size, double voxel_volume,
                                     std::vector<std::string>& notes) const {
   std::vector<std::map<int, const Segment*>> by_value(layers.size());
   for (const Segment& s : segments_) by_value[static_cast<std::size_t>(s.layer)][s.stored] = &s;
   std::vector<float> out(layers.front().size(), 0.0F);
+  Overlaps overlaps;
+  std::vector<const Segment*> here;
   std::uint64_t shared = 0;
   std::uint64_t unnamed = 0;
   std::size_t at = 0;
@@ -165,7 +168,7 @@ std::vector<float> Segments::merged(const std::vector<std::vector<float>>& layer
     for (int j = 0; j < size[1]; ++j) {
       for (int i = 0; i < size[0]; ++i, ++at) {
         const Segment* last = nullptr;
-        bool is_shared = false;
+        here.clear();
         for (std::size_t layer = 0; layer < layers.size(); ++layer) {
           const float value = layers[layer][at];
           if (value == 0.0F) continue;
@@ -195,18 +198,20 @@ std::vector<float> Segments::merged(const std::vector<std::vector<float>>& layer
                          "save the segmentation again");
             }
           }
-          is_shared = is_shared || last != nullptr;
+          here.push_back(&s);
           if (last == nullptr || last->number < s.number) last = &s;
         }
-        shared += is_shared ? 1 : 0;
-        if (last != nullptr) out[at] = static_cast<float>(last->label);
+        if (last == nullptr) continue;
+        shared += here.size() > 1 ? 1 : 0;
+        for (const Segment* const one : here) {
+          if (one != last) overlaps.add(last->label, one->label, 1);
+        }
+        out[at] = static_cast<float>(last->label);
       }
     }
   }
-  if (shared > 0) {
-    notes.push_back(std::to_string(shared) +
-                    " voxels are in several segments: the later segment of the file has them");
-  }
+  overlaps.tell(shared, "are in several segments, and the later segment of the file has each",
+                table().names, voxel_volume, notes);
   if (unnamed > 0) {
     notes.push_back(std::to_string(unnamed) + " voxels have values that no segment has");
   }

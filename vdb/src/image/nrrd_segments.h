@@ -1,5 +1,5 @@
 #pragma once
-/// Segments of a .seg.nrrd file: names, colours, and which voxels are whose.
+/// Segments of a .seg.nrrd file: names, colors, and which voxels are whose.
 
 #include <array>
 #include <map>
@@ -38,9 +38,10 @@ class Segments {
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   /// One label image out of the layers, each of `size`. Where segments overlap, the later one in the file has the
-  /// voxel. @throws Error (kInput, nrrd.segment, nrrd.segment_extent).
+  /// voxel; a note says how much that is. `voxel_volume` [m3].
+  /// @throws Error (kInput, nrrd.segment, nrrd.segment_extent).
   [[nodiscard]] std::vector<float> merged(const std::vector<std::vector<float>>& layers,
-                                          const std::array<int, 3>& size,
+                                          const std::array<int, 3>& size, double voxel_volume,
                                           std::vector<std::string>& notes) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace palpate::vdb {
 
-/// Voxel (i, j, k) has its centre at axes (i, j, k) + origin.
+/// Voxel (i, j, k) has its center at axes (i, j, k) + origin.
 struct Place {
   Mat3 axes{1.0};
   Vec3 origin{0.0, 0.0, 0.0};

@@ -2,13 +2,14 @@
 #include <filesystem>
 
 #include "image/header_text.h"
+#include "image/masks.h"
 #include "image/readers.h"
 #include "palpate/core/error.h"
 
 namespace palpate::vdb {
 namespace {
 
-enum class Format { kNifti, kNrrd, kMetaImage, kDicom };
+enum class Format { kNifti, kNrrd, kMetaImage, kDicom, kMasks };
 
 bool endsWith(const std::string& path, std::initializer_list<const char*> extensions) {
   return std::any_of(extensions.begin(), extensions.end(),
@@ -18,7 +19,8 @@ bool endsWith(const std::string& path, std::initializer_list<const char*> extens
 std::optional<Format> formatOf(const std::string& path) {
   std::error_code failure;
   if (std::filesystem::is_directory(path, failure)) {
-    return isDicomFolder(path) ? std::optional(Format::kDicom) : std::nullopt;
+    if (isDicomFolder(path)) return Format::kDicom;
+    return isMaskFolder(path) ? std::optional(Format::kMasks) : std::nullopt;
   }
   if (endsWith(path, {".nii", ".nii.gz"})) return Format::kNifti;
   if (endsWith(path, {".nrrd", ".nhdr"})) return Format::kNrrd;
@@ -29,16 +31,17 @@ std::optional<Format> formatOf(const std::string& path) {
   return {};
 }
 
-Format requireFormat(const std::string& path) {
+Format requireFormat(const std::string& path, const ImageOptions& options) {
+  if (!options.with.empty()) return Format::kMasks;
   if (const auto format = formatOf(path)) return *format;
   std::error_code failure;
   const bool is_folder = std::filesystem::is_directory(path, failure);
   throw inputError(
       is_folder ? "dicom.missing" : "image.format",
-      is_folder ? "the folder holds no DICOM images"
+      is_folder ? "the folder holds no DICOM images and no masks"
                 : "cannot tell from its name what kind of image this is",
-      "known are NIfTI (.nii .nii.gz), NRRD (.nrrd .nhdr), MetaImage (.mha .mhd) and folders of "
-      "DICOM series",
+      "known are NIfTI (.nii .nii.gz), NRRD (.nrrd .nhdr), MetaImage (.mha .mhd), and folders of "
+      "DICOM series or of masks",
       path);
 }
 
@@ -48,6 +51,11 @@ void checkOptions(Format format, const ImageOptions& options, const std::string&
     if (!given) return;
     throw inputError("image.option", what + " applies to " + formats, "leave it out", path);
   };
+  refuse(format != Format::kDicom && !options.series.empty(), "a series", "DICOM folders");
+  // Each mask is looked at by itself.
+  if (format == Format::kMasks) return;
+  refuse(format != Format::kDicom && !options.priority.empty(), "a priority",
+         "structures that were segmented one by one");
   const bool nifti = format == Format::kNifti;
   const bool nrrd = format == Format::kNrrd;
   const AffineChoice affine = options.affine;
@@ -58,7 +66,6 @@ void checkOptions(Format format, const ImageOptions& options, const std::string&
   refuse(!nrrd && options.space != Space::kStated, "the space of an image", "NRRD files");
   refuse(format == Format::kDicom && options.frame.has_value(), "a frame",
          "files of four dimensions");
-  refuse(format != Format::kDicom && !options.series.empty(), "a series", "DICOM folders");
 }
 
 }  // namespace
@@ -66,7 +73,7 @@ void checkOptions(Format format, const ImageOptions& options, const std::string&
 bool isImageFile(const std::string& path) { return formatOf(path).has_value(); }
 
 Image readImage(const std::string& path, const ImageOptions& options) {
-  const Format format = requireFormat(path);
+  const Format format = requireFormat(path, options);
   checkOptions(format, options, path);
   switch (format) {
     case Format::kNrrd:
@@ -75,6 +82,8 @@ Image readImage(const std::string& path, const ImageOptions& options) {
       return readMetaImage(path, options);
     case Format::kDicom:
       return readDicom(path, options);
+    case Format::kMasks:
+      return readMasks(path, options);
     case Format::kNifti:
       break;
   }
@@ -82,7 +91,7 @@ Image readImage(const std::string& path, const ImageOptions& options) {
 }
 
 ImageInfo readImageInfo(const std::string& path, const ImageOptions& options) {
-  const Format format = requireFormat(path);
+  const Format format = requireFormat(path, options);
   checkOptions(format, options, path);
   switch (format) {
     case Format::kNrrd:
@@ -91,10 +100,27 @@ ImageInfo readImageInfo(const std::string& path, const ImageOptions& options) {
       return readMetaImageInfo(path, options);
     case Format::kDicom:
       return readDicomInfo(path, options);
+    case Format::kMasks:
+      return readMasksInfo(path, options);
     case Format::kNifti:
       break;
   }
   return readNiftiInfo(path, options);
+}
+
+LabelCodes readLabelCodes(const std::string& path, const ImageOptions& options) {
+  switch (requireFormat(path, options)) {
+    case Format::kNrrd:
+      return readNrrdCodes(path, options);
+    case Format::kMasks:
+      return readMaskCodes(path, options);
+    case Format::kDicom:
+      return readDicomCodes(path, options);
+    case Format::kMetaImage:
+    case Format::kNifti:
+      break;
+  }
+  return {};
 }
 
 }  // namespace palpate::vdb

@@ -1,12 +1,12 @@
 #pragma once
-/// Voxels that are not known take what their neighbours have.
+/// Voxels that are not known take what their neighbors have.
 
 #include <array>
 #include <vector>
 
 namespace palpate::vdb {
 
-/// Every NaN among the `size` voxels (the first index running fastest) gets the mean of its known neighbours
+/// Every NaN among the `size` voxels (the first index running fastest) gets the mean of its known neighbors
 /// across faces, ring by ring outwards. False if nothing is known.
 [[nodiscard]] bool fillUnknown(const std::array<int, 3>& size, std::vector<float>& values);
 

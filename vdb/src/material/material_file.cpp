@@ -81,7 +81,7 @@ double valueScale(const openvdb::GridBase& grid, const MaterialGridRequest& requ
   }
   const Quantity one = parseQuantity("1 " + unit, *request.dimension);
   if (one.status != Quantity::Status::kOk) {
-    throw inputError("vdb.value_unit", name + " is in '" + unit + "', which is no unit of it",
+    throw inputError("vdb.value_unit", name + " is in '" + unit + "', which is not a unit of it",
                      "its unit must be " + known, path);
   }
   return one.si;
@@ -133,7 +133,7 @@ Image denseOf(const openvdb::FloatGrid& grid, double metres, double scale,
   for (auto on = grid.cbeginValueOn(); on; ++on) {
     const float value = *on;
     if (!std::isfinite(value)) {
-      throw inputError("vdb.not_finite", name + " has voxels that are no numbers",
+      throw inputError("vdb.not_finite", name + " has voxels that are not numbers",
                        "the file may be damaged; write it again", path);
     }
     const auto si = static_cast<float>(static_cast<double>(value) * scale);

@@ -263,7 +263,7 @@ MaterialGrid::Place MaterialGrid::placeOf(const Vec3& p) const noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const int last = blocks.size[a] - 1;
-    // Half a voxel beyond the outermost centre the three voxels are one, and so on from there.
+    // Half a voxel beyond the outermost center the three voxels are one, and so on from there.
     const double u = std::clamp(at[axis], -0.5, last + 0.5);
     // From the first voxel's outer face; not below zero, so that cutting it off rounds it down.
     const double voxels = u + 0.5;

@@ -225,7 +225,7 @@ double angleAt(const Vec3& corner, const Vec3& b, const Vec3& c) {
 }
 
 /// Turns each part as the solid has it that was baked (one that is inside out is solid all the same, one that is turned within
-/// another is a cavity), and drops those that are walls within the solid. Vertices are in metres.
+/// another is a cavity), and drops those that are walls within the solid. Vertices are in meters.
 void keepSurface(Solid& solid, const Field& baked, double voxel) {
   std::vector<double> outward(solid.parts.size(), 0.0);
   std::vector<bool> is_surface(solid.parts.size(), false);

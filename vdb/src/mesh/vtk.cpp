@@ -107,7 +107,7 @@ class Vtk {
         *value > static_cast<double>(input_.text.size())) {
       // Each number takes a byte at least.
       if (value && *value > static_cast<double>(input_.text.size())) refuseEnd();
-      refuse("'" + word.substr(0, 40) + "' is no count");
+      refuse("'" + word.substr(0, 40) + "' is not a count");
     }
     return static_cast<std::size_t>(*value);
   }
@@ -266,9 +266,9 @@ class Vtk {
 Mesh readVtk(const std::string& path, double metres_per_unit) {
   const std::string bytes = readBytes(path);
   if (!bytes.starts_with("# vtk DataFile Version ")) {
-    throw inputError("mesh.unreadable",
-                     "this is no legacy VTK file: it does not begin with '# vtk DataFile Version'",
-                     "", path);
+    throw inputError(
+        "mesh.unreadable",
+        "this is not a legacy VTK file: it does not begin with '# vtk DataFile Version'", "", path);
   }
   return Vtk(bytes, path, metres_per_unit).read();
 }

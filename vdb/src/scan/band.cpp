@@ -13,7 +13,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// A voxel centre may lie on the surface; in a part one voxel thin, and beside it, it must not, lest the part
+/// A voxel center may lie on the surface; in a part one voxel thin, and beside it, it must not, lest the part
 /// vanish or swell.
 constexpr double kHold = 0.3;
 constexpr double kBeside = 1.8;  ///< voxels that share a corner

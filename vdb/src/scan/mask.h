@@ -11,7 +11,7 @@
 namespace palpate::vdb {
 
 /// Inside or outside for each voxel of a box of an image, in a frame of outside voxels one thick,
-/// so that every voxel of the box has its neighbours.
+/// so that every voxel of the box has its neighbors.
 ///
 /// Two inside voxels hang together across a face, two outside voxels across a face or an edge.
 struct Mask {

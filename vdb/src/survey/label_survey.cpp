@@ -17,7 +17,7 @@ namespace palpate::vdb {
 namespace {
 
 constexpr int kMostLabel = 65535;
-/// Grey values change with nearly every voxel, labels with one in dozens.
+/// Gray values change with nearly every voxel, labels with one in dozens.
 constexpr std::uint64_t kVoxelsPerRun = 4;
 constexpr std::size_t kFewLabels = 64;
 
@@ -259,7 +259,7 @@ std::map<int, std::uint64_t> countLabels(const Image& image) {
     all.wrong = std::min(all.wrong, part.wrong);
   });
   if (all.wrong < image.values.size()) {
-    failNotLabels(image, std::string("this is no label image: ") + placeOf(image, all.wrong) +
+    failNotLabels(image, std::string("this is not a label image: ") + placeOf(image, all.wrong) +
                              " is " + shortNumber(image.values[all.wrong], 9) +
                              ", and labels are whole numbers from 0 to " +
                              std::to_string(kMostLabel));
@@ -269,7 +269,7 @@ std::map<int, std::uint64_t> countLabels(const Image& image) {
     if (all.of[label] > 0) counts.emplace(static_cast<int>(label), all.of[label]);
   }
   if (counts.size() > kFewLabels && all.runs * kVoxelsPerRun > image.values.size()) {
-    failNotLabels(image, "this is no label image: it has " + std::to_string(counts.size()) +
+    failNotLabels(image, "this is not a label image: it has " + std::to_string(counts.size()) +
                              " values, which change with almost every voxel");
   }
   return counts;

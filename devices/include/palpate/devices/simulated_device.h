@@ -2,6 +2,7 @@
 /// SimulatedDevice: a device with a mass, friction, encoders and motors, in a hand that feels the
 /// force.
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -21,6 +22,14 @@ struct SimulationSettings {
   int delay = 0;
   bool realtime = false;     ///< a reading is of when it is asked for, not of 1 / rate later
   Vec3 push{0.0, 0.0, 0.0};  ///< [N] constant on the tip: a weight, or what preloads a contact
+};
+
+/// A hand whose way nobody knows beforehand.
+struct LiveHand {
+  /// [m] Where the hand wants to be at a time [s] since open(). Asked once for each reading, in the servo thread and at times that
+  /// rise, after once at 0: it must not allocate, lock, throw or block, and must be finite.
+  std::function<Vec3(double)> position;
+  double end = kInfinity;  ///< [s] when the hand lets go, and the device says kEnd
 };
 
 /// What went where since open(), of all axes [J].
@@ -51,12 +60,14 @@ class PALPATE_EXPORT SimulatedDevice final : public Device {
  public:
   static constexpr int kMostDelay = 64;
 
-  /// `path`: where the hand wants to go, in `frame`, at times that rise.
+  /// `path`, `hand`: where the hand wants to go, in `frame`, at times that rise.
   /// @throws Error (kUsage, device.model, device.rate, device.delay, device.push) for settings out
   /// of range; (kInput, path.empty, path.time, path.not_finite) for the path.
   SimulatedDevice(const SimulationSettings& settings, Path path,
                   DeviceFrame frame = DeviceFrame::kDevice);
   SimulatedDevice(const SimulationSettings& settings, PathFormula path,
+                  DeviceFrame frame = DeviceFrame::kDevice);
+  SimulatedDevice(const SimulationSettings& settings, LiveHand hand,
                   DeviceFrame frame = DeviceFrame::kDevice);
   ~SimulatedDevice() override;
 

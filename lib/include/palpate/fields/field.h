@@ -25,7 +25,7 @@ struct FieldJet {
   double value = 0.0;            ///< [m]
   Vec3 gradient{0.0, 0.0, 0.0};  ///< [-]
   Mat3 hessian{0.0};             ///< [1/m] symmetric
-  bool in_band = true;           ///< as in FieldSample; out of band the Hessian is zero too
+  bool in_band = true;           ///< as in FieldSample; outside the band the Hessian is zero too
 };
 
 /// Points that are asked for their values together, so that the work on them can share instructions: a
@@ -74,7 +74,7 @@ class PALPATE_EXPORT Field {
   virtual ~Field() = default;
 
   /// Value and gradient at `p` [m, the field's frame]. Where the gradient is not defined (a sphere's
-  /// centre, a box's edge) it is one fixed unit vector of the generalised gradient; never NaN for
+  /// center, a box's edge) it is one fixed unit vector of the generalized gradient; never NaN for
   /// finite `p`. For a non-finite `p` the value is NaN or infinite and must not be used.
   [[nodiscard]] virtual FieldSample sample(const Vec3& p) const noexcept = 0;
 

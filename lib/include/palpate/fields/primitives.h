@@ -10,7 +10,7 @@ namespace palpate {
 /// Everything on the side of `point` that `normal` points away from. Exact.
 [[nodiscard]] PALPATE_EXPORT FieldPtr halfSpace(const Vec3& point, const Vec3& normal);
 
-/// Ball. Exact; the gradient at the centre is +x.
+/// Ball. Exact; the gradient at the center is +x.
 [[nodiscard]] PALPATE_EXPORT FieldPtr sphere(const Vec3& center, double radius);
 
 /// Axis-aligned box with full edge lengths `size`. Exact, inside and out.

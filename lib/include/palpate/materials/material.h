@@ -146,7 +146,7 @@ struct Texture {
   double wavelength = 0.0;  ///< [m] positive if there is an amplitude
 
   /// [m] wavelength / 2 pi. Higher bumps would change the force along the wall, by at most
-  /// stiffness * amplitude * k per metre, faster than pressing changes it: the wall would be stiffer
+  /// stiffness * amplitude * k per meter, faster than pressing changes it: the wall would be stiffer
   /// sideways than a hand that is stable on the wall itself can hold.
   [[nodiscard]] static constexpr double highestAmplitude(double wavelength) noexcept {
     return wavelength / (2.0 * std::numbers::pi);

@@ -21,7 +21,7 @@ enum class Dimension {
   kMass,        ///< kg
 };
 
-/// Metres in one `unit` ("mm", "cm", "m", "um", "in"); nothing if the unit is not known.
+/// Meters in one `unit` ("mm", "cm", "m", "um", "in"); nothing if the unit is not known.
 [[nodiscard]] PALPATE_EXPORT std::optional<double> metresPer(std::string_view unit) noexcept;
 
 /// What became of a quantity's text.

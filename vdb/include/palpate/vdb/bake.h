@@ -47,7 +47,7 @@ struct BakeOptions {
   double smooth_angle = 0.0;
 };
 
-/// Voxel (0, 0, 0) has its centre at the origin. Values are the field's own if it is exact or a
+/// Voxel (0, 0, 0) has its center at the origin. Values are the field's own if it is exact or a
 /// bound; the exact distance by projection if it is implicit (footPoint(); S / |grad S| where no
 /// nearest point is found); and, unless it is exact, more than that far out, so that the band ends
 /// within its half width of the field's bounds.

@@ -33,7 +33,7 @@ struct BandCertificate {
 };
 
 /// Least BandCertificate::within, in voxels. The proxy is on the surface to far less than that, and a search that comes from farther
-/// off goes on by the bound on the distance that points out of the band have. A band of 6 voxels whose surface is smooth has
+/// off goes on by the bound on the distance that points outside it have. A band of 6 voxels whose surface is smooth has
 /// 0.8 where it is oblique to all axes, and less by as much as slopes are steeper.
 inline constexpr double kLeastWithin = 0.1;
 /// Most of BandCertificate::steepest. Voxels that differ by no more than the way between them give a cubic spline whose bound along

@@ -26,20 +26,20 @@ using NameTable = std::map<int, std::string>;
 /// Red, green, blue, each from 0 to 1.
 using LabelColor = std::array<float, 3>;
 
-/// What is known of label values; not all that have a name need have a colour.
+/// What is known of label values; not all that have a name need have a color.
 struct LabelTable {
   NameTable names;
   std::map<int, LabelColor> colors;
 };
 
-/// A 3-D image. Voxel (i, j, k) is values[i + nx (j + ny k)] and its centre lies at affine applied
+/// A 3-D image. Voxel (i, j, k) is values[i + nx (j + ny k)] and its center lies at affine applied
 /// to (i, j, k): RAS, [m]. Sheared, oblique and left-handed affines are kept as they are.
 struct PALPATE_EXPORT Image {
   std::string source;
   std::array<int, 3> size{};
   std::vector<float> values;   ///< after the file's own slope and intercept
   Mat3 axes{1.0};              ///< [m per voxel] columns: step along i, j, k
-  Vec3 origin{0.0, 0.0, 0.0};  ///< [m] centre of voxel (0, 0, 0)
+  Vec3 origin{0.0, 0.0, 0.0};  ///< [m] center of voxel (0, 0, 0)
   std::vector<std::string>
       notes;               ///< what was assumed ("unit code 0 taken as mm"), to be reported once
   LabelTable labels = {};  ///< out of the file itself
@@ -54,7 +54,7 @@ struct PALPATE_EXPORT Image {
   [[nodiscard]] Vec3 toIndex(const Vec3& world) const noexcept {
     return glm::inverse(axes) * (world - origin);
   }
-  /// Trilinear between voxel centres (scipy map_coordinates, order 1); outside the centres' box:
+  /// Trilinear between voxel centers (scipy map_coordinates, order 1); outside the centers' box:
   /// NaN.
   [[nodiscard]] double interpolate(const Vec3& world) const noexcept;
 };
@@ -64,7 +64,7 @@ enum class AffineChoice {
   kAuto,   ///< NIfTI: sform, else qform, and both must agree; else what the file says
   kSform,  ///< NIfTI
   kQform,  ///< NIfTI
-  kSpacing,  ///< NIfTI, NRRD: spacings only; axes along R, A, S, the first voxel's centre at the origin
+  kSpacing,  ///< NIfTI, NRRD: spacings only; axes along R, A, S, the first voxel's center at the origin
 };
 
 /// What a caller says where files leave room.
@@ -73,6 +73,11 @@ struct ImageOptions {
   Space space = Space::kStated;  ///< of an NRRD file whose space is not an anatomical one
   std::optional<int> frame;      ///< of a 4-D file, from 0; not given: 4-D is refused
   std::string series;            ///< DICOM: UID of the series, if a folder holds several
+  /// Further files: each of them and the first is a mask, a structure of its own.
+  std::vector<std::string> with = {};
+  /// Structures that were segmented one by one: where some overlap, the first of these names has the
+  /// voxel. Where none of these is, the one of fewer voxels has it.
+  std::vector<std::string> priority = {};
 };
 
 /// All but the voxels.
@@ -89,11 +94,12 @@ struct ImageInfo {
   bool is_labels = false;        ///< the file says, or has a table of names
 };
 
-/// Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd) and DICOM series (a
-/// folder, or any file of it). What a file leaves open is asked for, by an error that names the option, or
+/// Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM series (a
+/// folder, or any file of it), DICOM segmentations and structure sets, and masks that together are a label
+/// image (a folder of the first three). What a file leaves open is asked for, by an error that names the option, or
 /// told in `notes`; what it contradicts itself in, and what is cut short or damaged, is refused. Each format's
 /// rules are in vdb/README.md.
-/// @throws Error (kInput, codes "nifti.*", "nrrd.*", "metaimage.*", "dicom.*", "image.*").
+/// @throws Error (kInput, codes "nifti.*", "nrrd.*", "metaimage.*", "dicom.*", "masks.*", "image.*").
 [[nodiscard]] PALPATE_EXPORT Image readImage(const std::string& path,
                                              const ImageOptions& options = {});
 
@@ -113,7 +119,7 @@ struct ImageInfo {
 /// taken, with a note. NaN voxels stay NaN, with a note; surfaces take them as outside. Names come from an
 /// extension with a LabelTable (Caret, TotalSegmentator).
 /// @throws Error (kInput, codes "nifti.*"): missing, empty, not NIfTI, cut short, wrong gzip
-/// checksum, 4-D or 2-D, colour or complex voxels, neither form set or both in conflict, singular
+/// checksum, 4-D or 2-D, color or complex voxels, neither form set or both in conflict, singular
 /// affine, a detached .hdr / .img pair, ...
 [[nodiscard]] PALPATE_EXPORT Image readNifti(const std::string& path,
                                              const ImageOptions& options = {});
@@ -129,7 +135,7 @@ struct ImageInfo {
 /// @throws Error (kInput, "nifti.label") for a value that is not a whole number from 0 to 65535.
 [[nodiscard]] PALPATE_EXPORT std::string encodeLabels(const Image& image, bool gzip);
 
-/// A table of label names, and colours if it has some:
+/// A table of label names, and colors if it has some:
 ///   `index name [code]`, `index name R G B [A]` (Slicer .ctbl and .txt, FreeSurfer LUT; 0 to 255), separated by
 ///       blanks, or by tabs if names hold blanks
 ///   `index R G B A visible mesh "name"` (ITK-SNAP)
@@ -138,7 +144,7 @@ struct ImageInfo {
 /// LF or CR LF; a byte order mark, blank lines and lines from # on are skipped. Lines that are not
 /// UTF-8 are taken for Latin-1.
 /// @throws Error (kInput, codes "labels.*") naming file and line: a value that is not an integer or has
-/// two names, a missing name, a column that does not belong, a colour out of range.
+/// two names, a missing name, a column that does not belong, a color out of range.
 [[nodiscard]] PALPATE_EXPORT LabelTable readLabelTable(const std::string& path);
 
 /// Assimp (glTF, GLB and what else it reads) and GDCM's unpackers (compressed DICOM pixels) are

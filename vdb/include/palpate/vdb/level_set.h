@@ -68,7 +68,7 @@ inline constexpr double kCubicHalfWidth = 6.0;
 /// parallel), and not needed afterwards, unless by kAccessor. A band that isTooNarrow() is
 /// widened first for kCubic.
 ///
-/// A sample is in the band if all voxels it depends on are active. Out of the band it says so: the
+/// A sample is in the band if all voxels it depends on are active. Outside the band it says so: the
 /// sign is right, the gradient zero, and |value| a lower bound of the distance that never exceeds the
 /// band's half width by more than the way to the nearest voxel; where the band is joined it may exceed
 /// the distance by the error that the band has there. The function is continuous everywhere (kCubic:

@@ -32,7 +32,7 @@ struct MaterialGridInfo {
   std::string source;         ///< what it was made from, for reports
   std::array<int, 3> size{};  ///< voxels
   double voxel_size = 0.0;    ///< [m] the shortest step from voxel to voxel
-  Box3 bounds;                ///< [m] of the voxels' centres
+  Box3 bounds;                ///< [m] of the voxels' centers
   Quantisation quantisation;
   std::uint64_t memory = 0;  ///< [bytes]
 };
@@ -40,11 +40,11 @@ struct MaterialGridInfo {
 /// A map out of voxels: a quadratic B-spline whose coefficients are the voxels themselves, so that its values
 /// stay between those of the nearest 27 voxels, value and gradient are continuous everywhere, and what is
 /// linear from voxel to voxel is met exactly. It does not pass through the voxels: over a curved run it is
-/// off by up to an eighth of the second difference. From half a voxel beyond the outermost centres on it is
+/// off by up to an eighth of the second difference. From half a voxel beyond the outermost centers on it is
 /// constant. Reading allocates nothing and takes some 90 ns.
 class PALPATE_EXPORT MaterialGrid final : public MaterialMap {
  public:
-  /// Values in an image's order and place [SI unit]. What is NaN takes the mean of its neighbours, from the
+  /// Values in an image's order and place [SI unit]. What is NaN takes the mean of its neighbors, from the
   /// known voxels outwards. Stored in as few bits as put no voxel off by more than `tolerance` [SI unit]; 0: as
   /// floats. `max_memory` [bytes], 0: no limit.
   /// @throws Error (kInput) for no voxel that is a number; kOperation for memory.
@@ -76,7 +76,7 @@ class PALPATE_EXPORT MaterialGrid final : public MaterialMap {
   Mat3 axes_{1.0};            // as the image's
   Vec3 origin_{0.0};          // [m]
   Mat3 to_index_{1.0};        // [1/m]
-  Mat3 to_world_slope_{1.0};  // the gradient by voxels to the gradient by metres
+  Mat3 to_world_slope_{1.0};  // the gradient by voxels to the gradient by meters
   std::unique_ptr<const Blocks> blocks_;
 };
 using MaterialGridPtr = std::shared_ptr<const MaterialGrid>;

@@ -64,13 +64,13 @@ enum class MeshFormat {
   kStl,  ///< binary; a float for each coordinate, no unit
   kObj,  ///< text that reads back exactly, no unit
   kPly,  ///< binary little endian, doubles, no unit
-  kGlb,  ///< binary glTF 2.0; floats, always in metres, axes as they are
+  kGlb,  ///< binary glTF 2.0; floats, always in meters, axes as they are
 };
 
 /// By the file's extension, in any case. @throws Error (kInput) for any other.
 [[nodiscard]] PALPATE_EXPORT MeshFormat meshFormat(const std::string& path);
 
-/// The file's bytes. One unit of it is `metres_per_unit`; kGlb is in metres, whatever that says.
+/// The file's bytes. One unit of it is `meters_per_unit`; kGlb is in meters, whatever that says.
 /// @throws Error (kInput) for a mesh without triangles, or too large for the format (2^32 bytes).
 [[nodiscard]] PALPATE_EXPORT std::string encodeMesh(const Mesh& mesh, MeshFormat format,
                                                     double metres_per_unit);

@@ -15,7 +15,7 @@ namespace palpate::vdb {
 struct LevelSet::Impl {
   openvdb::FloatGrid::ConstPtr grid;  ///< never null; world coordinates and values in length_unit
   LevelSetInfo info;
-  Vec3 origin{0.0, 0.0, 0.0};  ///< [m] centre of voxel (0, 0, 0)
+  Vec3 origin{0.0, 0.0, 0.0};  ///< [m] center of voxel (0, 0, 0)
 };
 
 /// openvdb::initialize(), once in a process and from any thread.

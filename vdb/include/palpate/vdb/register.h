@@ -30,7 +30,7 @@ struct RegisterOptions {
   std::function<void(const GridRecord&)> on_grid = {};  ///< told of each grid when it is ready
   std::function<void(const std::string&)> on_note =
       {};  ///< told what was assumed or decided, once each
-  /// Told of each layer of labels that has a colour in its table of names, as the scene is read.
+  /// Told of each layer of labels that has a color in its table of names, as the scene is read.
   std::function<void(const std::string& layer, const LabelColor&)> on_color = {};
   std::function<void(const ImageRecord&)> on_image =
       {};  ///< told of each image as the scene is read

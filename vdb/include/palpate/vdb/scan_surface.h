@@ -5,7 +5,7 @@
 /// others is found in index space, carried to the world by the image's affine (oblique, sheared and
 /// left-handed ones too), and the distance to its zero set baked to cubic voxels: the closest point on a
 /// C2 spline. A shape that is cut off by the image's border ends there in flat walls, half a voxel beyond
-/// the outermost voxel centres. Enclosed cavities are outside, unless they are filled.
+/// the outermost voxel centers. Enclosed cavities are outside, unless they are filled.
 ///
 /// Set-up only, on any thread; several may use one image. Metadata written besides `bake.metadata`:
 /// "source" (the image's file), "frame" ("RAS"), and "threshold" or "labels".
@@ -45,8 +45,8 @@ struct LabelOptions {
   double voxel_size = 0.0;  ///< [m] 0: bake.voxel_size; 0 as well: the image's smallest spacing
 };
 
-/// The surface is one that bends as little, and as evenly, as the voxels allow: voxel centres stay on
-/// their side of it (or on it). A voxelised ball, torus or tilted plane gets normals within half a
+/// The surface is one that bends as little, and as evenly, as the voxels allow: voxel centers stay on
+/// their side of it (or on it). A voxelized ball, torus or tilted plane gets normals within half a
 /// degree (RMS) and a mean offset within 0.03 voxel, in cubic voxels; slices several times thicker than
 /// their voxels are wide leave degrees. It encloses the volume of the voxels. Parts one or two voxels
 /// thin are held open. LabelSurfaces makes the walls of several labels fit.

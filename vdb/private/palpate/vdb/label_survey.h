@@ -31,7 +31,7 @@ using VoxelMask = std::vector<std::uint8_t>;
 
 /// Voxels of each label, 0 included.
 /// @throws Error (kInput, "labels.not_labels"), naming a voxel, for values that are not whole numbers from
-/// 0 to 65535, and for images whose values change with almost every voxel, as grey values do.
+/// 0 to 65535, and for images whose values change with almost every voxel, as gray values do.
 [[nodiscard]] std::map<int, std::uint64_t> countLabels(const Image& image);
 
 class LabelRuns;
@@ -40,7 +40,7 @@ struct LabelSurvey {
   /// Voxels of one region that hang together.
   struct Piece {
     std::uint64_t voxels = 0;
-    Vec3 place{0.0, 0.0, 0.0};  ///< [m] centre of one of its voxels
+    Vec3 place{0.0, 0.0, 0.0};  ///< [m] center of one of its voxels
     bool at_border = false;     ///< of the image
     std::size_t around = 0;     ///< the region that most of its faces touch; outside() if none
     std::size_t id = 0;         ///< for changeIslands()
@@ -53,7 +53,7 @@ struct LabelSurvey {
     std::uint64_t voxels = 0;
     double volume = 0.0;  ///< [m3]
     double area = 0.0;  ///< [m2] two thirds of its voxels' faces: their mean excess over a surface
-    Box3 bounds;        ///< [m] of its voxels' centres
+    Box3 bounds;        ///< [m] of its voxels' centers
     bool at_border = false;
     double border = 0.0;            ///< [m2] of its area that the image's border cuts off
     std::vector<Piece> pieces;      ///< the largest first
@@ -77,10 +77,10 @@ struct LabelSurvey {
 
 enum class IslandRule {
   kMerge,  ///< becomes part of what is around it
-  kDrop    ///< becomes unlabelled
+  kDrop    ///< becomes unlabeled
 };
 
-/// A piece of a region, or an unlabelled cavity, that was changed.
+/// A piece of a region, or an unlabeled cavity, that was changed.
 struct IslandChange {
   std::size_t from = 0;  ///< region, gap() or outside()
   std::size_t to = 0;
@@ -89,7 +89,7 @@ struct IslandChange {
 };
 
 /// Changes, in `image`, pieces of less than `smaller_than` voxels, of which the largest of a region is none.
-/// Unlabelled cavities that do not reach the image's border are filled with what is around them by kMerge,
+/// Unlabeled cavities that do not reach the image's border are filled with what is around them by kMerge,
 /// and left by kDrop. `survey` and `regions` are those of the image before. What was changed, the largest first.
 std::vector<IslandChange> changeIslands(Image& image, const std::vector<std::vector<int>>& regions,
                                         const LabelSurvey& survey, std::uint64_t smaller_than,

@@ -1,0 +1,367 @@
+// The page of `palpate view` in a browser without a window: what it shows, who steers, and what is felt on the way.
+//   node tests/page/page_test.mjs PALPATE PAGE_FOLDER OUT_FOLDER [NAME...]
+// PAGE_FOLDER holds the node_modules that tools/page/build.sh has installed; OUT_FOLDER gets the pictures. NAME: only these tests.
+import assert from "node:assert/strict";
+import { spawn, spawnSync } from "node:child_process";
+import { mkdirSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import path from "node:path";
+import { fileURLToPath } from "node:url";
+
+const [palpate, pageFolder, out, ...names] = process.argv.slice(2);
+const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), "../..");
+const require = createRequire(path.join(path.resolve(pageFolder), "package.json"));
+const { chromium } = require("playwright-core");
+
+const patience = 120_000; // [ms] far longer than anything takes on a busy machine
+const scene = (name) => path.join(root, "data/scenes", `${name}.yaml`);
+
+/** `palpate view` as it runs. */
+class Served {
+  /** Those that run; a test that fails leaves its own behind. */
+  static running = new Set();
+
+  constructor(...options) {
+    Served.running.add(this);
+    this.process = spawn(palpate, ["view", ...options, "--no-open", "--json"], { stdio: ["ignore", "pipe", "pipe"] });
+    this.out = "";
+    this.err = "";
+    this.process.stdout.on("data", (bytes) => (this.out += bytes));
+    this.url = new Promise((resolve, reject) => {
+      this.process.stderr.on("data", (bytes) => {
+        this.err += bytes;
+        const found = /^http:\/\/127\.0\.0\.1:\d+\/[0-9a-f]{32}\/$/m.exec(this.err);
+        if (found) resolve(found[0]);
+      });
+      this.process.on("exit", (code) => reject(new Error(`palpate view ended with ${code}: ${this.err}${this.out}`)));
+    });
+    this.url.catch(() => {});
+    this.ended = new Promise((resolve) => this.process.on("exit", resolve));
+    void this.ended.then(() => Served.running.delete(this));
+  }
+  async stop() {
+    this.process.kill("SIGINT");
+    return await this.ended;
+  }
+}
+
+let browser;
+const asked = []; // addresses that are not the server's
+
+async function open(served) {
+  const url = await served.url;
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 } });
+  const page = await context.newPage();
+  page.setDefaultTimeout(patience);
+  page.on("request", (request) => {
+    if (!request.url().startsWith(url) && !request.url().startsWith("data:")) asked.push(request.url());
+  });
+  page.on("pageerror", (error) => assert.fail(`the page failed: ${error}`));
+  await page.goto(url);
+  await page.waitForFunction(
+    () => window.palpatePage?.words && window.palpatePage.last?.tick &&
+      window.palpatePage.shown === window.palpatePage.words.regions.length,
+  );
+  return page;
+}
+
+/** A few more pictures, and what the server says by then. */
+async function settle(page, frames = 3) {
+  const from = await page.evaluate(() => window.palpatePage.space.frames);
+  await page.waitForFunction(([first, more]) => window.palpatePage.space.frames >= first + more, [from, frames]);
+}
+
+/** How much of the scene's picture is not the ground, and how many colors it has. */
+function look(page) {
+  return page.evaluate(() => {
+    const space = document.getElementById("space");
+    const copy = document.createElement("canvas");
+    copy.width = space.width;
+    copy.height = space.height;
+    const pen = copy.getContext("2d");
+    pen.drawImage(space, 0, 0);
+    const { data } = pen.getImageData(0, 0, copy.width, copy.height);
+    const colors = new Set();
+    let drawn = 0;
+    const ground = data[0] | (data[1] << 8) | (data[2] << 16);
+    for (let i = 0; i < data.length; i += 4) {
+      const color = data[i] | (data[i + 1] << 8) | (data[i + 2] << 16);
+      colors.add(color);
+      if (color !== ground) ++drawn;
+    }
+    return { share: drawn / (data.length / 4), colors: colors.size };
+  });
+}
+
+async function picture(page, name) {
+  await settle(page);
+  await page.screenshot({ path: path.join(out, `${name}.png`) });
+  const seen = await look(page);
+  assert.ok(seen.share > 0.05, `${name} is blank: ${JSON.stringify(seen)}`);
+  assert.ok(seen.colors > 100, `${name} has no shades: ${JSON.stringify(seen)}`);
+}
+
+const tick = (page) => page.evaluate(() => window.palpatePage.last.tick);
+
+/** The number of the state that Table I has for a probe there, and nothing else: the sphere A and the half-space B. */
+function stateOf([x, y, z]) {
+  const a = Math.hypot(x, y, z) < 0.04;
+  const b = z < 0.015;
+  return a ? (b ? 1 : 2) : b ? 3 : 4;
+}
+
+const tests = {
+  async container() {
+    const record = path.join(out, "container.npy");
+    for (const end of ["", ".json", ".states"]) rmSync(record + end, { force: true });
+    const served = new Served(scene("container"), "--record", record);
+    const page = await open(served);
+    await page.waitForFunction(() => window.palpatePage.last.steers);
+    await picture(page, "container-start");
+
+    // 100 moves: down the axis through the mouth, onto the bottom from within, and out again.
+    const states = [];
+    const regions = [];
+    const note = (now) => {
+      const state = stateOf(now.hip);
+      const strength = Math.hypot(...now.force);
+      if (states.at(-1) !== state) states.push(state);
+      if (regions.at(-1) !== now.region) regions.push(now.region);
+      // What Table I says of the state: nothing is felt in 2 and 4, ...
+      if (state === 4) assert.ok(strength < 1e-9 && now.region === 0, JSON.stringify(now));
+      if (state === 2 && now.region === 0) assert.ok(strength < 1e-9, JSON.stringify(now));
+      if (state === 1) assert.equal(now.region, 1);
+      // ... and in 3, after ENTER_PORT, the wall from within: inward, here upward.
+      if (state === 3) assert.ok(now.region === 1 && now.contact && now.force[2] > 0, JSON.stringify(now));
+    };
+    // The hand begins where the scene is looked at from, which may be in any state.
+    await page.evaluate(() => {
+      window.palpatePage.told = [0, 0, 0.06];
+      window.palpatePage.changed();
+    });
+    await page.waitForFunction(() => window.palpatePage.last.tick.hip[2] > 0.055);
+    const moves = 100;
+    for (let i = 0; i < moves; ++i) {
+      const share = i < moves / 2 ? i / (moves / 2 - 1) : (moves - 1 - i) / (moves / 2 - 1);
+      const z = 0.06 - 0.115 * share;
+      await page.evaluate((height) => {
+        window.palpatePage.told = [0, 0, height];
+        window.palpatePage.changed();
+      }, z);
+      const n = (await tick(page)).n;
+      await page.waitForFunction((before) => window.palpatePage.last.tick.n > before + 30, n, { polling: 5 });
+      note(await tick(page));
+      if (i === moves / 2) {
+        // The hand is held back by the force: it is not where it is led.
+        const now = await tick(page);
+        assert.ok(now.hip[2] > now.told[2] + 1e-3, JSON.stringify(now));
+        assert.ok(now.wall.startsWith("glass"), now.wall);
+        await picture(page, "container-bottom");
+      }
+    }
+    await page.waitForFunction(() => window.palpatePage.last.tick.hip[2] > 0.055);
+    note(await tick(page));
+    assert.deepEqual(states, [4, 2, 1, 3, 1, 2, 4]);
+    assert.deepEqual(regions, [0, 1, 0]);
+    const log = await page.locator("#log li").allTextContents();
+    assert.match(log[1], /outside to liquid through mouth/);
+    assert.match(log[0], /liquid to outside through mouth/);
+
+    // The server's end is told, and what was recorded is felt anew bit for bit.
+    assert.equal(await served.stop(), 130);
+    await page.locator("#notice").waitFor({ state: "visible" });
+    assert.match(await page.locator("#notice").textContent(), /has ended/);
+    await picture(page, "container-ended");
+    const replayed = spawnSync(palpate, ["replay", record, "--json"], { encoding: "utf8" });
+    assert.equal(replayed.status, 0, replayed.stdout + replayed.stderr);
+    assert.ok(JSON.parse(replayed.stdout).compared > 1000);
+    await page.context().close();
+  },
+
+  async keyboard() {
+    const served = new Served(scene("container"));
+    const page = await open(served);
+    await page.waitForFunction(() => window.palpatePage.last.steers);
+    const told = () => page.evaluate(() => window.palpatePage.told);
+    const hold = async (key, isDone, argument) => {
+      await page.keyboard.down(key);
+      await page.waitForFunction(isDone, argument);
+      await page.keyboard.up(key);
+    };
+    const before = await told();
+    await hold("ArrowDown", (z) => window.palpatePage.told[2] < z - 0.02, before[2]);
+    await page.waitForFunction((z) => window.palpatePage.last.tick.hip[2] < z - 0.015, before[2]);
+    await hold("PageDown", (y) => window.palpatePage.told[1] > y + 0.005, before[1]);
+    await page.keyboard.press("Home");
+    assert.deepEqual(await told(), await page.evaluate(() => window.palpatePage.start));
+    // Each control can be reached, in an order that ends where it began.
+    const reached = new Set();
+    for (let i = 0; i < 40; ++i) {
+      await page.keyboard.press("Tab");
+      reached.add(await page.evaluate(() => document.activeElement?.id ?? ""));
+    }
+    for (const id of ["space", "cut", "layer-1", "take", "tab-felt", "tab-text"]) assert.ok(reached.has(id), id);
+    await page.locator("#tab-text").focus();
+    await page.keyboard.press("Enter");
+    assert.match(await page.locator("#lines").textContent(), /palpate: 1/);
+    await picture(page, "container-text");
+    // A layer is switched off by its box.
+    await page.locator("#layer-1").focus();
+    await page.keyboard.press("Space");
+    await settle(page);
+    assert.ok((await look(page)).share < 0.05);
+    await page.context().close();
+    await served.stop();
+  },
+
+  async pages() {
+    const served = new Served(scene("container"));
+    const first = await open(served);
+    await first.waitForFunction(() => window.palpatePage.last.steers);
+    const second = await open(served);
+    await second.waitForFunction(() => window.palpatePage.last.pages === 2);
+    assert.equal(await second.locator("#steers").textContent(), "Another page steers. (2 pages)");
+    const before = (await tick(second)).told;
+    await second.evaluate(() => {
+      window.palpatePage.told = [0.01, 0, 0];
+      window.palpatePage.line.to([0.01, 0, 0]);
+    });
+    await settle(second, 10);
+    assert.deepEqual((await tick(second)).told, before);
+    await first.context().close();
+    await second.waitForFunction(() => !window.palpatePage.last.steered);
+    await second.locator("#take").click();
+    await second.waitForFunction(() => window.palpatePage.last.steers);
+    await second.context().close();
+    // The loop goes on without a page.
+    const third = await open(served);
+    const from = (await tick(third)).n;
+    await third.waitForFunction((n) => window.palpatePage.last.tick.n > n + 100, from);
+    await third.context().close();
+    await served.stop();
+  },
+
+  async replay() {
+    const record = path.join(out, "insert.npy");
+    const made = spawnSync(palpate, ["touch", scene("container"), "--insert", "0,0,60", "0,0,-45", "--back",
+      "--record", record, "--force", "--json"], { encoding: "utf8" });
+    assert.equal(made.status, 0, made.stderr);
+    const served = new Served(scene("container"), "--replay", record);
+    const page = await open(served);
+    await page.waitForFunction(() => window.palpatePage.last.steers);
+    const row = () => page.evaluate(() => window.palpatePage.last.row);
+    assert.equal(await row(), 0);
+    await page.locator("#row").focus();
+    for (let i = 1; i <= 3; ++i) {
+      await page.keyboard.press("ArrowRight");
+      await page.waitForFunction((wanted) => window.palpatePage.last.row === wanted, i);
+    }
+    await page.keyboard.press("ArrowLeft");
+    await page.waitForFunction(() => window.palpatePage.last.row === 2);
+    await page.locator("#play").click();
+    await page.waitForFunction(() => window.palpatePage.last.tick.region === 1 && window.palpatePage.last.tick.contact);
+    await picture(page, "replay");
+    await page.waitForFunction(() => window.palpatePage.last.row === window.palpatePage.words.rows - 1);
+    assert.equal(await page.locator("#log li").count(), 2);
+    await page.context().close();
+    await served.stop();
+  },
+
+  async head() {
+    await layers("head");
+  },
+
+  async needle() {
+    await layers("needle");
+  },
+
+  async colors() {
+    const css = readFileSync(path.join(root, "tools/page/src/style.css"), "utf8");
+    const color = (name) => {
+      const found = new RegExp(`--${name}: #([0-9a-f]{6});`).exec(css);
+      assert.ok(found, name);
+      return [0, 2, 4].map((i) => parseInt(found[1].slice(i, i + 2), 16) / 255);
+    };
+    const linear = (c) => c.map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4));
+    const luminance = (c) => 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+    const contrast = (a, b) => {
+      const [high, low] = [luminance(a), luminance(b)].sort((p, q) => q - p);
+      return (high + 0.05) / (low + 0.05);
+    };
+    const get = (name) => linear(color(name));
+    // WCAG 2.1: 4.5 for text, 3 for graphics.
+    for (const ink of ["ink", "faint"]) assert.ok(contrast(get(ink), get("panel")) >= 4.5, ink);
+    const marks = ["hip", "proxy", "force", "told"];
+    for (const mark of marks) assert.ok(contrast(get(mark), get("ground")) >= 3, mark);
+    // Marks stay apart for each kind of color blindness: Machado, Oliveira and Fernandes 2009, complete.
+    const blind = {
+      protan: [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+      deutan: [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
+      tritan: [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.3039]],
+    };
+    const lab = (c) => {
+      const xyz = [
+        (0.4124 * c[0] + 0.3576 * c[1] + 0.1805 * c[2]) / 0.9505,
+        0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2],
+        (0.0193 * c[0] + 0.1192 * c[1] + 0.9505 * c[2]) / 1.089,
+      ].map((v) => (v > 0.008856 ? Math.cbrt(v) : 7.787 * v + 16 / 116));
+      return [116 * xyz[1] - 16, 500 * (xyz[0] - xyz[1]), 200 * (xyz[1] - xyz[2])];
+    };
+    for (const [kind, matrix] of Object.entries(blind)) {
+      const seen = (name) =>
+        lab(matrix.map((r) => Math.min(Math.max(r[0] * get(name)[0] + r[1] * get(name)[1] + r[2] * get(name)[2], 0), 1)));
+      for (const a of marks) {
+        for (const b of marks) {
+          if (a >= b) continue;
+          const [p, q] = [seen(a), seen(b)];
+          // Ten times what the eye can just tell apart side by side (about 2.3).
+          const apart = Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+          assert.ok(apart >= 23, `${a} and ${b} for ${kind}: ${apart}`);
+        }
+      }
+    }
+  },
+};
+
+async function layers(name) {
+  const served = new Served(scene(name));
+  const page = await open(served);
+  await page.waitForFunction(() => window.palpatePage.last.steers);
+  await picture(page, `${name}-start`);
+  // Towards the middle, until something is touched.
+  await page.evaluate(() => {
+    const { lo, hi } = window.palpatePage.words.box;
+    window.palpatePage.told = lo.map((v, i) => (v + hi[i]) / 2);
+    window.palpatePage.changed();
+  });
+  await page.waitForFunction(() => Math.hypot(...window.palpatePage.last.tick.force) > 0.05);
+  await picture(page, `${name}-touched`);
+  await page.context().close();
+  await served.stop();
+}
+
+mkdirSync(out, { recursive: true });
+browser = await chromium.launch({
+  executablePath: process.env.PALPATE_CHROMIUM ?? "/usr/bin/chromium",
+  // Software rendering, so that it runs anywhere; the sandbox needs a user that is not root.
+  args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", ...(process.getuid() === 0 ? ["--no-sandbox"] : [])],
+});
+let passed = 0;
+let failed = 0;
+for (const [name, run] of Object.entries(tests)) {
+  if (names.length > 0 && !names.includes(name)) continue;
+  const began = Date.now();
+  try {
+    await run();
+    assert.deepEqual(asked, [], "the page asks other servers");
+    ++passed;
+    console.log(`ok      ${name} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
+  } catch (error) {
+    ++failed;
+    console.log(`FAILED  ${name}: ${error.stack}`);
+  }
+  for (const served of [...Served.running]) await served.stop();
+}
+await browser.close();
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed === 0 && passed > 0 ? 0 : 1);

@@ -1,0 +1,187 @@
+// The page of `palpate view`.
+
+import "./style.css";
+import { Felt } from "./felt";
+import { Layers } from "./layers";
+import { Scrubber } from "./scrubber";
+import { Space, type Cut } from "./space";
+import { Steering } from "./steering";
+import { Line, fetchScene, fetchSurface, type SceneWords, type Snapshot, type Vector } from "./wire";
+
+const byId = (id: string): HTMLElement => document.getElementById(id)!;
+
+const sayEvery = 15; // [ms] at most as often as there are frames
+
+class Page {
+  readonly canvas = byId("space") as HTMLCanvasElement;
+  readonly space = new Space(this.canvas);
+  readonly layers = new Layers(byId("layers"), this.space);
+  readonly felt = new Felt();
+  readonly scrubber = new Scrubber((row) => this.line.row(row));
+  readonly line: Line;
+  readonly steering: Steering;
+  words: SceneWords | null = null;
+  last: Snapshot | null = null;
+  told: Vector = [0, 0, 0];
+  start: Vector = [0, 0, 0];
+  /** Surfaces that were asked for, in the order of regions. */
+  asked = 0;
+  /** Surfaces that are shown. */
+  shown = 0;
+  private hasMoved = false;
+  private saidAt = 0;
+  private isLoading = false;
+  private isOver = false;
+  private hasAsked = false;
+
+  constructor() {
+    this.line = new Line(
+      (snapshot) => this.take(snapshot),
+      () => this.end(),
+    );
+    this.steering = new Steering(this.canvas, this.space, this);
+    const cut = byId("cut") as HTMLSelectElement;
+    cut.addEventListener("change", () => this.space.setCut(cut.value as Cut));
+    this.space.setCut(cut.value as Cut);
+    byId("take").addEventListener("click", () => this.line.steer(!(this.last?.steers ?? false)));
+    for (const name of ["felt", "text"]) {
+      byId(`tab-${name}`).addEventListener("click", () => this.openTab(name));
+    }
+    void this.load();
+    const frame = () => {
+      this.frame();
+      requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+    this.canvas.focus();
+  }
+
+  /** Of Steering. However long a frame takes, the hand hears of it soon. */
+  changed(): void {
+    this.hasMoved = true;
+    if (performance.now() - this.saidAt > sayEvery) this.say();
+  }
+
+  private say(): void {
+    if (!this.hasMoved || this.last?.steers !== true) return;
+    this.hasMoved = false;
+    this.saidAt = performance.now();
+    this.line.to(this.told);
+  }
+
+  private frame(): void {
+    this.steering.step();
+    this.scrubber.step();
+    this.say();
+    this.space.draw();
+    this.felt.draw();
+  }
+
+  private async load(): Promise<void> {
+    this.isLoading = true;
+    try {
+      const words = await fetchScene();
+      const isFirst = this.words === null;
+      this.words = words;
+      this.start = words.start;
+      if (isFirst) this.told = [...words.start];
+      document.title = `${words.file} - Palpate`;
+      byId("title").textContent = words.file;
+      byId("device").textContent =
+        words.mode === "replay" ? `recorded, ${words.device}` : `${words.device}, ${words.rate} ticks a second`;
+      this.asked = 0;
+      this.shown = 0;
+      this.space.begin(words, !isFirst);
+      this.layers.begin(words);
+      this.felt.begin(words);
+      this.scrubber.begin(words);
+      this.showText(words.text);
+    } catch (error) {
+      this.notice(`The scene could not be fetched: ${String(error)}`);
+    }
+    this.isLoading = false;
+  }
+
+  private take(snapshot: Snapshot): void {
+    this.last = snapshot;
+    const words = this.words;
+    if (words === null) return;
+    if (snapshot.scene !== words.number) {
+      if (!this.isLoading) void this.load();
+      return;
+    }
+    while (this.asked < Math.min(snapshot.surfaces, words.regions.length)) void this.addSurface(words, this.asked++);
+    // Whoever comes first steers.
+    if (!this.hasAsked && !snapshot.steered && words.mode !== "device") this.line.steer(true);
+    this.hasAsked = true;
+    this.showPlace(snapshot, words);
+    if (snapshot.tick === undefined) return;
+    const isReplay = words.mode === "replay";
+    this.space.showTick(snapshot.tick);
+    this.layers.mark(snapshot.tick.region);
+    this.felt.show(snapshot.tick, isReplay);
+  }
+
+  private async addSurface(words: SceneWords, region: number): Promise<void> {
+    const about = words.regions[region]!;
+    if (about.color !== null) {
+      const surface = await fetchSurface(words.number, region);
+      if (this.words !== words) return;
+      const look = this.layers.look(about.name, region, words.regions.length);
+      if (surface !== null) this.space.addSurface(region, surface, about.color, look.opacity, look.visible);
+    }
+    ++this.shown;
+  }
+
+  private showPlace(snapshot: Snapshot, words: SceneWords): void {
+    const others = snapshot.pages > 1 ? ` (${snapshot.pages} pages)` : "";
+    let text = "Nobody steers.";
+    if (snapshot.steers) text = "This page steers.";
+    else if (snapshot.steered) text = "Another page steers.";
+    if (words.mode === "device") text = "A hand moves the device.";
+    byId("steers").textContent = text + others;
+    const take = byId("take") as HTMLButtonElement;
+    take.textContent = snapshot.steers ? "Let go" : "Steer";
+    take.hidden = words.mode === "device";
+    take.disabled = !snapshot.steers && snapshot.steered;
+  }
+
+  private showText(text: string): void {
+    byId("lines").replaceChildren(
+      ...text.split("\n").map((line) => {
+        const row = document.createElement("li");
+        row.textContent = line;
+        return row;
+      }),
+    );
+  }
+
+  private openTab(name: string): void {
+    for (const other of ["felt", "text"]) {
+      byId(other).hidden = other !== name;
+      byId(`tab-${other}`).setAttribute("aria-selected", String(other === name));
+    }
+  }
+
+  private notice(text: string): void {
+    const notice = byId("notice");
+    notice.textContent = text;
+    notice.hidden = text === "";
+  }
+
+  private end(): void {
+    this.isOver = true;
+    this.notice("palpate view has ended. What is shown is the last that it said; start it again for a new page.");
+  }
+
+  get over(): boolean {
+    return this.isOver;
+  }
+}
+
+declare global {
+  interface Window {
+    palpatePage: Page;
+  }
+}
+window.palpatePage = new Page();

@@ -1,0 +1,20 @@
+#pragma once
+/// The place in an imported scan that a needle is to reach.
+
+#include <string>
+
+#include "import/imported_scene.h"
+
+namespace palpate::tools {
+
+struct WayTarget {
+  std::string name;
+  std::size_t region = 0;
+  Vec3 place{0.0};  ///< [m] the center of the voxel that is farthest within it, about
+};
+
+/// `target`: a region's or a label's name, or a label.
+/// @throws Error (kInput) that suggests what the scan has.
+[[nodiscard]] WayTarget wayTarget(const ImportedScan& scan, const std::string& target);
+
+}  // namespace palpate::tools

@@ -1,0 +1,120 @@
+#pragma once
+/// LiveFeed: what a page may know of a session that runs.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <vector>
+
+#include "palpate/devices/record.h"
+
+namespace palpate::tools {
+
+/// A region that the proxy came into.
+struct SeenEntry {
+  std::uint64_t number = 0;  ///< from 1, of all entries of the session
+  std::uint64_t tick = 0;
+  RegionId from = kOutside;
+  RegionId to = kOutside;
+  int port = -1;       ///< -1: an absent wall
+  double force = 0.0;  ///< [N] that the wall gave way to
+};
+
+/// How often the ports were passed, one way less the other.
+class PassedCounts {
+ public:
+  explicit PassedCounts(const Scene& scene)
+      : counts_(scene.ports().size(), 0), keeps_(scene.keepsMemory()) {}
+
+  void add(const RegionEntry& entry) {
+    const auto port = static_cast<std::size_t>(entry.port);
+    if (entry.port >= 0 && port < counts_.size()) counts_[port] += entry.from < entry.to ? 1 : -1;
+    if (entry.to == kOutside && !keeps_) counts_.assign(counts_.size(), 0);
+  }
+  [[nodiscard]] const std::vector<int>& counts() const noexcept { return counts_; }
+
+ private:
+  std::vector<int> counts_;
+  bool keeps_;
+};
+
+/// The last tick, and what happened since the session began.
+struct FeedView {
+  std::uint64_t ticks = 0;  ///< so far; with 0 the rest means nothing
+  std::uint64_t number = 0;
+  double time = 0.0;  ///< [s]
+  Vec3 hip{0.0, 0.0, 0.0};
+  TickResult result;
+  std::int64_t ns = 0;             ///< [ns] of the renderer, the longest of the last ticks
+  std::int64_t worst_ns = 0;       ///< [ns] the longest so far
+  std::uint64_t late = 0;          ///< ticks that ended after the next was due
+  double strongest = 0.0;          ///< [N] the largest force of the last ticks
+  double work = 0.0;               ///< [J] of the force on the hand so far
+  std::vector<int> passed;         ///< by PortId, as PassedCounts has it
+  std::vector<SeenEntry> entries;  ///< after the one that was asked for, as far as they are kept
+};
+
+/// Fed by the recorder's thread, looked at by the server's: the servo thread meets no lock of it.
+class LiveFeed final : public devices::RecordSink {
+ public:
+  static constexpr std::size_t kKept = 512;  ///< entries
+  static constexpr std::size_t kLast = 128;  ///< ticks, of which a look has the largest
+
+  explicit LiveFeed(const Scene& scene) : passed_(scene) {}
+
+  void add(const devices::RecordedTick& tick, std::span<const RegionEntry> entries) override {
+    const std::lock_guard lock(mutex_);
+    const devices::SessionTick& now = tick.tick;
+    const Vec3& hip = now.hip.position;
+    if (isFinite(hip)) {
+      // The force of a tick is held until the next.
+      if (view_.ticks > 0) view_.work += glm::dot(view_.result.force, hip - view_.hip);
+      view_.hip = hip;
+    }
+    ++view_.ticks;
+    view_.number = now.number;
+    view_.time = now.reading.time;
+    view_.result = now.result;
+    last_[view_.ticks % kLast] = {now.renderer_ns, glm::length(now.result.force)};
+    view_.worst_ns = std::max(view_.worst_ns, now.renderer_ns);
+    if (tick.turn.is_late) ++view_.late;
+    for (const RegionEntry& entry : entries) {
+      passed_.add(entry);
+      entries_.push_back(
+          {++entry_count_, now.number, entry.from, entry.to, entry.port, entry.force});
+      if (entries_.size() > kKept) entries_.pop_front();
+    }
+  }
+
+  /// With the entries after number `seen`.
+  [[nodiscard]] FeedView look(std::uint64_t seen) const {
+    const std::lock_guard lock(mutex_);
+    FeedView out = view_;
+    for (const LastTick& tick : last_) {
+      out.ns = std::max(out.ns, tick.ns);
+      out.strongest = std::max(out.strongest, tick.force);
+    }
+    out.passed = passed_.counts();
+    for (const SeenEntry& entry : entries_) {
+      if (entry.number > seen) out.entries.push_back(entry);
+    }
+    return out;
+  }
+
+ private:
+  struct LastTick {
+    std::int64_t ns = 0;
+    double force = 0.0;  ///< [N]
+  };
+
+  mutable std::mutex mutex_;
+  FeedView view_;
+  std::array<LastTick, kLast> last_{};  ///< the newest in the place of the oldest
+  PassedCounts passed_;
+  std::deque<SeenEntry> entries_;
+  std::uint64_t entry_count_ = 0;
+};
+
+}  // namespace palpate::tools

@@ -1,0 +1,154 @@
+#include "view/page_desk.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "json_parts.h"
+#include "open_device.h"
+
+namespace palpate::tools {
+namespace {
+
+constexpr std::size_t kColumns = 1000;  // of a recorded run's overview
+
+std::string textOf(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+PageAnswer jsonAnswer(const Json& json) {
+  return {"application/json", std::make_shared<const std::string>(textOf(json))};
+}
+
+/// The number in front of `text`, which goes on behind it and `separator`; none: it is not there.
+std::optional<std::size_t> numberIn(std::string_view& text, char separator) {
+  std::size_t number = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (read.ec != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));
+  if (separator == '\0') return text.empty() ? std::optional(number) : std::nullopt;
+  if (text.empty() || text.front() != separator) return std::nullopt;
+  text.remove_prefix(1);
+  return number;
+}
+
+std::optional<Vec3> vectorIn(const Json& json) {
+  if (!json.is_array() || json.size() != 3) return std::nullopt;
+  Vec3 v(0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!json[i].is_number()) return std::nullopt;
+    v[static_cast<int>(i)] = json[i].get<double>();
+  }
+  return isFinite(v) ? std::optional(v) : std::nullopt;
+}
+
+Json entriesJson(const std::vector<SeenEntry>& entries) {
+  Json list = Json::array();
+  for (const SeenEntry& e : entries) {
+    list.push_back({{"tick", e.tick},
+                    {"from", e.from},
+                    {"to", e.to},
+                    {"port", e.port < 0 ? Json() : Json(e.port)},
+                    {"force", e.force}});
+  }
+  return list;
+}
+
+}  // namespace
+
+PageDesk::PageDesk(PageSubject subject, std::shared_ptr<const ShownScene> shown)
+    : subject_(std::move(subject)), told_(handStart(shown->scene())), shown_(std::move(shown)) {}
+
+PageHost PageDesk::host() {
+  return {.get = [this](std::string_view path) { return get(path); },
+          .snapshot = [this](std::uint64_t& seen,
+                             const PagePlace& place) { return snapshot(seen, place); },
+          .command = [this](const std::string& message) { command(message); }};
+}
+
+std::shared_ptr<const ShownScene> PageDesk::shown() const {
+  const std::lock_guard lock(mutex_);
+  return shown_;
+}
+
+std::optional<PageAnswer> PageDesk::get(std::string_view path) {
+  const auto scene = shown();
+  if (path == "scene.json") {
+    Json json = scene->json();
+    if (!subject_.about.is_null()) json.update(subject_.about);
+    json["mode"] = subject_.run != nullptr    ? "replay"
+                   : subject_.hand != nullptr ? "hand"
+                                              : "device";
+    json["rows"] = subject_.run != nullptr ? Json(subject_.run->size()) : Json();
+    if (subject_.run != nullptr) json["overview"] = subject_.run->overview(kColumns);
+    return jsonAnswer(json);
+  }
+  constexpr std::string_view kSurface = "surface/";
+  if (!path.starts_with(kSurface)) return std::nullopt;
+  path.remove_prefix(kSurface.size());
+  const auto number = numberIn(path, '/');
+  const auto region = numberIn(path, '\0');
+  if (!number || !region || *number != static_cast<std::size_t>(scene->number())) {
+    return std::nullopt;
+  }
+  auto bytes = scene->surface(*region);
+  if (!bytes) return std::nullopt;
+  return PageAnswer{"application/octet-stream", std::move(bytes)};
+}
+
+std::string PageDesk::snapshot(std::uint64_t& seen, const PagePlace& place) {
+  const auto scene = shown();
+  Json json = {{"scene", scene->number()},
+               {"surfaces", scene->surfacesDone()},
+               {"steers", place.steers},
+               {"steered", place.is_steered},
+               {"pages", place.pages}};
+  // One who goes back and forth in a record gets all of its past each time.
+  const FeedView view =
+      subject_.run != nullptr ? subject_.run->at(row_, 0) : subject_.feed->look(seen);
+  if (subject_.run != nullptr) json["row"] = row_;
+  if (view.ticks == 0) return textOf(json);
+  if (!view.entries.empty()) seen = view.entries.back().number;
+  const TickResult& result = view.result;
+  const FeltWords felt = feltAt(scene->scene(), view.hip, result);
+  json["tick"] = {{"n", view.number},
+                  {"t", view.time},
+                  {"hip", vectorJson(view.hip)},
+                  {"proxy", vectorJson(result.proxy)},
+                  {"force", vectorJson(result.force)},
+                  {"told", subject_.hand != nullptr ? vectorJson(told_) : Json()},
+                  {"region", result.region},
+                  {"contact", result.contact},
+                  {"settled", result.settled},
+                  {"strongest", view.strongest},
+                  {"work", view.work},
+                  {"ns", view.ns},
+                  {"worst_ns", view.worst_ns},
+                  {"late", view.late},
+                  {"passed", view.passed},
+                  {"content", felt.content},
+                  {"wall", felt.wall},
+                  {"entries", entriesJson(view.entries)}};
+  return textOf(json);
+}
+
+void PageDesk::command(const std::string& message) {
+  const Json json = Json::parse(message, nullptr, false);
+  if (!json.is_object()) return;
+  if (const auto to = json.find("to"); to != json.end()) {
+    if (const auto place = vectorIn(*to)) steer(*place);
+  }
+  if (const auto row = json.find("row"); row != json.end() && row->is_number_unsigned()) {
+    if (subject_.run != nullptr) row_ = std::min(row->get<std::size_t>(), subject_.run->size() - 1);
+  }
+}
+
+void PageDesk::steer(const Vec3& place) {
+  if (subject_.hand == nullptr) return;
+  const Box3 view = viewBox(shown()->scene());
+  const Box3 room = view.grownBy(glm::length(view.size()));
+  told_ = glm::clamp(place, room.lo, room.hi);
+  subject_.hand->steer(toDevice(subject_.mapping, told_));
+}
+
+}  // namespace palpate::tools

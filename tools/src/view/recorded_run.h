@@ -1,0 +1,58 @@
+#pragma once
+/// RecordedRun: a trace or a record that a page goes through, tick by tick.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "palpate/scene/scene.h"
+#include "view/live_feed.h"
+
+namespace palpate::tools {
+
+class RecordedRun {
+ public:
+  /// Of `touch --record` (.npy) or `touch --trace` (.csv), by the names of `scene`.
+  /// @throws Error (kInput) for another file, or a region or port that the scene has not.
+  RecordedRun(const std::string& file, const Scene& scene);
+
+  [[nodiscard]] std::size_t size() const noexcept { return rows_.size(); }
+  /// The tick in row `row`, which is there, as if the session stood at it.
+  [[nodiscard]] FeedView at(std::size_t row, std::uint64_t seen) const;
+  /// [N] The largest force of each of at most `columns` stretches of one length.
+  [[nodiscard]] std::vector<double> overview(std::size_t columns) const;
+
+ private:
+  struct Row {
+    std::uint64_t tick = 0;
+    double t = 0.0;
+    Vec3 hip{0.0, 0.0, 0.0};
+    Vec3 proxy{0.0, 0.0, 0.0};
+    Vec3 force{0.0, 0.0, 0.0};
+    std::int64_t ns = 0;
+    double work = 0.0;          ///< [J] so far
+    std::int64_t worst_ns = 0;  ///< [ns] so far
+    std::uint64_t late = 0;     ///< ticks so far
+    RegionId region = kOutside;
+    bool contact = false;
+    bool settled = true;
+    bool is_late = false;
+    std::vector<PortId> events;
+  };
+
+  void readRecord(const std::string& file, const Scene& scene);
+  void readTrace(const std::string& file, const Scene& scene);
+  void addUp(const Scene& scene);
+
+  std::vector<Row> rows_;
+  struct Passing {
+    std::size_t row = 0;
+    SeenEntry entry;
+    std::vector<int> passed;  ///< after it
+  };
+  std::vector<Passing> passings_;
+  std::size_t ports_ = 0;
+};
+
+}  // namespace palpate::tools

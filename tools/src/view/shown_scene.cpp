@@ -1,0 +1,153 @@
+#include "view/shown_scene.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "explain/scene_words.h"
+#include "json_parts.h"
+#include "palpate/scene/transitions.h"
+#include "palpate/vdb/text.h"
+#include "view/surface_net.h"
+
+namespace palpate::tools {
+namespace {
+
+constexpr double kFallbackSize = 0.2;  // [m] of a scene without bounds
+constexpr double kMargin = 0.06;       // of the longest side, around what has bounds
+
+/// Told apart by eyes that do not see all colors: P. Tol's scheme "light".
+constexpr std::array<const char*, 8> kLayerColors = {"#ee8866", "#77aadd", "#eedd88", "#44bb99",
+                                                     "#ffaabb", "#99ddff", "#bbcc33", "#aaaa00"};
+
+double longest(const Box3& box) {
+  const Vec3 size = box.size();
+  return std::max({size.x, size.y, size.z});
+}
+
+std::string colorOf(const LoadedScene& loaded, const std::string& name, std::size_t region) {
+  const auto own = loaded.colors().find(name);
+  if (own == loaded.colors().end()) return kLayerColors[(region - 1) % kLayerColors.size()];
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text = "#";
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto byte =
+        static_cast<unsigned>(std::lround(255.0 * std::clamp<double>(own->second[i], 0.0, 1.0)));
+    text += kDigits[byte >> 4U];
+    text += kDigits[byte & 15U];
+  }
+  return text;
+}
+
+Json regionsJson(const Scene& scene, const LoadedScene& loaded) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < scene.regions().size(); ++i) {
+    const Region& region = scene.regions()[i];
+    const Material* content = materialOf(scene, region.content);
+    const Wall wall{.absent = region.wall_absent, .material = region.wall};
+    list.push_back({{"name", region.name},
+                    {"color", i == kOutside ? Json() : Json(colorOf(loaded, region.name, i))},
+                    {"wall", i == kOutside ? "-" : wallText(scene, wall)},
+                    {"content", content == nullptr ? "-" : contentText(*content)},
+                    {"reach", reachName(region.reach)}});
+  }
+  return list;
+}
+
+Json transitionsJson(const Scene& scene, const SceneDescription& description) {
+  Json list = Json::array();
+  for (const Transition& t : transitions(scene)) {
+    list.push_back({{"from", t.from},
+                    {"to", t.to},
+                    {"port", t.port ? Json(*t.port) : Json()},
+                    {"when", conditionsOf(t, scene, description)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+Box3 viewBox(const Scene& scene) {
+  Box3 box = scene.bounds();
+  if (!box.isBounded() || !(longest(box) > 0.0)) {
+    box = {Vec3(-0.5 * kFallbackSize), Vec3(0.5 * kFallbackSize)};
+  }
+  return box.grownBy(kMargin * longest(box));
+}
+
+Vec3 handStart(const Scene& scene) {
+  const Region& start = scene.regions()[scene.startRegion()];
+  if (scene.startRegion() != kOutside && start.has_seed) return start.seed;
+  const Box3 box = viewBox(scene);
+  return {box.center().x, box.center().y, box.hi.z};
+}
+
+FeltWords feltAt(const Scene& scene, const Vec3& hip, const TickResult& result) {
+  FeltWords words;
+  if (result.region >= scene.regions().size()) return words;
+  const Material* content = materialOf(scene, scene.regions()[result.region].content);
+  if (content != nullptr) words.content = contentText(*content);
+  if (!result.contact || !isFinite(hip)) return words;
+  const RegionId beyond = scene.regionAt(hip);
+  words.wall = beyond == result.region
+                   ? "a wall"
+                   : wallText(scene, scene.passages().wall(result.region, beyond));
+  return words;
+}
+
+ShownScene::ShownScene(ScenePtr scene, const LoadedScene& loaded, std::string text, int number)
+    : scene_(std::move(scene)), number_(number), surfaces_(scene_->regions().size()) {
+  const SceneDescription& description = loaded.description();
+  json_ = {{"schema", "palpate.view/1"},
+           {"number", number},
+           {"file", vdb::fileName(description.file)},
+           {"unit", {{"name", scene_->lengthUnit()}, {"meters", scene_->metresPerUnit()}}},
+           {"box", boxJson(viewBox(*scene_))},
+           {"start", vectorJson(handStart(*scene_))},
+           {"start_region", scene_->startRegion()},
+           {"regions", regionsJson(*scene_, loaded)},
+           {"ports", Json::array()},
+           {"transitions", transitionsJson(*scene_, description)},
+           {"text", std::move(text)}};
+  for (const Port& port : scene_->ports()) json_["ports"].push_back(port.name);
+  thread_ = std::thread([this] { makeSurfaces(); });
+}
+
+ShownScene::~ShownScene() {
+  stop_.store(true);
+  thread_.join();
+}
+
+std::shared_ptr<const std::string> ShownScene::surface(std::size_t region) const {
+  const std::lock_guard lock(mutex_);
+  return region < surfaces_.size() ? surfaces_[region] : nullptr;
+}
+
+void ShownScene::makeSurfaces() {
+  // Of this thread alone: the loop goes first.
+  constexpr int kNice = 10;
+  setpriority(PRIO_PROCESS, 0, kNice);
+  const Box3 view = viewBox(*scene_);
+  const double tolerance = kTolerance * glm::length(view.size());
+  for (std::size_t i = 0; i < surfaces_.size() && !stop_.load(); ++i) {
+    const FieldPtr& field = scene_->regions()[i].field;
+    if (field) {
+      const Box3 bounds = field->bounds();
+      const Box3 box = bounds.isBounded()
+                           ? bounds.grownBy(kMargin * longest(bounds)).intersectedWith(view)
+                           : view;
+      if (!box.isEmpty() && longest(box) > 0.0) {
+        const SurfaceNet net = surfaceWithin(*field, box, tolerance);
+        auto bytes = std::make_shared<const std::string>(surfaceBytes(net));
+        const std::lock_guard lock(mutex_);
+        surfaces_[i] = std::move(bytes);
+      }
+    }
+    done_.store(static_cast<int>(i) + 1);
+  }
+}
+
+}  // namespace palpate::tools
