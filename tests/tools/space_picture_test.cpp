@@ -1,167 +1,15 @@
-// palpate render --view: what rays meet, against closed forms, and the files that come out.
+// palpate render --view: the files that come out, and what is refused.
 
 #include "picture/space_picture.h"
 
-#include <cmath>
-#include <random>
-
-#include "palpate/scene/scene_file.h"
-#include "picture/cutaway.h"
-#include "picture/palette.h"
+#include "picture/space_path.h"
 #include "tools/helpers.h"
 #include "tools/png_pixels.h"
 
 namespace palpate::testing {
 namespace {
 
-using tools::Camera;
 using tools::Color;
-using tools::Hit;
-using tools::RayMarch;
-using tools::SpaceScene;
-
-constexpr const char* kShells =
-    "palpate: 1\nlength: mm\nlayers:\n"
-    "  - {name: outer, inside: {sphere: {center: [0, 0, 0], radius: 30}}}\n"
-    "  - {name: inner, inside: {sphere: {center: [0, 0, 0], radius: 12}}}\n";
-
-/// A scene with all that looking at it needs, kept together.
-struct Look {
-  explicit Look(const std::string& text)
-      : scene(compile(parseScene(text, "test"))),
-        paint(nullptr, *scene, {}),
-        space{*scene, paint, scene->bounds().grownBy(0.002)} {}
-
-  [[nodiscard]] Camera camera(const Vec3& toward, int pixels) const {
-    Camera out = tools::cameraFrom(toward);
-    out.center = space.box.center();
-    out.width = out.height = pixels;
-    out.step = glm::length(space.box.size()) / pixels;
-    return out;
-  }
-
-  ScenePtr scene;
-  tools::Paint paint;
-  SpaceScene space;
-};
-
-void expectNear(const Color& a, const Color& b, double within, const std::string& where) {
-  EXPECT_NEAR(a.r, b.r, within) << where;
-  EXPECT_NEAR(a.g, b.g, within) << where;
-  EXPECT_NEAR(a.b, b.b, within) << where;
-}
-
-// Silhouette, normals and colors of a ball from 20 sides, pixel by pixel.
-TEST(RayMarch, ABallIsSeenAsTheFormulaSays) {
-  const Look look(
-      "palpate: 1\nlength: mm\nlayers:\n  - {name: ball, inside: {sphere: {center: [5, "
-      "-3, 8], radius: 30}}}\n");
-  const Vec3 center(0.005, -0.003, 0.008);
-  constexpr double kRadius = 0.030;
-  std::mt19937_64 random(1);
-  std::normal_distribution<double> any;
-  for (int side = 0; side < 20; ++side) {
-    const Camera camera = look.camera({any(random), any(random), any(random)}, 64);
-    RayMarch march(look.space, camera);
-    for (int y = 0; y < camera.height; ++y) {
-      for (int x = 0; x < camera.width; ++x) {
-        const Vec3 d = camera.world(x + 0.5, y + 0.5) - center;
-        const double u = glm::dot(d, camera.right);
-        const double v = glm::dot(d, camera.up);
-        const double off = std::hypot(u, v);
-        // A chord shorter than half a pixel, the least step, may be missed.
-        const double chord = 2.0 * std::sqrt(std::max(0.0, kRadius * kRadius - off * off));
-        if (off < kRadius && chord < camera.step) continue;
-        const Hit hit = march.cast(x + 0.5, y + 0.5);
-        ASSERT_EQ(hit.part != -1, off < kRadius) << side << " " << x << " " << y;
-        if (hit.part == -1) continue;
-        const Vec3 normal =
-            (u * camera.right + v * camera.up + 0.5 * chord * camera.toward) / kRadius;
-        // The surface is found to 2^-12 of a step, which near the rim turns the normal by up to some 1e-3.
-        expectNear(hit.color, tools::scaled(tools::regionColor(1), tools::shadeOf(normal, camera)),
-                   2e-3, std::to_string(x) + " " + std::to_string(y));
-      }
-    }
-  }
-}
-
-TEST(RayMarch, SeesThroughLayersInTheirOrder) {
-  Look look(kShells);
-  const Camera camera = look.camera({0, -1, 0}, 64);
-  const double front = tools::shadeOf({0, -1, 0}, camera);
-  const Color outer = tools::scaled(tools::regionColor(1), front);
-  const Color inner = tools::scaled(tools::regionColor(2), front);
-  const auto over = [](const Color& a, double opacity, const Color& below) {
-    return Color{opacity * a.r + (1 - opacity) * below.r, opacity * a.g + (1 - opacity) * below.g,
-                 opacity * a.b + (1 - opacity) * below.b, 1.0};
-  };
-  const Color white{1, 1, 1, 1};
-  // Through the center: walls from within face the viewer as those from outside do.
-  const auto seen = [&](double a, double b) {
-    look.space.opacity = {1.0, a, b};
-    return RayMarch(look.space, camera).cast(32.0, 32.0).color;
-  };
-  expectNear(seen(1, 1), outer, 1e-6, "opaque");
-  expectNear(seen(0.25, 1), over(outer, 0.25, inner), 1e-6, "one");
-  expectNear(seen(0, 1), inner, 1e-6, "not there");
-  expectNear(seen(0.25, 0.5),
-             over(outer, 0.25, over(inner, 0.5, over(inner, 0.5, over(outer, 0.25, white)))), 1e-6,
-             "four walls");
-}
-
-TEST(RayMarch, TheCutFaceIsFlatAndItsFrontIsGone) {
-  Look look(kShells);
-  look.space.plane = tools::planeAcross(1, 0.005, {"mm", 1e-3});  // what is before y = 5 mm
-  const Camera front = look.camera({0, -1, 0}, 64);
-  RayMarch march(look.space, front);
-  EXPECT_EQ(march.cast(32.0, 32.0).part, 2 * 2) << "the face of the inner layer";
-  EXPECT_EQ(march.cast(32.0 + 0.020 / front.step, 32.0).part, 2 * 1) << "that of the outer one";
-  const Camera back = look.camera({0, 1, 0}, 64);
-  EXPECT_EQ(RayMarch(look.space, back).cast(32.0, 32.0).part, 2 * 1 + 1) << "its rounded back";
-}
-
-// The way that a block of rays shares is free for each of them: nothing is seen otherwise than without it.
-TEST(RandomRays, TheSharedWayHidesNothing) {
-  for (const char* name : {"csg_part", "metaballs", "heart", "sponge", "flag", "valve_tube"}) {
-    const std::string file = scenePath(std::string(name) + ".yaml");
-    const ScenePtr scene = compile(readScene(file));
-    const tools::Paint paint(nullptr, *scene, {});
-    const SpaceScene space{*scene, paint, scene->bounds().grownBy(0.002)};
-    std::mt19937_64 random(7);
-    std::normal_distribution<double> any;
-    std::uniform_real_distribution<double> share(0.0, 1.0);
-    std::size_t with_way = 0;
-    for (int round = 0; round < 8; ++round) {
-      Camera camera = tools::cameraFrom({any(random), any(random), any(random)});
-      camera.center = space.box.center();
-      camera.width = camera.height = 200;
-      camera.step = glm::length(space.box.size()) / camera.width;
-      RayMarch march(space, camera);
-      for (int block = 0; block < 40; ++block) {
-        const double x = camera.width * share(random);
-        const double y = camera.height * share(random);
-        const double free = march.freeWay(x, y, 6.0);
-        if (free > 0.0) ++with_way;
-        for (int ray = 0; ray < 6; ++ray) {
-          const double angle = 6.2831853 * share(random);
-          const double off = 6.0 * share(random);
-          const double rx = x + off * std::cos(angle);
-          const double ry = y + off * std::sin(angle);
-          const Hit without = march.cast(rx, ry);
-          const Hit with = march.cast(rx, ry, free);
-          // Steps fall elsewhere, so that a chord shorter than the least step is met by one and not by the other.
-          if (without.part == with.part) continue;
-          const Hit near = march.cast(rx + 0.5, ry + 0.5);
-          const Hit other = march.cast(rx - 0.5, ry - 0.5);
-          EXPECT_TRUE(near.isApartFrom(other) || near.isApartFrom(without) ||
-                      other.isApartFrom(without))
-              << name << " " << rx << " " << ry;
-        }
-      }
-    }
-    EXPECT_GT(with_way, 40U) << name;
-  }
-}
 
 TEST(SpacePicture, ForceColorsGetBrighter) {
   double last = -1.0;
@@ -250,11 +98,23 @@ TEST_F(RenderView, RefusesWhatDoesNotGoTogether) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> all = {
       {{"-o", "p.webp", "--turn", "5"}, "of a picture in space"},
       {{"-o", "p.png", "--opacity", "liquid=0.5"}, "of a picture in space"},
-      {{"-o", "p.png", "--view", "corner", "--turn", "5"}, "must end in .webp"},
+      {{"-o", "p.png", "--slice", "x=0"}, "of a picture in space"},
+      {{"-o", "p.png", "--around", "0,0,0,10"}, "of a picture in space"},
+      {{"-o", "p.gif", "--view", "corner", "--turn", "5"}, "must end in .png or .webp"},
+      {{"-o", "p.png", "--view", "corner", "--forces", "8"}, "where the scene is cut"},
+      {{"-o", "p.png", "--view", "corner", "--iso", "5"}, "where the scene is cut"},
+      {{"-o", "p.png", "--iso", "-1"}, "is not above 0"},
+      {{"-o", "p.png", "--iso", "0.001"}, "run into one another"},
+      {{"-o", "p.png", "--view", "+x", "--slice", "x=1", "--iso", "1um"}, "run into one another"},
+      {{"-o", "p.png", "--view", "+x", "--slice", "w=1"}, "--slice: 'w=1' is not x=VALUE"},
+      {{"-o", "p.png", "--view", "+x", "--around", "0,0,0"}, "is not four numbers"},
+      {{"-o", "p.png", "--view", "+x", "--around", "0,0,0,-1"}, "nothing can be seen"},
+      {{"-o", "p.png", "--view", "+x", "--around", "1e300,0,0,1"}, "nothing can be seen"},
       {{"-o", "p.webp", "--view", "corner"}, "must end in .png"},
       {{"-o", "p.webp", "--view", "corner", "--replay", "5"}, "--replay shows a trace"},
       {{"-o", "p.png", "--view", "0,0,0"}, "has no direction"},
-      {{"-o", "p.png", "--view", "north"}, "--view"},
+      {{"-o", "p.png", "--view", "north"}, "is not a place to look from"},
+      {{"-o", "p.png", "--view", "nan,0,0"}, "is not three numbers"},
       {{"-o", "p.png", "--view", "+x", "--opacity", "liquid"}, "is not LAYER=SHARE"},
       {{"-o", "p.png", "--view", "+x", "--opacity", "liquid=2"}, "is not LAYER=SHARE"},
       {{"-o", "p.png", "--view", "+x", "--opacity", "liqiud=0.5"}, "did you mean 'liquid'?"}};
@@ -263,6 +123,46 @@ TEST_F(RenderView, RefusesWhatDoesNotGoTogether) {
     EXPECT_EQ(result.exit_code, 2) << message;
     EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
   }
+  EXPECT_EQ(filesIn(folder_.path()), std::vector<std::string>{"c.yaml"}) << "nothing was written";
+}
+
+TEST_F(RenderView, WritesFramesAllOrNone) {
+  const std::vector<std::string> turn = {"-o",     "t.png", "--view", "front",
+                                         "--turn", "3",     "--size", "320x320"};
+  (void)folder_.file("t-0002.png", "mine");
+  const CommandResult refused = render(turn);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("t-0002.png"), std::string::npos) << refused.err;
+  EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"c.yaml", "t-0002.png"}));
+  std::filesystem::remove(folder_.path("t-0002.png"));
+  ASSERT_EQ(render(turn).exit_code, 0);
+  EXPECT_EQ(filesIn(folder_.path()),
+            (std::vector<std::string>{"c.yaml", "t-0001.png", "t-0002.png", "t-0003.png"}));
+  EXPECT_EQ(pixelsOf(textOf(folder_.path("t-0003.png"))).width, 320U);
+}
+
+TEST_F(RenderView, ABrokenTraceLeavesNothing) {
+  (void)folder_.file("t.csv", "no trace\n");
+  const CommandResult broken = render({"-o", "r.webp", "--view", "corner", "--trace", "t.csv",
+                                       "--replay", "6", "--size", "320x320"});
+  EXPECT_EQ(broken.exit_code, 3);
+  EXPECT_NE(broken.err.find("this is not a trace"), std::string::npos) << broken.err;
+  EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"c.yaml", "t.csv"}));
+}
+
+// The same direction by name, axis and numbers is the same picture, byte for byte.
+TEST_F(RenderView, NamesAndNumbersAreTheSameCamera) {
+  int number = 0;
+  const auto bytes = [&](const std::string& view) {
+    const std::string file = std::to_string(number++) + ".png";
+    EXPECT_EQ(render({"-o", file, "--view", view, "--size", "320x320"}).exit_code, 0) << view;
+    return textOf(folder_.path(file));
+  };
+  const std::string front = bytes("front");
+  EXPECT_EQ(front, bytes("-y"));
+  EXPECT_EQ(front, bytes("0,-1e-200,0"));
+  EXPECT_EQ(front, bytes("0,-1e200,0"));
+  EXPECT_NE(front, bytes("bottom"));
 }
 
 }  // namespace

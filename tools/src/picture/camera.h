@@ -1,6 +1,9 @@
 #pragma once
 /// From where a scene in space is looked at.
 
+#include <algorithm>
+#include <cmath>
+
 #include "palpate/core/math.h"
 #include "picture/canvas.h"
 
@@ -26,10 +29,12 @@ struct Camera {
   }
 };
 
-/// Turned to look from `toward` (any length but zero), `up` (or, if that is along it, y) as upright as can be.
+/// Turned to look from `toward` (any length but zero, finite), `up` (or, if that is along it, y) as upright as can be.
 [[nodiscard]] inline Camera cameraFrom(const Vec3& toward, const Vec3& up = {0.0, 0.0, 1.0}) {
   Camera camera;
-  camera.toward = glm::normalize(toward);
+  // Scaled first: the square of a very long or short vector is none of double precision.
+  const double most = std::max({std::abs(toward.x), std::abs(toward.y), std::abs(toward.z)});
+  camera.toward = glm::normalize(toward / most);
   const Vec3 right = glm::cross(up, camera.toward);
   camera.right = glm::length(right) > 1e-6
                      ? glm::normalize(right)

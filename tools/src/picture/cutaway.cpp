@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <numbers>
 
 #include "picture/palette.h"
@@ -15,55 +16,67 @@ constexpr double kYaw = 35.0 * std::numbers::pi / 180.0;
 constexpr double kPitch = 24.0 * std::numbers::pi / 180.0;
 constexpr int kTrial = 64;  // [pixels] of the first look
 constexpr double kEdgeShade = 0.4;
-constexpr int kBlock = 8;           // [pixels] whose rays share the way through free space
-constexpr double kContrast = 0.06;  // between neighbors; above it a pixel gets finer rays
+constexpr int kBlock = 8;                  // [pixels] whose rays share the way through free space
+constexpr int kBand = 32 * kBlock;         // [rows] that are drawn together ...
+constexpr int kHeld = kBand + 2 * kBlock;  // ... and looked at, with their neighbors
+constexpr double kContrast = 0.1;          // between neighbors; above it a pixel gets finer rays
 
 double differenceOf(const Color& a, const Color& b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }
 
-/// Rays through the pixels' centers, and finer ones where that is not enough.
+/// Rays through the pixels' centers, and finer ones where that is not enough. Band by band, so that only the picture
+/// itself takes memory that grows with its height.
 class Drawing {
  public:
   Drawing(const SpaceScene& space, const Camera& camera)
       : width_(camera.width),
         height_(camera.height),
         columns_((camera.width + kBlock - 1) / kBlock),
-        hits_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)),
-        free_(static_cast<std::size_t>(columns_) *
-              static_cast<std::size_t>((height_ + kBlock - 1) / kBlock)) {
+        hits_(static_cast<std::size_t>(width_) * kHeld),
+        free_(static_cast<std::size_t>(columns_) * (kHeld / kBlock)) {
     for (std::size_t i = 0; i < workerCount(); ++i) marches_.emplace_back(space, camera);
   }
 
   Raster draw(const Progress& progress) {
-    const int rows = (height_ + kBlock - 1) / kBlock;
-    parallelRows(rows, progress, "shading the scene",
-                 [&](int row, std::size_t worker) { first(row, marches_[worker]); });
     Raster raster(width_, height_);
-    parallelRows(height_, progress, "drawing edges", [&](int y, std::size_t worker) {
-      for (int x = 0; x < width_; ++x) raster.at(x, y) = finished(x, y, marches_[worker]);
-    });
+    for (int top = 0; top < height_; top += kBand) {
+      const int end = std::min(top + kBand, height_);
+      first_ = std::max(0, top - kBlock);
+      const int last = std::min(end + kBlock, height_);
+      const Progress part = [&](std::string_view what, double share) {
+        return !progress || progress(what, (top + share * (end - top)) / height_);
+      };
+      parallelRows((last - first_ + kBlock - 1) / kBlock, part, "shading the scene",
+                   [&](int row, std::size_t worker) {
+                     blocks(first_ + row * kBlock, last, marches_[worker]);
+                   });
+      parallelRows(end - top, part, "shading the scene", [&](int row, std::size_t worker) {
+        const int y = top + row;
+        for (int x = 0; x < width_; ++x) raster.set(x, y, finished(x, y, marches_[worker]));
+      });
+    }
     return raster;
   }
 
  private:
   [[nodiscard]] Hit& hit(int x, int y) {
     return hits_[static_cast<std::size_t>(x) +
-                 static_cast<std::size_t>(width_) * static_cast<std::size_t>(y)];
+                 static_cast<std::size_t>(width_) * static_cast<std::size_t>(y - first_)];
   }
   [[nodiscard]] double& freeAt(int x, int y) {
     return free_[static_cast<std::size_t>(x / kBlock) +
-                 static_cast<std::size_t>(columns_) * static_cast<std::size_t>(y / kBlock)];
+                 static_cast<std::size_t>(columns_) *
+                     static_cast<std::size_t>((y - first_) / kBlock)];
   }
 
-  /// A row of blocks.
-  void first(int row, RayMarch& march) {
+  /// A row of blocks from `top` on, and no pixel from `end` on.
+  void blocks(int top, int end, RayMarch& march) {
     const double radius = 0.5 * kBlock * std::numbers::sqrt2;
     for (int left = 0; left < width_; left += kBlock) {
-      const int top = row * kBlock;
       const double free = march.freeWay(left + 0.5 * kBlock, top + 0.5 * kBlock, radius);
       freeAt(left, top) = free;
-      for (int y = top; y < std::min(top + kBlock, height_); ++y) {
+      for (int y = top; y < std::min(top + kBlock, end); ++y) {
         for (int x = left; x < std::min(left + kBlock, width_); ++x) {
           hit(x, y) = march.cast(x + 0.5, y + 0.5, free);
         }
@@ -101,9 +114,10 @@ class Drawing {
   }
 
   int width_, height_, columns_;
+  int first_ = 0;  ///< row that hits_ begins with, a multiple of kBlock
   std::vector<Hit> hits_;
   std::vector<double> free_;
-  std::vector<RayMarch> marches_;
+  std::deque<RayMarch> marches_;
 };
 
 }  // namespace

@@ -15,6 +15,10 @@ std::string feelOf(const Sheet& s, const Region& region) {
            formatParameter(s.scene.materials()[static_cast<std::size_t>(region.wall)].stiffness) +
            " N/m";
   }
+  const auto index = static_cast<std::size_t>(&region - s.scene.regions().data());
+  if (index < s.opacity.size() && s.opacity[index] < 1.0) {
+    text += (text.empty() ? "" : ", ") + formatNumber(100.0 * s.opacity[index], 3) + " % opaque";
+  }
   if (region.content >= 0) {
     const Material& m = s.scene.materials()[static_cast<std::size_t>(region.content)];
     if (m.viscosity != 0.0) text += ", drag " + formatParameter(m.viscosity) + " N.s/m";
@@ -89,6 +93,20 @@ double drawLegend(Sheet& s, double y) {
     entry("port", "opens when it is pressed", [&](double at) {
       s.canvas.line({{x, at}, {x + s.px(34), at}}, {kWallInk, s.px(2.2)});
       s.canvas.line({{x, at}, {x + s.px(34), at}}, {kPortInk, s.px(4), {s.px(5), s.px(7)}});
+    });
+  }
+  if (s.lines) {
+    entry("equal distance",
+          "from a surface, every " + formatNumber(s.lines->spacing() / s.unit.metres) + " " +
+              s.unit.name,
+          stroke({mixed(rgb(0xFFFFFF), kInk, 0.5), s.px(1.3)}));
+  }
+  double most = 0.0;
+  for (const RestForce& f : s.felt) most = std::max(most, glm::length(f.force));
+  if (most > 0.0) {
+    entry("force on a hand at rest", "longest " + formatNumber(most, 3) + " N", [&](double at) {
+      s.canvas.disk({x, at}, s.px(2.2), kForceInk);
+      s.canvas.arrow({x, at}, {x + s.px(34), at}, {kForceInk, s.px(1.4)}, s.px(8));
     });
   }
   if (s.options.track.points.empty()) return y;

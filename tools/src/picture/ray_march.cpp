@@ -10,7 +10,10 @@
 namespace palpate::tools {
 namespace {
 
-constexpr double kAmbient = 0.42;
+constexpr double kAmbient = 0.44;
+constexpr double kSky = 0.12;  // of the light: from all of the upper side
+constexpr double kWrap =
+    0.25;  // of the lamp's light gets round the edge of the shade: it is not a point
 constexpr double kFaceShade = 0.97;
 constexpr int kMostSteps = 4000;
 constexpr int kHalvings = 12;
@@ -19,6 +22,8 @@ constexpr double kGone = 0.01;      // share of light behind which nothing is se
 constexpr double kSheetInk = 0.25;  // share of ink in what belongs to no region
 constexpr int kFirstSheet =
     -2;  // part of a hit on the first sheet; those of the others go down from it
+constexpr int kFirstSlice = kFirstSheet - static_cast<int>(kMostSheets);  // as of sheets
+constexpr int kMostRegions = 65536;
 
 /// The part of a ray within a box, as distances along it.
 std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& origin,
@@ -56,19 +61,20 @@ struct Layers {
 }  // namespace
 
 double shadeOf(const Vec3& normal, const Camera& camera) {
-  const Vec3 light = glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right);
-  return kAmbient + (1.0 - kAmbient) * std::clamp(glm::dot(normal, light), 0.0, 1.0);
+  const Vec3 lamp = glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right);
+  const double direct = std::clamp((glm::dot(normal, lamp) + kWrap) / (1.0 + kWrap), 0.0, 1.0);
+  const double sky = 0.5 + 0.5 * glm::dot(normal, camera.up);
+  return kAmbient + (1.0 - kAmbient - kSky) * direct + kSky * sky;
 }
 
 RayMarch::RayMarch(const SpaceScene& space, const Camera& camera)
     : space_(space),
       camera_(camera),
-      here_(space.scene.partition().leaves().size()),
-      there_(here_),
-      middle_(here_),
       way_(-camera.toward),
       has_sheets_(!space.scene.passages().sheets().empty()) {
+  for (Signs& signs : signs_) signs = Signs(space.scene.partition().leaves().size());
   for (const Leaf& leaf : space.scene.partition().leaves()) bounds_.push_back(leaf.field->bounds());
+  spans_.resize(bounds_.size());
   begin_ = glm::dot(space.box.center() - camera.center, way_) - 0.5 * glm::length(space.box.size());
 }
 
@@ -89,6 +95,32 @@ double RayMarch::probe(const Vec3& p, Signs& out) const {
   return safe;
 }
 
+void RayMarch::findSpans(const Vec3& origin) {
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
+    const auto span = within(bounds_[i], origin, way_);
+    spans_[i] = span.value_or(std::pair{kInfinity, -kInfinity});
+  }
+}
+
+double RayMarch::probeAlong(const Vec3& origin, double t, Signs& out) const {
+  const Vec3 p = origin + t * way_;
+  double safe = kInfinity;
+  const auto leaves = space_.scene.partition().leaves();
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const auto leaf = static_cast<LeafId>(i);
+    const auto [enter, leave] = spans_[i];
+    if (t < enter || t > leave) {
+      out.set(leaf, false);
+      if (t < enter) safe = std::min(safe, enter - t);
+      continue;
+    }
+    const double value = leaves[i].field->value(p);
+    out.set(leaf, value < 0.0);
+    safe = std::min(safe, std::abs(value) / leaves[i].lipschitz);
+  }
+  return safe;
+}
+
 double RayMarch::advance(double safe) const {
   return std::max(std::isfinite(safe) ? safe : 0.0, 0.5 * camera_.step);
 }
@@ -102,9 +134,12 @@ double RayMarch::freeWay(double x, double y, double radius) {
   const double around = radius * camera_.step;
   const double most = glm::length(space_.box.size());
   double way = 0.0;
+  here_->clear();
   while (way < most) {
-    const double safe = probe(origin + way * way_, here_);
-    if (space_.scene.partition().regionOf(here_) != kOutside) return 0.0;
+    const double safe = probe(origin + way * way_, *there_);
+    const bool is_known = way > 0.0 && *here_ == *there_;
+    if (!is_known && space_.scene.partition().regionOf(*there_) != kOutside) return 0.0;
+    std::swap(here_, there_);
     // The ball of `safe` around the point holds the rays' next stretch.
     if (!(safe > 1.5 * around)) break;
     way += std::isfinite(safe) ? safe - around : most;
@@ -112,27 +147,59 @@ double RayMarch::freeWay(double x, double y, double radius) {
   return std::min(way, most);
 }
 
-Hit RayMarch::cast(double x, double y, double free) {
-  const Vec3 origin = camera_.world(x, y);
+std::optional<RayMarch::Stretch> RayMarch::stretchOf(const Vec3& origin) const {
   const auto part = within(space_.box, origin, way_);
   if (!part) return {};
-  double t = part->first;
-  double end = part->second;
-  double cut = -kInfinity;
+  Stretch out{part->first, part->second};
   if (space_.plane) {
     const double facing = glm::dot(way_, space_.plane->normal());
     const double height = glm::dot(origin - space_.plane->point, space_.plane->normal());
     if (facing < -kFlat) {  // into what is kept
-      cut = -height / facing;
-      t = std::max(t, cut);
+      out.cut = -height / facing;
+      out.begin = std::max(out.begin, out.cut);
     } else if (facing > kFlat) {
-      end = std::min(end, -height / facing);
+      out.end = std::min(out.end, -height / facing);
     } else if (height > 0.0) {
       return {};
     }
   }
-  t = std::max(t, begin_ + free);
-  if (t >= end) return {};
+  if (out.begin >= out.end) return {};
+  return out;
+}
+
+void RayMarch::findSlices(const Vec3& origin, const Stretch& way) {
+  slices_.clear();
+  for (std::size_t i = 0; i < space_.slices.size(); ++i) {
+    const CutPlane& plane = space_.slices[i];
+    const double facing = glm::dot(way_, plane.normal());
+    if (std::abs(facing) < kFlat) continue;
+    const double at = glm::dot(plane.point - origin, plane.normal()) / facing;
+    if (at > way.begin && at < way.end) slices_.emplace_back(at, i);
+  }
+  std::sort(slices_.rbegin(), slices_.rend());
+}
+
+Hit RayMarch::cast(double x, double y, double free) {
+  const Vec3 origin = camera_.world(x, y);
+  const auto way = stretchOf(origin);
+  return way ? march(origin, *way, free) : Hit{};
+}
+
+double RayMarch::lightFrom(const Vec3& p, double margin) {
+  const double depth = glm::dot(p - camera_.center, way_);
+  const Vec3 origin = p - depth * way_;
+  auto way = stretchOf(origin);
+  if (!way) return 1.0;
+  way->end = std::min(way->end, depth - margin);
+  return way->begin < way->end ? march(origin, *way, 0.0).through : 1.0;
+}
+
+Hit RayMarch::march(const Vec3& origin, Stretch way, double free) {
+  findSlices(origin, way);
+  findSpans(origin);
+  double t = std::max(way.begin, begin_ + free);
+  if (!slices_.empty()) t = std::max(way.begin, std::min(t, slices_.back().first));
+  if (t >= way.end) return {};
 
   Layers layers;
   Hit hit;
@@ -143,16 +210,17 @@ Hit RayMarch::cast(double x, double y, double free) {
     }
     layers.add(met.color, met.opacity);
   };
-  double step = probe(origin + t * way_, here_);
-  RegionId region = space_.scene.partition().regionOf(here_);
+  double step = probeAlong(origin, t, *here_);
+  RegionId region = space_.scene.partition().regionOf(*here_);
   if (region != kOutside) {
     const Vec3 p = origin + t * way_;
-    const bool is_face = t == cut;
+    const bool is_face = t == way.cut;
     const Color color = space_.paint.at(region, p);
     if (is_face) {
-      hit.color = scaled(color, kFaceShade);
+      hit.color = scaled(lined(color, p, space_.plane->normal()), kFaceShade);
       hit.part = 2 * region;
-      hit.sides = sheetSides(space_.scene, here_);
+      hit.sides = sheetSides(space_.scene, *here_);
+      hit.through = 0.0;
       return hit;
     }
     // The box cuts an endless layer.
@@ -160,34 +228,57 @@ Hit RayMarch::cast(double x, double y, double free) {
   }
   double before = t;
   t += advance(step);
-  for (int i = 0; i < kMostSteps && t < end && layers.through > kGone; ++i) {
-    step = probe(origin + t * way_, there_);
-    const RegionId next = space_.scene.partition().regionOf(there_);
-    if (next != region) {
+  for (int i = 0; i < kMostSteps && before < way.end && layers.through > kGone; ++i) {
+    const bool is_slice = !slices_.empty() && slices_.back().first <= t;
+    if (is_slice) t = slices_.back().first;
+    if (t >= way.end) break;
+    step = probeAlong(origin, t, *there_);
+    const bool is_same = *here_ == *there_;
+    if (!is_same && space_.scene.partition().regionOf(*there_) != region) {
       meet(surface(origin, before, t));
-      region = space_.scene.partition().regionOf(there_);
+      region = space_.scene.partition().regionOf(*there_);
       step = 0.0;
-    } else if (has_sheets_ && here_ != there_) {
-      if (const auto met = sheet(origin, before, t)) meet(*met);
+    } else {
+      if (has_sheets_ && !is_same) {
+        if (const auto met = sheet(origin, before, t)) meet(*met);
+      }
+      if (is_slice) {
+        if (const auto met = slice(slices_.back().second, region, origin + t * way_)) meet(*met);
+        slices_.pop_back();
+      }
     }
     std::swap(here_, there_);
     before = t;
     t += advance(step);
   }
+  hit.through = layers.through;
   layers.add(rgb(0xFFFFFF), 1.0);
   hit.color = layers.sum;
   return hit;
 }
 
+std::optional<RayMarch::Surface> RayMarch::slice(std::size_t index, RegionId region,
+                                                 const Vec3& p) const {
+  if (region == kOutside && !space_.paint.isInImage(p)) return {};
+  const Color color = lined(space_.paint.at(region, p), p, space_.slices[index].normal());
+  return Surface{scaled(color, kFaceShade), 1.0,
+                 kFirstSlice - static_cast<int>(index) * kMostRegions - region};
+}
+
+Color RayMarch::lined(const Color& color, const Vec3& p, const Vec3& normal) const {
+  if (space_.lines == nullptr) return color;
+  return mixed(color, kInk, space_.lines->inkAt(p, normal, camera_.step));
+}
+
 RayMarch::Surface RayMarch::surface(const Vec3& origin, double before, double& after) {
   const Partition& partition = space_.scene.partition();
-  const RegionId from = partition.regionOf(here_);
+  const RegionId from = partition.regionOf(*here_);
   double low = std::min(before, after);
   double high = after;
   for (int i = 0; i < kHalvings; ++i) {
     const double half = 0.5 * (low + high);
-    probe(origin + half * way_, middle_);
-    if (partition.regionOf(middle_) == from) {
+    probeAlong(origin, half, *middle_);
+    if (*middle_ == *here_ || partition.regionOf(*middle_) == from) {
       low = half;
       std::swap(here_, middle_);
     } else {
@@ -196,7 +287,7 @@ RayMarch::Surface RayMarch::surface(const Vec3& origin, double before, double& a
     }
   }
   after = high;
-  const RegionId inner = std::max(from, partition.regionOf(there_));
+  const RegionId inner = std::max(from, partition.regionOf(*there_));
   Surface met{{}, opacityOf(inner), 2 * inner + 1};
   if (met.opacity <= 0.0) return met;
   const Vec3 p = origin + high * way_;
@@ -204,13 +295,13 @@ RayMarch::Surface RayMarch::surface(const Vec3& origin, double before, double& a
   const auto leaves = partition.leaves();
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     const auto leaf = static_cast<LeafId>(i);
-    if (here_.inside(leaf) == there_.inside(leaf)) continue;
+    if (here_->inside(leaf) == there_->inside(leaf)) continue;
     normal = unitOr(leaves[i].field->sample(p).gradient, normal);
     break;
   }
   if (glm::dot(normal, way_) > 0.0) normal = -normal;  // two-sided
   met.color = space_.paint.of(inner);
-  const Boundary crossed = classify(space_.scene, here_, there_);
+  const Boundary crossed = classify(space_.scene, *here_, *there_);
   if (crossed.kind == Boundary::Kind::kPort) met.color = mixed(met.color, kPortInk, 0.35);
   if (crossed.kind == Boundary::Kind::kAbsent) met.color = mixed(met.color, kPaper, 0.4);
   met.color = scaled(met.color, shadeOf(normal, camera_));
@@ -218,18 +309,18 @@ RayMarch::Surface RayMarch::surface(const Vec3& origin, double before, double& a
 }
 
 std::optional<RayMarch::Surface> RayMarch::sheet(const Vec3& origin, double before, double after) {
-  const std::uint64_t inner = sheetSides(space_.scene, here_).inner;
-  std::uint64_t changed = inner ^ sheetSides(space_.scene, there_).inner;
+  const std::uint64_t inner = sheetSides(space_.scene, *here_).inner;
+  std::uint64_t changed = inner ^ sheetSides(space_.scene, *there_).inner;
   for (; changed != 0; changed &= changed - 1) {
     const auto index = static_cast<std::size_t>(std::countr_zero(changed));
     const std::uint64_t bit = std::uint64_t{1} << index;
     double low = std::min(before, after);
     double high = after;
-    SheetSides beyond = sheetSides(space_.scene, there_);
+    SheetSides beyond = sheetSides(space_.scene, *there_);
     for (int i = 0; i < kHalvings; ++i) {
       const double half = 0.5 * (low + high);
-      probe(origin + half * way_, middle_);
-      const SheetSides sides = sheetSides(space_.scene, middle_);
+      probeAlong(origin, half, *middle_);
+      const SheetSides sides = sheetSides(space_.scene, *middle_);
       const bool is_before = ((sides.inner ^ inner) & bit) == 0;
       (is_before ? low : high) = half;
       if (!is_before) beyond = sides;
