@@ -64,11 +64,11 @@ TEST(RestForces, ABallPushesOutAsItsWallSays) {
   }
 }
 
-TEST(RestForces, OfNothingThereIsNone) {
-  const ScenePtr scene = compile(parseScene("palpate: 1\nlength: mm\nlayers: []\n", "test"));
-  const Box3 box{Vec3(-0.1), Vec3(0.1)};
-  EXPECT_TRUE(
-      tools::restForces(*scene, tools::planeAcross(2, 0.0, {"mm", 1e-3}), box, 5, {}).empty());
+TEST(RestForces, BesideTheSceneThereIsNone) {
+  const ScenePtr scene = compile(parseScene(kBall, "test"));
+  const Box3 box{Vec3(-0.1, 0.04, -0.1), Vec3(0.1)};
+  const tools::CutPlane plane = tools::planeAcross(1, 0.05, {"mm", 1e-3});
+  EXPECT_TRUE(tools::restForces(*scene, plane, box, 5, {}).empty());
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kSmallest = 320;  // [pixels] below this nothing can be read
 constexpr int kLargest = 8000;
+constexpr double kNearest = 1e-6;  // [m] of --around
 
 Error usageError(std::string message, std::string hint = {}) {
   return Error(ErrorKind::kUsage, {"usage.render", std::move(message), std::move(hint)});
@@ -76,10 +77,10 @@ SpaceView::Around parseAround(const std::string& text, const LengthUnit& unit) {
   }
   if (!is_good) throw usageError("--around: '" + text + "' is not four numbers", "X,Y,Z,RADIUS");
   const SpaceView::Around around{Vec3(numbers[0], numbers[1], numbers[2]), numbers[3]};
-  if (!HapticRenderer::isInReach(around.center) || !(around.radius > 0.0) ||
+  if (!HapticRenderer::isInReach(around.center) || !(around.radius >= kNearest) ||
       around.radius > HapticRenderer::kFarthest) {
     throw usageError("--around: nothing can be seen " + text + " from there",
-                     "a point of the scene, and a radius above 0");
+                     "a point of the scene, and a radius of 1 um to 10 km");
   }
   return around;
 }

@@ -16,6 +16,7 @@ constexpr double kWrap =
     0.25;  // of the lamp's light gets round the edge of the shade: it is not a point
 constexpr double kFaceShade = 0.97;
 constexpr int kMostSteps = 4000;
+constexpr int kMostFree = 500;  // steps of rays together: what creeps along a surface gains little
 constexpr int kHalvings = 12;
 constexpr double kFlat = 1e-9;      // a ray that runs along the cut
 constexpr double kGone = 0.01;      // share of light behind which nothing is seen
@@ -135,7 +136,7 @@ double RayMarch::freeWay(double x, double y, double radius) {
   const double most = glm::length(space_.box.size());
   double way = 0.0;
   here_->clear();
-  while (way < most) {
+  for (int i = 0; i < kMostFree && way < most; ++i) {
     const double safe = probe(origin + way * way_, *there_);
     const bool is_known = way > 0.0 && *here_ == *there_;
     if (!is_known && space_.scene.partition().regionOf(*there_) != kOutside) return 0.0;
