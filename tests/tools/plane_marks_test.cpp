@@ -23,7 +23,7 @@ TEST(DistanceLines, RingsAroundABall) {
   const auto ink = [&](double radius) {
     return lines.inkAt(kCenter + Vec3(radius * 0.6, 0.0, radius * 0.8), across, pixel);
   };
-  EXPECT_EQ(ink(0.030), 0.0) << "the surface itself is no line";
+  EXPECT_EQ(ink(0.030), 0.0) << "the surface itself has none";
   for (int k = 1; k <= 4; ++k) {
     EXPECT_GT(ink(0.030 + 0.002 * k), 0.3) << k;
     EXPECT_GT(ink(0.030 - 0.002 * k), 0.3) << k;

@@ -212,7 +212,7 @@ struct RenderOptions {
   std::string iso;            ///< a length
   std::optional<int> forces;  ///< arrows along the longer side
   // Of a picture in space.
-  std::string view;                  ///< "corner", "front", "+x" ... "-z" or "X,Y,Z"; empty: a flat cut
+  std::string view;                  ///< "corner", "front", "+x", "X,Y,Z"; empty: a flat cut
   std::string around;                ///< "X,Y,Z,RADIUS"
   std::vector<std::string> opacity;  ///< "LAYER=SHARE"
   std::vector<std::string> slices;   ///< "x=VALUE"
