@@ -86,6 +86,17 @@ void addMeshes(std::vector<Find>& out) {
                    for (int i = 0; i < 100'000; ++i) text += R"({"extras":)";
                    return text;
                  }()});
+  // Found by the fuzzer: who believes the promised length looks at no part, and Assimp asks for the first one's gigabytes.
+  const std::string glb = seedsOf("glb").front();
+  for (const std::uint32_t promised : {1U, 12U, 19U}) {
+    out.push_back({"glb_promises_" + std::to_string(promised), "glb",
+                   with<std::uint32_t>(with<std::uint32_t>(glb, 8, promised), 12, 0xFC0200F0)});
+  }
+  const std::size_t second = 20 + numberAt<std::uint32_t>(glb, 12);
+  out.push_back(
+      {"glb_promises_its_first_part", "glb",
+       with<std::uint32_t>(with<std::uint32_t>(glb, 8, static_cast<std::uint32_t>(second)), second,
+                           0xFC0200F0)});
   // Every second corner is drawn in: no two ears stand side by side for long.
   std::string star = "v 0 0 0\n";
   const int corners = 60'000;

@@ -104,6 +104,13 @@ TEST(Finds, BracketsWithoutEndInGltfAreCountedBeforeAnybodyFollowsThem) {
   EXPECT_NE(answerTo("gltf_deep_braces").message.find("deeper"), std::string::npos);
 }
 
+TEST(Finds, NoPromisedLengthOfAGlbFileHidesItsPartsFromTheGuard) {
+  for (const char* name :
+       {"glb_promises_1", "glb_promises_12", "glb_promises_19", "glb_promises_its_first_part"}) {
+    EXPECT_EQ(answerTo(name).code, "mesh.truncated") << name;
+  }
+}
+
 TEST(Finds, PackedDataThatUnpackToFarMoreThanTheHeaderSaysAreRefused) {
   EXPECT_EQ(answerTo("gz_that_unpacks_to_far_more").code, "nifti.size");
 }

@@ -247,7 +247,6 @@ Partition::Sides Partition::sidesOf(const Program& program) {
           first[holds].insert(first[holds].end(), second[holds].begin(), second[holds].end());
           first[holds].push_back({is_and ? SideStep::Op::kAnd : SideStep::Op::kOr, true, 0, 0});
         }
-        break;
       }
     }
   }

@@ -1,10 +1,9 @@
 #include "content_fade.h"
 
-#include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "palpate/interior/partition.h"
+#include "region_thickness.h"
 
 namespace palpate {
 namespace {
@@ -12,57 +11,6 @@ namespace {
 /// Long enough that hovering in a mouth does not chatter, short against all that is in there: a quarter of a millimeter
 /// in a bowl of 40 mm that is cut at 15 mm, whose largest ball has 55 mm.
 constexpr double kShare = 1.0 / 220.0;
-constexpr int kMostMoves = 300;
-/// A climb ends where its steps get shorter than this share of the first one.
-constexpr double kShortest = 1e-6;
-/// Over where a climb began: what is deeper has no end.
-constexpr double kEndless = 1e6;
-
-/// [m] How far inside the field `p` is; infinite where the field does not know.
-double depthIn(const Field& field, const Vec3& p) {
-  const FieldSample s = field.sample(p);
-  if (!s.in_band) return s.value < 0.0 ? kInfinity : -kInfinity;
-  const double slope = glm::length(s.gradient);
-  return field.metric() == Metric::kImplicit && slope > 0.0 ? -s.value / slope : -s.value;
-}
-
-/// [m] The same in a region: what later layers take is not of it.
-double depthIn(std::span<const Region> regions, std::size_t region, const Vec3& p) {
-  double depth = depthIn(*regions[region].field, p);
-  for (std::size_t later = region + 1; later < regions.size(); ++later) {
-    if (regions[later].field) depth = std::min(depth, -depthIn(*regions[later].field, p));
-  }
-  return depth;
-}
-
-/// [m] Across the largest ball that is found in the region by climbing from a point of it.
-double thicknessOf(std::span<const Region> regions, std::size_t region) {
-  Vec3 p = regions[region].seed;
-  double depth = depthIn(regions, region, p);
-  if (!(depth > 0.0)) return kInfinity;
-  const double first = depth;
-  double step = first;
-  for (int i = 0; i < kMostMoves && step > kShortest * first && depth < kEndless * first; ++i) {
-    bool is_deeper = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const double side : {1.0, -1.0}) {
-        Vec3 next = p;
-        next[axis] += side * step;
-        const double there = depthIn(regions, region, next);
-        if (!(there > depth)) continue;
-        is_deeper = true;
-        depth = there;
-        p = next;
-      }
-    }
-    step *= is_deeper ? 2.0 : 0.5;
-  }
-  if (depth < kEndless * first) return 2.0 * depth;
-  // Deeper than a grid's band: then what counts is the least side of its box.
-  const Box3 box = regions[region].field->bounds();
-  const Vec3 size = box.size();
-  return box.isBounded() ? std::min({size.x, size.y, size.z}) : kInfinity;
-}
 
 }  // namespace
 

@@ -1,9 +1,16 @@
 #include "palpate/render/contents.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "region_thickness.h"
 
 namespace palpate {
 namespace {
+
+constexpr double kWidestWay = 0.5e-3;  // [m]
+/// Of the thickest tissue.
+constexpr double kWayShare = 0.125;
 
 bool isFrom0(const std::optional<double>& value, double most = kInfinity) noexcept {
   return !value || (std::isfinite(*value) && *value >= 0.0 && *value <= most);
@@ -19,6 +26,18 @@ Contents::Contents(const Scene& scene) : regions_(scene.regions().size()) {
     }
     look(regions_[i]);
   }
+  // What is no tissue of a needle yet may be one by a change, if it has a stiffness.
+  double thickest = 0.0;
+  for (std::size_t i = 0; i < regions_.size() && kWayShare * thickest < kWidestWay; ++i) {
+    const Material* own = regions_[i].material;
+    if (own == nullptr || !(regions_[i].holds_needle || own->stiffness.range().most > 0.0))
+      continue;
+    const palpate::Region& region = scene.regions()[i];
+    double thickness = kInfinity;
+    if (region.has_seed && region.field != nullptr) thickness = thicknessOf(scene.regions(), i);
+    thickest = std::max(thickest, thickness);
+  }
+  same_way_ = std::min(kWidestWay, kWayShare * thickest);
 }
 
 bool Contents::change(RegionId region, const ContentChange& change) noexcept {

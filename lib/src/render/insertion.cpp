@@ -7,12 +7,6 @@
 namespace palpate {
 namespace {
 
-/// Who comes back this close [m] to where a tissue was entered comes by the same way: about a needle's
-/// radius. Ports that make holes say how wide these are.
-constexpr double kSameWay = 0.5e-3;
-/// A tip this far [m] before its last entry, in what does not hold it, has come round the tissue.
-constexpr double kAround = 0.5e-3;
-
 /// The friction of `material` along a shaft at `p` [m].
 ShaftLaw shaftLaw(const Material& material, const Vec3& p) noexcept {
   const ShaftFriction& shaft = material.shaft;
@@ -66,14 +60,16 @@ Insertion::Force Insertion::step(const Contents& contents, const Tick& tick) noe
 
   if (count_ == 0 && !is_lost_ && contents.holdsNeedle(region_)) {
     // It began in there, or the content holds needles since it was changed: as if it had just come in.
-    push({.from = region_, .to = region_, .point = tick.tip});
+    push({.from = region_, .to = region_, .point = tick.tip}, contents.sameWay());
   }
 
   if (count_ > 1) {
     const Layer& last = layers_[count_ - 1];
     const Vec3& entry = last.cut.entry();
     const Vec3 along = unitOr(entry - layers_[0].cut.entry(), Vec3(0.0));
-    if (!contents.holdsNeedle(last.region) && glm::dot(tick.tip - entry, along) < -kAround) letGo();
+    if (!contents.holdsNeedle(last.region) &&
+        glm::dot(tick.tip - entry, along) < -contents.sameWay())
+      letGo(contents.sameWay());
   }
   tip_ = tick.tip;
   stored_ = 0.0;
@@ -144,11 +140,11 @@ Insertion::ShaftForce Insertion::shaftForce(const Contents& contents, const Tick
 void Insertion::cross(const Contents& contents, RegionEntry& step) noexcept {
   region_ = step.to;
   // Begun inside, it is not known where the shaft came in: out of there it is free.
-  if (count_ == 1 && layers_[0].from == layers_[0].region) letGo();
+  if (count_ == 1 && layers_[0].from == layers_[0].region) letGo(contents.sameWay());
   for (std::size_t i = count_; i > 0; --i) {
     const Layer& layer = layers_[i - 1];
-    if (layer.from != step.to || !isBackThrough(layer, step)) continue;
-    while (count_ >= i) pop();
+    if (layer.from != step.to || !isBackThrough(layer, step, contents.sameWay())) continue;
+    while (count_ >= i) pop(contents.sameWay());
     return;
   }
   if (count_ == 0 && !contents.holdsNeedle(step.to)) {
@@ -157,7 +153,7 @@ void Insertion::cross(const Contents& contents, RegionEntry& step) noexcept {
   }
   if (is_lost_) return;
   if (count_ == kMaxLayers) {
-    letGo();
+    letGo(contents.sameWay());
     is_lost_ = true;
     return;
   }
@@ -166,32 +162,33 @@ void Insertion::cross(const Contents& contents, RegionEntry& step) noexcept {
     step.cut = glm::length(cutForce(contents, last.region, last.cut, step.point));
     last.cut.passTo(step.point);
   }
-  push(step);
+  push(step, contents.sameWay());
 }
 
 /// Whether going on like this leaves `layer` by the side that it was entered through.
-bool Insertion::isBackThrough(const Layer& layer, const RegionEntry& step) const noexcept {
+bool Insertion::isBackThrough(const Layer& layer, const RegionEntry& step,
+                              double same_way) const noexcept {
   const double turn = glm::dot(layer.normal, step.normal);
   if (turn != 0.0) return turn < 0.0;
   const Vec3& entry = layer.cut.entry();
   const double there = glm::distance(step.point, entry);
   const double deepest = glm::distance(layer.cut.end(), entry);
-  return there < std::max(0.5 * deepest, kSameWay) ||
+  return there < std::max(0.5 * deepest, same_way) ||
          glm::dot(velocity_, step.point - layers_[0].cut.entry()) < 0.0;
 }
 
-void Insertion::push(const RegionEntry& step) noexcept {
+void Insertion::push(const RegionEntry& step, double same_way) noexcept {
   if (count_ == 0) reach_ = 0.0;
   Layer& layer = layers_[count_++];
   layer = {step.from, step.to, step.normal, Cut(step.point), {}, {}};
-  const Remembered* before = cutNear(step.to, step.point, std::max(step.hole_radius, kSameWay));
+  const Remembered* before = cutNear(step.to, step.point, std::max(step.hole_radius, same_way));
   if (before != nullptr) layer.cut = before->cut.enteredAt(step.point);
 }
 
-void Insertion::pop() noexcept {
+void Insertion::pop(double same_way) noexcept {
   const Layer& layer = layers_[--count_];
   if (layer.cut.end() == layer.cut.entry()) return;
-  Remembered* slot = cutNear(layer.region, layer.cut.entry(), kSameWay);
+  Remembered* slot = cutNear(layer.region, layer.cut.entry(), same_way);
   if (slot == nullptr && cut_count_ < kMaxCuts) slot = &cuts_[cut_count_++];
   if (slot == nullptr) {
     slot = &cuts_[next_cut_];
@@ -201,8 +198,8 @@ void Insertion::pop() noexcept {
 }
 
 /// The needle is out, though not by the way that it came.
-void Insertion::letGo() noexcept {
-  while (count_ > 0) pop();
+void Insertion::letGo(double same_way) noexcept {
+  while (count_ > 0) pop(same_way);
 }
 
 /// The remembered cut of `region` that begins nearest to `p` [m], within `radius` [m]; null if none.

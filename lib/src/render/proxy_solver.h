@@ -148,6 +148,7 @@ class ProxySolver {
   [[nodiscard]] Try moveOn() noexcept;
   [[nodiscard]] bool lookWithin(double radius) noexcept;
   void poseAll(const Vec3& wish) noexcept;
+  [[nodiscard]] static double roomOf(const CellProblem& problem) noexcept;
   void pose(const NearCell& cell, CellProblem& out) const noexcept;
   void solve(CellProblem& problem, const Vec3& wish) const noexcept;
   [[nodiscard]] double noiseOf(const CellProblem& problem) const noexcept;

@@ -45,13 +45,19 @@ TEST(FootPoint, HasTheSurfacesCurvatures) {
   // At the end of a semi-axis a the curvatures are a / b^2 and a / c^2.
   const Vec3 radii(9e-3, 6e-3, 7e-3);
   const FieldPtr field = implicitEllipsoid(kCenter, radii);
-  const auto foot = footPoint(*field, kCenter + Vec3(radii.x + 1e-3, 0.0, 0.0));
-  ASSERT_TRUE(foot);
-  const double first = radii.x / (radii.y * radii.y);
-  const double second = radii.x / (radii.z * radii.z);
-  EXPECT_NEAR(foot->curvature_sum, first + second, 1e-9 * (first + second));
-  EXPECT_NEAR(foot->curvature_product, first * second, 1e-9 * first * second);
-  EXPECT_NEAR(foot->distance, 1e-3, 1e-15);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double b = radii[(axis + 1) % 3];
+    const double c = radii[(axis + 2) % 3];
+    Vec3 p = kCenter;
+    p[axis] += radii[axis] + 1e-3;
+    const auto foot = footPoint(*field, p);
+    ASSERT_TRUE(foot);
+    const double first = radii[axis] / (b * b);
+    const double second = radii[axis] / (c * c);
+    EXPECT_NEAR(foot->curvature_sum, first + second, 1e-9 * (first + second)) << axis;
+    EXPECT_NEAR(foot->curvature_product, first * second, 1e-9 * first * second) << axis;
+    EXPECT_NEAR(foot->distance, 1e-3, 1e-15) << axis;
+  }
 }
 
 TEST(FootPoint, OnAGyroidNoPointOfTheSurfaceIsNearer) {

@@ -124,6 +124,42 @@ void expectNothingGiven(const char* what, const ScenePtr& scene, const Vec3& sta
   EXPECT_LE(given.work, most + given.change) << what;
 }
 
+/// A plane whose values are not distances, as those of implicit fields.
+class SteepPlane final : public Field {
+ public:
+  SteepPlane(const Vec3& normal, double slope) : normal_(normal), slope_(slope) {}
+
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    return {value(p), slope_ * normal_, true};
+  }
+  [[nodiscard]] double value(const Vec3& p) const noexcept override {
+    return slope_ * glm::dot(normal_, p);
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return Box3::everything(); }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kImplicit; }
+  [[nodiscard]] double lipschitz() const noexcept override { return slope_; }
+  [[nodiscard]] double featureSize() const noexcept override { return 0.01; }
+
+ private:
+  Vec3 normal_;
+  double slope_;
+};
+
+TEST(SmoothedField, OfAnImplicitPlaneIsItsDistanceHoweverSteepItsValuesAre) {
+  const Vec3 normal = glm::normalize(Vec3(1.0, -2.0, 0.5));
+  for (const double slope : {0.2, 1.0, 30.0}) {
+    const SteepPlane plane(normal, slope);
+    SmoothedField smoothed;
+    for (const double height : {-0.4e-3, 0.0, 0.3e-3}) {
+      const Vec3 p = height * normal + 0.013 * glm::normalize(Vec3(2.0, 1.0, 0.0));
+      // The B-spline gives linear data back, so only rounding is left.
+      const FeltHeight felt = smoothed.at(plane, 1e-3, p);
+      EXPECT_NEAR(felt.value, height, 1e-15) << slope;
+      EXPECT_TRUE(isNear(felt.gradient, normal, 1e-12)) << slope;
+    }
+  }
+}
+
 TEST(TexturedWalls, GiveNoEnergy) {
   const std::string rough = "stiffness: 1000 N/m, texture: {amplitude: 0.2 mm, wavelength: 3}";
   const std::string curved = rough + ", curve: {exponent: 1.5, reference: 1 mm}";

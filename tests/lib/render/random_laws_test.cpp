@@ -175,9 +175,7 @@ TEST(RandomParts, EachWallAlonePushesByItsOwnLaw) {
   EXPECT_GT(several, static_cast<long>(scenes.count) * 200);
 }
 
-TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
-  const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
-  const Numbers scenes(slow ? 300 : 15);
+void expectTheSameAtEveryPose(const Numbers& scenes) {
   Pose turned;
   turned.turn = Mat3(Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 0, 0));
   Pose mirrored;
@@ -226,6 +224,20 @@ TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
     EXPECT_EQ(off, 0) << name;
     EXPECT_GT(ticks, static_cast<long>(scenes.count) * 400);
   }
+}
+
+TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
+  const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
+  expectTheSameAtEveryPose(Numbers(slow ? 300 : 15));
+}
+
+// Two faces of the box lead on equally well when the hand breaks through, 12 mm deep: their order chose, another one in the
+// scene that is turned, and the proxy ended 10 mm apart.
+TEST(RandomParts, TheOrderOfABoxsFacesChoosesNoWay) {
+  Numbers scene(1);
+  scene.first = 94;
+  scene.count = 1;
+  expectTheSameAtEveryPose(scene);
 }
 
 TEST(RandomParts, GiveNoEnergy) {

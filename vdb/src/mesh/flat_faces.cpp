@@ -67,8 +67,8 @@ std::optional<FlatFaces> findFlatFaces(const std::vector<Vec3>& vertices,
     if (found.faces.size() == most) return {};
     const auto number = static_cast<std::uint32_t>(found.faces.size());
     const auto& [i, j, k] = triangles[seed];
-    const Vec3 normal =
-        unitOr(glm::cross(vertices[j] - vertices[i], vertices[k] - vertices[i]), Vec3(0.0));
+    const Vec3 corner = vertices[i];
+    const Vec3 normal = unitOr(glm::cross(vertices[j] - corner, vertices[k] - corner), Vec3(0.0));
     members.assign(1, seed);
     face_of[seed] = number;
     for (std::size_t n = 0; n < members.size(); ++n) {
@@ -76,7 +76,7 @@ std::optional<FlatFaces> findFlatFaces(const std::vector<Vec3>& vertices,
         if (next == kNone || face_of[next] != kNone) continue;
         const auto& [a, b, c] = triangles[next];
         const auto is_off = [&](std::uint32_t v) {
-          return std::abs(glm::dot(normal, vertices[v] - vertices[i])) > tolerance;
+          return std::abs(glm::dot(normal, vertices[v] - corner)) > tolerance;
         };
         const Vec3 turned = glm::cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
         // Folded back onto the plane, as in a plate without thickness, it is another face.

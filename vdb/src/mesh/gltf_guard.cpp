@@ -66,16 +66,22 @@ void checkGltf(const std::string& bytes, const std::string& extension, const std
     throw fail("the file has " + std::to_string(bytes.size()) + " bytes and promises " +
                std::to_string(whole));
   }
-  for (std::size_t at = kHead; at + kChunkHead <= whole;) {
+  if (whole < kHead + kChunkHead) {
+    throw fail("the file promises " + std::to_string(whole) +
+               " bytes, fewer than its own head and that of a part have");
+  }
+  // Assimp asks the file's own length, not the one that is promised, whether a second part follows.
+  for (std::size_t at = kHead; at + kChunkHead <= bytes.size();) {
     const std::size_t length = wordAt(bytes, at);
-    if (length > whole - at - kChunkHead) {
+    if (length > bytes.size() - at - kChunkHead) {
       throw fail("a part of " + std::to_string(length) + " bytes at byte " + std::to_string(at) +
                  " reaches beyond the file");
     }
     if (wordAt(bytes, at + 4) == kJson) {
       checkDepth(std::string_view(bytes).substr(at + kChunkHead, length), path);
     }
-    at += kChunkHead + length;
+    // The next part begins at a multiple of four bytes.
+    at = (at + kChunkHead + length + 3) / 4 * 4;
   }
 }
 

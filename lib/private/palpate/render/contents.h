@@ -55,6 +55,9 @@ class Contents {
   }
   /// Grows with every change.
   [[nodiscard]] std::uint32_t version() const noexcept { return version_; }
+  /// [m] Ways of a needle this close together are one: about its radius. 0.5 mm, or an eighth of the thickest tissue where
+  /// that is less, so that a scene in micrometers is the same scene. Ports that make holes say how wide these are.
+  [[nodiscard]] double sameWay() const noexcept { return same_way_; }
   /// Whether any region does.
   [[nodiscard]] bool holdNeedles() const noexcept { return hold_needles_; }
 
@@ -69,6 +72,7 @@ class Contents {
 
   std::vector<Region> regions_;
   bool hold_needles_ = false;
+  double same_way_ = 0.0;
   std::uint32_t version_ = 0;
 };
 

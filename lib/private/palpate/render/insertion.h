@@ -73,10 +73,11 @@ class Insertion {
   };
 
   void cross(const Contents& contents, RegionEntry& step) noexcept;
-  void push(const RegionEntry& step) noexcept;
-  void pop() noexcept;
-  void letGo() noexcept;
-  [[nodiscard]] bool isBackThrough(const Layer& layer, const RegionEntry& step) const noexcept;
+  void push(const RegionEntry& step, double same_way) noexcept;
+  void pop(double same_way) noexcept;
+  void letGo(double same_way) noexcept;
+  [[nodiscard]] bool isBackThrough(const Layer& layer, const RegionEntry& step,
+                                   double same_way) const noexcept;
   [[nodiscard]] Remembered* cutNear(RegionId region, const Vec3& p, double radius) noexcept;
   struct ShaftForce {
     double against = 0.0;         ///< [N] going in, of what sticks to the shaft
