@@ -41,6 +41,9 @@ struct Hit {
   }
 };
 
+/// The share of their color that cut faces and slices keep, whichever way they face.
+inline constexpr double kFlatShade = 0.97;
+
 /// The share of its color that a surface keeps under the light of `camera`: soft, from a broad lamp behind the viewer's left
 /// shoulder and from the sky.
 [[nodiscard]] double shadeOf(const Vec3& normal, const Camera& camera);
