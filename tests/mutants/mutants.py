@@ -101,10 +101,12 @@ def run_tests(exe, names, seconds, log, json_file=None):
 
 
 def suites_in(folder):
-    """The suites that the files of a folder of tests begin."""
+    """The suites that the files of a folder of tests begin, or give parameters to."""
     names = set()
     for path in folder.rglob("*.cpp"):
-        names |= set(re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)", path.read_text(), re.M))
+        text = path.read_text()
+        names |= set(re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)", text, re.M))
+        names |= set(re.findall(r"^INSTANTIATE_TEST_SUITE_P\(\s*\w*,\s*(\w+)", text, re.M))
     return names
 
 

@@ -116,6 +116,9 @@ Path(flags["gtest_output"][5:]).write_text(json.dumps({"testsuites": [{"name": "
     def test_suites_are_known_whatever_their_parameters(self):
         self.assertEqual([mutants.suite_of(t) for t in ["A.b", "Part/A.b/3", "A/0.b"]], ["A", "A", "A"])
 
+    def test_suites_that_a_folder_only_gives_parameters_to_are_its_own_too(self):
+        self.assertIn("FieldContract", mutants.suites_in(mutants.ROOT / "tests" / "lib" / "fields"))
+
     def test_the_list_of_equivalent_mutants_is_read_or_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "list.txt"

@@ -206,6 +206,9 @@ TEST(GyroidWall, IsAsThickAsToldToAnEighth) {
   const double thickness = 0.002;
   const FieldPtr wall = gyroidWall(kCenter, 0.04, thickness);
   const FieldPtr middle = gyroid(kCenter, 0.04);
+  // No step of a search may be longer than a thin wall, or than an eighth of a period.
+  EXPECT_EQ(wall->featureSize(), thickness);
+  EXPECT_EQ(gyroidWall(kCenter, 0.04, 0.007)->featureSize(), 0.04 / 8.0);
   EXPECT_EQ(wall->structure().kind, FieldStructure::Kind::kIntersection);
   Random random(9);
   for (int i = 0; i < 500; ++i) {
