@@ -11,7 +11,7 @@ most=3000000 # [bytes] of all pictures
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$pictures"
-rm -f "$pictures"/*.png
+rm -f "$pictures"/*.png "$pictures"/*.webp
 
 # Runs a command, and shows it on the page under the name that a reader would give its files.
 run() { # WORD...
@@ -21,10 +21,10 @@ run() { # WORD...
 }
 
 # A scene, drawn after it was touched (MOTION: options of touch; empty: not touched).
-scene() { # NAME TITLE NOTICE MOTION LOOK
-  local name=$1 title=$2 notice=$3 motion=$4 look=$5
+scene() { # NAME TITLE NOTICE MOTION LOOK [PICTURE]
+  local name=$1 title=$2 notice=$3 motion=$4 look=$5 picture=${6:-$1.png}
   local file=data/scenes/$name.yaml
-  printf '## %s\n\n![%s](gallery/%s.png)\n\n%s\n\n```sh\n' "$title" "$title" "$name" "$notice" >> "$page"
+  printf '## %s\n\n![%s](gallery/%s)\n\n%s\n\n```sh\n' "$title" "$title" "$picture" "$notice" >> "$page"
   local trace=()
   # Words of options are told apart by blanks; none of them holds one.
   # shellcheck disable=SC2086
@@ -33,17 +33,17 @@ scene() { # NAME TITLE NOTICE MOTION LOOK
     trace=(--trace @trace.csv)
   fi
   # shellcheck disable=SC2086
-  run render $file "${trace[@]}" $look --size 960x600 -o "@$name.png"
+  run render $file "${trace[@]}" $look --size 960x600 -o "@$picture"
   printf '```\n\n' >> "$page"
-  cp "$work/$name.png" "$pictures/"
+  cp "$work/$picture" "$pictures/"
 }
 
 cat > "$page" <<'END'
 # Gallery
 
 Each example scene of `data/scenes`, with the commands that draw it and what to notice. `tools/gallery.sh` writes this page and
-its pictures. On the left each scene is cut along a plane, on the right it stands in
-space with its front cut away. The blue line is the tip, the dashed orange one the hand where a wall holds the tip back, and red arrows
+its pictures. On the left most scenes are cut along a plane, on the right they stand in
+space with their front cut away. The blue line is the tip, the dashed orange one the hand where a wall holds the tip back, and red arrows
 are the force on the hand; `tools/README.md` says what the other colors and lines mean.
 
 END
@@ -51,6 +51,9 @@ END
 scene container "A container with a port" \
   "The bowl of glass is hard from outside and from within. Through its flat mouth the tip dips into syrup, which only drags, and rests on the bottom while the hand goes on: there the red arrows point up." \
   "--insert 20,0,45 0,0,-44 --back" "--plane y=0"
+scene container "What a hand at rest would feel" \
+  "Each arrow is the force on a hand that was led to its tail from the nearest place outside, and rests there: the glass pushes it back out. Where that way leads through the mouth there is none. The lines are 5 mm from one another." \
+  "" "--plane y=0 --iso 5 --forces 28" container_forces.png
 scene cup "A cup of wine" \
   "The wall of 3 mm is felt on both sides and on its rim. The wine has a surface (dashed) that is free to cross: only the drag says where it lies. The arrows point back where the tip came from, on the way in and on the way out." \
   "--insert 0,0,50 0,0,-28 --back" "--plane y=0"
@@ -72,6 +75,9 @@ scene csg "Union, intersection, difference" \
 scene csg_part "A machined part" \
   "A dish, a slot and a drilled hole in a block. The hole is a port: behind it is a chamber full of grease, green at its mouth." \
   "" "--plane y=0"
+scene csg_part "The part from all sides" \
+  "No mesh is drawn: each pixel is shaded by the gradient of the field that is felt, so that edges are sharp and curves round at any size." \
+  "" "--view corner --turn 36" csg_part_turn.webp
 scene fields "A table of shapes" \
   "One of each kind of field on a table. The cut goes through the back row: a torus, a cone, Taubin's heart, metaballs, a pill." \
   "" "--plane y=30"
@@ -105,6 +111,9 @@ scene flank "A needle held sideways" \
 scene head "A scanned head" \
   "Skin and brain by threshold, nuclei by label. A needle goes through a burr hole to the thalamus. The cut follows its way, with the scan's gray values; green lines are where it can pass." \
   "--insert -100,-42,60 -12,-18,8 --back" ""
+scene head "The same head, seen through" \
+  "The needle's way from the patient's left, colored by the force on the hand, through the skin and the brain to the thalamus." \
+  "--insert -100,-42,60 -12,-18,8 --back" "--view left --opacity skin=0.15 --opacity brain=0.3" head_through.png
 scene needle "A biopsy needle" \
   "The same head, felt by a needle with a shaft: it cuts, is held along its way, and is drawn back." \
   "--insert -100,-42,60 -12,-18,8 --back" ""

@@ -8,7 +8,7 @@ build_packages=(
   g++ cmake ninja-build ccache
   libopenvdb-dev libtbb-dev libboost-dev libnifti-dev libgdcm-dev zlib1g-dev libassimp-dev
   libglm-dev libyaml-cpp-dev
-  libeigen3-dev libusb-1.0-0-dev libcli11-dev nlohmann-json3-dev pkg-config libcairo2-dev fonts-dejavu-core
+  libeigen3-dev libusb-1.0-0-dev libcli11-dev nlohmann-json3-dev pkg-config libcairo2-dev libwebp-dev fonts-dejavu-core
   mricron-data
 )
 

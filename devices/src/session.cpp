@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "palpate/core/error.h"
@@ -66,9 +67,70 @@ void check(const Scene& scene, const SessionSettings& settings) {
 
 /// What other threads touch.
 struct Session::Shared {
+  /// The renderer's state between two ticks, for one who asked for it.
+  struct Snapshot {
+    std::uint64_t request = 0;
+    std::uint64_t scene = 0;    ///< its number
+    std::uint64_t entries = 0;  ///< regions that the probe came into so far
+    RendererState state;
+  };
+  struct Known {
+    std::uint64_t number = 0;
+    ScenePtr scene;
+    RendererKind kind = RendererKind::kConstraint;
+  };
+
   SceneSwap swap;
   SeqLock<SessionView> view;
+  SeqLock<Snapshot> snapshot;
+  std::atomic<std::uint64_t> asked{0};    ///< the last request for a snapshot
+  std::atomic<std::uint64_t> handled{0};  ///< number of the last scene that was taken or put away
+  std::atomic<bool> was_old{false};       ///< it was put away
+
+  // The servo thread's own.
+  std::uint64_t answered = 0;  ///< the last request
+  std::uint64_t scene = 0;     ///< number of the scene that is felt
+  std::uint64_t entries = 0;
+
+  // The offering thread's own.
+  std::vector<Known> known;  ///< scenes of which a snapshot may be
+  std::uint64_t offered = 0;
+
+  /// For the offering thread: the state as it is now. None if the servo thread does not run.
+  [[nodiscard]] std::optional<Snapshot> ask();
 };
+
+namespace {
+
+/// [s] in which a servo thread that runs has made a tick, even one of a busy machine.
+constexpr double kAnswer = 0.1;
+/// Offers, each upon a state in which the probe went on into another region before the scene was taken.
+constexpr int kMostOffers = 5;
+
+/// False if `holds()` did not become true in kAnswer.
+template <typename Holds>
+bool waitFor(const Holds& holds) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  while (!holds()) {
+    if (std::chrono::duration<double>(Clock::now() - begin).count() > kAnswer) return false;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<Session::Shared::Snapshot> Session::Shared::ask() {
+  const std::uint64_t request = asked.load(std::memory_order_relaxed) + 1;
+  asked.store(request, std::memory_order_release);
+  std::optional<Snapshot> seen;
+  const bool is_there = waitFor([&] {
+    seen = snapshot.load();
+    return seen && seen->request == request;
+  });
+  return is_there ? seen : std::nullopt;
+}
 
 Session::~Session() = default;
 Session::Session(Session&& other) noexcept = default;
@@ -81,6 +143,7 @@ Session::Session(ScenePtr scene, SessionSettings settings)
       renderer_(makeRenderer(scene_, settings_.renderer)),
       tracker_(settings_.velocity) {
   check(*scene_, settings_);
+  shared_->known.push_back({0, scene_, settings_.renderer.kind.value_or(scene_->renderer())});
   DeviceMapping asked = scene_->device();
   if (settings_.passivity) asked.passivity.reset();
   if (settings_.coupling) asked.coupling.reset();
@@ -132,6 +195,7 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
   changeUntil(reading.time);
   const double share = swap_fade_ * now.share;
   const Felt felt = feel(now, frame, tick);
+  shared_->entries += renderer_->entries().size();
   tick.force = is_mapped ? mapping.forceToDevice(share * felt.force) : share * felt.force;
   if (passivity_) {
     const double work = renderer_->sourceWork();
@@ -181,15 +245,55 @@ std::optional<SessionView> Session::view() const noexcept { return shared_->view
 
 void Session::offer(ScenePtr scene, const RendererSettings& settings) {
   auto renderer = makeRenderer(scene, settings);
-  shared_->swap.offer(std::move(scene), std::move(renderer));
+  Shared& shared = *shared_;
+  const RendererKind kind = settings.kind.value_or(scene->renderer());
+  const auto give = [&](std::optional<std::uint64_t> entries) {
+    const std::uint64_t number = ++shared.offered;
+    shared.known.push_back({number, scene, kind});
+    shared.swap.offer({scene, std::move(renderer), number, entries});
+    return number;
+  };
+  for (int i = 0; i < kMostOffers; ++i) {
+    const auto snapshot = shared.ask();
+    if (!snapshot) break;  // nobody feels anything that could go on
+    // Scenes from before the one that is felt are not met again.
+    std::erase_if(shared.known, [&](const Shared::Known& k) { return k.number < snapshot->scene; });
+    const Shared::Known& from = shared.known.front();
+    const CarriedState carried = carryState(snapshot->state, from.kind, *from.scene, *scene);
+    if (!renderer) renderer = makeRenderer(scene, settings);
+    const bool is_carried = renderer->setState(carried.state);
+    // A hand that goes in and out all the time gets the last state however old it is: the proxy goes on from there.
+    const bool is_last = i + 1 == kMostOffers;
+    const std::uint64_t number =
+        give(is_carried && !is_last ? std::optional(snapshot->entries) : std::nullopt);
+    const bool is_handled =
+        waitFor([&] { return shared.handled.load(std::memory_order_acquire) >= number; });
+    if (!is_handled || !shared.was_old.load(std::memory_order_acquire)) return;
+  }
+  if (!renderer) renderer = makeRenderer(scene, settings);
+  (void)give({});
 }
 
 void Session::swapScene() noexcept {
-  if (!shared_->swap.take(scene_, renderer_)) return;
-  swap_fade_ = 0.0;
-  next_change_ = settings_.changes.size();
-  if (coupling_) coupling_->letGo();
-  source_work_ = 0.0;
+  Shared& shared = *shared_;
+  if (const std::uint64_t asked = shared.asked.load(std::memory_order_acquire);
+      asked != shared.answered && ticks_ > 0) {
+    shared.answered = asked;
+    shared.snapshot.store({asked, shared.scene, shared.entries, renderer_->state()});
+  }
+  std::uint64_t number = 0;
+  const SceneSwap::Taken taken = shared.swap.take(scene_, renderer_, shared.entries, number);
+  if (taken == SceneSwap::Taken::kNothing) return;
+  const bool is_new = taken == SceneSwap::Taken::kNew;
+  if (is_new) {
+    shared.scene = number;
+    swap_fade_ = 0.0;
+    next_change_ = settings_.changes.size();
+    if (coupling_) coupling_->letGo();
+    source_work_ = renderer_->sourceWork();
+  }
+  shared.was_old.store(!is_new, std::memory_order_release);
+  shared.handled.store(number, std::memory_order_release);
 }
 
 void Session::changeUntil(double time) noexcept {

@@ -12,7 +12,7 @@ _palpate() {
     'check:Say whether meshes, grids and scenes can be touched, and what is wrong with them'
     'query:Value, gradient, region and material at points; or an image'\''s intensity'
     'explain:Show what a scene means\: regions, walls, ports, what can be reached'
-    'render:Draw a scene cut open (.png)'
+    'render:Draw a scene cut open, or in space (.png; turning or replayed\: .webp)'
     'report:Write a page about touches, scenes and benches (.html)'
     'bench:Measure contact (time and error of a tick), a hand in the loop, or how late a loop wakes'
     'accuracy:Compare fields with their grids\: error, time and memory by voxel size'
@@ -276,13 +276,21 @@ _palpate() {
       ;;
     render)
       _arguments \
-        '*-o[the picture (required)]:value:_files' \
-        '*--output[the picture (required)]:value:_files' \
+        '*-o[the picture (required); with --turn or --replay FILE.webp, or FILE.png for frames FILE-0001.png and so on]:value:_files' \
+        '*--output[the picture (required); with --turn or --replay FILE.webp, or FILE.png for frames FILE-0001.png and so on]:value:_files' \
         '*--size[in pixels (default 1600x1000)]:value:' \
         '*--plane[across an axis\: x=12 (the scene'\''s unit)]:value:' \
         '*--cut[any plane\: a point and a normal; looked at against it]:value:' \
         '*--trace[the path and the forces of a `touch --trace`]:value:_files' \
         '*--image[gray values of this scan, or of this image of the scene (default\: the scene'\''s first that has no names)]:value:_files' \
+        '*--iso[lines of equal distance from the nearest layer'\''s surface, so far apart\: 5 (the scene'\''s unit)]:value:' \
+        '*--forces[arrows where it is cut, N along its longer side\: the force on a hand that was led there from the nearest place outside and rests]:value:' \
+        '*--view[from where\: corner, front, back, left, right, top, bottom (of the patient in a scan), +x, -x, +y, -y, +z, -z, or X,Y,Z at the viewer]:value:' \
+        '*--around[view\: look at this point, and so far around it (the scene'\''s unit; default\: all)]:value:' \
+        '*--opacity[view\: see through this layer\: skin=0.3; may be repeated]:value:' \
+        '*--slice[view\: a slice with its gray values that stands in the scene; may be repeated]:value:' \
+        '*--turn[view\: turn once about z, so many pictures, 20 a second]:value:' \
+        '*--replay[view\: the hand and the force on their way along the trace, so many pictures]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
         '*--force[replace existing output files]' \

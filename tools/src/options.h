@@ -209,6 +209,15 @@ struct RenderOptions {
   std::string size;   ///< "WxH"
   std::string trace;
   std::string image;
+  std::string iso;            ///< a length
+  std::optional<int> forces;  ///< arrows along the longer side
+  // Of a picture in space.
+  std::string view;                  ///< "corner", "front", "+x", "X,Y,Z"; empty: a flat cut
+  std::string around;                ///< "X,Y,Z,RADIUS"
+  std::vector<std::string> opacity;  ///< "LAYER=SHARE"
+  std::vector<std::string> slices;   ///< "x=VALUE"
+  std::optional<int> turn;           ///< frames
+  std::optional<int> replay;         ///< frames
 };
 
 struct ReportOptions {

@@ -176,7 +176,10 @@ void defineRender(CLI::App& app, Invocation& invocation) {
   auto& o = choose<RenderOptions>(invocation);
   app.add_option("scene", o.scene);
   const char* g = "Output";
-  add(app, g, "-o,--output", "FILE.png", o.output, "the picture (required)");
+  add(app, g, "-o,--output", "FILE.png", o.output,
+      "the picture (required); with --turn or --replay FILE.webp, or FILE.png for frames "
+      "FILE-0001.png "
+      "and so on");
   add(app, g, "--size", "WxH", o.size, "in pixels (default 1600x1000)");
   g = "Where to cut (default: along the trace, else through the middle)";
   add(app, g, "--plane", "AXIS=VALUE", o.plane, "across an axis: x=12 (the scene's unit)");
@@ -187,6 +190,30 @@ void defineRender(CLI::App& app, Invocation& invocation) {
   add(app, g, "--image", "IMAGE", o.image,
       "gray values of this scan, or of this image of the scene (default: the scene's first "
       "that has no names)");
+  add(app, g, "--iso", "LENGTH", o.iso,
+      "lines of equal distance from the nearest layer's surface, so far apart: 5 (the scene's "
+      "unit)");
+  add(app, g, "--forces", "N", o.forces,
+      "arrows where it is cut, N along its longer side: the force on a hand that was led there "
+      "from the "
+      "nearest place outside and rests")
+      ->check(CLI::Range(2, 100));
+  g = "In space, instead of a flat cut (whole, or with --plane or --cut what is behind that)";
+  add(app, g, "--view", "FROM", o.view,
+      "from where: corner, front, back, left, right, top, bottom (of the patient in a scan), +x, "
+      "-x, +y, -y, "
+      "+z, -z, or X,Y,Z at the viewer");
+  add(app, g, "--around", "X,Y,Z,RADIUS", o.around,
+      "view: look at this point, and so far around it (the scene's unit; default: all)");
+  addList(app, g, "--opacity", "LAYER=SHARE", o.opacity,
+          "view: see through this layer: skin=0.3; may be repeated");
+  addList(app, g, "--slice", "AXIS=VALUE", o.slices,
+          "view: a slice with its gray values that stands in the scene; may be repeated");
+  add(app, g, "--turn", "FRAMES", o.turn, "view: turn once about z, so many pictures, 20 a second")
+      ->check(CLI::Range(2, 720));
+  add(app, g, "--replay", "FRAMES", o.replay,
+      "view: the hand and the force on their way along the trace, so many pictures")
+      ->check(CLI::Range(2, 2000));
 }
 
 void defineExplain(CLI::App& app, Invocation& invocation) {
@@ -288,22 +315,24 @@ Verb explainVerb() {
 }
 
 Verb renderVerb() {
-  return {"render",
-          "Draw a scene cut open (.png)",
-          "palpate render data/scenes/container.yaml -o container.png --plane y=0",
-          "palpate render SCENE -o OUT.png [OPTIONS]",
-          "",
-          {},
-          defineRender,
-          [](const Invocation& i) {
-            const auto& o = chosen<RenderOptions>(i);
-            need(!o.scene.empty(), "SCENE");
-            need(!o.output.empty(), "-o OUT.png");
-            if (!o.plane.empty() && !o.cut.empty()) {
-              throw usageError("--plane and --cut exclude one another", "");
-            }
-          },
-          true};
+  return {
+      "render",
+      "Draw a scene cut open, or in space (.png; turning or replayed: .webp)",
+      "palpate render data/scenes/container.yaml -o container.png --plane y=0",
+      "palpate render SCENE -o OUT.png|OUT.webp [OPTIONS]",
+      R"(With --view the scene stands in space, shaded by the exact normals of its fields; a trace is drawn as
+the tip's path, colored by the force on the hand, faint where something hides it. An animation repeats for ever.)",
+      {},
+      defineRender,
+      [](const Invocation& i) {
+        const auto& o = chosen<RenderOptions>(i);
+        need(!o.scene.empty(), "SCENE");
+        need(!o.output.empty(), "-o OUT.png");
+        if (!o.plane.empty() && !o.cut.empty()) {
+          throw usageError("--plane and --cut exclude one another", "");
+        }
+      },
+      true};
 }
 
 Verb reportVerb() {

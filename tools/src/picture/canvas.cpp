@@ -20,10 +20,6 @@ struct Destroy {
 };
 using Surface = std::unique_ptr<cairo_surface_t, Destroy>;
 
-std::uint32_t byteOf(double share) {
-  return static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
-}
-
 }  // namespace
 
 struct Canvas::Impl {
@@ -71,16 +67,9 @@ void Canvas::image(const Raster& raster, double x, double y) {
   unsigned char* data = cairo_image_surface_get_data(surface.get());
   if (data == nullptr) return;
   const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
-  for (int row = 0; row < raster.height; ++row) {
-    for (int column = 0; column < raster.width; ++column) {
-      const Color& c =
-          raster.colors[static_cast<std::size_t>(column) +
-                        static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(row)];
-      const std::uint32_t word = (byteOf(c.r) << 16U) | (byteOf(c.g) << 8U) | byteOf(c.b);
-      std::memcpy(
-          data + static_cast<std::size_t>(row) * stride + static_cast<std::size_t>(column) * 4,
-          &word, sizeof word);
-    }
+  const auto width = static_cast<std::size_t>(raster.width);
+  for (std::size_t row = 0; row < static_cast<std::size_t>(raster.height); ++row) {
+    std::memcpy(data + row * stride, raster.words.data() + row * width, width * 4);
   }
   cairo_surface_mark_dirty(surface.get());
   cairo_set_source_surface(impl_->cr(), surface.get(), x, y);
@@ -179,6 +168,13 @@ void Canvas::clip(double x, double y, double w, double h) {
 }
 
 void Canvas::unclip() { cairo_restore(impl_->cr()); }
+
+Canvas::Bytes Canvas::bytes() const {
+  cairo_surface_t* const surface = impl_->surface.get();
+  cairo_surface_flush(surface);
+  return {cairo_image_surface_get_data(surface), cairo_image_surface_get_width(surface),
+          cairo_image_surface_get_height(surface), cairo_image_surface_get_stride(surface)};
+}
 
 std::string Canvas::png() const {
   std::string bytes;

@@ -1,6 +1,7 @@
 #pragma once
 /// A sheet to draw on, pixels from the top left. The only place that knows the drawing library.
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -21,17 +22,24 @@ struct Pixel {
   double x = 0.0, y = 0.0;
 };
 
-/// A picture in memory, opaque.
+/// A picture in memory, opaque, of 8 bits a channel.
 struct Raster {
   Raster(int w, int h)
-      : width(w), height(h), colors(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
-  [[nodiscard]] Color& at(int x, int y) {
-    return colors[static_cast<std::size_t>(x) +
-                  static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
+      : width(w), height(h), words(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+  void set(int x, int y, const Color& color) {
+    words[static_cast<std::size_t>(x) +
+          static_cast<std::size_t>(width) * static_cast<std::size_t>(y)] = word(color);
+  }
+  /// 0xRRGGBB
+  [[nodiscard]] static std::uint32_t word(const Color& c) {
+    const auto byte = [](double share) {
+      return static_cast<std::uint32_t>(std::clamp(share, 0.0, 1.0) * 255.0 + 0.5);
+    };
+    return (byte(c.r) << 16U) | (byte(c.g) << 8U) | byte(c.b);
   }
   int width;
   int height;
-  std::vector<Color> colors;
+  std::vector<std::uint32_t> words;  ///< 0xRRGGBB, row by row from the top
 };
 
 struct Stroke {
@@ -72,6 +80,14 @@ class Canvas {
   /// Everything until unclip() stays within the rectangle.
   void clip(double x, double y, double w, double h);
   void unclip();
+  /// Four bytes a pixel: blue, green, red and one that means nothing; valid until the canvas is drawn to or gone.
+  struct Bytes {
+    const unsigned char* data = nullptr;
+    int width = 0;
+    int height = 0;
+    int stride = 0;  ///< [bytes] from a row to the next
+  };
+  [[nodiscard]] Bytes bytes() const;
   /// The sheet as a PNG file. @throws Error (kOperation).
   [[nodiscard]] std::string png() const;
 

@@ -15,8 +15,8 @@ constexpr double kAligned = 1e-6;  // sine below which a direction is an axis
 Error usageError(const char* option, std::string message) {
   return Error(ErrorKind::kUsage,
                {"usage.plane", std::string(option) + ": " + std::move(message),
-                std::string("as in ") +
-                    (std::string(option) == "--plane" ? "--plane x=12" : "--cut 0,0,10,1,0,1")});
+                "as in " + std::string(option) +
+                    (std::string_view(option) == "--cut" ? " 0,0,10,1,0,1" : " x=12")});
 }
 
 Vec3 axisVector(int axis) {
@@ -105,7 +105,9 @@ CutPlane planeAcross(int axis, double value, const LengthUnit& unit) {
 }
 
 CutPlane planeThrough(const Vec3& point, const Vec3& normal, const LengthUnit& unit) {
-  const Vec3 n = glm::normalize(normal);
+  // Scaled first, as the square of a very long or short vector is none of double precision.
+  const double most = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
+  const Vec3 n = glm::normalize(normal / most);
   const int axis = alignedAxis(n);
   if (axis >= 0) {
     CutPlane plane = planeAcross(axis, point[axis], unit);
@@ -155,13 +157,13 @@ CutPlane planeAlong(const Track& track, const LengthUnit& unit) {
   return planeThrough(s.mean, normal, unit);
 }
 
-CutPlane parsePlane(const std::string& text, const LengthUnit& unit) {
+CutPlane parsePlane(const std::string& text, const LengthUnit& unit, const char* option) {
   const auto equals = text.find('=');
   const auto axis = std::string("xyz").find(text.substr(0, equals));
   if (equals != 1 || axis == std::string::npos) {
-    throw usageError("--plane", "'" + text + "' is not x=VALUE, y=VALUE or z=VALUE");
+    throw usageError(option, "'" + text + "' is not x=VALUE, y=VALUE or z=VALUE");
   }
-  return planeAcross(static_cast<int>(axis), parseLength(text.substr(2), unit, "--plane"), unit);
+  return planeAcross(static_cast<int>(axis), parseLength(text.substr(2), unit, option), unit);
 }
 
 CutPlane parseCut(const std::string& text, const LengthUnit& unit) {
@@ -175,7 +177,7 @@ CutPlane parseCut(const std::string& text, const LengthUnit& unit) {
   }
   if (!good) throw usageError("--cut", "'" + text + "' is not six numbers");
   const Vec3 normal(numbers[3], numbers[4], numbers[5]);
-  if (!(glm::length(normal) > 0.0)) throw usageError("--cut", "the normal has no direction");
+  if (normal == Vec3(0.0)) throw usageError("--cut", "the normal has no direction");
   return planeThrough(Vec3(numbers[0], numbers[1], numbers[2]) * unit.metres, normal, unit);
 }
 

@@ -34,8 +34,9 @@ struct CutPlane {
 /// to the plane that is most nearly across y, then x, then z.
 [[nodiscard]] CutPlane planeAlong(const Track& track, const LengthUnit& unit);
 
-/// "x=12" (scene's unit). @throws Error (kUsage).
-[[nodiscard]] CutPlane parsePlane(const std::string& text, const LengthUnit& unit);
+/// "x=12" (scene's unit), of `option`. @throws Error (kUsage).
+[[nodiscard]] CutPlane parsePlane(const std::string& text, const LengthUnit& unit,
+                                  const char* option = "--plane");
 /// "X,Y,Z,NX,NY,NZ". @throws Error (kUsage).
 [[nodiscard]] CutPlane parseCut(const std::string& text, const LengthUnit& unit);
 

@@ -1,249 +1,144 @@
 #include "picture/cutaway.h"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
+#include <deque>
 #include <numbers>
-#include <optional>
 
-#include "palpate/interior/port_machine.h"
 #include "picture/palette.h"
 #include "picture/parallel_rows.h"
-#include "picture/section.h"
 
 namespace palpate::tools {
 namespace {
 
 constexpr double kYaw = 35.0 * std::numbers::pi / 180.0;
 constexpr double kPitch = 24.0 * std::numbers::pi / 180.0;
-constexpr double kAmbient = 0.42;
-constexpr double kFaceShade = 0.97;
-constexpr int kMostSteps = 4000;
-constexpr int kFiner = 2;   // rays a pixel, along each side
 constexpr int kTrial = 64;  // [pixels] of the first look
-constexpr double kEdgeShade = 0.45;
-constexpr double kSheetInk = 0.25;  // share of ink in what belongs to no region
-constexpr int kFirstSheet =
-    -2;  // part of a hit on the first sheet; those of the others go down from it
+constexpr double kEdgeShade = 0.4;
+constexpr int kBlock = 8;                  // [pixels] whose rays share the way through free space
+constexpr int kBand = 32 * kBlock;         // [rows] that are drawn together ...
+constexpr int kHeld = kBand + 2 * kBlock;  // ... and looked at, with their neighbors
+constexpr double kContrast = 0.1;          // between neighbors; above it a pixel gets finer rays
 
-/// The part of a ray within a box, as distances along it.
-std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& origin,
-                                                const Vec3& way) {
-  double enter = -kInfinity;
-  double leave = kInfinity;
-  for (int i = 0; i < 3; ++i) {
-    if (std::abs(way[i]) < 1e-12) {
-      if (origin[i] < box.lo[i] || origin[i] > box.hi[i]) return {};
-      continue;
-    }
-    const double a = (box.lo[i] - origin[i]) / way[i];
-    const double b = (box.hi[i] - origin[i]) / way[i];
-    enter = std::max(enter, std::min(a, b));
-    leave = std::min(leave, std::max(a, b));
-  }
-  if (!(enter < leave)) return {};
-  return std::pair{enter, leave};
+double differenceOf(const Color& a, const Color& b) {
+  return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }
 
-/// What a ray met. Neighbors with different `part` are set apart by a dark edge, and so are those of the cut face
-/// between which it cuts a sheet.
-struct Hit {
-  Color color = rgb(0xFFFFFF);
-  int part = -1;          ///< region and whether it is the cut face; -1: nothing; below: a sheet
-  SheetSides sides = {};  ///< of the cut face
-
-  [[nodiscard]] bool isApartFrom(const Hit& other) const {
-    return part != other.part || sides.crossedTo(other.sides) != 0;
-  }
-};
-
-/// One ray after the other through the scene; owns the scratch.
-class Marcher {
+/// Rays through the pixels' centers, and finer ones where that is not enough. Band by band, so that only the picture
+/// itself takes memory that grows with its height.
+class Drawing {
  public:
-  Marcher(const Scene& scene, const CutPlane& plane, const Box3& box, const Camera& camera,
-          const Paint& paint)
-      : scene_(scene),
-        plane_(plane),
-        box_(box),
-        camera_(camera),
-        paint_(paint),
-        here_(scene.partition().leaves().size()),
-        there_(here_),
-        middle_(here_),
-        light_(glm::normalize(camera.toward + 0.6 * camera.up - 0.5 * camera.right)),
-        has_sheets_(!scene.passages().sheets().empty()) {
-    for (const Leaf& leaf : scene.partition().leaves()) bounds_.push_back(leaf.field->bounds());
+  Drawing(const SpaceScene& space, const Camera& camera)
+      : width_(camera.width),
+        height_(camera.height),
+        columns_((camera.width + kBlock - 1) / kBlock),
+        hits_(static_cast<std::size_t>(width_) * kHeld),
+        free_(static_cast<std::size_t>(columns_) * (kHeld / kBlock)) {
+    for (std::size_t i = 0; i < workerCount(); ++i) marches_.emplace_back(space, camera);
   }
 
-  Hit cast(double x, double y) {
-    const Vec3 origin = camera_.center +
-                        camera_.right * ((x - 0.5 * camera_.width) * camera_.step) +
-                        camera_.up * ((0.5 * camera_.height - y) * camera_.step);
-    const Vec3 way = -camera_.toward;
-    const auto part = within(box_, origin, way);
-    if (!part) return {};
-    const double facing =
-        glm::dot(way, plane_.normal());  // negative: the ray runs into the kept half
-    const double cut = glm::dot(plane_.point - origin, plane_.normal()) / facing;
-    double t = std::max(part->first, cut);
-    if (t >= part->second) return {};
-
-    const double step = probe(origin + t * way, here_);
-    const RegionId first = scene_.partition().regionOf(here_);
-    if (first != kOutside) {
-      const Vec3 p = origin + t * way;
-      if (t == cut) {
-        return {scaled(paint_.at(first, p), kFaceShade), 2 * first, sheetSides(scene_, here_)};
-      }
-      // The box cuts an endless layer.
-      return {shaded(paint_.at(first, p), glm::dot(-way, light_)), 2 * first + 1};
+  Raster draw(const Progress& progress) {
+    Raster raster(width_, height_);
+    for (int top = 0; top < height_; top += kBand) {
+      const int end = std::min(top + kBand, height_);
+      first_ = std::max(0, top - kBlock);
+      const int last = std::min(end + kBlock, height_);
+      const Progress part = [&](std::string_view what, double share) {
+        return !progress || progress(what, (top + share * (end - top)) / height_);
+      };
+      parallelRows((last - first_ + kBlock - 1) / kBlock, part, "shading the scene",
+                   [&](int row, std::size_t worker) {
+                     blocks(first_ + row * kBlock, last, marches_[worker]);
+                   });
+      parallelRows(end - top, part, "shading the scene", [&](int row, std::size_t worker) {
+        const int y = top + row;
+        for (int x = 0; x < width_; ++x) raster.set(x, y, finished(x, y, marches_[worker]));
+      });
     }
-    before_ = t;
-    t += advance(step);
-    for (int i = 0; i < kMostSteps && t < part->second; ++i) {
-      const double distance = probe(origin + t * way, there_);
-      if (scene_.partition().regionOf(there_) != kOutside) return surface(origin, way, t);
-      if (has_sheets_ && here_ != there_) {
-        if (const auto hit = sheet(origin, way, t)) return *hit;
-      }
-      std::swap(here_, there_);
-      before_ = t;
-      t += advance(distance);
-    }
-    return {};
+    return raster;
   }
 
  private:
-  /// Signs at `p` and a distance [m] within which no leaf changes its sign.
-  double probe(const Vec3& p, Signs& out) const {
-    double safe = kInfinity;
-    const auto leaves = scene_.partition().leaves();
-    for (std::size_t i = 0; i < leaves.size(); ++i) {
-      const double away = bounds_[i].distanceTo(p);
-      if (away > 0.0) {  // outside a leaf's box it is not worth a look
-        out.set(static_cast<LeafId>(i), false);
-        safe = std::min(safe, away);
-        continue;
-      }
-      const double value = leaves[i].field->value(p);
-      out.set(static_cast<LeafId>(i), value < 0.0);
-      safe = std::min(safe, std::abs(value) / leaves[i].lipschitz);
-    }
-    return safe;
+  [[nodiscard]] Hit& hit(int x, int y) {
+    return hits_[static_cast<std::size_t>(x) +
+                 static_cast<std::size_t>(width_) * static_cast<std::size_t>(y - first_)];
+  }
+  [[nodiscard]] double& freeAt(int x, int y) {
+    return free_[static_cast<std::size_t>(x / kBlock) +
+                 static_cast<std::size_t>(columns_) *
+                     static_cast<std::size_t>((y - first_) / kBlock)];
   }
 
-  [[nodiscard]] double advance(double safe) const {
-    return std::max(std::isfinite(safe) ? safe : 0.0, 0.5 * camera_.step);
-  }
-
-  /// here_ is outside, there_ (at `t`) is not: the surface is in between.
-  Hit surface(const Vec3& origin, const Vec3& way, double t) {
-    double low = std::min(before_, t);
-    double high = t;
-    Signs middle = there_;
-    for (int i = 0; i < 12; ++i) {
-      const double half = 0.5 * (low + high);
-      probe(origin + half * way, middle);
-      if (scene_.partition().regionOf(middle) == kOutside) {
-        low = half;
-        std::swap(here_, middle);
-      } else {
-        high = half;
-        std::swap(there_, middle);
+  /// A row of blocks from `top` on, and no pixel from `end` on.
+  void blocks(int top, int end, RayMarch& march) {
+    const double radius = 0.5 * kBlock * std::numbers::sqrt2;
+    for (int left = 0; left < width_; left += kBlock) {
+      const double free = march.freeWay(left + 0.5 * kBlock, top + 0.5 * kBlock, radius);
+      freeAt(left, top) = free;
+      for (int y = top; y < std::min(top + kBlock, end); ++y) {
+        for (int x = left; x < std::min(left + kBlock, width_); ++x) {
+          hit(x, y) = march.cast(x + 0.5, y + 0.5, free);
+        }
       }
     }
-    const Vec3 p = origin + high * way;
-    const Boundary met = classify(scene_, here_, there_);
-    const RegionId region = scene_.partition().regionOf(there_);
-    Vec3 normal = -way;
-    const auto leaves = scene_.partition().leaves();
-    for (std::size_t i = 0; i < leaves.size(); ++i) {
-      const auto leaf = static_cast<LeafId>(i);
-      if (here_.inside(leaf) == there_.inside(leaf)) continue;
-      const Vec3 gradient = leaves[i].field->sample(p).gradient;
-      normal = unitOr(there_.inside(leaf) ? gradient : -gradient, normal);
-      break;
+  }
+
+  Color finished(int x, int y, RayMarch& march) {
+    const Hit& here = hit(x, y);
+    bool is_edge = false;
+    bool is_rough = false;
+    const auto look = [&](int nx, int ny) {
+      if (nx < 0 || ny < 0 || nx >= width_ || ny >= height_) return;
+      const Hit& there = hit(nx, ny);
+      is_edge = is_edge || there.isApartFrom(here);
+      is_rough = is_rough || differenceOf(there.color, here.color) > kContrast;
+    };
+    look(x - 1, y);
+    look(x + 1, y);
+    look(x, y - 1);
+    look(x, y + 1);
+    if (!is_edge && !is_rough) return here.color;
+    Color sum{0.0, 0.0, 0.0, 1.0};
+    for (int i = 0; i < 4; ++i) {
+      const Hit fine =
+          march.cast(x + (i % 2 == 0 ? 0.25 : 0.75), y + (i < 2 ? 0.25 : 0.75), freeAt(x, y));
+      const bool is_thing = fine.part != -1 && is_edge;
+      const Color color =
+          is_thing ? mixed(fine.color, kWallInk, kEdgeShade * fine.opacity) : fine.color;
+      sum.r += 0.25 * color.r;
+      sum.g += 0.25 * color.g;
+      sum.b += 0.25 * color.b;
     }
-    Color base = paint_.of(region);
-    if (met.kind == Boundary::Kind::kPort) base = mixed(base, kPortInk, 0.35);
-    if (met.kind == Boundary::Kind::kAbsent) base = mixed(base, kPaper, 0.4);
-    return {shaded(base, std::abs(glm::dot(normal, light_))), 2 * region + 1};
+    return sum;
   }
 
-  /// The first sheet in the list that lies between here_ and there_ (at `t`), both in the same air.
-  std::optional<Hit> sheet(const Vec3& origin, const Vec3& way, double t) {
-    const std::uint64_t inner = sheetSides(scene_, here_).inner;
-    std::uint64_t changed = inner ^ sheetSides(scene_, there_).inner;
-    for (; changed != 0; changed &= changed - 1) {
-      const auto index = static_cast<std::size_t>(std::countr_zero(changed));
-      const std::uint64_t bit = std::uint64_t{1} << index;
-      double low = std::min(before_, t);
-      double high = t;
-      SheetSides beyond = sheetSides(scene_, there_);
-      for (int i = 0; i < 12; ++i) {
-        const double half = 0.5 * (low + high);
-        probe(origin + half * way, middle_);
-        const SheetSides sides = sheetSides(scene_, middle_);
-        const bool is_before = ((sides.inner ^ inner) & bit) == 0;
-        (is_before ? low : high) = half;
-        if (!is_before) beyond = sides;
-      }
-      if ((beyond.extent & bit) == 0) continue;
-      return Hit{shaded(mixed(kPaper, kWallInk, kSheetInk),
-                        std::abs(glm::dot(sheetNormal(index, origin + high * way, -way), light_))),
-                 kFirstSheet - static_cast<int>(index)};
-    }
-    return {};
-  }
-
-  /// Of the sheet at `p`: of the leaf whose surface is nearest there.
-  [[nodiscard]] Vec3 sheetNormal(std::size_t index, const Vec3& p, const Vec3& fallback) const {
-    double nearest = kInfinity;
-    Vec3 normal = fallback;
-    for (const LeafId leaf : scene_.passages().sheets()[index].leaves) {
-      const FieldSample sample = scene_.partition().leaves()[leaf].field->sample(p);
-      if (std::abs(sample.value) >= nearest) continue;
-      nearest = std::abs(sample.value);
-      normal = unitOr(sample.gradient, fallback);
-    }
-    return normal;
-  }
-
-  static Color shaded(const Color& base, double lambert) {
-    return scaled(base, kAmbient + (1.0 - kAmbient) * std::clamp(lambert, 0.0, 1.0));
-  }
-
-  const Scene& scene_;
-  const CutPlane& plane_;
-  const Box3& box_;
-  const Camera& camera_;
-  const Paint& paint_;
-  Signs here_, there_, middle_;
-  Vec3 light_;
-  std::vector<Box3> bounds_;
-  bool has_sheets_;
-  double before_ = 0.0;
+  int width_, height_, columns_;
+  int first_ = 0;  ///< row that hits_ begins with, a multiple of kBlock
+  std::vector<Hit> hits_;
+  std::vector<double> free_;
+  std::deque<RayMarch> marches_;
 };
 
 }  // namespace
 
-Camera cameraFor(const Scene& scene, const CutPlane& plane, const Box3& box,
-                 const std::vector<Vec3>& points, int width, int height) {
-  Camera camera;
-  const Vec3 n = plane.normal();
-  camera.toward =
-      glm::normalize(std::cos(kPitch) * (std::cos(kYaw) * n + std::sin(kYaw) * plane.right) +
-                     std::sin(kPitch) * plane.up);
-  camera.right = glm::normalize(glm::cross(plane.up, camera.toward));
-  camera.up = glm::cross(camera.toward, camera.right);
-  camera.center = box.center();
+Camera cameraOn(const CutPlane& plane) {
+  return cameraFrom(
+      std::cos(kPitch) * (std::cos(kYaw) * plane.normal() + std::sin(kYaw) * plane.right) +
+          std::sin(kPitch) * plane.up,
+      plane.up);
+}
 
+void fitCamera(Camera& camera, const SpaceScene& space, const std::vector<Vec3>& points, int width,
+               int height) {
+  camera.center = space.box.center();
   // A first, coarse look at everything shows how much of the picture is empty.
   camera.width = kTrial;
   camera.height = kTrial;
-  camera.step = glm::length(box.size()) / kTrial;
-  const Paint plain(nullptr, scene, {});
-  Marcher marcher(scene, plane, box, camera, plain);
+  camera.step = glm::length(space.box.size()) / kTrial;
+  const Paint plain(nullptr, space.scene, {});
+  const SpaceScene trial{space.scene, plain, space.box, space.plane, space.opacity};
+  RayMarch march(trial, camera);
   double left = kInfinity, right = -kInfinity, low = kInfinity, high = -kInfinity;
   const auto include = [&](double x, double y, double margin) {
     left = std::min(left, x - margin);
@@ -253,7 +148,7 @@ Camera cameraFor(const Scene& scene, const CutPlane& plane, const Box3& box,
   };
   for (int y = 0; y < kTrial; ++y) {
     for (int x = 0; x < kTrial; ++x) {
-      if (marcher.cast(x + 0.5, y + 0.5).part == -1) continue;
+      if (march.cast(x + 0.5, y + 0.5).part == -1) continue;
       include((x + 0.5 - 0.5 * kTrial) * camera.step, (0.5 * kTrial - y - 0.5) * camera.step,
               camera.step);
     }
@@ -269,44 +164,10 @@ Camera cameraFor(const Scene& scene, const CutPlane& plane, const Box3& box,
   }
   camera.width = width;
   camera.height = height;
-  return camera;
 }
 
-Raster drawCutaway(const Scene& scene, const CutPlane& plane, const Box3& box, const Camera& camera,
-                   const Paint& paint, const Progress& progress) {
-  const int width = kFiner * camera.width;
-  const int height = kFiner * camera.height;
-  std::vector<Hit> hits(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  const auto hit = [&](int x, int y) -> Hit& {
-    return hits[static_cast<std::size_t>(x) +
-                static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
-  };
-  std::vector<Marcher> marchers;
-  for (std::size_t i = 0; i < workerCount(); ++i) {
-    marchers.emplace_back(scene, plane, box, camera, paint);
-  }
-  parallelRows(height, progress, "shading the scene", [&](int y, std::size_t worker) {
-    for (int x = 0; x < width; ++x) {
-      hit(x, y) = marchers[worker].cast((x + 0.5) / kFiner, (y + 0.5) / kFiner);
-    }
-  });
-  Raster raster(camera.width, camera.height);
-  const double share = 1.0 / (kFiner * kFiner);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const Hit& here = hit(x, y);
-      const bool edge = (x + 1 < width && hit(x + 1, y).isApartFrom(here)) ||
-                        (y + 1 < height && hit(x, y + 1).isApartFrom(here)) ||
-                        (x > 0 && hit(x - 1, y).isApartFrom(here)) ||
-                        (y > 0 && hit(x, y - 1).isApartFrom(here));
-      const Color color = edge ? mixed(here.color, kWallInk, kEdgeShade) : here.color;
-      Color& sum = raster.at(x / kFiner, y / kFiner);
-      sum.r += share * color.r;
-      sum.g += share * color.g;
-      sum.b += share * color.b;
-    }
-  }
-  return raster;
+Raster drawSpace(const SpaceScene& space, const Camera& camera, const Progress& progress) {
+  return Drawing(space, camera).draw(progress);
 }
 
 }  // namespace palpate::tools

@@ -15,6 +15,10 @@ std::string feelOf(const Sheet& s, const Region& region) {
            formatParameter(s.scene.materials()[static_cast<std::size_t>(region.wall)].stiffness) +
            " N/m";
   }
+  const auto index = static_cast<std::size_t>(&region - s.scene.regions().data());
+  if (index < s.opacity.size() && s.opacity[index] < 1.0) {
+    text += (text.empty() ? "" : ", ") + formatNumber(100.0 * s.opacity[index], 3) + " % opaque";
+  }
   if (region.content >= 0) {
     const Material& m = s.scene.materials()[static_cast<std::size_t>(region.content)];
     if (m.viscosity != 0.0) text += ", drag " + formatParameter(m.viscosity) + " N.s/m";
@@ -38,7 +42,7 @@ std::string shortened(Sheet& s, std::string text, const TextStyle& style, double
 
 }  // namespace
 
-void drawLegend(Sheet& s, double y) {
+double drawLegend(Sheet& s, double y) {
   const double x = s.options.width - s.side + s.px(4);
   const double limit = s.options.height - s.px(20);
   const double row = s.px(25);
@@ -91,7 +95,21 @@ void drawLegend(Sheet& s, double y) {
       s.canvas.line({{x, at}, {x + s.px(34), at}}, {kPortInk, s.px(4), {s.px(5), s.px(7)}});
     });
   }
-  if (s.options.track.points.empty()) return;
+  if (s.lines) {
+    entry("equal distance",
+          "from a surface, every " + formatNumber(s.lines->spacing() / s.unit.metres) + " " +
+              s.unit.name,
+          stroke({mixed(rgb(0xFFFFFF), kInk, 0.5), s.px(1.3)}));
+  }
+  double most = 0.0;
+  for (const RestForce& f : s.felt) most = std::max(most, glm::length(f.force));
+  if (most > 0.0) {
+    entry("force on a hand at rest", "longest " + formatNumber(most, 3) + " N", [&](double at) {
+      s.canvas.disk({x, at}, s.px(2.2), kForceInk);
+      s.canvas.arrow({x, at}, {x + s.px(34), at}, {kForceInk, s.px(1.4)}, s.px(8));
+    });
+  }
+  if (s.options.track.points.empty()) return y;
   entry("hand", "where the device was", stroke({kHipInk, s.px(1.7), {s.px(7), s.px(4)}}));
   entry("proxy", "the tip, held by the walls", stroke({kProxyInk, s.px(3)}));
   if (s.peak > 0.0) {
@@ -99,6 +117,7 @@ void drawLegend(Sheet& s, double y) {
       s.canvas.arrow({x, at}, {x + s.px(34), at}, {kForceInk, s.px(2)}, s.px(9));
     });
   }
+  return y;
 }
 
 }  // namespace palpate::tools

@@ -9,7 +9,7 @@ namespace palpate::tools {
 namespace {
 
 constexpr std::size_t kMostSampled = 200'000;
-constexpr double kOutsideGrey = 0.5;  // how much of the scan shows where there is no layer
+constexpr double kOutsideGray = 0.5;  // how much of the scan shows where there is no layer
 
 }  // namespace
 
@@ -52,7 +52,7 @@ Color Paint::at(RegionId region, const Vec3& p) const {
     lower[i] = std::clamp(static_cast<int>(index[i]), 0, std::max(0, static_cast<int>(top) - 1));
     share[i] = index[i] - lower[i];
   }
-  double grey = 0.0;
+  double gray = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     double weight = 1.0;
     int at[3];
@@ -61,12 +61,22 @@ Color Paint::at(RegionId region, const Vec3& p) const {
       weight *= up ? share[i] : 1.0 - share[i];
       at[i] = std::min(lower[i] + (up ? 1 : 0), image_->size[static_cast<std::size_t>(i)] - 1);
     }
-    if (weight > 0.0) grey += weight * image_->at(at[0], at[1], at[2]);
+    if (weight > 0.0) gray += weight * image_->at(at[0], at[1], at[2]);
   }
-  grey = std::clamp((grey - low_) / (high_ - low_), 0.0, 1.0);
-  if (region == kOutside) return mixed(base, rgb(0x8D8D93), kOutsideGrey * grey);
-  const Color shaded = scaled(base, 0.30 + 0.85 * grey);
-  return mixed(shaded, Color{grey, grey, grey}, 0.25);
+  gray = std::clamp((gray - low_) / (high_ - low_), 0.0, 1.0);
+  if (region == kOutside) return mixed(base, rgb(0x8D8D93), kOutsideGray * gray);
+  const Color shaded = scaled(base, 0.30 + 0.85 * gray);
+  return mixed(shaded, Color{gray, gray, gray}, 0.25);
+}
+
+bool Paint::isInImage(const Vec3& p) const {
+  if (!image_) return false;
+  const Vec3 index = to_index_ * (p - image_->origin);
+  for (int i = 0; i < 3; ++i) {
+    if (!(index[i] >= 0.0 && index[i] <= image_->size[static_cast<std::size_t>(i)] - 1.0))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace palpate::tools

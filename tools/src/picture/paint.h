@@ -22,6 +22,8 @@ class Paint {
   [[nodiscard]] Color at(RegionId region, const Vec3& p) const;
   /// Without gray values.
   [[nodiscard]] Color of(RegionId region) const { return colors_.at(region); }
+  /// Whether there is a gray value at `p` [m].
+  [[nodiscard]] bool isInImage(const Vec3& p) const;
   [[nodiscard]] bool hasImage() const noexcept { return image_ != nullptr; }
 
  private:

@@ -81,12 +81,17 @@ void drawPanel(Sheet& s) {
   Raster raster(s.view.width, s.view.height);
   for (int y = 0; y < s.view.height; ++y) {
     for (int x = 0; x < s.view.width; ++x) {
-      raster.at(x, y) = s.paint.at(s.section.at(x, y), s.view.world(x + 0.5, y + 0.5));
+      const Vec3 p = s.view.world(x + 0.5, y + 0.5);
+      Color color = s.paint.at(s.section.at(x, y), p);
+      if (s.lines) color = mixed(color, kInk, s.lines->inkAt(p, s.plane.normal(), s.view.step));
+      raster.set(x, y, color);
     }
   }
   s.canvas.clip(s.left, s.top, s.view.width, s.view.height);
   s.canvas.image(raster, s.left, s.top);
   drawBoundaries(s);
+  drawFelt(
+      s, [&](const Vec3& p) { return s.onSheet(s.view.pixel(p)); }, s.view.step);
   drawTrack(s);
   s.canvas.unclip();
   s.canvas.frame(s.left, s.top, s.view.width, s.view.height, {rgb(0xB9B9C0), s.px(1)});
@@ -106,8 +111,10 @@ double drawInset(Sheet& s, const Box3& box, Console& console) {
   for (std::size_t i = 0; i < s.options.track.points.size(); i += stride) {
     path.push_back(s.options.track.points[i].proxy);
   }
-  const Camera camera = cameraFor(s.scene, s.plane, box, path, width, height);
-  const Raster raster = drawCutaway(s.scene, s.plane, box, camera, s.paint, console.progress());
+  const SpaceScene space{s.scene, s.paint, box, s.plane};
+  Camera camera = cameraOn(s.plane);
+  fitCamera(camera, space, path, width, height);
+  const Raster raster = drawSpace(space, camera, console.progress());
   s.canvas.image(raster, x, y);
   s.canvas.clip(x, y, width, height);
   const auto at = [&](const Vec3& p) {
@@ -163,7 +170,10 @@ Picture drawPicture(const Scene& scene, const PictureOptions& options, Console& 
   s.top = s.px(84);
   const int width = static_cast<int>(options.width - s.left - s.side - s.px(34));
   const int height = static_cast<int>(options.height - s.top - s.px(72));
-  s.view = viewOf(s.plane, closeBox(s, box), std::max(width, 64), std::max(height, 64));
+  const Box3 shown = closeBox(s, box);
+  s.view = viewOf(s.plane, shown, std::max(width, 64), std::max(height, 64));
+  if (s.lines) s.lines->check(s.view.step);
+  feelPlane(s, shown, console.progress());
 
   s.canvas.fill(rgb(0xFFFFFF));
   s.section = cutSection(scene, s.view, console.progress());

@@ -24,7 +24,9 @@ struct PictureOptions {
   Track track;                              ///< may be empty
   std::shared_ptr<const vdb::Image> image;  ///< gray values; may be null
   std::map<std::string, vdb::LabelColor> colors = {};  ///< of layers that have one of their own
-  bool anatomical = false;  ///< x, y, z run to the right, the front and up
+  bool anatomical = false;    ///< x, y, z run to the right, the front and up
+  double line_spacing = 0.0;  ///< [m] of the lines of equal distance; 0: none
+  int forces = 0;             ///< arrows of restForces() along the longer side; 0: none
 };
 
 /// The gray values to show: of the scene's image called `wanted`, of the file `wanted`, or if it is empty

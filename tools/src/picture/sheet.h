@@ -2,13 +2,17 @@
 /// Sheet: what the parts of a picture share, and those parts in the order in which they are painted.
 
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "picture/canvas.h"
+#include "picture/distance_lines.h"
 #include "picture/paint.h"
 #include "picture/palette.h"
 #include "picture/picture.h"
+#include "picture/rest_forces.h"
 #include "picture/section.h"
 #include "text.h"
 
@@ -27,7 +31,11 @@ struct Sheet {
   View view;
   Section section;
   double side = 0.0, left = 0.0, top = 0.0;
-  double peak = 0.0;                     ///< [N] largest force of the track
+  std::vector<double> opacity;  ///< by region, of a picture in space; empty: all 1
+  double peak = 0.0;            ///< [N] largest force of the track
+  std::optional<DistanceLines> lines;
+  std::vector<RestForce> felt;           ///< on the plane
+  double felt_spacing = 0.0;             ///< [m] of those
   bool zoomed = false;                   ///< only the surroundings of the track are in view
   std::vector<std::vector<Pixel>> busy;  ///< lines that names stay off
 
@@ -38,7 +46,9 @@ struct Sheet {
         scale(std::clamp(std::min(the_options.width / 1600.0, the_options.height / 1000.0), 0.45,
                          4.0)),
         canvas(the_options.width, the_options.height),
-        paint(the_options.image, the_scene, the_options.colors) {}
+        paint(the_options.image, the_scene, the_options.colors) {
+    if (the_options.line_spacing > 0.0) lines.emplace(the_scene, the_options.line_spacing);
+  }
 
   [[nodiscard]] double px(double at_full_size) const { return at_full_size * scale; }
   [[nodiscard]] Pixel onSheet(const Pixel& p) const { return {p.x + left, p.y + top}; }
@@ -50,11 +60,15 @@ struct Sheet {
   }
 };
 
-void drawBoundaries(Sheet& s);        ///< walls, ports, sheets of the section
-void drawTrack(Sheet& s);             ///< hand, proxy and forces; sets `peak`
-void drawScaleBar(Sheet& s);          ///< in the section's lower left corner
-void drawAxes(Sheet& s);              ///< coordinates around the section
-void drawNames(Sheet& s);             ///< of regions and ports, where there is room
-void drawLegend(Sheet& s, double y);  ///< below `y` in the right column
+void drawBoundaries(Sheet& s);  ///< walls, ports, sheets of the section
+void drawTrack(Sheet& s);       ///< hand, proxy and forces; sets `peak`
+/// Feels the plane within `box`, as the options ask for.
+void feelPlane(Sheet& s, const Box3& box, const Progress& progress);
+/// Of what feelPlane() found; `at` says where a point [m] is on the sheet, and a pixel is `step` [m].
+void drawFelt(Sheet& s, const std::function<Pixel(const Vec3&)>& at, double step);
+void drawScaleBar(Sheet& s);            ///< in the lower left corner of `view`
+void drawAxes(Sheet& s);                ///< coordinates around the section
+void drawNames(Sheet& s);               ///< of regions and ports, where there is room
+double drawLegend(Sheet& s, double y);  ///< below `y` in the right column; where it ends
 
 }  // namespace palpate::tools

@@ -1,6 +1,9 @@
 #include "picture/track.h"
 
+#include <cmath>
+
 #include "palpate/core/error.h"
+#include "palpate/render/haptic_renderer.h"
 #include "trace_reader.h"
 
 namespace palpate::tools {
@@ -27,8 +30,13 @@ Track readTrack(const std::string& file) {
   TraceReader reader(file);
   Track track;
   TraceLine row;
+  // A broken sensor's reading has no place, and none that a scale could hold.
+  const auto isDrawn = [](const TraceLine& line) {
+    return line.is_finite && HapticRenderer::isInReach(line.hip) &&
+           HapticRenderer::isInReach(line.proxy) && std::isfinite(glm::length(line.force));
+  };
   while (reader.next(row)) {
-    if (row.is_finite) track.points.push_back({row.hip, row.proxy, row.force});
+    if (isDrawn(row)) track.points.push_back({row.hip, row.proxy, row.force});
   }
   if (track.points.empty()) throw inputError("trace.empty", "the trace has no rows", "", file);
   return track;

@@ -181,11 +181,11 @@ class PALPATE_EXPORT Session {
     return passivity_ ? &passivity_->observer() : nullptr;
   }
 
-  /// From any thread: the hand goes on in another scene, with a renderer that is made here and now. From one tick to the next the
-  /// scene is another; the force begins at zero and comes back within kSwapFade. A scene that was offered before and not yet
-  /// taken is forgotten. Changes of contents that were asked for by time do not hold in it, and a record does not know of it.
-  /// Passivity and the coupling go on as they were asked for at first.
-  /// One thread at a time. @throws Error (kInput) as makeRenderer().
+  /// From any thread: the hand goes on in another scene, with a renderer that is made here and now. While the servo thread runs, what was felt
+  /// goes with it by names (carryState()), up to the last region that the probe came into. From one tick to the next the scene is another; the
+  /// force begins at zero and comes back within kSwapFade. A scene that was offered and not yet taken is forgotten. Changes of contents asked
+  /// for by time do not hold in it, and a record does not know of it. Passivity and the coupling go on as they were asked for at first.
+  /// Waits for the servo thread, a second at most. One thread at a time. @throws Error (kInput) as makeRenderer().
   void offer(ScenePtr scene, const RendererSettings& settings);
   /// From any thread: the last tick. None before the first.
   [[nodiscard]] std::optional<SessionView> view() const noexcept;

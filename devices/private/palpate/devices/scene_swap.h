@@ -2,12 +2,23 @@
 /// SceneSwap: hands a scene and its renderer to the servo thread, which neither frees nor waits.
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "palpate/render/haptic_renderer.h"
 
 namespace palpate::devices {
+
+/// A scene and its renderer on their way, and what their offer rests on.
+struct OfferedScene {
+  ScenePtr scene;
+  std::unique_ptr<HapticRenderer> renderer;
+  std::uint64_t number = 0;  ///< of the scene, from 1
+  /// How many regions the probe had come into when the state was taken that the renderer has; none: it has no state of before.
+  std::optional<std::uint64_t> entries = {};
+};
 
 /// One thread offers, one takes.
 class SceneSwap {
@@ -21,34 +32,37 @@ class SceneSwap {
   SceneSwap& operator=(const SceneSwap&) = delete;
 
   /// May allocate and free; frees what the servo thread has put away.
-  void offer(ScenePtr scene, std::unique_ptr<HapticRenderer> renderer) {
-    auto pair = std::make_unique<Pair>(Pair{std::move(scene), std::move(renderer)});
+  void offer(OfferedScene offered) {
+    auto made = std::make_unique<OfferedScene>(std::move(offered));
     delete retired_.exchange(nullptr, std::memory_order_acq_rel);
-    delete offered_.exchange(pair.release(), std::memory_order_acq_rel);
+    delete offered_.exchange(made.release(), std::memory_order_acq_rel);
   }
 
-  /// Real-time safe. True if the offered one took the place of the old one, which the other thread frees later.
-  [[nodiscard]] bool take(ScenePtr& scene, std::unique_ptr<HapticRenderer>& renderer) noexcept {
+  enum class Taken { kNothing, kOld, kNew };
+  /// Real-time safe. kNew: the offered ones took the place of `scene` and `renderer`, which the other thread frees later. kOld: they
+  /// rest on a state from before the last of `entries` regions, and were put away.
+  [[nodiscard]] Taken take(ScenePtr& scene, std::unique_ptr<HapticRenderer>& renderer,
+                           std::uint64_t entries, std::uint64_t& number) noexcept {
     // A scene is taken only when there is room to put the old one away.
     if (offered_.load(std::memory_order_relaxed) == nullptr ||
         retired_.load(std::memory_order_acquire) != nullptr) {
-      return false;
+      return Taken::kNothing;
     }
-    Pair* pair = offered_.exchange(nullptr, std::memory_order_acq_rel);
-    if (pair == nullptr) return false;
-    std::swap(scene, pair->scene);
-    std::swap(renderer, pair->renderer);
-    retired_.store(pair, std::memory_order_release);
-    return true;
+    OfferedScene* offered = offered_.exchange(nullptr, std::memory_order_acq_rel);
+    if (offered == nullptr) return Taken::kNothing;
+    const bool is_old = offered->entries && *offered->entries != entries;
+    number = offered->number;
+    if (!is_old) {
+      std::swap(scene, offered->scene);
+      std::swap(renderer, offered->renderer);
+    }
+    retired_.store(offered, std::memory_order_release);
+    return is_old ? Taken::kOld : Taken::kNew;
   }
 
  private:
-  struct Pair {
-    ScenePtr scene;
-    std::unique_ptr<HapticRenderer> renderer;
-  };
-  std::atomic<Pair*> offered_{nullptr};
-  std::atomic<Pair*> retired_{nullptr};
+  std::atomic<OfferedScene*> offered_{nullptr};
+  std::atomic<OfferedScene*> retired_{nullptr};
 };
 
 }  // namespace palpate::devices
