@@ -26,7 +26,7 @@ Contents::Contents(const Scene& scene) : regions_(scene.regions().size()) {
     }
     look(regions_[i]);
   }
-  // What is no tissue of a needle yet may be one by a change, if it has a stiffness.
+  // A content with a stiffness that does not hold a needle yet may hold one after a change.
   double thickest = 0.0;
   for (std::size_t i = 0; i < regions_.size() && kWayShare * thickest < kWidestWay; ++i) {
     const Material* own = regions_[i].material;
