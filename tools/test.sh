@@ -155,6 +155,8 @@ lane_format() {
   local status=0
   sources | xargs --no-run-if-empty clang-format --dry-run --Werror || status=1
   python3 -B tests/words/check_words.py || status=1
+  # What a merge left behind.
+  if git -C "$root" grep -nE '^(<<<<<<<|>>>>>>>)( |$)'; then status=1; fi
   count_check $status
 }
 lane_arrows() { cmake -D ROOT="$root" -P tests/architecture/check_arrows.cmake; count_check $?; }
