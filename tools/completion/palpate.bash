@@ -8,7 +8,7 @@ _palpate() {
   case $verb in
     '') words='touch view replay import bake convert info check query explain render report bench accuracy devices doctor help'; options='--help --version --json --quiet --force' ;;
     touch)
-      options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --device --hand --delay --seconds --realtime --set --serial --descriptor --firmware --calibration --library --service --epsilon --halvings --alpha --alpha-form --interior --passivity --hand-force --coupling --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --json --quiet --force -h --help'
+      options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --device --hand --delay --seconds --realtime --set --serial --descriptor --firmware --calibration --library --service --epsilon --halvings --alpha --alpha-form --interior --passivity --hand-force --coupling --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         --path) words=FILES ;;
@@ -67,7 +67,7 @@ _palpate() {
       esac
       ;;
     view)
-      options='--device --hand --delay --replay --seconds --renderer --serial --descriptor --firmware --calibration --library --service --port --no-open --record --json --quiet --force -h --help'
+      options='--device --hand --delay --replay --seconds --renderer --serial --descriptor --firmware --calibration --library --service --port --no-open --record --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         --device) words=NONE ;;
@@ -87,7 +87,7 @@ _palpate() {
       esac
       ;;
     replay)
-      options='--scene --renderer --from --json --quiet -h --help'
+      options='--scene --renderer --from --json --quiet --no-cache -h --help'
       words=FILES
       case $last in
         --scene) words=FILES ;;
@@ -122,7 +122,7 @@ _palpate() {
       esac
       ;;
     bake)
-      options='-o --output --parts --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --above --distances --keep --fill --labels --names --json --quiet --force -h --help'
+      options='-o --output --parts --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --above --distances --keep --fill --labels --names --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -146,7 +146,7 @@ _palpate() {
       esac
       ;;
     convert)
-      options='-o --output --to-units --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --above --distances --keep --fill --labels --names --level-set --json --quiet --force -h --help'
+      options='-o --output --to-units --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --above --distances --keep --fill --labels --names --level-set --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -182,7 +182,7 @@ _palpate() {
       esac
       ;;
     check)
-      options='--units --space --voxel --layer --level-set --json --quiet -h --help'
+      options='--units --space --voxel --layer --level-set --json --quiet --no-cache -h --help'
       words=FILES
       case $last in
         --units) words=NONE ;;
@@ -192,7 +192,7 @@ _palpate() {
       esac
       ;;
     query)
-      options='--field --at --points --affine --space --frame --series --json --quiet -h --help'
+      options='--field --at --points --affine --space --frame --series --json --quiet --no-cache -h --help'
       words=FILES
       case $last in
         --field) words=NONE ;;
@@ -205,7 +205,7 @@ _palpate() {
       esac
       ;;
     explain)
-      options='--measure --device --hand --delay --rate --svg --json --quiet --force -h --help'
+      options='--measure --device --hand --delay --rate --svg --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         --device) words=NONE ;;
@@ -216,7 +216,7 @@ _palpate() {
       esac
       ;;
     render)
-      options='-o --output --size --plane --cut --trace --image --json --quiet --force -h --help'
+      options='-o --output --size --plane --cut --trace --image --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -228,7 +228,7 @@ _palpate() {
       esac
       ;;
     report)
-      options='-o --output --device --hand --delay --rate --json --quiet --force -h --help'
+      options='-o --output --device --hand --delay --rate --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -257,7 +257,7 @@ _palpate() {
       esac
       ;;
     accuracy)
-      options='--field --voxel --ladder --sampler --points --band --repeat --csv --svg --json --quiet --force -h --help'
+      options='--field --voxel --ladder --sampler --points --band --repeat --csv --svg --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         --field) words=NONE ;;

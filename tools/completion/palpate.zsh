@@ -83,6 +83,7 @@ _palpate() {
         '*--series[which DICOM series of a folder that holds several]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -107,6 +108,7 @@ _palpate() {
         '*--record[write all that goes into each tick and comes out, for replay and NumPy; beside it FILE.npy.json and FILE.npy.states]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -119,6 +121,7 @@ _palpate() {
         '*--from[compare from this tick on, and begin at the last state saved before it (default 0)]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*-h[print this]' \
         '*--help[print this]' \
         '*:file:_files'
@@ -181,6 +184,7 @@ _palpate() {
         '*--names[table of names\: `index name`, `value,name`, of Slicer, ITK-SNAP or FreeSurfer (default\: the image'\''s own)]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -212,6 +216,7 @@ _palpate() {
         '*--level-set[a grid that does not say its class holds signed distances, negative inside]' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -240,6 +245,7 @@ _palpate() {
         '*--level-set[a grid that does not say its class holds signed distances, negative inside]' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*-h[print this]' \
         '*--help[print this]' \
         '*:file:_files'
@@ -255,6 +261,7 @@ _palpate() {
         '*--series[which DICOM series of a folder that holds several]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*-h[print this]' \
         '*--help[print this]' \
         '*:file:_files'
@@ -269,6 +276,7 @@ _palpate() {
         '*--svg[draw the table of transitions\: regions, and the ports between them]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -285,6 +293,7 @@ _palpate() {
         '*--image[gray values of this scan, or of this image of the scene (default\: the scene'\''s first that has no names)]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -300,6 +309,7 @@ _palpate() {
         '*--rate[device\: ticks a second (default 1000)]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -340,6 +350,7 @@ _palpate() {
         '*--svg[plots of error against time and against memory]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \

@@ -13,7 +13,13 @@ std::string pathIn(const char* variable) {
 
 }  // namespace
 
+bool& noCache() noexcept {
+  static bool is_off = false;
+  return is_off;
+}
+
 std::string cacheFolder() {
+  if (noCache()) return {};
   if (std::getenv("PALPATE_CACHE") != nullptr) return pathIn("PALPATE_CACHE");
   const std::string shared = pathIn("XDG_CACHE_HOME");
   if (!shared.empty()) return shared + "/palpate";

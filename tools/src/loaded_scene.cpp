@@ -5,6 +5,7 @@
 #include "cache_folder.h"
 #include "json_parts.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/vdb/kept_grids.h"
 #include "palpate/vdb/scan_surface.h"
 
 namespace palpate::tools {
@@ -63,6 +64,7 @@ Json LoadedScene::gridsJson() const {
                     {"active_voxels", grid.info.active_voxels},
                     {"memory_bytes", grid.info.memory},
                     {"seconds", grid.seconds},
+                    {"was_kept", vdb::wasKept(grid.info)},
                     {"lost_voxels", loss.lost},
                     {"filled_voxels", loss.filled},
                     {"lost_at_m", is_whole ? Json() : vectorJson(loss.place)}});
@@ -86,7 +88,7 @@ Table LoadedScene::gridsTable() const {
                formatNumber(grid.info.voxel_size / description_.metres_per_unit, 3) + " " +
                    description_.length_unit,
                formatCount(grid.info.active_voxels), formatBytes(grid.info.memory),
-               formatSeconds(grid.seconds)});
+               formatSeconds(grid.seconds) + (vdb::wasKept(grid.info) ? ", kept" : "")});
   }
   return table;
 }
