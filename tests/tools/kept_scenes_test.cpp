@@ -49,7 +49,7 @@ TEST(KeptScenes, TheSecondTouchOfAnImportedScanBakesNothingAndFeelsTheSame) {
 TEST(KeptScenes, AnEmptyNameMeansThatNothingIsKept) {
   const TempFolder folder;
   importLimb(folder, 2.5);
-  // It is no absolute path, and goes before what XDG says.
+  // It is not an absolute path, and goes before what XDG says.
   setenv("PALPATE_CACHE", "", 1);
   setenv("XDG_CACHE_HOME", folder.path("xdg").c_str(), 1);
   EXPECT_EQ(feltIn(folder, "limb.yaml", "a.csv").made, kGrids);

@@ -125,7 +125,7 @@ bool GridCache::keep(const std::string& key, const LevelSet& grid) const {
   } catch (const Error& error) {
     // A full disk, say: the grid is made again next time.
     if (error.kind() == ErrorKind::kCancelled) throw;
-  } catch (const std::exception&) {  // nothing was kept, which is no error
+  } catch (const std::exception&) {  // nothing was kept, and nothing is wrong
   }
   return false;
 }

@@ -35,7 +35,7 @@ PALPATE_EXPORT void registerKinds(SceneRegistry& registry, const RegisterOptions
 /// Whether a file is one, by its name.
 [[nodiscard]] PALPATE_EXPORT bool isStandIn(const std::string& path);
 
-/// Every file that an image is read from. Empty if that cannot be told.
+/// Every file that an image is read from. Empty if that is not known.
 [[nodiscard]] PALPATE_EXPORT std::vector<std::string> imageFiles(const std::string& path,
                                                                  const ImageOptions& options);
 
