@@ -4,6 +4,7 @@
 
 #include "cache_folder.h"
 #include "json_parts.h"
+#include "pack/bundle.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/kept_grids.h"
 #include "palpate/vdb/scan_surface.h"
@@ -28,7 +29,9 @@ LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_
   };
   options.max_memory = max_memory;
   options.cache_folder = cacheFolder();
-  vdb::registerKinds(registry, options);
+  vdb::BundleOptions bundle = bundleToFill();
+  if (!bundle.fills) bundle.folder = bundleGridsOf(file);
+  vdb::registerKinds(registry, options, bundle);
 
   // Pictures want the scans themselves, so the entries are noted down on their way through.
   registry.image = [this, &image, inner = registry.image](MapReader& reader) {

@@ -3,7 +3,6 @@
 #include <memory>
 #include <string_view>
 
-#include "cache_folder.h"
 #include "command_line/verb.h"
 #include "command_line/verb_words.h"
 #include "palpate/vdb/register.h"
@@ -30,8 +29,9 @@ class HelpFormatter : public CLI::Formatter {
 
 /// Of verbs that make a scene, and take grids that were kept.
 bool makesGrids(std::string_view verb) {
-  constexpr std::string_view kVerbs[] = {"touch", "view",    "replay", "bake",   "convert", "check",
-                                         "query", "explain", "render", "report", "accuracy"};
+  constexpr std::string_view kVerbs[] = {"touch",   "view",    "replay", "bake",
+                                         "pack",    "convert", "check",  "query",
+                                         "explain", "render",  "report", "accuracy"};
   return std::find(std::begin(kVerbs), std::end(kVerbs), verb) != std::end(kVerbs);
 }
 
@@ -55,7 +55,7 @@ std::unique_ptr<CLI::App> makeApp(const Verb& verb, Invocation& invocation) {
     addFlag(*app, g, "--json", invocation.general.json, "print one JSON object instead of text");
     addFlag(*app, g, "--quiet", invocation.general.quiet, "no notes and no progress on stderr");
     if (makesGrids(verb.name)) {
-      addFlag(*app, g, "--no-cache", noCache(),
+      addFlag(*app, g, "--no-cache", invocation.no_cache,
               "make all grids anew, and keep none for the next time");
     }
     if (verb.writes) {
