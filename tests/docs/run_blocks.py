@@ -180,7 +180,7 @@ def main():
     given = parser.parse_args()
     source = given.source.resolve()
     build = (given.build or source / "build" / "release").resolve()
-    environment = dict(os.environ, LC_ALL="C.UTF-8", PATH=f"{build / 'bin'}:{os.environ['PATH']}")
+    environment = dict(os.environ, LC_ALL="C.UTF-8", PALPATE_CACHE="off", PATH=f"{build / 'bin'}:{os.environ['PATH']}")
     if given.prefix:
         environment["CMAKE_PREFIX_PATH"] = str(given.prefix.resolve())
     with tempfile.TemporaryDirectory(prefix="palpate_docs_") as folder:

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "folders/folders.h"
@@ -68,6 +69,8 @@ CommandResult runPalpate(const std::vector<std::string>& arguments, const std::s
     dup2(out.write_end, STDOUT_FILENO);
     dup2(err.write_end, STDERR_FILENO);
     if (!folder.empty() && chdir(folder.c_str()) != 0) _exit(126);
+    // Grids that one test has kept do not concern another; tests about keeping say where.
+    setenv("PALPATE_CACHE", "off", 0);
     execv(program.c_str(), argv.data());
     _exit(127);
   }

@@ -7,7 +7,7 @@ namespace palpate::testing {
 namespace {
 
 const std::vector<std::string> kVerbs = {"touch", "import",  "bake",   "info",   "check",
-                                         "query", "explain", "render", "report", "bench"};
+                                         "query", "explain", "render", "report", "bench", "pack"};
 
 TEST(Usage, HelpListsEveryVerbWithAnExample) {
   const CommandResult result = runPalpate({"--help"});

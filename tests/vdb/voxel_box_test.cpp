@@ -71,7 +71,7 @@ TEST(VoxelBox, ALayerOfSeveralLabelsHasTheBoxOfAll) {
   test::NiftiFile file;
   const test::Bytes bytes = bytesOf(file);
   const std::string path = folder.file("labels.nii", std::string(bytes.begin(), bytes.end()));
-  ImageFile image(path, {}, std::make_shared<Notes>(nullptr));
+  ImageFile image(path, ImageOptions{}, std::make_shared<Notes>(nullptr));
   std::set<int> present;
   for (const float voxel : image.image().values) present.insert(static_cast<int>(voxel));
   const std::vector<int> labels(present.begin(), present.end());

@@ -6,9 +6,9 @@ _palpate() {
   done
   local options= words=
   case $verb in
-    '') words='touch view replay import bake convert info check query explain render report bench accuracy devices doctor help'; options='--help --version --json --quiet --force' ;;
+    '') words='touch view replay import bake pack convert info check query explain render report bench accuracy devices doctor help'; options='--help --version --json --quiet --force' ;;
     touch)
-      options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --device --hand --delay --seconds --realtime --set --serial --descriptor --firmware --calibration --library --service --epsilon --halvings --alpha --alpha-form --interior --passivity --hand-force --coupling --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --json --quiet --force -h --help'
+      options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --device --hand --delay --seconds --realtime --set --serial --descriptor --firmware --calibration --library --service --epsilon --halvings --alpha --alpha-form --interior --passivity --hand-force --coupling --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         --path) words=FILES ;;
@@ -67,7 +67,7 @@ _palpate() {
       esac
       ;;
     view)
-      options='--device --hand --delay --replay --seconds --renderer --serial --descriptor --firmware --calibration --library --service --port --no-open --record --json --quiet --force -h --help'
+      options='--device --hand --delay --replay --seconds --renderer --serial --descriptor --firmware --calibration --library --service --port --no-open --record --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         --device) words=NONE ;;
@@ -87,7 +87,7 @@ _palpate() {
       esac
       ;;
     replay)
-      options='--scene --renderer --from --json --quiet -h --help'
+      options='--scene --renderer --from --json --quiet --no-cache -h --help'
       words=FILES
       case $last in
         --scene) words=FILES ;;
@@ -122,7 +122,7 @@ _palpate() {
       esac
       ;;
     bake)
-      options='-o --output --parts --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --above --distances --keep --fill --labels --names --json --quiet --force -h --help'
+      options='-o --output --parts --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --above --distances --keep --fill --labels --names --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -145,8 +145,15 @@ _palpate() {
         --names) words=FILES ;;
       esac
       ;;
+    pack)
+      options='-o --output --json --quiet --no-cache --force -h --help'
+      words=FILES
+      case $last in
+        -o|--output) words=NONE ;;
+      esac
+      ;;
     convert)
-      options='-o --output --to-units --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --above --distances --keep --fill --labels --names --level-set --json --quiet --force -h --help'
+      options='-o --output --to-units --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --above --distances --keep --fill --labels --names --level-set --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -182,7 +189,7 @@ _palpate() {
       esac
       ;;
     check)
-      options='--units --space --voxel --layer --level-set --json --quiet -h --help'
+      options='--units --space --voxel --layer --level-set --json --quiet --no-cache -h --help'
       words=FILES
       case $last in
         --units) words=NONE ;;
@@ -192,7 +199,7 @@ _palpate() {
       esac
       ;;
     query)
-      options='--field --at --points --affine --space --frame --series --json --quiet -h --help'
+      options='--field --at --points --affine --space --frame --series --json --quiet --no-cache -h --help'
       words=FILES
       case $last in
         --field) words=NONE ;;
@@ -205,7 +212,7 @@ _palpate() {
       esac
       ;;
     explain)
-      options='--measure --device --hand --delay --rate --svg --json --quiet --force -h --help'
+      options='--measure --device --hand --delay --rate --svg --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         --device) words=NONE ;;
@@ -216,7 +223,7 @@ _palpate() {
       esac
       ;;
     render)
-      options='-o --output --size --plane --cut --trace --image --iso --forces --view --around --opacity --slice --turn --replay --json --quiet --force -h --help'
+      options='-o --output --size --plane --cut --trace --image --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -225,18 +232,10 @@ _palpate() {
         --cut) words=NONE ;;
         --trace) words=FILES ;;
         --image) words=FILES ;;
-        --iso) words=NONE ;;
-        --forces) words=NONE ;;
-        --view) words=NONE ;;
-        --around) words=NONE ;;
-        --opacity) words=NONE ;;
-        --slice) words=NONE ;;
-        --turn) words=NONE ;;
-        --replay) words=NONE ;;
       esac
       ;;
     report)
-      options='-o --output --device --hand --delay --rate --json --quiet --force -h --help'
+      options='-o --output --device --hand --delay --rate --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -265,7 +264,7 @@ _palpate() {
       esac
       ;;
     accuracy)
-      options='--field --voxel --ladder --sampler --points --band --repeat --csv --svg --json --quiet --force -h --help'
+      options='--field --voxel --ladder --sampler --points --band --repeat --csv --svg --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         --field) words=NONE ;;
@@ -300,7 +299,7 @@ _palpate() {
       ;;
     help)
       options='--markdown --schema --man --completion -h --help'
-      if ((COMP_CWORD == i + 1)); then words='touch view replay import bake convert info check query explain render report bench accuracy devices doctor help scene'
+      if ((COMP_CWORD == i + 1)); then words='touch view replay import bake pack convert info check query explain render report bench accuracy devices doctor help scene'
       elif [[ ${COMP_WORDS[i+1]} == scene ]]; then words='above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports priority quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width with workspace x xx xy xz y yy yz z zz'; else words=NONE; fi
       case $last in
         --completion) words='bash fish zsh' ;;

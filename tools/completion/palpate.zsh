@@ -7,6 +7,7 @@ _palpate() {
     'replay:Feel a record anew, and say whether the same comes out'
     'import:Turn a segmented scan into a scene\: regions, materials, ports'
     'bake:Turn a scene, a mesh or a scan into narrow-band level sets (.vdb)'
+    'pack:Put a scene, its grids and what they were made of into one folder'
     'convert:Turn grids into meshes or images, meshes into others, and all into grids'
     'info:Say what a file is\: scene, grid, mesh or scan'
     'check:Say whether meshes, grids and scenes can be touched, and what is wrong with them'
@@ -83,6 +84,7 @@ _palpate() {
         '*--series[which DICOM series of a folder that holds several]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -107,6 +109,7 @@ _palpate() {
         '*--record[write all that goes into each tick and comes out, for replay and NumPy; beside it FILE.npy.json and FILE.npy.states]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -119,6 +122,7 @@ _palpate() {
         '*--from[compare from this tick on, and begin at the last state saved before it (default 0)]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*-h[print this]' \
         '*--help[print this]' \
         '*:file:_files'
@@ -181,6 +185,19 @@ _palpate() {
         '*--names[table of names\: `index name`, `value,name`, of Slicer, ITK-SNAP or FreeSurfer (default\: the image'\''s own)]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
+        '*--force[replace existing output files]' \
+        '*-h[print this]' \
+        '*--help[print this]' \
+        '*:file:_files'
+      ;;
+    pack)
+      _arguments \
+        '*-o[the bundle (required)]:value:' \
+        '*--output[the bundle (required)]:value:' \
+        '*--json[print one JSON object instead of text]' \
+        '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -212,6 +229,7 @@ _palpate() {
         '*--level-set[a grid that does not say its class holds signed distances, negative inside]' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -240,6 +258,7 @@ _palpate() {
         '*--level-set[a grid that does not say its class holds signed distances, negative inside]' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*-h[print this]' \
         '*--help[print this]' \
         '*:file:_files'
@@ -255,6 +274,7 @@ _palpate() {
         '*--series[which DICOM series of a folder that holds several]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*-h[print this]' \
         '*--help[print this]' \
         '*:file:_files'
@@ -269,6 +289,7 @@ _palpate() {
         '*--svg[draw the table of transitions\: regions, and the ports between them]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -293,6 +314,7 @@ _palpate() {
         '*--replay[view\: the hand and the force on their way along the trace, so many pictures]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -308,6 +330,7 @@ _palpate() {
         '*--rate[device\: ticks a second (default 1000)]:value:' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -348,6 +371,7 @@ _palpate() {
         '*--svg[plots of error against time and against memory]:value:_files' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
+        '*--no-cache[make all grids anew, and keep none for the next time]' \
         '*--force[replace existing output files]' \
         '*-h[print this]' \
         '*--help[print this]' \
@@ -381,7 +405,7 @@ _palpate() {
         '*:file:_files'
       ;;
     help)
-      if ((CURRENT == 3)); then compadd touch view replay import bake convert info check query explain render report bench accuracy devices doctor help scene; fi
+      if ((CURRENT == 3)); then compadd touch view replay import bake pack convert info check query explain render report bench accuracy devices doctor help scene; fi
       if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports priority quadric radii radius rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width with workspace x xx xy xz y yy yz z zz; fi
       _arguments \
         '*--markdown[everything, as the reference in tools/README.md; of a map of scene files the table of its keys]' \

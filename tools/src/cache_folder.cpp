@@ -11,9 +11,19 @@ std::string pathIn(const char* variable) {
   return value != nullptr && value[0] == '/' ? value : "";
 }
 
+bool keeps_nothing = false;
+vdb::BundleOptions to_fill;
+
 }  // namespace
 
+void keepNothing() noexcept { keeps_nothing = true; }
+
+void fillBundle(const std::string& grids) { to_fill = {grids, !grids.empty()}; }
+
+vdb::BundleOptions bundleToFill() { return to_fill; }
+
 std::string cacheFolder() {
+  if (keeps_nothing) return {};
   if (std::getenv("PALPATE_CACHE") != nullptr) return pathIn("PALPATE_CACHE");
   const std::string shared = pathIn("XDG_CACHE_HOME");
   if (!shared.empty()) return shared + "/palpate";

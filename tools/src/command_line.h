@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "options.h"
+#include "pack/pack_options.h"
 
 namespace palpate::tools {
 
 struct Invocation {
   std::string verb;  ///< empty if only `print` is wanted
   GeneralOptions general;
-  VerbOptions options;
+  bool no_cache = false;  ///< of verbs that make the grids of scenes
+  AnyOptions options;
   std::string print;  ///< help or version: to stdout, and nothing else is done
 };
 

@@ -4,7 +4,9 @@
 
 #include "cache_folder.h"
 #include "json_parts.h"
+#include "pack/bundle.h"
 #include "palpate/scene/scene_file.h"
+#include "palpate/vdb/kept_grids.h"
 #include "palpate/vdb/scan_surface.h"
 
 namespace palpate::tools {
@@ -27,7 +29,9 @@ LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_
   };
   options.max_memory = max_memory;
   options.cache_folder = cacheFolder();
-  vdb::registerKinds(registry, options);
+  vdb::BundleOptions bundle = bundleToFill();
+  if (!bundle.fills) bundle.folder = bundleGridsOf(file);
+  vdb::registerKinds(registry, options, bundle);
 
   // Pictures want the scans themselves, so the entries are noted down on their way through.
   registry.image = [this, &image, inner = registry.image](MapReader& reader) {
@@ -63,6 +67,7 @@ Json LoadedScene::gridsJson() const {
                     {"active_voxels", grid.info.active_voxels},
                     {"memory_bytes", grid.info.memory},
                     {"seconds", grid.seconds},
+                    {"was_kept", vdb::wasKept(grid.info)},
                     {"lost_voxels", loss.lost},
                     {"filled_voxels", loss.filled},
                     {"lost_at_m", is_whole ? Json() : vectorJson(loss.place)}});
@@ -86,7 +91,7 @@ Table LoadedScene::gridsTable() const {
                formatNumber(grid.info.voxel_size / description_.metres_per_unit, 3) + " " +
                    description_.length_unit,
                formatCount(grid.info.active_voxels), formatBytes(grid.info.memory),
-               formatSeconds(grid.seconds)});
+               formatSeconds(grid.seconds) + (vdb::wasKept(grid.info) ? ", kept" : "")});
   }
   return table;
 }

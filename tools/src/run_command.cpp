@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "cache_folder.h"
 #include "command_line.h"
 #include "console.h"
 #include "output_files.h"
+#include "pack/pack_scene.h"
 #include "palpate/core/stop.h"
 #include "palpate/vdb/image.h"
 #include "stop_signal.h"
@@ -75,6 +77,7 @@ int runCommand(const std::vector<std::string>& arguments) {
   const bool json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
   try {
     const Invocation invocation = parseCommandLine(arguments);
+    if (invocation.no_cache) keepNothing();
     bool printed = false;
     bool is_yes = true;
     if (!invocation.print.empty()) {

@@ -1,13 +1,12 @@
 #include "palpate/vdb/register.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <numbers>
 #include <utility>
 
 #include "bake/solid.h"
-#include "named_progress.h"
+#include "lazy_field.h"
 #include "palpate/core/text.h"
 #include "palpate/scene/units.h"
 #include "palpate/scene/vocabulary.h"
@@ -29,29 +28,6 @@
 namespace palpate::vdb {
 namespace {
 
-using GridMaker = std::function<LevelSet(const Progress&)>;
-/// Other ways than a grid alone.
-struct MeshWays {
-  std::function<FieldPtr(const Progress&)> instead =
-      {};  ///< tried first; null where a grid is needed
-  std::function<FieldPtr(FieldPtr, const LevelSet&)> finish = {};  ///< of the grid's whole field
-};
-using Measurer = FieldSource::Measurer;
-
-/// What the makers need after the scene file is read and its readers are gone.
-struct Common {
-  RegisterOptions options;
-  std::shared_ptr<Notes> notes;
-  SceneImages images;
-};
-using CommonPtr = std::shared_ptr<Common>;
-
-std::string widenedNote(double half_width) {
-  return "a band of " + shortNumber(half_width, 3) +
-         " voxels is too narrow for cubic sampling; it was widened to " +
-         shortNumber(kCubicHalfWidth, 6) + ", with distances to the closest points of the surface";
-}
-
 /// A grid that comes out of this module's own hands.
 CertifyOptions madeHere() {
   CertifyOptions options;
@@ -59,66 +35,21 @@ CertifyOptions madeHere() {
   return options;
 }
 
-/// The field of a grid that is made when it is first asked for. The maker reports what it finds wrong
-/// at `place` of the scene; `what` names the grid in progress and records.
-FieldSourcePtr lazyField(const CommonPtr& common, std::string what, std::string summary,
-                         SourcePlace place, Sampler sampler, GridMaker make, Measurer measure,
-                         MeshWays ways = {}, CertifyOptions origin = madeHere()) {
-  auto measurer = [place, measure = std::move(measure)](const Progress& progress) {
-    try {
-      return measure(progress);
-    } catch (const Error& error) {
-      throwAt(place, error);
-    }
-  };
-  auto maker = [common, what = std::move(what), summary, place = std::move(place), sampler,
-                make = std::move(make), ways = std::move(ways),
-                origin = std::move(origin)](const Box3& within, const Progress& progress) {
-    const Progress named = namedProgress(progress, what);
-    if (ways.instead) {
-      try {
-        if (FieldPtr exact = ways.instead(named)) return exact;
-      } catch (const Error& error) {
-        throwAt(place, error);
-      }
-    }
-    const auto start = std::chrono::steady_clock::now();
-    LevelSet grid;
-    LevelSetInfo made;
-    try {
-      grid = make(named);
-      made = grid.info();
-      if (made.metadata.contains("lost_parts")) {
-        common->notes->add(what, {"not in the grid: " + made.metadata.at("lost_parts")});
-      }
-      CertifyOptions certify = origin;
-      certify.sampler = sampler;
-      certify.cache_folder = common->options.cache_folder;
-      certify.max_memory = common->options.max_memory;
-      CertifiedGrid sure = certified(grid, certify, named);
-      grid = std::move(sure.grid);
-      if (sampler == Sampler::kCubic && isTooNarrow(made)) {
-        common->notes->add(what, {widenedNote(made.half_width)});
-      }
-      if (!sure.notes.empty()) common->notes->add(what, sure.notes);
-      const std::string rough = roughNote(grid, sure.certificate);
-      if (!rough.empty()) common->notes->add(what, {rough});
-    } catch (const Error& error) {
-      throwAt(place, error);
-    }
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    if (common->options.on_grid) {
-      common->options.on_grid({what + ": " + summary, made, took.count()});
-    }
-    const std::uint64_t limit = common->options.max_memory;
-    if (!ways.finish) return gridField(grid, sampler, within, limit);
-    try {
-      return ways.finish(gridField(grid, sampler, Box3::everything(), limit), grid);
-    } catch (const Error& error) {
-      throwAt(place, error);
-    }
-  };
-  return std::make_shared<FieldSource>(std::move(summary), std::move(maker), std::move(measurer));
+/// To be raised whenever what is baked of the same source changes: grids that were kept before are made again then. A test
+/// says when.
+constexpr int kBakerVersion = 1;
+
+ContentKey beginKey(const char* kind) {
+  ContentKey key;
+  key.add("palpate grid").add(kBakerVersion).add(kind);
+  return key;
+}
+
+/// What counts in how a grid is made, beside its name.
+void addHow(ContentKey& key, const BakeOptions& bake, Sampler sampler) {
+  key.add(bake.voxel_size).add(bake.half_width).add(bake.length_unit);
+  key.add(static_cast<int>(bake.mesh_sign)).add(bake.shell_thickness).add(bake.smooth_angle);
+  key.add(static_cast<int>(sampler));
 }
 
 /// How a mesh becomes a solid.
@@ -202,22 +133,44 @@ FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
       return solid;
     };
   }
-  return lazyField(
-      common, fileName(path), "mesh " + fileName(path),
-      reader.loader().document().place(reader.node().mark), sampler,
-      [read, bake](const Progress& progress) {
-        const Mesh mesh = read(progress);
-        BakeOptions options = bake;
-        if (!(options.voxel_size > 0.0)) {
-          const Vec3 size = checkMesh(mesh).bounds.size();
-          options.voxel_size = std::max({size.x, size.y, size.z}) / 128.0;
-        }
-        return bakeMesh(mesh, options, progress);
-      },
-      [path, metres, space, shell = bake.shell_thickness](const Progress&) {
-        return boxOf(readMesh(path, metres, space)).grownBy(shell);
-      },
-      std::move(ways));
+  GridSource source;
+  source.what = fileName(path);
+  source.summary = "mesh " + fileName(path);
+  source.place = reader.loader().document().place(reader.node().mark);
+  source.sampler = sampler;
+  source.make = [read, bake](const Progress& progress) {
+    const Mesh mesh = read(progress);
+    BakeOptions options = bake;
+    if (!(options.voxel_size > 0.0)) {
+      const Vec3 size = checkMesh(mesh).bounds.size();
+      options.voxel_size = std::max({size.x, size.y, size.z}) / 128.0;
+    }
+    return bakeMesh(mesh, options, progress);
+  };
+  source.measure = [path, metres, space, shell = bake.shell_thickness](const Progress&) {
+    return boxOf(readMesh(path, metres, space)).grownBy(shell);
+  };
+  source.ways = std::move(ways);
+  source.certify = madeHere();
+  // As it was read, whatever files it is made of and whatever unit they have.
+  source.content = [path, read, bake, sampler](const Progress& progress) {
+    GridContent content;
+    ContentKey ignored;
+    content.files = SourceState({path}, ignored);
+    const Mesh mesh = read(progress);
+    content.grid = beginKey("mesh");
+    content.grid.add(mesh.vertices.size())
+        .addBytes(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3))
+        .addBytes(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
+    addHow(content.grid, bake, sampler);
+    content.box = content.grid;
+    content.box.add("box");
+    return content;
+  };
+  source.name = bake.name;
+  source.metadata = bake.metadata;
+  source.file = path;
+  return lazyField(common, std::move(source));
 }
 
 FieldSourcePtr gridFileField(const CommonPtr& common, const MapReader& reader) {
@@ -225,20 +178,22 @@ FieldSourcePtr gridFileField(const CommonPtr& common, const MapReader& reader) {
   const std::string name = reader.text("name");
   const std::string unit = reader.text("units");
   const auto unknown = reader.has("class") ? UnknownClass::kLevelSet : UnknownClass::kRefuse;
-  const Sampler sampler = readSampler(reader);
-  CertifyOptions foreign;
-  foreign.path = path;
-  return lazyField(
-      common, fileName(path), "grid " + fileName(path),
-      reader.loader().document().place(reader.node().mark), sampler,
-      [path, name, unit, unknown, limit = common->options.max_memory](const Progress& progress) {
-        report(progress, "read", 0.0);
-        return readVdb(path, name, unit, unknown, limit);
-      },
-      [path, name, unit, unknown, limit = common->options.max_memory](const Progress&) {
-        return readVdb(path, name, unit, unknown, limit).info().bounds;
-      },
-      {}, foreign);
+  GridSource source;
+  source.what = fileName(path);
+  source.summary = "grid " + fileName(path);
+  source.place = reader.loader().document().place(reader.node().mark);
+  source.sampler = readSampler(reader);
+  source.make = [path, name, unit, unknown,
+                 limit = common->options.max_memory](const Progress& progress) {
+    report(progress, "read", 0.0);
+    return readVdb(path, name, unit, unknown, limit);
+  };
+  source.measure = [path, name, unit, unknown,
+                    limit = common->options.max_memory](const Progress&) {
+    return readVdb(path, name, unit, unknown, limit).info().bounds;
+  };
+  source.certify.path = path;
+  return lazyField(common, std::move(source));
 }
 
 FieldSourcePtr maskField(const CommonPtr& common, const MapReader& reader) {
@@ -253,17 +208,35 @@ FieldSourcePtr maskField(const CommonPtr& common, const MapReader& reader) {
   bake.length_unit = reader.loader().lengthUnit();
   bake.metadata["source"] = mask.file;
   const Sampler sampler = readSampler(reader);
-  return lazyField(
-      common, fileName(mask.file), "mask " + fileName(mask.file),
-      reader.loader().document().place(reader.node().mark), sampler,
-      [mask, bake](const Progress& progress) {
-        report(progress, "read", 0.0);
-        return surfaceOfMask(mask, bake, progress);
-      },
-      [mask](const Progress&) {
-        return boxWhere(readVdbImage(mask.file, mask.name, mask.unit_if_missing),
-                        [](float value) { return value != 0.0F; });
-      });
+  GridSource source;
+  source.what = fileName(mask.file);
+  source.summary = "mask " + fileName(mask.file);
+  source.place = reader.loader().document().place(reader.node().mark);
+  source.sampler = sampler;
+  source.make = [mask, bake](const Progress& progress) {
+    report(progress, "read", 0.0);
+    return surfaceOfMask(mask, bake, progress);
+  };
+  source.measure = [mask](const Progress&) {
+    return boxWhere(readVdbImage(mask.file, mask.name, mask.unit_if_missing),
+                    [](float value) { return value != 0.0F; });
+  };
+  source.certify = madeHere();
+  source.content = [mask, bake, sampler](const Progress&) {
+    GridContent content;
+    content.grid = beginKey("mask");
+    content.files = SourceState({mask.file}, content.grid);
+    content.grid.add(mask.name).add(mask.unit_if_missing);
+    content.box = content.grid;
+    content.box.add("box");
+    content.grid.add(mask.above.has_value()).add(mask.above.value_or(0.0)).add(mask.voxel_size);
+    addHow(content.grid, bake, sampler);
+    return content;
+  };
+  source.name = bake.name;
+  source.metadata = bake.metadata;
+  source.file = mask.file;
+  return lazyField(common, std::move(source));
 }
 
 /// The image a layer names, and what its grid will be called.
@@ -284,6 +257,30 @@ struct LayerImage {
     bake.name = layer + "/surface";
     bake.length_unit = reader.loader().lengthUnit();
     bake.metadata["layer"] = layer;
+  }
+
+  /// What all layers of images have in common.
+  [[nodiscard]] GridSource source(const std::string& layer, std::string summary) const {
+    GridSource out;
+    out.what = layer;
+    out.summary = std::move(summary);
+    out.place = place;
+    out.sampler = sampler;
+    out.certify = madeHere();
+    out.name = bake.name;
+    out.metadata = bake.metadata;
+    out.metadata["source"] = image->file->path();
+    out.file = image->file->path();
+    return out;
+  }
+
+  /// Of the image's files and `kind`.
+  [[nodiscard]] static GridContent content(ImageFile& file, const char* kind) {
+    GridContent out;
+    out.files = file.state();
+    out.grid = beginKey(kind);
+    out.grid.add(file.contentKey());
+    return out;
   }
 };
 
@@ -332,16 +329,30 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, const MapReader
   summary += " of " + fileName(from.image->file->path());
   const std::size_t index = from.image->layers.size();
   from.image->layers.push_back(values);
-  return {lazyField(
-              common, layer, std::move(summary), from.place, from.sampler,
-              [image = from.image, index, voxel_size, bake = from.bake](const Progress& progress) {
-                return image->surfaces().surface(index, voxel_size, bake, progress,
-                                                 LabelEdge::kLapped);
-              },
-              [image = from.image, values](const Progress&) {
-                return image->file->boxOfLabels(values);
-              }),
-          from.name, values};
+  GridSource source = from.source(layer, std::move(summary));
+  source.make = [image = from.image, index, voxel_size,
+                 bake = from.bake](const Progress& progress) {
+    return image->surfaces().surface(index, voxel_size, bake, progress, LabelEdge::kLapped);
+  };
+  source.measure = [image = from.image, values](const Progress&) {
+    return image->file->boxOfLabels(values);
+  };
+  source.content = [image = from.image, index, voxel_size, bake = from.bake,
+                    sampler = from.sampler](const Progress&) {
+    GridContent content = LayerImage::content(*image->file, "labels");
+    content.box = content.grid;
+    content.box.add("box");
+    for (const int value : image->layers[index]) content.box.add(value);
+    // Neighbors have a say in where a layer ends.
+    for (const std::vector<int>& labels : image->layers) {
+      content.grid.add(labels.size());
+      for (const int value : labels) content.grid.add(value);
+    }
+    content.grid.add(index).add(voxel_size);
+    addHow(content.grid, bake, sampler);
+    return content;
+  };
+  return {lazyField(common, std::move(source)), from.name, values};
 }
 
 SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, const MapReader& reader,
@@ -363,32 +374,46 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, const MapRea
   threshold.fill = reader.flag("fill");
   threshold.voxel_size = reader.value("voxel");
   std::string summary = fileName(from.image->file->path()) + " " + key + " " + level.text;
-  return {
-      lazyField(
-          common, layer, std::move(summary), from.place, from.sampler,
-          [common, file = from.image->file, threshold, bake = from.bake](const Progress& progress) {
-            const std::string note = threshold.below ? std::string() : distancesNote(file->image());
-            if (!note.empty()) {
-              common->notes->add(file->path(),
-                                 {note + "; below: 0 (--distances) takes the inside"});
-            }
-            return surfaceFromThreshold(file->image(), threshold, bake, progress);
-          },
-          [file = from.image->file, threshold](const Progress&) {
-            return boxWhere(file->image(), [&](float value) {
-              return threshold.below ? value < *threshold.below : value > threshold.above;
-            });
-          }),
-      {}};
+  GridSource source = from.source(layer, std::move(summary));
+  source.make = [common, file = from.image->file, threshold,
+                 bake = from.bake](const Progress& progress) {
+    const std::string note = threshold.below ? std::string() : distancesNote(file->image());
+    if (!note.empty()) {
+      common->notes->add(file->path(), {note + "; below: 0 (--distances) takes the inside"});
+    }
+    return surfaceFromThreshold(file->image(), threshold, bake, progress);
+  };
+  source.measure = [file = from.image->file, threshold](const Progress&) {
+    return boxWhere(file->image(), [&](float value) {
+      return threshold.below ? value < *threshold.below : value > threshold.above;
+    });
+  };
+  source.content = [file = from.image->file, threshold, bake = from.bake,
+                    sampler = from.sampler](const Progress&) {
+    GridContent content = LayerImage::content(*file, "threshold");
+    content.grid.add(threshold.below.has_value());
+    content.grid.add(threshold.below.value_or(threshold.above));
+    content.box = content.grid;
+    content.box.add("box");
+    content.grid.add(threshold.largest_component).add(threshold.fill).add(threshold.voxel_size);
+    addHow(content.grid, bake, sampler);
+    return content;
+  };
+  return {lazyField(common, std::move(source)), {}};
 }
 
 }  // namespace
 
 void registerKinds(SceneRegistry& registry, const RegisterOptions& options) {
+  registerKinds(registry, options, BundleOptions{});
+}
+
+void registerKinds(SceneRegistry& registry, const RegisterOptions& options,
+                   const BundleOptions& bundle) {
   registry.vocabulary = vocabulary(*registry.vocabulary);
   auto notes = std::make_shared<Notes>(options.on_note);
-  const auto common =
-      std::make_shared<Common>(Common{options, notes, SceneImages(notes, options.on_image)});
+  const auto common = std::make_shared<Common>(
+      Common{options, bundle, notes, SceneImages(notes, options.on_image)});
   registry.image = [common](MapReader& reader) { return common->images.read(reader); };
   registry.fields["mesh"] = [common](MapReader& reader) { return meshField(common, reader); };
   registry.fields["grid"] = [common](MapReader& reader) { return gridFileField(common, reader); };

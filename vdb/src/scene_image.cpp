@@ -2,23 +2,62 @@
 
 #include <algorithm>
 
+#include "keep/content_key.h"
+#include "palpate/vdb/kept_grids.h"
+#include "palpate/vdb/text.h"
+#include "stand_in.h"
 #include "voxel_box.h"
 
 namespace palpate::vdb {
 
 void Notes::add(const std::string& path, const std::vector<std::string>& notes) {
   for (const std::string& note : notes) {
+    if (list_ != nullptr) list_->emplace_back(path, note);
     std::string whole = path + ": " + note;
     if (told_.insert(whole).second && tell_) tell_(whole);
   }
 }
 
+ImageFile::ImageFile(std::string path, std::string content_key, std::shared_ptr<Notes> notes)
+    : path_(std::move(path)),
+      notes_(std::move(notes)),
+      key_(std::move(content_key)),
+      has_voxels_(false) {
+  ContentKey ignored;
+  state_ = SourceState({path_}, ignored);
+}
+
 const Image& ImageFile::image() {
-  if (!image_) {
-    image_ = readImage(path_, options_);
-    notes_->add(path_, image_->notes);
+  if (!has_voxels_) {
+    throw inputError("pack.no_scan",
+                     "this stands for a scan that is not in the bundle: only layers that were "
+                     "packed can be made",
+                     "leave the layer as it was when the scene was packed, or name the scan",
+                     path_);
   }
+  if (!image_) image_ = readImage(path_, options_);
+  notes_->add(path_, image_->notes);
   return *image_;
+}
+
+const std::string& ImageFile::contentKey() {
+  if (key_.empty()) {
+    ContentKey key;
+    state_ = SourceState(imageFiles(path_, options_), key);
+    key.add(static_cast<int>(options_.affine)).add(static_cast<int>(options_.space));
+    key.add(options_.frame.value_or(-1)).add(options_.series);
+    // Their order is that of the labels.
+    for (const std::string& file : options_.with) key.add(fileName(file));
+    key.add("priority");
+    for (const std::string& name : options_.priority) key.add(name);
+    key_ = key.text();
+  }
+  return key_;
+}
+
+const SourceState& ImageFile::state() {
+  static_cast<void>(contentKey());
+  return state_;
 }
 
 Box3 ImageFile::boxOfLabels(const std::vector<int>& labels) {
@@ -106,21 +145,31 @@ std::shared_ptr<SceneImage> SceneImages::read(const MapReader& reader) {
   const std::string path = reader.loader().resolvePath(reader.text("file"));
   const ImageOptions options = readImageOptions(reader);
   ImageRecord record{path, options, reader.has("names")};
-  try {
-    ImageInfo info = readImageInfo(path, options);
-    notes_->add(path, info.notes);
-    record.is_labels = record.is_labels || info.is_labels;
-    if (!info.labels.names.empty()) {
-      made->labels = std::move(info.labels);
-      made->names_path = path;
+  std::string stand_in_key;
+  if (isStandIn(path)) {
+    StandIn stand_in = readStandIn(path);
+    stand_in_key = std::move(stand_in.content_key);
+    record.is_labels = record.is_labels || stand_in.is_labels;
+    made->labels = std::move(stand_in.labels);
+    made->names_path = path;
+  } else
+    try {
+      ImageInfo info = readImageInfo(path, options);
+      notes_->add(path, info.notes);
+      record.is_labels = record.is_labels || info.is_labels;
+      if (!info.labels.names.empty()) {
+        made->labels = std::move(info.labels);
+        made->names_path = path;
+      }
+    } catch (const Error& error) {
+      throw atKey(reader, "file", error);
     }
-  } catch (const Error& error) {
-    throw atKey(reader, "file", error);
-  }
   std::weak_ptr<ImageFile>& known = files_[keyOf(path, options)];
   made->file = known.lock();
   if (!made->file) {
-    made->file = std::make_shared<ImageFile>(path, options, notes_);
+    made->file = stand_in_key.empty()
+                     ? std::make_shared<ImageFile>(path, options, notes_)
+                     : std::make_shared<ImageFile>(path, std::move(stand_in_key), notes_);
     known = made->file;
   }
   if (reader.has("names")) {

@@ -8,8 +8,10 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "keep/source_state.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/image.h"
 #include "palpate/vdb/register.h"
@@ -23,9 +25,24 @@ class Notes {
   explicit Notes(std::function<void(const std::string&)> tell) : tell_(std::move(tell)) {}
   void add(const std::string& path, const std::vector<std::string>& notes);
 
+  /// What a note is about, and the note.
+  using List = std::vector<std::pair<std::string, std::string>>;
+  /// As long as it lives, all that is added goes to a list too, also what was said before.
+  class Listener {
+   public:
+    Listener(Notes& notes, List& list) : notes_(notes) { notes.list_ = &list; }
+    ~Listener() { notes_.list_ = nullptr; }
+    Listener(const Listener&) = delete;
+    Listener& operator=(const Listener&) = delete;
+
+   private:
+    Notes& notes_;
+  };
+
  private:
   std::function<void(const std::string&)> tell_;
   std::set<std::string> told_;
+  List* list_ = nullptr;
 };
 
 /// One image file, read at most once however many layers come from it.
@@ -33,10 +50,18 @@ class ImageFile {
  public:
   ImageFile(std::string path, ImageOptions options, std::shared_ptr<Notes> notes)
       : path_(std::move(path)), options_(std::move(options)), notes_(std::move(notes)) {}
+  /// What stands for the file at `path` in a bundle.
+  ImageFile(std::string path, std::string content_key, std::shared_ptr<Notes> notes);
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  /// @throws Error (kInput): what readImage() throws, and pack.no_scan if only a stand-in is there.
   [[nodiscard]] const Image& image();
   /// [m] The box around the voxels of these labels, as boxWhere() has it. The image is walked once for all calls.
   [[nodiscard]] Box3 boxOfLabels(const std::vector<int>& labels);
+
+  /// Of the bytes of all its files, which are read once, and of how they are understood.
+  [[nodiscard]] const std::string& contentKey();
+  /// Those files as they were then.
+  [[nodiscard]] const SourceState& state();
 
  private:
   std::string path_;
@@ -44,6 +69,9 @@ class ImageFile {
   std::shared_ptr<Notes> notes_;
   std::optional<Image> image_;
   std::optional<std::map<float, Box3>> boxes_;
+  std::string key_;
+  SourceState state_;
+  bool has_voxels_ = true;
 };
 
 /// One entry of `images:`.

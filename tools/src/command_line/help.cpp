@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <iterator>
 #include <memory>
+#include <string_view>
 
 #include "command_line/verb.h"
 #include "command_line/verb_words.h"
@@ -24,6 +27,14 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_positionals(const CLI::App*) const override { return {}; }
 };
 
+/// Of verbs that make a scene, and take grids that were kept.
+bool makesGrids(std::string_view verb) {
+  constexpr std::string_view kVerbs[] = {"touch",   "view",    "replay", "bake",
+                                         "pack",    "convert", "check",  "query",
+                                         "explain", "render",  "report", "accuracy"};
+  return std::find(std::begin(kVerbs), std::end(kVerbs), verb) != std::end(kVerbs);
+}
+
 std::string markdown() {
   std::string text = "```\n" + overview() + "```\n";
   for (const Verb& verb : verbs()) {
@@ -43,6 +54,10 @@ std::unique_ptr<CLI::App> makeApp(const Verb& verb, Invocation& invocation) {
   if (verb.name != std::string_view("help")) {
     addFlag(*app, g, "--json", invocation.general.json, "print one JSON object instead of text");
     addFlag(*app, g, "--quiet", invocation.general.quiet, "no notes and no progress on stderr");
+    if (makesGrids(verb.name)) {
+      addFlag(*app, g, "--no-cache", invocation.no_cache,
+              "make all grids anew, and keep none for the next time");
+    }
     if (verb.writes) {
       addFlag(*app, g, "--force", invocation.general.force, "replace existing output files");
     }

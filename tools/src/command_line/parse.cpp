@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "command_line/verb.h"
+#include "pack/bundle.h"
 #include "palpate/core/text.h"
 #include "palpate/scene/suggestion.h"
 #include "palpate/version.h"
@@ -80,9 +81,9 @@ std::string inShell(const std::string& argument) {
 
 const std::vector<Verb>& verbs() {
   static const std::vector<Verb> all = {
-      touchVerb(), viewVerb(),     replayVerb(),  importVerb(),  bakeVerb(),   convertVerb(),
-      infoVerb(),  checkVerb(),    queryVerb(),   explainVerb(), renderVerb(), reportVerb(),
-      benchVerb(), accuracyVerb(), devicesVerb(), doctorVerb(),  helpVerb()};
+      touchVerb(),   viewVerb(),  replayVerb(),   importVerb(),  bakeVerb(),    packVerb(),
+      convertVerb(), infoVerb(),  checkVerb(),    queryVerb(),   explainVerb(), renderVerb(),
+      reportVerb(),  benchVerb(), accuracyVerb(), devicesVerb(), doctorVerb(),  helpVerb()};
   return all;
 }
 
@@ -158,6 +159,7 @@ Invocation parseCommandLine(const std::vector<std::string>& arguments) {
     if (problem.hint.empty()) problem.hint = "usage: " + std::string(verb->usage);
     throw Error(ErrorKind::kUsage, problem);
   }
+  openBundles(invocation.options);
   return invocation;
 }
 

@@ -61,6 +61,9 @@ void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes);
 // view_verb.cpp
 [[nodiscard]] Verb viewVerb();
 
+// pack_verb.cpp
+[[nodiscard]] Verb packVerb();
+
 // import_verb.cpp
 [[nodiscard]] Verb importVerb();
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "palpate/vdb/kept_grids.h"
 #include "palpate/vdb/text.h"
 #include "picture/cutaway.h"
 #include "picture/sheet.h"
@@ -154,6 +155,12 @@ std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
                                                const std::string& wanted) {
   for (const SceneImage& image : scene.images()) {
     if (wanted.empty() ? image.has_names : image.name != wanted) continue;
+    if (vdb::isStandIn(image.file)) {
+      if (wanted.empty()) continue;
+      throw inputError("pack.no_scan", "the scan '" + wanted + "' is not in the bundle",
+                       "draw it from the scene that was packed, or name the file of a scan",
+                       image.file);
+    }
     auto read = std::make_shared<const vdb::Image>(vdb::readImage(image.file, image.options));
     if (!wanted.empty() || !isMask(*read)) return read;
   }

@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "brick/bricks.h"
-#include "grid/grid_cache.h"
 #include "grid/grid_tally.h"
 #include "grid/rebuilt.h"
 #include "grid/voxel_steps.h"
+#include "keep/grid_cache.h"
 #include "palpate/core/text.h"
 #include "palpate/vdb/certificate.h"
 #include "palpate/vdb/grid_error.h"
@@ -25,6 +25,8 @@ constexpr double kMostStep = 0.25;
 /// [voxels] Values can be off by less than that and contradict no neighbor by more than kSmallStep: one half of a grid against the
 /// other by the square root of 3 less that of 2, a single voxel by half of that.
 constexpr double kUnseen = 0.4;
+/// Fewer active voxels are widened again faster than they are worth keeping.
+constexpr std::uint64_t kLeastKept = 100'000;
 /// [voxels] What rounding leaves of a bound that was found in floats.
 constexpr double kRounding = 1e-4;
 
@@ -51,7 +53,9 @@ class Certifier {
     certificate.content = contentHash(grid_);
     out_.grid = withCertificate(grid_, certificate);
     out_.certificate = std::move(certificate);
-    if (!key.empty()) cache_.keep(key, noted(out_.grid));
+    if (!key.empty() && out_.grid.info().active_voxels >= kLeastKept) {
+      cache_.keep(key, noted(out_.grid));
+    }
     return std::move(out_);
   }
 
@@ -73,7 +77,7 @@ class Certifier {
   }
 
   bool findKept(const std::string& key) {
-    const std::optional<LevelSet> kept = cache_.find(key);
+    const std::optional<LevelSet> kept = cache_.find(key, sampler());
     if (!kept) return false;
     const auto certificate = storedCertificate(*kept, sampler());
     if (!certificate) return false;

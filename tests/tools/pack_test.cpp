@@ -1,0 +1,201 @@
+// palpate pack: a scene with its grids in one folder, which is felt the same elsewhere and without its scan.
+
+#include "tools/kept_felt.h"
+
+namespace palpate::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Every file below a folder, as names within it.
+std::vector<std::string> allFiles(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) {
+      names.push_back(entry.path().lexically_relative(folder).string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+CommandResult pack(const TempFolder& folder, std::vector<std::string> more) {
+  more.insert(more.begin(), "pack");
+  return runPalpate(more, folder.path());
+}
+
+TEST(PackedScenes, AreFeltTheSameElsewhereAndWithoutTheirScan) {
+  const TempFolder folder;
+  importLimb(folder);
+  // Absolute names, as an import of a scan from elsewhere writes them; also in a comment.
+  std::string text = textOf(folder.path("limb.yaml"));
+  const std::string name = "limb.nii.gz";
+  text.replace(text.rfind(name), name.size(), folder.path(name));
+  (void)folder.file("limb.yaml", "# From " + folder.path(name) + ", by hand.\n" + text);
+  const Felt before = feltIn(folder, "limb.yaml", "a.csv");
+  ASSERT_GT(before.ticks.size(), 100U) << before.result.err << before.result.out;
+
+  const CommandResult packed = pack(folder, {"limb.yaml", "-o", "limb.bundle", "--json"});
+  ASSERT_EQ(packed.exit_code, 0) << packed.err << packed.out;
+  const Json json = parseOnly(packed);
+  EXPECT_EQ(json.at("schema"), "palpate.pack/1");
+  EXPECT_EQ(json.at("grids").size(), 3U);
+  const std::vector<std::string> files = allFiles(folder.path("limb.bundle"));
+  for (const char* there :
+       {"scene.yaml", "pack.json", "files/names.csv", "files/scan_1.scan.yaml"}) {
+    EXPECT_NE(std::find(files.begin(), files.end(), there), files.end()) << there;
+  }
+  for (const std::string& file : files) {
+    EXPECT_FALSE(file.ends_with("nii.gz")) << file;
+    // No name of where it was made is in it, whatever the file.
+    const std::string bytes = textOf(folder.path("limb.bundle/" + file));
+    EXPECT_EQ(bytes.find(folder.path()), std::string::npos) << file;
+  }
+  // What the import said of where numbers come from is still there.
+  EXPECT_NE(textOf(folder.path("limb.bundle/scene.yaml")).find("assumed"), std::string::npos);
+
+  // Another place, and nothing else left.
+  const TempFolder elsewhere;
+  fs::rename(folder.path("limb.bundle"), elsewhere.path("moved"));
+  for (const char* gone : {"limb.yaml", "limb.nii.gz", "names.csv"}) fs::remove(folder.path(gone));
+  for (const char* scene : {"moved", "moved/scene.yaml", "moved/"}) {
+    const Felt after = feltIn(elsewhere, scene, "b.csv", {"--no-cache"});
+    ASSERT_EQ(after.result.exit_code, 0) << scene << after.result.err << after.result.out;
+    EXPECT_EQ(after.made, 0U) << scene;
+    EXPECT_EQ(after.kept, 3U) << scene;
+    EXPECT_EQ(after.ticks, before.ticks) << scene;
+  }
+  // Every other verb that takes a scene.
+  const std::vector<std::vector<std::string>> verbs = {
+      {"query", "moved", "--at", "12,-7,30"},
+      {"explain", "moved"},
+      {"render", "moved", "-o", "moved.png"},
+      {"check", "moved"},
+      {"info", "moved"},
+      {"report", "moved", "-o", "moved.html"},
+      {"bake", "moved", "-o", "moved.vdb"},
+      {"accuracy", "moved", "--field", "femur", "--voxel", "3", "--points", "100"},
+      {"touch", "moved", "--press", "34,-7,30", "--normal", "1,0,0", "--record", "moved.npy",
+       "--image", "touch.png"},
+      {"replay", "moved.npy"}};
+  for (const std::vector<std::string>& arguments : verbs) {
+    const CommandResult result = runPalpate(arguments, elsewhere.path());
+    EXPECT_EQ(result.exit_code, 0) << arguments[0] << ": " << result.err << result.out;
+  }
+  // A bundle is its own scene: packing it again is not for a scene that has lost its scan.
+  EXPECT_EQ(pack(elsewhere, {"moved", "-o", "again"}).exit_code, 3);
+}
+
+TEST(PackedScenes, TakeMeshesGridsTablesAndScansOfMaterialsAlong) {
+  const TempFolder folder;
+  const vdb::test::Limb limb;
+  fs::create_directories(folder.path("in/deep"));
+  (void)vdb::test::writeNrrd(limb.scan(vdb::test::obliqueAxes(Vec3(2.0), 0.3)), folder,
+                             "in/ct.nrrd");
+  (void)vdb::test::writeNifti(limb.labels(vdb::test::obliqueAxes(Vec3(1.5))), folder,
+                              "in/deep/limb.nii.gz");
+  (void)folder.file("in/deep/names.csv", "value,name\n1,femur\n2,muscle\n3,fat\n");
+  const std::string octahedron =
+      "v 3 0 0\nv -3 0 0\nv 0 3 0\nv 0 -3 0\nv 0 0 3\nv 0 0 -3\n"
+      "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
+  (void)folder.file("stone.obj", octahedron);
+  (void)folder.file("in/stone.obj", octahedron);  // of the same name
+  (void)folder.file("ball.yaml", kContainer);
+  (void)run(folder, {"bake", "ball.yaml", "-o", "ball.vdb", "--voxel", "2", "--json"});
+  (void)folder.file("all.yaml", R"(palpate: 1
+length: mm
+images:
+  seg: {file: in/deep/limb.nii.gz, names: 'in/deep/names.csv'}   # labels
+  ct: {file: "in/ct.nrrd"}
+materials:
+  flesh: {stiffness: {image: ct, transfer: [[-100, 100 N/m], [1000, 900 N/m]]}}
+  plain: {stiffness: 500 N/m}
+layers:
+  - {name: skin, threshold: {image: ct, above: -500}, wall: flesh}
+  - {name: bone, labels: {image: seg, match: [femur]}, wall: plain}
+  - {name: one, inside: {transform: {field: {mesh: {file: stone.obj, voxel: 0.5}}, translate: [60, 0, 0]}}, wall: plain}
+  - {name: two, inside: {transform: {field: {mesh: {file: in/stone.obj}}, translate: [80, 0, 0]}}, wall: plain}
+  - {name: three, inside: {transform: {field: {grid: {file: ball.vdb}}, translate: [200, 0, 0]}}, wall: plain}
+ports:
+  - {name: in, between: [outside, skin], opens_at: 0.5 N}
+)");
+  const Felt before = feltIn(folder, "all.yaml", "a.csv");
+  ASSERT_GT(before.ticks.size(), 100U) << before.result.err << before.result.out;
+  const CommandResult packed = pack(folder, {"all.yaml", "-o", "all"});
+  ASSERT_EQ(packed.exit_code, 0) << packed.err << packed.out;
+  EXPECT_NE(packed.out.find("ct.nrrd: copied, as a material reads it"), std::string::npos);
+  EXPECT_NE(packed.out.find("limb.nii.gz: not in it"), std::string::npos);
+  EXPECT_NE(textOf(folder.path("all/scene.yaml")).find("# labels"), std::string::npos);
+  const TempFolder elsewhere;
+  fs::rename(folder.path("all"), elsewhere.path("all"));
+  for (const char* gone : {"in", "stone.obj", "ball.vdb"}) fs::remove_all(folder.path(gone));
+  const Felt after = feltIn(elsewhere, "all", "a.csv");
+  ASSERT_EQ(after.result.exit_code, 0) << after.result.err << after.result.out;
+  EXPECT_EQ(after.ticks, before.ticks);
+}
+
+TEST(PackedScenes, SayWhatTheyDoNotHold) {
+  const TempFolder folder;
+  importLimb(folder, 2.5);
+  ASSERT_EQ(pack(folder, {"limb.yaml", "-o", "limb"}).exit_code, 0);
+  fs::remove(folder.path("limb.nii.gz"));
+  // A layer that was not packed.
+  std::string text = textOf(folder.path("limb/scene.yaml"));
+  const std::size_t layers = text.find("\nlayers:");
+  ASSERT_NE(layers, std::string::npos);
+  const std::size_t image = text.find("labels: {image: ", layers);
+  const std::string name = text.substr(image + 16, text.find(',', image) - image - 16);
+  (void)folder.file("limb/scene.yaml", text + "\n");
+  text.insert(text.find('\n', layers + 1),
+              "\n  - {name: more, labels: {image: " + name + ", match: [2, 3]}}");
+  (void)folder.file("limb/edited.yaml", text);
+  const CommandResult edited = runPalpate({"explain", "limb/edited.yaml"}, folder.path());
+  EXPECT_EQ(edited.exit_code, 3) << edited.err << edited.out;
+  EXPECT_NE(edited.err.find("not in the bundle"), std::string::npos) << edited.err;
+  // The picture of a scan that is elsewhere.
+  const CommandResult drawn =
+      runPalpate({"render", "limb", "-o", "a.png", "--image", name}, folder.path());
+  EXPECT_EQ(drawn.exit_code, 3) << drawn.err;
+  // A damaged grid cannot be made again, and is not felt.
+  for (const std::string& file : filesIn(folder.path("limb/grids"))) {
+    if (!file.ends_with(".vdb")) continue;
+    std::string bytes = textOf(folder.path("limb/grids/" + file));
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    (void)folder.file("limb/grids/" + file, bytes);
+  }
+  EXPECT_EQ(runPalpate({"explain", "limb"}, folder.path()).exit_code, 3);
+}
+
+TEST(PackedScenes, ReplaceNothingButBundlesAndLeaveNothingHalfWritten) {
+  const TempFolder folder;
+  importLimb(folder, 2.5);
+  fs::create_directory(folder.path("photos"));
+  (void)folder.file("photos/cat.jpg", "cat");
+  (void)folder.file("a.file", "text");
+  for (const char* taken : {"photos", "a.file", "photos/"}) {
+    EXPECT_EQ(pack(folder, {"limb.yaml", "-o", taken}).exit_code, 1) << taken;
+    EXPECT_EQ(pack(folder, {"limb.yaml", "-o", taken, "--force"}).exit_code, 1) << taken;
+  }
+  EXPECT_EQ(textOf(folder.path("photos/cat.jpg")), "cat");
+  EXPECT_EQ(pack(folder, {"limb.yaml", "-o", "no/such/folder"}).exit_code, 1);
+  EXPECT_EQ(pack(folder, {"limb.yaml"}).exit_code, 2);
+  EXPECT_EQ(pack(folder, {"limb.nii.gz", "-o", "out"}).exit_code, 2);
+  (void)folder.file("broken.yaml", "palpate: 1\nlength: mm\nlayers:\n  - {name: a}\n");
+  EXPECT_EQ(pack(folder, {"broken.yaml", "-o", "out"}).exit_code, 3);
+  const std::vector<std::string> before = filesIn(folder.path());
+  const TempFolder large;
+  importLimb(large, 0.5);
+  const std::vector<std::string> there = filesIn(large.path());
+  (void)runInterrupted({"pack", "limb.yaml", "-o", "out"}, large.path());
+  EXPECT_EQ(filesIn(large.path()), there) << "nothing is left of what failed";
+
+  ASSERT_EQ(pack(folder, {"limb.yaml", "-o", "out"}).exit_code, 0);
+  EXPECT_EQ(pack(folder, {"limb.yaml", "-o", "out"}).exit_code, 1);
+  (void)folder.file("out/old", "of the bundle before");
+  ASSERT_EQ(pack(folder, {"limb.yaml", "-o", "out/", "--force"}).exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder.path("out/old")));
+  EXPECT_EQ(filesIn(folder.path()).size(), before.size() + 1);
+}
+
+}  // namespace
+}  // namespace palpate::testing

@@ -1,0 +1,23 @@
+#pragma once
+/// What makes a folder a bundle of `palpate pack`.
+
+#include <string>
+
+#include "pack/pack_options.h"
+
+namespace palpate::tools {
+
+inline constexpr const char* kBundleScene = "scene.yaml";
+inline constexpr const char* kBundleAbout = "pack.json";
+inline constexpr const char* kBundleGrids = "grids";
+inline constexpr const char* kBundleFiles = "files";
+
+[[nodiscard]] bool isBundle(const std::string& folder);
+
+/// Where the grids of a bundle's scene are; empty for any other scene.
+[[nodiscard]] std::string bundleGridsOf(const std::string& scene_file);
+
+/// Wherever a verb takes a scene, the folder of a bundle stands for the scene in it.
+void openBundles(AnyOptions& options);
+
+}  // namespace palpate::tools

@@ -1,0 +1,309 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "cache_folder.h"
+#include "input_kind.h"
+#include "loaded_scene.h"
+#include "pack/bundle.h"
+#include "pack/pack_scene.h"
+#include "pack/packed_scene.h"
+#include "palpate/devices/record.h"
+#include "palpate/vdb/kept_grids.h"
+#include "palpate/vdb/text.h"
+#include "palpate/version.h"
+#include "text.h"
+
+namespace palpate::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error packError(std::string code, std::string message, std::string hint, std::string file) {
+  return Error(ErrorKind::kOperation,
+               {std::move(code), std::move(message), std::move(hint), std::move(file)});
+}
+
+/// A folder beside the one that is wanted; gone again unless it was put in place.
+class NewFolder {
+ public:
+  NewFolder(std::string wanted, bool force) : wanted_(std::move(wanted)) {
+    while (wanted_.size() > 1 && wanted_.back() == '/') wanted_.pop_back();
+    std::error_code failed;
+    if (fs::exists(fs::symlink_status(wanted_, failed))) {
+      if (!force) {
+        throw packError("file.exists", "it exists already", "--force replaces a bundle", wanted_);
+      }
+      if (!isBundle(wanted_) || fs::is_symlink(fs::symlink_status(wanted_, failed))) {
+        throw packError("file.exists", "it exists already and is not a bundle",
+                        "name another folder: only bundles are replaced", wanted_);
+      }
+    }
+    path_ = wanted_ + ".XXXXXX";
+    if (mkdtemp(path_.data()) == nullptr) {
+      const std::string why = strerror(errno);
+      path_.clear();
+      throw packError("file.write", "no folder can be made there: " + why, "", wanted_);
+    }
+    const mode_t mask = umask(0);
+    umask(mask);
+    static_cast<void>(!chmod(path_.c_str(), 0777U & ~mask));
+  }
+  ~NewFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+
+  [[nodiscard]] fs::path path() const { return path_; }
+  [[nodiscard]] const std::string& wanted() const noexcept { return wanted_; }
+
+  void putInPlace() {
+    std::error_code failed;
+    std::string old;
+    if (fs::exists(wanted_, failed)) {
+      old = path_ + ".old";
+      fs::rename(wanted_, old, failed);
+    }
+    if (!failed) fs::rename(path_, wanted_, failed);
+    if (failed) {
+      std::error_code ignored;
+      if (!old.empty()) fs::rename(old, wanted_, ignored);
+      throw packError("file.write", "it cannot be put in place: " + failed.message(), "", wanted_);
+    }
+    path_.clear();
+    if (!old.empty()) fs::remove_all(old, failed);
+  }
+
+ private:
+  std::string wanted_;
+  std::string path_;
+};
+
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw packError("file.write", "writing failed", "", file.string());
+}
+
+std::string hashOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::vector<char> buffer(std::size_t{1} << 20U);
+  std::uint64_t hash = devices::checksum({});
+  while (in) {
+    checkStop();
+    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    hash = devices::checksum({buffer.data(), static_cast<std::size_t>(in.gcount())}, hash);
+  }
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "fnv1a64:%016llx", static_cast<unsigned long long>(hash));
+  return text.data();
+}
+
+/// The files of a scene, copied or stood for, under names within the bundle.
+class Files {
+ public:
+  Files(const LoadedScene& scene, const std::string& scene_file, const Node& root,
+        const fs::path& bundle)
+      : scene_(scene), from_(fs::path(scene_file).parent_path()), root_(root), bundle_(bundle) {}
+
+  std::string name(Named what, const std::string& text, const std::string& image) {
+    const fs::path file = from_ / text;
+    if (what == Named::kFile) {
+      std::string& known = copied_[file.lexically_normal().string()];
+      if (known.empty()) known = copy(file, "", "file");
+      return known;
+    }
+    std::string& known = scans_[{image, file.lexically_normal().string()}];
+    if (known.empty()) {
+      known = isReadByMaterials(root_, image) ? copyScan(file, image)
+                                              : standIn(file, image, what == Named::kScan);
+    }
+    return known;
+  }
+
+  [[nodiscard]] const Json& json() const noexcept { return json_; }
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+
+ private:
+  void tell(const char* role, const fs::path& file, const std::string& now) {
+    json_.push_back({{"is", role},
+                     {"name", file.filename().string()},
+                     {"in_bundle", now.empty() ? Json() : Json(now)},
+                     {"bytes", fs::file_size(file)},
+                     {"hash", hashOf(file)}});
+  }
+
+  /// In a folder of the bundle's files; under another name if that is taken.
+  std::string copy(const fs::path& file, const std::string& folder, const char* role) {
+    const fs::path to = bundle_ / kBundleFiles / folder;
+    fs::create_directories(to);
+    fs::path name = file.filename();
+    for (int n = 2; fs::exists(to / name); ++n) {
+      name = std::to_string(n) + "_" + file.filename().string();
+    }
+    std::error_code failed;
+    fs::copy_file(file, to / name, failed);
+    if (failed) {
+      throw packError("pack.copy", "it cannot be copied into the bundle: " + failed.message(), "",
+                      file.string());
+    }
+    std::string now = (fs::path(kBundleFiles) / folder / name).lexically_normal().string();
+    tell(role, file, now);
+    return now;
+  }
+
+  [[nodiscard]] const SceneImage& imageOf(const std::string& name) const {
+    for (const SceneImage& image : scene_.images()) {
+      if (image.name == name) return image;
+    }
+    throw inputError("pack.image", "there is no image '" + name + "'");
+  }
+
+  /// All its files together, called as they are: headers name others.
+  std::string copyScan(const fs::path& file, const std::string& name) {
+    const SceneImage& image = imageOf(name);
+    const std::string folder = "scan_" + std::to_string(scan_folders_.size() + 1);
+    const auto [known, is_new] = scan_folders_.try_emplace(name, folder);
+    const bool is_folder = fs::is_directory(file);
+    if (is_new) {
+      std::set<std::string> taken;
+      for (const std::string& each : vdb::imageFiles(image.file, image.options)) {
+        const fs::path one(each);
+        const bool is_beside = fs::equivalent(one.parent_path().empty() ? "." : one.parent_path(),
+                                              is_folder                    ? file
+                                              : file.parent_path().empty() ? fs::path(".")
+                                                                           : file.parent_path());
+        if (!is_beside || !taken.insert(one.filename().string()).second) {
+          throw inputError("pack.layout",
+                           "a material reads this scan, whose files lie in several folders",
+                           "put them into one folder", each);
+        }
+        static_cast<void>(copy(one, known->second, "scan, which a material reads"));
+      }
+      text_ += "  " + file.filename().string() + ": copied, as a material reads it\n";
+    }
+    const fs::path at = fs::path(kBundleFiles) / known->second;
+    return is_folder ? at.string() : (at / file.filename()).string();
+  }
+
+  std::string standIn(const fs::path& file, const std::string& name, bool is_first) {
+    const SceneImage& image = imageOf(name);
+    std::string& known = stand_ins_[name];
+    if (known.empty()) {
+      fs::create_directories(bundle_ / kBundleFiles);
+      known =
+          (fs::path(kBundleFiles) / ("scan_" + std::to_string(stand_ins_.size()) + ".scan.yaml"))
+              .string();
+      write(bundle_ / known, vdb::scanStandIn(image.file, image.options));
+      for (const std::string& each : vdb::imageFiles(image.file, image.options)) {
+        tell("scan", each, "");
+      }
+    }
+    if (is_first) text_ += "  " + file.filename().string() + ": not in it; its layers' grids are\n";
+    return known;
+  }
+
+  const LoadedScene& scene_;
+  fs::path from_;
+  const Node& root_;
+  const fs::path bundle_;
+  std::map<std::string, std::string> copied_;
+  std::map<std::pair<std::string, std::string>, std::string> scans_;
+  std::map<std::string, std::string> scan_folders_;
+  std::map<std::string, std::string> stand_ins_;
+  Json json_ = Json::array();
+  std::string text_;
+};
+
+std::size_t gridsIn(const fs::path& folder) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".vdb") ++count;
+  }
+  return count;
+}
+
+/// Opens the bundle as if it were somewhere else: every grid in it must be found by its scene.
+void check(const fs::path& bundle) {
+  Console silent(true);  // what there is to say was said
+  keepNothing();
+  const LoadedScene scene((bundle / kBundleScene).string(), silent);
+  static_cast<void>(scene.compile(Purpose::kShow));
+  std::size_t found = 0;
+  for (const vdb::GridRecord& grid : scene.grids()) found += vdb::wasKept(grid.info) ? 1U : 0U;
+  if (found >= gridsIn(bundle / kBundleGrids)) return;
+  throw packError("pack.check", "the scene of the bundle does not find all of its grids",
+                  "a file of the scene may have changed meanwhile: try again", bundle.string());
+}
+
+}  // namespace
+
+Report run(const PackOptions& options, const GeneralOptions& general, Console& console) try {
+  if (inputKind(options.scene) != InputKind::kScene) {
+    throw Error(ErrorKind::kUsage,
+                {"usage.pack", "only scenes can be packed",
+                 "palpate touch --write-scene makes a scene of it", options.scene});
+  }
+  if (!bundleGridsOf(options.scene).empty()) {
+    throw inputError("pack.bundle", "this is in a bundle already", "copy its folder",
+                     options.scene);
+  }
+  NewFolder folder(options.output, general.force);
+  const fs::path bundle = folder.path();
+  const fs::path grids = bundle / kBundleGrids;
+  fs::create_directory(grids);
+
+  fillBundle(grids.string());
+  LoadedScene loaded(options.scene, console);
+  fillBundle({});
+  // Where layers are is asked before they are made, to leave some out.
+  for (const LayerDescription& layer : loaded.description().layers) {
+    if (layer.inside) static_cast<void>(layer.inside->bounds(console.progress()));
+  }
+  static_cast<void>(loaded.compile(Purpose::kShow));
+  const auto document = readDocument(options.scene);
+  Files files(loaded, options.scene, document->root, bundle);
+  write(bundle / kBundleScene,
+        packedText(*document, [&](Named what, const std::string& name, const std::string& image) {
+          return files.name(what, name, image);
+        }));
+  Report report;
+  report.json = {{"schema", "palpate.pack/1"},
+                 {"made_by", "palpate " PALPATE_VERSION_STRING},
+                 {"scene", fs::path(options.scene).filename().string()},
+                 {"scene_hash", hashOf(options.scene)},
+                 {"files", files.json()},
+                 {"grids", loaded.gridsJson()}};
+  write(bundle / kBundleAbout,
+        report.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  check(bundle);
+  checkStop();
+  std::uintmax_t bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(bundle)) {
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  }
+  const std::size_t count = gridsIn(grids);
+  folder.putInPlace();
+  report.json["output"] = folder.wanted();
+  report.json["bytes"] = bytes;
+  report.text = files.text() + "Wrote " + folder.wanted() + ": " + std::to_string(count) +
+                (count == 1 ? " grid" : " grids") + ", " + formatBytes(bytes) + "\n";
+  return report;
+} catch (const fs::filesystem_error& failed) {
+  throw packError("file.write", "the bundle cannot be written: " + failed.code().message(), "",
+                  failed.path1().string());
+}
+
+}  // namespace palpate::tools

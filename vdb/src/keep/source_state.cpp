@@ -1,0 +1,39 @@
+#include "keep/source_state.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+
+#include "keep/content_key.h"
+#include "palpate/vdb/text.h"
+
+namespace palpate::vdb {
+
+SourceState::SourceState(const std::vector<std::string>& files, ContentKey& key) {
+  is_known_ = !files.empty();
+  key.add(files.size());
+  for (const std::string& path : files) {
+    files_.push_back(look(path));  // before it is read, so that nothing written meanwhile is missed
+    if (files.size() > 1) key.add(fileName(path));
+    is_known_ = is_known_ && key.addFile(path);
+  }
+}
+
+SourceState::File SourceState::look(const std::string& path) {
+  File file{path};
+  struct stat about {};
+  if (stat(path.c_str(), &about) != 0) return file;
+  file.device = about.st_dev;
+  file.node = about.st_ino;
+  file.bytes = about.st_size;
+  file.seconds = about.st_mtim.tv_sec;
+  file.nanoseconds = about.st_mtim.tv_nsec;
+  return file;
+}
+
+bool SourceState::isUnchanged() const {
+  return is_known_ && std::all_of(files_.begin(), files_.end(),
+                                  [](const File& file) { return file == look(file.path); });
+}
+
+}  // namespace palpate::vdb

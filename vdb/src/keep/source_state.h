@@ -1,0 +1,39 @@
+#pragma once
+/// Files that something is made of, as they were when it was begun.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace palpate::vdb {
+
+class ContentKey;
+
+class SourceState {
+ public:
+  SourceState() = default;
+  /// Adds to `key` the bytes of the files, and their names within their folders where there are several: they may mean
+  /// something. isKnown() is false if one cannot be read.
+  SourceState(const std::vector<std::string>& files, ContentKey& key);
+
+  [[nodiscard]] bool isKnown() const noexcept { return is_known_; }
+  /// Whether no file was written to since: what was made of them is of the bytes that were looked at.
+  [[nodiscard]] bool isUnchanged() const;
+
+ private:
+  struct File {
+    std::string path;
+    std::uint64_t device = 0;
+    std::uint64_t node = 0;
+    std::int64_t bytes = 0;
+    std::int64_t seconds = 0;
+    std::int64_t nanoseconds = 0;
+    bool operator==(const File&) const = default;
+  };
+  [[nodiscard]] static File look(const std::string& path);
+
+  std::vector<File> files_;
+  bool is_known_ = false;
+};
+
+}  // namespace palpate::vdb
