@@ -223,7 +223,7 @@ _palpate() {
       esac
       ;;
     render)
-      options='-o --output --size --plane --cut --trace --image --json --quiet --no-cache --force -h --help'
+      options='-o --output --size --plane --cut --trace --image --iso --forces --view --around --opacity --slice --turn --replay --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -232,6 +232,14 @@ _palpate() {
         --cut) words=NONE ;;
         --trace) words=FILES ;;
         --image) words=FILES ;;
+        --iso) words=NONE ;;
+        --forces) words=NONE ;;
+        --view) words=NONE ;;
+        --around) words=NONE ;;
+        --opacity) words=NONE ;;
+        --slice) words=NONE ;;
+        --turn) words=NONE ;;
+        --replay) words=NONE ;;
       esac
       ;;
     report)
