@@ -71,6 +71,8 @@ INSTANTIATE_TEST_SUITE_P(
         marked("NullValue", scene("@fields: null\n"), "scene.empty", "'fields'", "remove it"),
         marked("NoSpaceBehindColon", scene("start: {@region:outside}\n"), "scene.unknown_key",
                "'region:outside'", "space behind"),
+        marked("UnknownKeyWithoutValue", scene("@layerz:\n"), "scene.unknown_key", "'layerz'",
+               "'layers'"),
         marked("Renderer", scene("renderer: @papper\n"), "scene.choice", "'papper'", "'paper'"),
         marked("Memory", scene("memory: @forget\n"), "scene.choice", "'forget'", "clear, keep"),
         marked("MemoryAsBoolean", scene("memory: @true\n"), "scene.choice", "'true'",
