@@ -6,8 +6,8 @@
 namespace palpate::testing {
 namespace {
 
-const std::vector<std::string> kVerbs = {"touch", "import",  "bake",   "info",   "check",
-                                         "query", "explain", "render", "report", "bench", "pack"};
+const std::vector<std::string> kVerbs = {"touch",   "import", "bake",   "info",  "check", "query",
+                                         "explain", "render", "report", "bench", "pack"};
 
 TEST(Usage, HelpListsEveryVerbWithAnExample) {
   const CommandResult result = runPalpate({"--help"});
