@@ -206,24 +206,10 @@ void ProxySolver::poseAll(const Vec3& wish) noexcept {
   if (problems_ > 1) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < problems_; ++i) {
-      const double more = problem_[i].gain - problem_[best].gain;
-      // Held by the same walls they are as good: the one with more room, so that no order of walls decides, as that of the
-      // faces of a box, which is another where the scene is turned.
-      if (more > 0.0 || (more == 0.0 && roomOf(problem_[i]) > roomOf(problem_[best]))) best = i;
+      if (problem_[i].gain > problem_[best].gain) best = i;
     }
     if (best != 0) std::swap(problem_[0], problem_[best]);
   }
-}
-
-/// [m] How far the end of the step stays from the nearest wall of the cell that does not hold it.
-double ProxySolver::roomOf(const CellProblem& problem) noexcept {
-  double room = kInfinity;
-  for (std::size_t i = 0; i < problem.planes; ++i) {
-    if (problem.holds(i)) continue;
-    const Plane& plane = problem.plane[i];
-    room = std::min(room, plane.gap + glm::dot(plane.normal, problem.solution.step));
-  }
-  return room;
 }
 
 void ProxySolver::pose(const NearCell& cell, CellProblem& out) const noexcept {

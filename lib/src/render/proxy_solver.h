@@ -149,6 +149,8 @@ class ProxySolver {
   [[nodiscard]] bool lookWithin(double radius) noexcept;
   void poseAll(const Vec3& wish) noexcept;
   [[nodiscard]] static double roomOf(const CellProblem& problem) noexcept;
+  [[nodiscard]] static bool areHeldAlike(const CellProblem& a, const CellProblem& b) noexcept;
+  [[nodiscard]] std::size_t roomiest() const noexcept;
   void pose(const NearCell& cell, CellProblem& out) const noexcept;
   void solve(CellProblem& problem, const Vec3& wish) const noexcept;
   [[nodiscard]] double noiseOf(const CellProblem& problem) const noexcept;

@@ -47,6 +47,40 @@ double ProxySolver::noiseOf(const CellProblem& problem) const noexcept {
   return out;
 }
 
+/// [m] How far the end of the step stays from the nearest wall of the cell that does not hold it.
+double ProxySolver::roomOf(const CellProblem& problem) noexcept {
+  double room = kInfinity;
+  for (std::size_t i = 0; i < problem.planes; ++i) {
+    if (problem.holds(i)) continue;
+    const Plane& plane = problem.plane[i];
+    room = std::min(room, plane.gap + glm::dot(plane.normal, problem.solution.step));
+  }
+  return room;
+}
+
+/// Whether the same walls hold the solutions of both.
+bool ProxySolver::areHeldAlike(const CellProblem& a, const CellProblem& b) noexcept {
+  if (a.solution.count != b.solution.count) return false;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(a.solution.count); ++k) {
+    const Source& of_a = a.source[static_cast<std::size_t>(a.solution.plane[k])];
+    const Source& of_b = b.source[static_cast<std::size_t>(b.solution.plane[k])];
+    if (of_a.near != of_b.near || of_a.inside != of_b.inside || of_a.cut != of_b.cut) return false;
+  }
+  return true;
+}
+
+/// Of the cells whose solutions the same walls hold as that of the first one, that with most room: so no order of walls
+/// chooses the way, as that of the faces of a box, which is another where the scene is turned.
+std::size_t ProxySolver::roomiest() const noexcept {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < problems_; ++i) {
+    if (areHeldAlike(problem_[i], problem_[0]) && roomOf(problem_[i]) > roomOf(problem_[best])) {
+      best = i;
+    }
+  }
+  return best;
+}
+
 /// A step in one of the cells that hold the proxy; kRests if there is none to make in any.
 ProxySolver::Try ProxySolver::moveOn() noexcept {
   double longest = 0.0;
@@ -72,7 +106,9 @@ ProxySolver::Try ProxySolver::moveOn() noexcept {
     }
     poseAll(aim_);
     rests = true;
-    for (std::size_t i = 0; i < problems_; ++i) {
+    const std::size_t first = roomiest();
+    for (std::size_t n = 0; n < problems_; ++n) {
+      const std::size_t i = n == 0 ? first : n == first ? 0 : n;
       const Try outcome = tryCell(problem_[i], ball);
       if (outcome == Try::kMoved) return outcome;
       rests = rests && outcome == Try::kRests;
