@@ -191,10 +191,62 @@ TEST(PackedScenes, ReplaceNothingButBundlesAndLeaveNothingHalfWritten) {
 
   ASSERT_EQ(pack(folder, {"limb.yaml", "-o", "out"}).exit_code, 0);
   EXPECT_EQ(pack(folder, {"limb.yaml", "-o", "out"}).exit_code, 1);
-  (void)folder.file("out/old", "of the bundle before");
+  for (const char* own : {"out/notes.txt", "out/files/mine.yaml", "out/grids/more/copy.vdb"}) {
+    fs::create_directories(fs::path(folder.path(own)).parent_path());
+    (void)folder.file(own, "of the user");
+    const CommandResult refused = pack(folder, {"limb.yaml", "-o", "out", "--force"});
+    EXPECT_EQ(refused.exit_code, 1) << own;
+    EXPECT_NE(refused.err.find("would be lost"), std::string::npos) << refused.err;
+    EXPECT_EQ(textOf(folder.path(own)), "of the user");
+    fs::remove_all(folder.path(own));
+  }
+  fs::remove(folder.path("out/grids/more"));
   ASSERT_EQ(pack(folder, {"limb.yaml", "-o", "out/", "--force"}).exit_code, 0);
-  EXPECT_FALSE(fs::exists(folder.path("out/old")));
   EXPECT_EQ(filesIn(folder.path()).size(), before.size() + 1);
+}
+
+TEST(PackedScenes, AreRefusedByTheFileThatIsDamagedOrGone) {
+  const TempFolder folder;
+  (void)folder.file("stone.obj",
+                    "v 3 0 0\nv -3 0 0\nv 0 3 0\nv 0 -3 0\nv 0 0 3\nv 0 0 -3\n"
+                    "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n");
+  (void)folder.file("stone.yaml", R"(palpate: 1
+length: mm
+materials: {hard: {stiffness: 500 N/m}}
+layers: [{name: stone, inside: {mesh: {file: stone.obj, voxel: 0.5}}, wall: hard}]
+)");
+  ASSERT_EQ(pack(folder, {"stone.yaml", "-o", "whole"}).exit_code, 0);
+  const auto touched = [&](const char* bundle) {
+    return runPalpate({"touch", bundle, "--press", "3,0,0", "--normal", "1,0,0"}, folder.path());
+  };
+  ASSERT_EQ(touched("whole").exit_code, 0);
+  int tried = 0;
+  for (const std::string& name : allFiles(folder.path("whole"))) {
+    if (name == "scene.yaml") continue;  // may be edited
+    for (const bool is_gone : {false, true}) {
+      if (is_gone && name == "pack.json") continue;  // without it the folder is not a bundle
+      fs::remove_all(folder.path("hurt"));
+      fs::copy(folder.path("whole"), folder.path("hurt"), fs::copy_options::recursive);
+      const fs::path hurt = fs::path(folder.path("hurt")) / name;
+      std::string bytes = textOf(hurt.string());
+      if (is_gone) {
+        fs::remove(hurt);
+      } else {
+        // In the middle of a file; of the list, the first hash.
+        const std::size_t at = name == "pack.json"
+                                   ? bytes.find("fnv1a64:", bytes.find("contents")) + 9
+                                   : bytes.size() / 2;
+        bytes[at] = bytes[at] == '1' ? '2' : '1';
+        std::ofstream(hurt, std::ios::binary) << bytes;
+      }
+      const CommandResult result = touched("hurt");
+      EXPECT_EQ(result.exit_code, 3) << name << result.err;
+      EXPECT_NE(result.err.find(is_gone ? "is gone" : "not as it was packed"), std::string::npos)
+          << name << result.err;
+      ++tried;
+    }
+  }
+  EXPECT_GE(tried, 5) << "a mesh, a grid with what is known of it, the list";
 }
 
 }  // namespace

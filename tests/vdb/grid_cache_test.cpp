@@ -106,6 +106,23 @@ TEST(SourceStates, TellWhatWasWrittenMeanwhile) {
   EXPECT_FALSE(SourceState({}, key).isKnown());
 }
 
+TEST(SourceStates, TellThatAnotherFileStoodInThePlaceMeanwhile) {
+  const palpate::testing::TempFolder folder;
+  const std::string file = folder.file("a", "1");
+  const std::string other = folder.file("b", "2");
+  fs::last_write_time(other, fs::last_write_time(file));
+  ContentKey key;
+  const SourceState state({file}, key);
+  // The clock of the file system ticks each 4 ms, or 10.
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  fs::rename(file, folder.path("away"));
+  fs::rename(other, file);
+  EXPECT_FALSE(state.isUnchanged());
+  fs::rename(file, other);
+  fs::rename(folder.path("away"), file);
+  EXPECT_FALSE(state.isUnchanged()) << "what was read meanwhile may be the other's";
+}
+
 TEST(MakingLocks, BelongToOneAtATime) {
   const palpate::testing::TempFolder folder;
   {

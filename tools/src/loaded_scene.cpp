@@ -1,10 +1,12 @@
 #include "loaded_scene.h"
 
+#include <filesystem>
 #include <utility>
 
 #include "cache_folder.h"
 #include "json_parts.h"
 #include "pack/bundle.h"
+#include "pack/contents.h"
 #include "palpate/scene/scene_file.h"
 #include "palpate/vdb/kept_grids.h"
 #include "palpate/vdb/scan_surface.h"
@@ -31,6 +33,9 @@ LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_
   options.cache_folder = cacheFolder();
   vdb::BundleOptions bundle = bundleToFill();
   if (!bundle.fills) bundle.folder = bundleGridsOf(file);
+  if (!bundle.fills && !bundle.folder.empty()) {
+    checkContents(std::filesystem::path(bundle.folder).parent_path());
+  }
   vdb::registerKinds(registry, options, bundle);
 
   // Pictures want the scans themselves, so the entries are noted down on their way through.

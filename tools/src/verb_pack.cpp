@@ -15,9 +15,9 @@
 #include "input_kind.h"
 #include "loaded_scene.h"
 #include "pack/bundle.h"
+#include "pack/contents.h"
 #include "pack/pack_scene.h"
 #include "pack/packed_scene.h"
-#include "palpate/devices/record.h"
 #include "palpate/vdb/kept_grids.h"
 #include "palpate/vdb/text.h"
 #include "palpate/version.h"
@@ -46,6 +46,12 @@ class NewFolder {
       if (!isBundle(wanted_) || fs::is_symlink(fs::symlink_status(wanted_, failed))) {
         throw packError("file.exists", "it exists already and is not a bundle",
                         "name another folder: only bundles are replaced", wanted_);
+      }
+      if (const auto foreign = foreignIn(wanted_)) {
+        throw packError(
+            "file.exists",
+            "the bundle there holds '" + *foreign + "', which is not of it and would be lost",
+            "move that out, or name another folder", wanted_);
       }
     }
     path_ = wanted_ + ".XXXXXX";
@@ -95,20 +101,6 @@ void write(const fs::path& file, const std::string& text) {
   out << text;
   out.close();
   if (!out) throw packError("file.write", "writing failed", "", file.string());
-}
-
-std::string hashOf(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::vector<char> buffer(std::size_t{1} << 20U);
-  std::uint64_t hash = devices::checksum({});
-  while (in) {
-    checkStop();
-    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    hash = devices::checksum({buffer.data(), static_cast<std::size_t>(in.gcount())}, hash);
-  }
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "fnv1a64:%016llx", static_cast<unsigned long long>(hash));
-  return text.data();
 }
 
 /// The files of a scene, copied or stood for, under names within the bundle.
@@ -285,7 +277,8 @@ Report run(const PackOptions& options, const GeneralOptions& general, Console& c
                  {"scene", fs::path(options.scene).filename().string()},
                  {"scene_hash", hashOf(options.scene)},
                  {"files", files.json()},
-                 {"grids", loaded.gridsJson()}};
+                 {"grids", loaded.gridsJson()},
+                 {"contents", contentsOf(bundle)}};
   write(bundle / kBundleAbout,
         report.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   check(bundle);

@@ -29,11 +29,12 @@ ImageFile::ImageFile(std::string path, std::string content_key, std::shared_ptr<
 
 const Image& ImageFile::image() {
   if (!has_voxels_) {
-    throw inputError("pack.no_scan",
-                     "this stands for a scan that is not in the bundle: only layers that were "
-                     "packed can be made",
-                     "leave the layer as it was when the scene was packed, or name the scan",
-                     path_);
+    throw inputError(
+        "pack.no_scan",
+        "this stands for a scan that is not in the bundle: only layers that were "
+        "packed can be made",
+        "leave the layer, and those that share its image, as they were packed, or name the scan",
+        path_);
   }
   if (!image_) image_ = readImage(path_, options_);
   notes_->add(path_, image_->notes);

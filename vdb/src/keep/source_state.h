@@ -1,6 +1,7 @@
 #pragma once
 /// Files that something is made of, as they were when it was begun.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@ class SourceState {
   SourceState(const std::vector<std::string>& files, ContentKey& key);
 
   [[nodiscard]] bool isKnown() const noexcept { return is_known_; }
-  /// Whether no file was written to since: what was made of them is of the bytes that were looked at.
+  /// Whether no file was written to or replaced since: what was made of them is of the bytes that were looked at.
   [[nodiscard]] bool isUnchanged() const;
 
  private:
@@ -26,8 +27,7 @@ class SourceState {
     std::uint64_t device = 0;
     std::uint64_t node = 0;
     std::int64_t bytes = 0;
-    std::int64_t seconds = 0;
-    std::int64_t nanoseconds = 0;
+    std::array<std::int64_t, 4> times{};  ///< [s, ns] of its content, and of its node
     bool operator==(const File&) const = default;
   };
   [[nodiscard]] static File look(const std::string& path);
