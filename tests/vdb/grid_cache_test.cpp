@@ -76,17 +76,17 @@ TEST(ContentKeys, OfAFileAreOfAllItsBytes) {
   const palpate::testing::TempFolder folder;
   std::string bytes((std::size_t{1} << 20U) + 77, 'a');  // more than is read at a time
   const std::string path = folder.file("some", bytes);
-  const auto keyOfFile = [&] {
+  const auto key_of_file = [&] {
     ContentKey key;
     EXPECT_TRUE(key.addFile(path));
     return key.text();
   };
-  const std::string whole = keyOfFile();
+  const std::string whole = key_of_file();
   for (const std::size_t at : {std::size_t{0}, std::size_t{1} << 20U, bytes.size() - 1}) {
     std::string other = bytes;
     other[at] = 'b';
     (void)folder.file("some", other);
-    EXPECT_NE(keyOfFile(), whole) << at;
+    EXPECT_NE(key_of_file(), whole) << at;
   }
   ContentKey key;
   EXPECT_FALSE(key.addFile(folder.path("nothing")));

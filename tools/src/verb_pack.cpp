@@ -106,9 +106,11 @@ void write(const fs::path& file, const std::string& text) {
 /// The files of a scene, copied or stood for, under names within the bundle.
 class Files {
  public:
-  Files(const LoadedScene& scene, const std::string& scene_file, const Node& root,
-        const fs::path& bundle)
-      : scene_(scene), from_(fs::path(scene_file).parent_path()), root_(root), bundle_(bundle) {}
+  Files(const LoadedScene& scene, const std::string& scene_file, const Node& root, fs::path bundle)
+      : scene_(scene),
+        from_(fs::path(scene_file).parent_path()),
+        root_(root),
+        bundle_(std::move(bundle)) {}
 
   std::string name(Named what, const std::string& text, const std::string& image) {
     const fs::path file = from_ / text;
