@@ -250,7 +250,9 @@ void Session::offer(ScenePtr scene, const RendererSettings& settings) {
   const auto give = [&](std::optional<std::uint64_t> entries) {
     const std::uint64_t number = ++shared.offered;
     shared.known.push_back({number, scene, kind});
-    shared.swap.offer({scene, std::move(renderer), number, entries});
+    if (const auto forgotten = shared.swap.offer({scene, std::move(renderer), number, entries})) {
+      std::erase_if(shared.known, [&](const Shared::Known& k) { return k.number == *forgotten; });
+    }
     return number;
   };
   for (int i = 0; i < kMostOffers; ++i) {

@@ -15,10 +15,13 @@
 #include "keep/making_lock.h"
 #include "keep/seal.h"
 #include "keep/source_state.h"
+#include "mesh/gltf_guard.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/certificate.h"
+#include "scene_image.h"
 #include "support/temp_file.h"
+#include "vdb/made_scans.h"
 
 namespace palpate::vdb {
 namespace {
@@ -121,6 +124,45 @@ TEST(SourceStates, TellThatAnotherFileStoodInThePlaceMeanwhile) {
   fs::rename(file, other);
   fs::rename(folder.path("away"), file);
   EXPECT_FALSE(state.isUnchanged()) << "what was read meanwhile may be the other's";
+}
+
+TEST(SourceStates, TellThatAFileCameIntoAFolderOrLeftIt) {
+  const palpate::testing::TempFolder folder;
+  fs::create_directory(folder.path("masks"));
+  const std::string file = folder.file("masks/a", "1");
+  ContentKey key;
+  const SourceState state({file}, key, {folder.path("masks")});
+  EXPECT_TRUE(state.isUnchanged());
+  (void)folder.file("masks/b", "2");
+  EXPECT_FALSE(state.isUnchanged());
+}
+
+TEST(ImageFiles, WhoseVoxelsAreOfAnotherFileHaveNoKey) {
+  const palpate::testing::TempFolder folder;
+  const auto notes = std::make_shared<Notes>([](const std::string&) {});
+  const test::Limb limb;
+  const Image labels = limb.labels(test::obliqueAxes(Vec3(3.0)));
+  const std::string path = test::writeNifti(labels, folder, "labels.nii");
+  ImageFile same(path, ImageOptions{}, notes);
+  (void)same.image();
+  EXPECT_TRUE(same.state().isKnown());
+  ImageFile other(path, ImageOptions{}, notes);
+  (void)other.image();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  (void)test::writeNifti(limb.labels(test::obliqueAxes(Vec3(2.5))), folder, "labels.nii");
+  EXPECT_FALSE(other.state().isKnown());
+}
+
+TEST(GltfGuard, KnowsWhoseBuffersLieElsewhere) {
+  const palpate::testing::TempFolder folder;
+  const auto names = [&](const char* name, const std::string& text) {
+    return namesOtherFiles(folder.file(name, text));
+  };
+  EXPECT_TRUE(names("a.gltf", R"({"buffers": [{"byteLength": 4, "uri" : "a.bin"}]})"));
+  EXPECT_TRUE(names("b.GLTF", R"({"buffers":[{"uri":"data:,AA"},{"uri":"b.bin"}]})"));
+  EXPECT_FALSE(
+      names("c.gltf", R"({"buffers":[{"uri":"data:application/octet-stream;base64,A"}]})"));
+  EXPECT_FALSE(names("d.obj", R"("uri": "d.bin")"));
 }
 
 TEST(MakingLocks, BelongToOneAtATime) {

@@ -67,14 +67,15 @@ class KeptGrids : public ::testing::Test {
   }
 
   /// Makes every layer of a scene.
-  Loaded load(const std::string& layers, const std::string& cache = "cache") {
+  Loaded load(const std::string& layers, const std::string& cache = "cache",
+              const BundleOptions& bundle = {}) {
     Loaded out;
     RegisterOptions options;
     options.cache_folder = cache.empty() ? "" : folder_.path(cache);
     options.on_grid = [&](const GridRecord& record) { out.grids.push_back(record); };
     options.on_note = [&](const std::string& note) { out.notes.push_back(note); };
     SceneRegistry registry;
-    registerKinds(registry, options);
+    registerKinds(registry, options, bundle);
     const SceneDescription scene =
         readScene(folder_.file("scene.yaml", "palpate: 1\nlength: mm\n" + layers), registry);
     for (const LayerDescription& layer : scene.layers) {
@@ -364,18 +365,7 @@ TEST_F(KeptGrids, ABundleStandsForItsScans) {
   const std::string bundle = folder_.path("bundle");
   fs::create_directory(bundle);
   const auto load_from = [&](const std::string& layers, bool fills) {
-    Loaded out;
-    RegisterOptions options;
-    options.on_grid = [&](const GridRecord& record) { out.grids.push_back(record); };
-    SceneRegistry registry;
-    registerKinds(registry, options, BundleOptions{bundle, fills});
-    const SceneDescription scene =
-        readScene(folder_.file("scene.yaml", "palpate: 1\nlength: mm\n" + layers), registry);
-    for (const LayerDescription& layer : scene.layers) {
-      out.boxes.push_back(layer.inside->bounds().value());
-    }
-    for (const LayerDescription& layer : scene.layers) out.fields.push_back(layer.inside->get());
-    return out;
+    return load(layers, "", BundleOptions{bundle, fills});
   };
   const Loaded first = load_from(kLayers, true);
   EXPECT_EQ(first.kept(), 0U);

@@ -31,7 +31,7 @@ std::string widenedNote(double half_width) {
          shortNumber(kCubicHalfWidth, 6) + ", with distances to the closest points of the surface";
 }
 
-/// A grid, and what is told of it.
+/// A grid, and the facts and notes about it.
 struct Made {
   LevelSet grid;
   KeptFacts facts;

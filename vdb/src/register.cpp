@@ -7,6 +7,7 @@
 
 #include "bake/solid.h"
 #include "lazy_field.h"
+#include "mesh/gltf_guard.h"
 #include "palpate/core/text.h"
 #include "palpate/scene/units.h"
 #include "palpate/scene/vocabulary.h"
@@ -155,8 +156,8 @@ FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
   // As it was read, whatever files it is made of and whatever unit they have.
   source.content = [path, read, bake, sampler](const Progress& progress) {
     GridContent content;
-    ContentKey ignored;
-    content.files = SourceState({path}, ignored);
+    // Nobody sees when the files change that a .gltf names.
+    if (!namesOtherFiles(path)) content.files = SourceState({path});
     const Mesh mesh = read(progress);
     content.grid = beginKey("mesh");
     content.grid.add(mesh.vertices.size())

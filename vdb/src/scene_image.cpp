@@ -1,7 +1,9 @@
 #include "scene_image.h"
 
 #include <algorithm>
+#include <filesystem>
 
+#include "image/readers.h"
 #include "keep/content_key.h"
 #include "palpate/vdb/kept_grids.h"
 #include "palpate/vdb/text.h"
@@ -23,8 +25,24 @@ ImageFile::ImageFile(std::string path, std::string content_key, std::shared_ptr<
       notes_(std::move(notes)),
       key_(std::move(content_key)),
       has_voxels_(false) {
-  ContentKey ignored;
-  state_ = SourceState({path_}, ignored);
+  state_ = SourceState({path_});
+}
+
+std::vector<std::string> ImageFile::folders() const {
+  std::vector<std::string> all = options_.with;
+  all.push_back(path_);
+  std::erase_if(all, [](const std::string& each) { return !std::filesystem::is_directory(each); });
+  if (std::filesystem::is_regular_file(path_) && isDicomFile(path_)) {
+    const std::string series = std::filesystem::path(path_).parent_path().string();
+    all.push_back(series.empty() ? "." : series);
+  }
+  return all;
+}
+
+std::vector<std::string> ImageFile::foldersAndFiles() const {
+  std::vector<std::string> all = folders();
+  for (const std::string& file : imageFiles(path_, options_)) all.push_back(file);
+  return all;
 }
 
 const Image& ImageFile::image() {
@@ -36,7 +54,10 @@ const Image& ImageFile::image() {
         "leave the layer, and those that share its image, as they were packed, or name the scan",
         path_);
   }
-  if (!image_) image_ = readImage(path_, options_);
+  if (!image_) {
+    decoded_ = SourceState(foldersAndFiles());
+    image_ = readImage(path_, options_);
+  }
   notes_->add(path_, image_->notes);
   return *image_;
 }
@@ -44,7 +65,9 @@ const Image& ImageFile::image() {
 const std::string& ImageFile::contentKey() {
   if (key_.empty()) {
     ContentKey key;
-    state_ = SourceState(imageFiles(path_, options_), key);
+    state_ = SourceState(imageFiles(path_, options_), key, folders());
+    // The voxels that are known may be those of another file.
+    if (image_ && !state_.isOfTheSame(decoded_)) state_ = {};
     key.add(static_cast<int>(options_.affine)).add(static_cast<int>(options_.space));
     key.add(options_.frame.value_or(-1)).add(options_.series);
     // Their order is that of the labels.
@@ -153,7 +176,7 @@ std::shared_ptr<SceneImage> SceneImages::read(const MapReader& reader) {
     record.is_labels = record.is_labels || stand_in.is_labels;
     made->labels = std::move(stand_in.labels);
     made->names_path = path;
-  } else
+  } else {
     try {
       ImageInfo info = readImageInfo(path, options);
       notes_->add(path, info.notes);
@@ -165,6 +188,7 @@ std::shared_ptr<SceneImage> SceneImages::read(const MapReader& reader) {
     } catch (const Error& error) {
       throw atKey(reader, "file", error);
     }
+  }
   std::weak_ptr<ImageFile>& known = files_[keyOf(path, options)];
   made->file = known.lock();
   if (!made->file) {

@@ -64,6 +64,10 @@ class ImageFile {
   [[nodiscard]] const SourceState& state();
 
  private:
+  /// In which a file more or less makes another image.
+  [[nodiscard]] std::vector<std::string> folders() const;
+  [[nodiscard]] std::vector<std::string> foldersAndFiles() const;
+
   std::string path_;
   ImageOptions options_;
   std::shared_ptr<Notes> notes_;
@@ -71,6 +75,7 @@ class ImageFile {
   std::optional<std::map<float, Box3>> boxes_;
   std::string key_;
   SourceState state_;
+  SourceState decoded_;  ///< what `image_` was read from, as it was before that
   bool has_voxels_ = true;
 };
 

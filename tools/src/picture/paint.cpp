@@ -9,7 +9,8 @@ namespace palpate::tools {
 namespace {
 
 constexpr std::size_t kMostSampled = 200'000;
-constexpr double kOutsideGray = 0.5;  // how much of the scan shows where there is no layer
+/// Share of the scan's gray values that shows through outside all layers.
+constexpr double kOutsideGray = 0.5;
 
 }  // namespace
 

@@ -111,7 +111,7 @@ class LiveFeed final : public devices::RecordSink {
 
   mutable std::mutex mutex_;
   FeedView view_;
-  std::array<LastTick, kLast> last_{};  ///< the newest in the place of the oldest
+  std::array<LastTick, kLast> last_{};  ///< a ring: the newest tick replaces the oldest
   PassedCounts passed_;
   std::deque<SeenEntry> entries_;
   std::uint64_t entry_count_ = 0;

@@ -9,7 +9,13 @@
 
 namespace palpate::vdb {
 
-SourceState::SourceState(const std::vector<std::string>& files, ContentKey& key) {
+SourceState::SourceState(const std::vector<std::string>& files) : is_known_(!files.empty()) {
+  for (const std::string& path : files) files_.push_back(look(path));
+}
+
+SourceState::SourceState(const std::vector<std::string>& files, ContentKey& key,
+                         const std::vector<std::string>& folders)
+    : SourceState(folders) {
   is_known_ = !files.empty();
   key.add(files.size());
   for (const std::string& path : files) {

@@ -4,8 +4,10 @@
 #include <cstring>
 #include <string_view>
 
+#include "mesh/builder.h"
 #include "palpate/core/error.h"
 #include "palpate/core/stop.h"
+#include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
 namespace {
@@ -83,6 +85,17 @@ void checkGltf(const std::string& bytes, const std::string& extension, const std
     // The next part begins at a multiple of four bytes.
     at = (at + kChunkHead + length + 3) / 4 * 4;
   }
+}
+
+bool namesOtherFiles(const std::string& path) {
+  if (!hasExtension(path, ".gltf") && !hasExtension(path, ".glb")) return false;
+  const std::string bytes = readBytes(path);
+  constexpr std::string_view kKey = "\"uri\"";
+  for (std::size_t at = 0; (at = bytes.find(kKey, at)) != std::string::npos; at += kKey.size()) {
+    const std::size_t value = bytes.find_first_not_of(" \t\r\n:", at + kKey.size());
+    if (value != std::string::npos && bytes.compare(value, 6, "\"data:") != 0) return true;
+  }
+  return false;
 }
 
 }  // namespace palpate::vdb

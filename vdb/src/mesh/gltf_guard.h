@@ -10,4 +10,7 @@ namespace palpate::vdb {
 /// @throws Error (kInput): mesh.truncated, mesh.unreadable.
 void checkGltf(const std::string& bytes, const std::string& extension, const std::string& path);
 
+/// Whether the file at `path` is glTF whose buffers lie in files of their own.
+[[nodiscard]] bool namesOtherFiles(const std::string& path);
+
 }  // namespace palpate::vdb

@@ -31,11 +31,14 @@ class SceneSwap {
   SceneSwap(const SceneSwap&) = delete;
   SceneSwap& operator=(const SceneSwap&) = delete;
 
-  /// May allocate and free; frees what the servo thread has put away.
-  void offer(OfferedScene offered) {
+  /// May allocate and free; frees what the servo thread has put away. The number of the scene that was offered before and
+  /// will never be taken, if there is one.
+  std::optional<std::uint64_t> offer(OfferedScene offered) {
     auto made = std::make_unique<OfferedScene>(std::move(offered));
     delete retired_.exchange(nullptr, std::memory_order_acq_rel);
-    delete offered_.exchange(made.release(), std::memory_order_acq_rel);
+    const std::unique_ptr<OfferedScene> forgotten(
+        offered_.exchange(made.release(), std::memory_order_acq_rel));
+    return forgotten ? std::optional(forgotten->number) : std::nullopt;
   }
 
   enum class Taken { kNothing, kOld, kNew };
