@@ -1,4 +1,3 @@
-
 #include "input_kind.h"
 #include "json_parts.h"
 #include "loaded_scene.h"
