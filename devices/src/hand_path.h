@@ -11,7 +11,7 @@
 
 namespace palpate::devices {
 
-/// Straight from row to row. Asked at times that do not fall; then real-time safe.
+/// Straight from row to row. Real-time safe, as long as the times that it is asked for do not fall.
 class HandPath {
  public:
   explicit HandPath(Path rows) : rows_(std::move(rows)) {}

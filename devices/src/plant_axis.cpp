@@ -51,7 +51,7 @@ PlantState after(const PlantStep& step, const PlantState& state, double length) 
 }
 
 /// Whether a function with these values and slopes at the ends of `length` comes below zero: at the
-/// end, or, where it turns, maybe before. It is taken to turn no more than once.
+/// end, or before it where the slope changes its sign. Assumes that this happens at most once.
 bool mayCross(double after, double before, double slope_before, double slope_after,
               double length) noexcept {
   if (after < 0.0) return true;

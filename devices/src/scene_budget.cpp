@@ -36,8 +36,8 @@ double rateFor(const LoopModel& loop, const WallModel& wall) {
     faster.period = 1.0 / rate;
     return fits(faster, wall);
   };
-  // Not every rate above one that does: a lighter damping of the device per tick can hold less
-  // drag.
+  // A rate above one that suffices need not suffice: the device damps less in each tick, and may
+  // hold less drag.
   const double now = 1.0 / loop.period;
   double last = now;
   for (double rate = now; rate < kHighestRate;) {

@@ -84,7 +84,7 @@ Vec3 VirtualCoupling::push(const ToolForce& answer) noexcept {
     way += (std::max(0.0, there + inverse * left) - (there + give * left)) * n;
     answer_.force += (answer.damping * glm::dot(n, asked_.velocity)) * n;
   }
-  // What is kept is the springs' own force.
+  // The springs' own force is kept; drag is added for this answer only.
   answer_.force += answer.drag * asked_.velocity;
   tool_ = free_ + way;
   return slope_ * way;

@@ -71,7 +71,7 @@ HeadCt readHeadCt() {
   }
   const std::string voxels = fileOf(tar, "matrix.dat");
   ct.values.resize(voxels.size() / 2);
-  std::memcpy(ct.values.data(), voxels.data(), voxels.size());  // little endian, as we are
+  std::memcpy(ct.values.data(), voxels.data(), voxels.size());  // the file is little endian, and so are the machines this runs on
   if (ct.values.size() != ct.index(0, 0, ct.size[2])) throw std::runtime_error("not all voxels");
 
   // A mask has one more voxel along each axis, in front, for the program's own use.

@@ -85,7 +85,7 @@ TEST(MadeShell, OfOneToTwoVoxelsHasTwoWallsAndNoHole) {
     }
     std::printf("  %.1f mm: inner wall %+.2f mm off, outer %+.2f, %.2f at most\n", thickness, inner,
                 outer, worst);
-    // A wall passes between centers of voxels, some half a diagonal of which is known, and keeps their volume.
+    // A wall passes between voxel centers, so that it is known to about half a diagonal; the volume is kept.
     EXPECT_NEAR(inner, 0.0, 0.15);
     EXPECT_NEAR(outer, 0.0, 0.15);
     EXPECT_LT(worst, 1.0);

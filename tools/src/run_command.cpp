@@ -54,7 +54,7 @@ bool print(const std::string& text) {
 }
 
 bool print(const Json& json) {
-  // Names out of files need not be UTF-8; what is not is replaced, never thrown about.
+  // Names out of files need not be UTF-8; such bytes are replaced; no exception is thrown for them.
   return print(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

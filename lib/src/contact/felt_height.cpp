@@ -9,7 +9,7 @@ namespace {
 
 /// Nodes over the radius: the spline of each reaches one and a half of them.
 constexpr double kSpacing = 2.0 / 3.0;
-/// In nodes: what is further from the surface than any node that matters counts as that far.
+/// [nodes] Distances are cut here: no node that matters is farther from the surface.
 constexpr double kFarthest = 3.0;
 
 struct Weights {

@@ -11,11 +11,11 @@ namespace {
 constexpr int kMostLooks = 40;
 constexpr double kLeastEigenvalue = 0.02;
 constexpr double kLargestTurn = 0.5;  // [rad]
-/// Of the way to the target, and of the coordinates: a step as short as this is none.
+/// Of the way to the target, and of the coordinates: a step this short does not count as one.
 constexpr double kSettled = 1e-12;
 constexpr double kRounding = 1e-14;
-/// Of the way: as short a step ends it where steps no longer get shorter. A wall whose shape is given about a far place
-/// rounds more than the coordinates do.
+/// A share of the way: where steps no longer get shorter, one as short as this is the last. A wall whose shape is
+/// given about a far place rounds more than the coordinates do.
 constexpr double kSettledAtLast = 1e-8;
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 namespace palpate::fields {
 
-/// One number for each point of a batch. Where it is not a plain square (isPlainSquare()), the loop was not
-/// made for the point.
+/// One number for each point of a batch. Loops over these are right only for plain squares
+/// (isPlainSquare()); the others are left to the caller.
 struct alignas(64) Squares : std::array<double, PointBatch::kCount> {};
 
 /// Whether all are plain, and not close to leaving the range of double together. Two at a time, which

@@ -112,7 +112,7 @@ std::span<const NearCell> NearCells::find(RegionId region, const Signs& signs,
   } else {
     evaluate(partition_.layerSides(region, true), signs, near, cells_);
   }
-  // A later layer takes what is its own. One that no near leaf belongs to is where it is: not here.
+  // A later layer takes its own part of the region. A layer without a near leaf does not reach this place.
   later_.clear();
   for (const NearSide& side : near) {
     for (const RegionId other : partition_.regionsOf(side.leaf)) {

@@ -28,7 +28,7 @@ void CellWalker::gather(LeafId leaf) noexcept {
     }
     const Vec3 theirs =
         side(other) * unitOr(leaves_[other].field->sample(here_.point).gradient, Vec3(0.0));
-    // Going against `normal`, the other changes side too where its own side lies the same way.
+    // The walker goes against `normal`: it changes side of the other leaf too if that faces the same way.
     if (glm::dot(normal, theirs) > 1.0 - limits::kParallel) crossing_[crossing_count_++] = other;
   }
 }

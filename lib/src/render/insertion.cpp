@@ -139,7 +139,7 @@ Insertion::ShaftForce Insertion::shaftForce(const Contents& contents, const Tick
 
 void Insertion::cross(const Contents& contents, RegionEntry& step) noexcept {
   region_ = step.to;
-  // Begun inside, it is not known where the shaft came in: out of there it is free.
+  // A needle that began inside came in nobody knows where: once it leaves, its shaft is free.
   if (count_ == 1 && layers_[0].from == layers_[0].region) letGo(contents.sameWay());
   for (std::size_t i = count_; i > 0; --i) {
     const Layer& layer = layers_[i - 1];

@@ -73,7 +73,7 @@ class PaperRenderer final : public RendererBase {
   std::array<RegionEntry, TickResult::kMaxEvents> entries_{};
   std::size_t entry_count_ = 0;
   Signs now_;     ///< the cell of the HIP
-  Signs cell_;    ///< the cell before it, and behind the ports passed since
+  Signs cell_;    ///< the cell of the last tick, beyond the ports passed since
   Signs turned_;  ///< the same behind a port that is looked at
   Signs scratch_;
   LeafId turned_leaf_ = 0;  ///< one of those that differ in turned_

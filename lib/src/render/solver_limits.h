@@ -132,7 +132,7 @@ inline constexpr double kSharp = 0.01;
 inline constexpr double kEven = 1e-9;
 /// Where no step along the walls is kept, these shares of one are tried that may end in free space, over a sharp edge.
 inline constexpr double kFlights[] = {1.0, 0.1, 0.01};
-/// ... at once, where so many steps were cut short for ending in free space.
+/// It flies at once after this many steps that were cut short because they ended in free space.
 inline constexpr int kHops = 2;
 /// What a refused step is shortened to, in turn; then the ball shrinks by kShrink, kShrinks times.
 inline constexpr double kShorter[] = {0.5, 0.125, 0.02};

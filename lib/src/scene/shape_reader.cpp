@@ -16,7 +16,7 @@ namespace {
 using Make = std::function<FieldPtr()>;
 using Reader = const MapReader&;
 
-/// `make` of these values, when it is called for.
+/// Calls `make` with these values when the shape is asked for.
 template <typename Function, typename... Values>
 Make later(Function make, Values... values) {
   return [=] { return make(values...); };

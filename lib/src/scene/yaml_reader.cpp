@@ -67,7 +67,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   [[nodiscard]] bool hasDocument() const noexcept { return has_document_; }
 
-  // What yaml-cpp could not read, told with what is known to cause it.
+  // An error for what yaml-cpp could not read; it names the likely cause where one is known.
   [[nodiscard]] Error syntax(const YAML::Exception& exception) const {
     const char at = characterAt(exception.mark);
     const char before =

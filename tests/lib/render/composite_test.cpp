@@ -140,8 +140,8 @@ TEST(Composite, AClosedWayOverTheLumpCostsAndGivesNothing) {
 }
 
 TEST(Composite, AcrossTheRimOfALumpLittleIsLeft) {
-  // Over the rim of a ball the ray grazes it, and the depths of its interfaces have no slope there: that part is
-  // not made up for. It is counted here.
+  // Over the rim of a ball the ray grazes it, and the depths of its interfaces have no slope there: nothing
+  // makes up for that part. This test counts it.
   const std::string layers = R"(layers:
   - {name: tissue, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: skin}
   - {name: lump, inside: {sphere: {center: [0, 0, -13], radius: 5}}, wall: knot}

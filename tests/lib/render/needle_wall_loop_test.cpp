@@ -80,7 +80,7 @@ ports: [{name: p, between: [outside, a]}]
     EXPECT_LE(hand.work() - work, held - hand.inTissue() + 1e-9) << "lap " << lap;
     EXPECT_LE(hand.work() + hand.inTissue(), 1e-9) << "lap " << lap;
   }
-  // Else nothing was looked at: 2.3e-7 J a lap, of 7.1e-5 J.
+  // The laps did press on the wall: 2.3e-7 J a lap, of 7.1e-5 J.
   EXPECT_EQ(giving, 7);
 }
 

@@ -31,7 +31,7 @@ std::vector<Vec3> timedPath(const std::vector<Stroke>& strokes, double band) {
   return path;
 }
 
-/// The field of a grid is timed and compared where these say.
+/// The places where the field of a grid is timed and compared.
 struct Places {
   PointSet near;
   std::vector<Stroke> strokes;

@@ -133,7 +133,7 @@ class Search {
     if (glm::length(out) > kHair) goDown(foot, -glm::normalize(out), triangles, places, true);
   }
 
-  /// To the wall opposite, and by what the grid has in the middle; whether there is one.
+  /// Looks down to the wall opposite, and at what the grid has half-way; false if there is no such wall.
   bool goDown(const Vec3& foot, const Vec3& in, std::span<const std::uint32_t> triangles,
               std::vector<Place>& places, bool from_edge = false) const {
     double thickness = kHeld;

@@ -179,7 +179,7 @@ class Widening {
         const Vec3 x = origin + voxel_size * vec(at);
         const Vec3 offset = closestPoint(spline, x, x + voxel_size * guess) / voxel_size;
         const double distance = glm::length(offset);
-        // No step that converges, or one to another part of the surface, says nothing new.
+        // A step that does not converge, or that leads to another part of the surface, adds nothing.
         if (!(std::abs(distance - glm::length(guess)) < kSamePlace)) continue;
         offsets.setValueOnly(voxel.pos(), toVdb(offset));
         leaf.setValueOnly(voxel.pos(), std::copysign(toUnits(distance), *voxel));

@@ -108,7 +108,7 @@ std::vector<GridCheck> checkVdb(const std::string& path, const std::string& name
     } catch (const Error& error) {
       check.refused = error.problem();
     }
-    if (!entry.has_tree) grid->newTree();  // no two grids' voxels in memory at a time
+    if (!entry.has_tree) grid->newTree();  // one grid's voxels in memory at a time
     checks.push_back(std::move(check));
   }
   report(progress, "check grids", 1.0);

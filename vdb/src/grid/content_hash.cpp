@@ -38,7 +38,7 @@ std::uint64_t hashOf(const Leaf& leaf) noexcept {
     for (openvdb::Index n = 0; n < 64; ++n) {
       const float value = values[64 * word + n];
       const bool is_on = (active >> n & 1U) != 0;
-      // Of what is not active only the side can be sampled.
+      // Only the side of an inactive voxel can be sampled.
       state = mixed(state, is_on ? std::bit_cast<std::uint32_t>(value)
                                  : static_cast<std::uint32_t>(value < 0.0F ? 1 : 2));
     }

@@ -176,7 +176,7 @@ Vec3 stepOf(const std::vector<Slice>& slices, const std::string& path) {
   return step;
 }
 
-/// What is worth telling of a series that is read.
+/// Adds notes on what a user should know of a series that was read.
 void tell(const std::vector<Slice>& slices, const Vec3& step, std::vector<std::string>& notes) {
   const Slice& first = slices.front();
   const Vec3 normal = glm::cross(first.along_row, first.along_column);

@@ -56,9 +56,10 @@ struct Band {
   }
 };
 
-/// From the voxel centers alone: a voxel whose nearest one on the other side is d away has a surface at
-/// most d away, and not much nearer than the step before it. Parts one voxel thin are held open.
-/// `spacing` of the voxels along each axis, in steps of the smallest.
+/// How far each voxel center may be from the surface, by the mask alone. Where the nearest voxel of the
+/// other side is d away, the surface is at most d away, and hardly nearer than the last voxel of the own
+/// side on the way there. Parts one voxel thin are held open.
+/// `spacing` of the voxels along each axis, in units of the smallest.
 [[nodiscard]] Band bandOf(const Mask& mask, const Vec3& spacing);
 
 }  // namespace palpate::vdb

@@ -128,7 +128,7 @@ class Survey {
 
   void addContacts(const LabelRuns& runs) {
     const auto& pieces = runs.pieces();
-    // Of small pieces the survey says what is around them.
+    // The survey says what lies around each small piece.
     std::vector<std::unordered_map<std::size_t, std::uint64_t>> around(pieces.size());
     runs.forEachContact([&](std::size_t a, std::size_t b, int axis, int faces) {
       Faces these{};

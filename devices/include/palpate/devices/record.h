@@ -31,7 +31,7 @@ struct RecordedTick {
   bool has_state = false;             ///< RecordSink::addState() has brought what was before it
 };
 
-/// Who uses the ticks: a file, a summary, a plot. Called in the recorder's thread only, where it may allocate, wait and throw:
+/// Who uses the ticks: a file, a summary, a plot. The recorder calls it in a thread of its own, where it may allocate, wait and throw:
 /// who throws gets no more of that record, the others do.
 class PALPATE_EXPORT RecordSink {
  public:

@@ -61,8 +61,9 @@ struct PALPATE_EXPORT Port {
                  ///< point touched; where it is 0, the lightest touch opens
   Parameter back;            ///< [N] the same for coming back
   RuptureRate rate;          ///< how both depend on the speed that the wall is pressed at
-  double hole_radius = 0.0;  ///< [m] of the hole that opening it by force leaves; 0: none is left
-  /// [N] in such a hole instead of opens_at and back, where these are more. A map holds at the point where the wall gave way
+  double hole_radius = 0.0;  ///< [m] of the hole that is left when force opens the port; 0: no hole
+  /// [N] opens the port within such a hole, in place of opens_at and back where these are larger. Of a map the
+  /// value counts where the wall gave way
   Parameter reopens_at;
   /// [m] Opened by force, it does so again only when the proxy has been this far from there, or the hand
   /// is this far beyond the wall; 0: at once.

@@ -64,7 +64,7 @@ struct RegionEntry {
 
 /// What one tick came to.
 struct TickResult {
-  /// Crossings that one tick can make: what would cross more often goes on in the next tick.
+  /// Crossings that one tick can make; any more are made in the next tick.
   static constexpr std::size_t kMaxEvents = 32;
   static_assert(kMaxEvents <= 255, "event_count counts them");
 

@@ -121,11 +121,11 @@ struct Hybrid {
   std::vector<HybridPart> parts;
 };
 
-/// Every part is baked in its own frame, only where the whole needs it, and once if it occurs twice. With
-/// kAuto, queries are timed for some milliseconds, so that a part on the brink may come out either
-/// way; the other two always decide alike.
-/// @throws Error as bake() does (a part that a grid cannot hold is none, but with kWhole); kInput if
-/// `field` is null or `tolerance` negative.
+/// Bakes every part in its own frame, only where the whole needs it, and once if it occurs twice.
+/// kAuto times queries for some milliseconds, so that a part for which both are about as fast may come
+/// out either way; the other two choices always decide alike.
+/// @throws Error as bake() does (but a part that a grid cannot hold stays analytic, unless the choice
+/// is kWhole); kInput if `field` is null or `tolerance` negative.
 [[nodiscard]] PALPATE_EXPORT Hybrid bakeHybrid(const FieldPtr& field, const HybridOptions& options,
                                                const Progress& progress = {});
 

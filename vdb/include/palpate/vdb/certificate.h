@@ -32,9 +32,10 @@ struct BandCertificate {
   std::string content;  ///< contentHash() of the grid that it is of
 };
 
-/// Least BandCertificate::within, in voxels. The proxy is on the surface to far less than that, and a search that comes from farther
-/// off goes on by the bound on the distance that points outside it have. A band of 6 voxels whose surface is smooth has
-/// 0.8 where it is oblique to all axes, and less by as much as slopes are steeper.
+/// [voxels] Least BandCertificate::within. The proxy rests on the surface to far less than that. A search
+/// from farther off goes by the bound on the distance that is known outside the band. A band of 6
+/// voxels about a smooth surface that is oblique to all axes has 0.8, and proportionally less where
+/// slopes are steeper.
 inline constexpr double kLeastWithin = 0.1;
 /// Most of BandCertificate::steepest. Voxels that differ by no more than the way between them give a cubic spline whose bound along
 /// one axis is at most 9 (3 for the differences of its coefficients, times the square root of 3 for each of the two other
