@@ -67,16 +67,7 @@ double parseDamping(std::string_view text, const char* what) {
 }
 
 double parseForceRate(std::string_view text, const char* what) {
-  text = trimmed(text);
-  if (const auto plain = parseNumber(text)) return *plain;
-  constexpr std::string_view kPerSecond = "/s";
-  if (text.ends_with(kPerSecond)) {
-    const Quantity force =
-        parseQuantity(text.substr(0, text.size() - kPerSecond.size()), Dimension::kForce);
-    if (force.status == Quantity::Status::kOk) return force.si;
-  }
-  throw usageError(what, "'" + std::string(text) + "' is not a number or a force per second",
-                   "a number means N/s; or write the unit: N/s (also mN/s, kN/s)");
+  return parseWithUnit(trimmed(text), Dimension::kForceRate, 1.0, "N/s", what);
 }
 
 double parseTime(std::string_view text, const char* what) {

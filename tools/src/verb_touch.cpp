@@ -113,6 +113,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   motion.end = options.seconds.value_or(kInfinity);
   if (!is_real) motion = makeMotion(options, loaded.unit());
   ForceLimits& limits = settings.limits;
+  limits = limits.over(scene->forceLimits());
   limits.period = options.device.name.empty() ? motion.period : 1.0 / options.rate;
   for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
     console.warn(gapText(gap, scene->lengthUnit(), scene->metresPerUnit()));

@@ -38,7 +38,7 @@ class RendererBase : public HapticRenderer {
   RendererBase(ScenePtr scene, RendererKind kind, const ForceLimits& limits)
       : scene_(std::move(scene)), contents_(*scene_), kind_(kind) {
     state_.kind = kind;
-    state_.guard = ForceGuard(limits);
+    state_.guard = ForceGuard(limits.over(scene_->forceLimits()));
     state_.last.region = scene_->startRegion();  // reported until the first good tick
   }
 

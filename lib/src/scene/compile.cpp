@@ -68,6 +68,7 @@ ScenePtr SceneCompiler::build() {
   scene_->start_ = start();
   scene_->touch_ = survey_.touch;
   scene_->keep_memory_ = description_.keep_memory;
+  scene_->force_ = description_.force;
   scene_->paper_ = description_.paper;
   markReachable();
   scene_->renderer_ = description_.renderer;

@@ -85,6 +85,18 @@ void FileLoader::readImages(const Node& images) {
   }
 }
 
+namespace {
+
+ForceRequest readForce(const MapReader& reader) {
+  ForceRequest force;
+  if (reader.has("max")) force.max = reader.value("max");
+  if (reader.has("slew")) force.slew = reader.value("slew");
+  if (reader.has("ramp")) force.ramp = reader.value("ramp");
+  return force;
+}
+
+}  // namespace
+
 SceneDescription FileLoader::read() {
   readVersion(document_.root);
   SceneDescription scene;
@@ -111,6 +123,7 @@ SceneDescription FileLoader::read() {
   if (top.has("ports")) regions.readPorts(top.maps("ports"));
   if (top.has("start")) regions.readStart(top.map("start"));
   if (top.has("device")) scene.device = readDevice(top.map("device"));
+  if (top.has("force")) scene.force = readForce(top.map("force"));
   if (top.has("paper")) scene.paper = readPaper(top.map("paper"));
   if (top.has("grids")) readGrids(top.map("grids"), registry_, scene);
   return scene;

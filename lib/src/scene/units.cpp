@@ -34,6 +34,8 @@ constexpr std::array kUnits = {
     Unit{"N/cm^2", Dimension::kStiffness2, 1e4}, Unit{"N.s/m^2", Dimension::kDamping2, 1.0},
     Unit{"Ns/m^2", Dimension::kDamping2, 1.0},   Unit{"N.s/mm^2", Dimension::kDamping2, 1e6},
     Unit{"kg", Dimension::kMass, 1.0},           Unit{"g", Dimension::kMass, 1e-3},
+    Unit{"N/s", Dimension::kForceRate, 1.0},     Unit{"mN/s", Dimension::kForceRate, 1e-3},
+    Unit{"kN/s", Dimension::kForceRate, 1e3},
 };
 
 bool isDigit(char c) noexcept { return c >= '0' && c <= '9'; }
@@ -122,6 +124,8 @@ std::string_view dimensionName(Dimension dimension) noexcept {
       return "a damping per length";
     case Dimension::kMass:
       return "a mass";
+    case Dimension::kForceRate:
+      return "a force per second";
   }
   return "a quantity";
 }
@@ -172,7 +176,7 @@ Quantity parseQuantity(std::string_view text, Dimension dimension) noexcept {
 
 std::string_view unitHelp(Dimension dimension) noexcept {
   static const std::array texts = [] {
-    std::array<std::string, static_cast<std::size_t>(Dimension::kMass) + 1> all;
+    std::array<std::string, static_cast<std::size_t>(Dimension::kForceRate) + 1> all;
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = helpFor(static_cast<Dimension>(i));
     return all;
   }();

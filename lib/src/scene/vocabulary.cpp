@@ -41,6 +41,7 @@ constexpr Type kTypes[] = {
     {"stiffness_per_length", Form::kQuantity, Dimension::kStiffness2, false, 0.0},
     {"damping_per_length", Form::kQuantity, Dimension::kDamping2, false, 0.0},
     {"mass", Form::kQuantity, Dimension::kMass, false, 0.0},
+    {"force_rate", Form::kQuantity, Dimension::kForceRate, false, 0.0},
     {"field", Form::kField},
     {"any", Form::kAny},
 };

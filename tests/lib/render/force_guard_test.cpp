@@ -7,6 +7,9 @@
 #include <limits>
 #include <random>
 
+#include "palpate/fields/primitives.h"
+#include "palpate/render/haptic_renderer.h"
+
 namespace palpate {
 namespace {
 
@@ -115,6 +118,38 @@ TEST(ForceGuard, ALimitThatIsNoNumberOrBelowZeroPermitsNothing) {
   }
   ForceGuard ramped({.ramp = kNan});
   for (int i = 0; i < 100; ++i) EXPECT_EQ(ramped.apply(push(3.0), kTick), push(0.0));
+}
+
+/// A ball of 10 mm and 1000 N/m around the origin, felt 4 mm deep.
+double forceIn(const ForceRequest& of_scene, const ForceLimits& asked, RendererKind kind) {
+  SceneDescription description;
+  LayerDescription ball;
+  ball.name = "ball";
+  ball.inside = std::make_shared<FieldSource>(sphere({0.0, 0.0, 0.0}, 0.01));
+  description.layers = {ball};
+  description.force = of_scene;
+  const std::unique_ptr<HapticRenderer> renderer =
+      makeRenderer(compile(description), {.kind = kind, .limits = asked});
+  double force = 0.0;
+  for (int tick = 0; tick <= 50; ++tick) {
+    const double x = 0.011 - 1e-4 * tick;
+    force = glm::length(renderer->update({.position = {x, 0.0, 0.0}, .dt = kTick}).force);
+  }
+  return force;
+}
+
+TEST(ForceGuard, TheLimitsOfASceneHoldWhereTheSettingsGiveNone) {
+  for (const RendererKind kind : {RendererKind::kConstraint, RendererKind::kPaper}) {
+    EXPECT_NEAR(forceIn({}, {}, kind), 4.0, 1e-9);
+    EXPECT_NEAR(forceIn({.max = 1.5}, {}, kind), 1.5, 1e-12);
+    EXPECT_NEAR(forceIn({.max = 1.5}, {.max_force = 2.5}, kind), 2.5, 1e-12);
+    // 40 ticks in contact, of 0.01 N each.
+    EXPECT_NEAR(forceIn({.slew = 10.0}, {}, kind), 0.4, 1e-9);
+    EXPECT_NEAR(forceIn({.slew = 10.0}, {.max_growth = 20.0}, kind), 0.8, 1e-9);
+    // Half of the ramp is over after 50 of 100 ticks.
+    EXPECT_NEAR(forceIn({.ramp = 0.1}, {}, kind), 2.0, 1e-9);
+    EXPECT_NEAR(forceIn({.ramp = 0.1}, {.ramp = 0.2}, kind), 1.0, 1e-9);
+  }
 }
 
 /// What the limits mean, written down in another way: a force is sent if it is not longer than the

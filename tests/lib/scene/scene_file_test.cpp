@@ -279,6 +279,13 @@ TEST(SceneFile, MaterialsInTheirUnits) {
   EXPECT_EQ(scene.materials[2].flow, Vec3(0.01, -0.01, 0.5));
 }
 
+TEST(SceneFile, LimitsOfTheForceInTheirUnits) {
+  const ForceRequest all = sceneWith("force: {max: 2500 mN, slew: 2 kN/s, ramp: 200 ms}\n").force;
+  EXPECT_EQ(all, (ForceRequest{2.5, 2000.0, 0.2}));
+  EXPECT_EQ(sceneWith("force: {slew: 500 mN/s}\n").force, (ForceRequest{{}, 0.5, {}}));
+  EXPECT_EQ(sceneWith("").force, ForceRequest{});
+}
+
 TEST(SceneFile, WallsPortsAndTheRest) {
   const SceneDescription scene = sceneWith(
       "renderer: paper\n"

@@ -95,6 +95,7 @@ const std::vector<Probe>& probes() {
       {"passivity", "device: {passivity: {mass: 1 kg, @}}\n"},
       {"coupling", "device: {coupling: {stiffness: 1 N/m, @}}\n"},
       {"paper", "paper: {alpha: 1, @}\n"},
+      {"force_limits", "force: {max: 1 N, @}\n"},
       {"passed_before", layers +
                             "ports:\n  - {name: q, between: [a, outside]}\n  - {name: p, between: "
                             "[a, outside], after: [{port: q, @}]}\n"},

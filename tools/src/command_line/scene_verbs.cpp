@@ -105,7 +105,7 @@ void defineTouch(CLI::App& app, Invocation& invocation) {
   add(app, g, "--coupling", "WHAT", o.coupling,
       "a spring and a damper between hand and tool: springs or any_scene (designed for --device), "
       "or STIFFNESS,DAMPING: 800 N/m,4 N.s/m");
-  g = "Limits of the force, in this order (default: none)";
+  g = "Limits of the force, in this order (default: as the scene's `force` says, or none)";
   add(app, g, "--max-force", "FORCE", o.max_force,
       "shorten longer forces to this, direction kept: 3 (N), 500mN");
   add(app, g, "--slew", "FORCE/s", o.slew,

@@ -81,7 +81,8 @@ void addValues(const Vocabulary& vocabulary, Json& definitions) {
                                         {"time", Dimension::kTime},
                                         {"stiffness_per_length", Dimension::kStiffness2},
                                         {"damping_per_length", Dimension::kDamping2},
-                                        {"mass", Dimension::kMass}}) {
+                                        {"mass", Dimension::kMass},
+                                        {"force_rate", Dimension::kForceRate}}) {
     definitions[name] = quantity(dimension, dimension == Dimension::kVelocity);
   }
   for (const KeyWords& value : vocabulary.values()) {

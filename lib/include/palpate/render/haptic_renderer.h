@@ -96,6 +96,15 @@ struct ForceLimits {
   /// [s] the nominal time from tick to tick. A longer one (a gap, a late tick) counts as this, so
   /// that what one tick may bring is max_growth * period at most, whatever the clock says.
   double period = 1e-3;
+
+  /// These, and those of a scene where these set no limit.
+  [[nodiscard]] ForceLimits over(const ForceRequest& scene) const noexcept {
+    ForceLimits out = *this;
+    if (out.max_force == kInfinity) out.max_force = scene.max.value_or(kInfinity);
+    if (out.max_growth == kInfinity) out.max_growth = scene.slew.value_or(kInfinity);
+    if (out.ramp == 0.0) out.ramp = scene.ramp.value_or(0.0);
+    return out;
+  }
 };
 
 /// What to feel in a region from now on, in the place of what the scene says, everywhere in it. What is

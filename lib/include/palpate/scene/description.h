@@ -79,6 +79,14 @@ struct DeviceMapping {
   }
 };
 
+/// Limits of the rendered force that the author of a scene asks for. What is not given is not limited.
+struct ForceRequest {
+  std::optional<double> max = {};   ///< [N] more than 0; longer forces are shortened to it
+  std::optional<double> slew = {};  ///< [N/s] more than 0; by how much the force may grow
+  std::optional<double> ramp = {};  ///< [s] more than 0; from zero to the full force
+  friend bool operator==(const ForceRequest&, const ForceRequest&) = default;
+};
+
 /// How the paper's algorithms nudge the contact point back onto the surface (its alpha term).
 enum class AlphaForm : std::uint8_t {
   kByMetric,  ///< kLength for distances (exact and bound fields), kNewton for implicit ones
@@ -272,6 +280,7 @@ struct SceneDescription {
   SourcePlace start_place = {};
   bool keep_memory = false;  ///< `memory: keep`: what was passed is never taken back nor cleared
   RendererKind renderer = RendererKind::kConstraint;
+  ForceRequest force = {};
   PaperParameters paper = {};
   DeviceMapping device = {};
 };

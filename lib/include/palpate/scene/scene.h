@@ -61,6 +61,8 @@ class PALPATE_EXPORT Scene {
   [[nodiscard]] RegionId startRegion() const noexcept { return start_; }
   [[nodiscard]] bool keepsMemory() const noexcept { return keep_memory_; }
   [[nodiscard]] RendererKind renderer() const noexcept { return renderer_; }
+  /// What the renderers' limits are where their settings give none.
+  [[nodiscard]] const ForceRequest& forceLimits() const noexcept { return force_; }
   /// For the paper's renderer.
   [[nodiscard]] const PaperParameters& paper() const noexcept { return paper_; }
   [[nodiscard]] const DeviceMapping& device() const noexcept { return device_; }
@@ -92,6 +94,7 @@ class PALPATE_EXPORT Scene {
   Box3 sheet_bounds_;            ///< [m]
   std::vector<bool> touch_;      ///< [a * regions + b], symmetric
   std::vector<Reach> reach_of_port_;
+  ForceRequest force_;
   PaperParameters paper_;
   std::vector<NamedField> fields_;
   RegionId start_ = kOutside;

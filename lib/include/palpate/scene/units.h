@@ -19,6 +19,7 @@ enum class Dimension {
   kStiffness2,  ///< N/m^2
   kDamping2,    ///< N.s/m^2
   kMass,        ///< kg
+  kForceRate,   ///< N/s
 };
 
 /// Meters in one `unit` ("mm", "cm", "m", "um", "in"); nothing if the unit is not known.
