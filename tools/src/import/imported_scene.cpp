@@ -96,6 +96,8 @@ class SceneWriter {
     }
     line("palpate: 1");
     line("length: mm");
+    // Deep in bone a wall asks for far more than any device has, and for more than a hand should get.
+    line("force: {max: 7.9 N, slew: 2000 N/s}  # the most that a Touch X exerts; 2 N more in a millisecond");
   }
 
   /// What was asked for where the scan leaves something open; images that are written here leave nothing open.
