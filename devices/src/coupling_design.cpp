@@ -21,7 +21,8 @@ void checkLoop(const LoopModel& loop) {
                "no coupling is stable with a device without damping: it takes no energy"});
 }
 
-/// [s/kg] How far the coupling is from what a device may meet, at the worst frequency; below 0: too stiff.
+/// [s/kg] How far the coupling is from what a device may meet, at the worst frequency; below 0: too
+/// stiff.
 double marginOf(const LoopModel& loop, double ticks, double stiffness, double damping) {
   constexpr int kSteps = 400;
   double least = kInfinity;

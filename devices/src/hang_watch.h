@@ -15,12 +15,13 @@ namespace palpate::devices {
   return now - beat >= longest;
 }
 
-/// While it lives, and while the last beat() is too old, cut()s the device again and again: a device may forget. One thread
-/// calls beat() and cuts().
+/// While it lives, and while the last beat() is too old, cut()s the device again and again: a
+/// device may forget. One thread calls beat() and cuts().
 class HangWatch {
  public:
-  /// `longest` [ns] between two beats; the largest number there is: no thread is started. The device must be open and stay
-  /// so. `above` is a real-time priority that the thread tries for, 0 for none: a loop that spins must not starve it.
+  /// `longest` [ns] between two beats; the largest number there is: no thread is started. The
+  /// device must be open and stay so. `above` is a real-time priority that the thread tries for, 0
+  /// for none: a loop that spins must not starve it.
   /// @throws Error (kOperation) if the thread cannot be started.
   HangWatch(Device& device, std::int64_t longest, int above);
   ~HangWatch();

@@ -10,13 +10,15 @@
 namespace palpate::devices {
 namespace {
 
-/// Between the ends of a diagonal step in space both of which are off by half an encoder step along each axis.
+/// Between the ends of a diagonal step in space both of which are off by half an encoder step along
+/// each axis.
 const double kEncoderDiagonal = std::sqrt(3.0);
 
 constexpr double kAtRest = 1e-6;  // [m/s]
 
-/// [-] Times mass / T: half of what a sampled and held damper on a mass is stable below. There, at z = exp(j a) of its
-/// characteristic equation z^(d+1) (z - 1) / (z + 1) = -alpha T / (2 m), is a = pi / (2 (d + 1)).
+/// [-] Times mass / T: half of what a sampled and held damper on a mass is stable below. There, at
+/// z = exp(j a) of its characteristic equation z^(d+1) (z - 1) / (z + 1) = -alpha T / (2 m), is a =
+/// pi / (2 (d + 1)).
 double halfOfStableDamping(int delay) { return std::tan(std::numbers::pi / (4.0 * (delay + 1))); }
 
 Error usageError(const char* name, const std::string& message) {
@@ -167,7 +169,8 @@ Vec3 PassivityController::bounded(const Vec3& force) const noexcept {
   const double size = std::sqrt(square);
   const double along = glm::dot(force, observer_.moved() + travel_ * observer_.held());
   const double reserve = std::max(0.0, observer_.reserve());
-  // What the force gives by the next tick at most. Most forces give no more than there is, and need no root.
+  // What the force gives by the next tick at most. Most forces give no more than there is, and need
+  // no root.
   if (along + margin_ * size + travel_ * square <= reserve) return force;
   const double ahead = along / size + margin_;
   const double root = std::sqrt(ahead * ahead + 4.0 * travel_ * reserve);

@@ -18,8 +18,9 @@ constexpr double kStill = 1e-12;
 constexpr double kLetsGo = 1e-12;
 /// In one call. Physics has a few; beyond that friction holds until the next call.
 constexpr int kMostEvents = 64;
-/// Between two events as many looks that halve a step lead to one. Where friction and force are equal but for rounding
-/// more of them lead nowhere: then each lets one halving less pass, down to kLeastDepth, and what still seems to be an event is one.
+/// Between two events as many looks that halve a step lead to one. Where friction and force are
+/// equal but for rounding more of them lead nowhere: then each lets one halving less pass, down to
+/// kLeastDepth, and what still seems to be an event is one.
 constexpr int kMostLooks = 96;
 constexpr int kLeastDepth = 8;
 

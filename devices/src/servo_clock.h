@@ -9,8 +9,8 @@ namespace palpate::devices {
 /// Monotonic clock [ns].
 [[nodiscard]] std::int64_t monotonicNs() noexcept;
 
-/// Sleeps until `due` [ns, monotonic], spinning over the last stretch, because a sleeping thread wakes
-/// tens of microseconds late. Returns within 10 ms once `stop` is set, whoever sets it.
+/// Sleeps until `due` [ns, monotonic], spinning over the last stretch, because a sleeping thread
+/// wakes tens of microseconds late. Returns within 10 ms once `stop` is set, whoever sets it.
 void sleepUntil(std::int64_t due, const std::atomic<bool>& stop) noexcept;
 
 /// Real-time priority, locked memory and exact timers for the calling thread while this lives.

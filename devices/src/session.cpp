@@ -104,7 +104,8 @@ namespace {
 
 /// [s] in which a servo thread that runs has made a tick, even one of a busy machine.
 constexpr double kAnswer = 0.1;
-/// Offers, each upon a state in which the probe went on into another region before the scene was taken.
+/// Offers, each upon a state in which the probe went on into another region before the scene was
+/// taken.
 constexpr int kMostOffers = 5;
 
 /// False if `holds()` did not become true in kAnswer.
@@ -179,7 +180,8 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
   const DeviceMapping& mapping = scene_->device();
   const bool is_mapped = frame == DeviceFrame::kDevice;
   const Vec3 position = is_mapped ? mapping.toWorld(reading.position) : reading.position;
-  // Of the device's positions: a clutch that is let go must not look like a leap of the hand. Nor must a broken reading.
+  // Of the device's positions: a clutch that is let go must not look like a leap of the hand. Nor
+  // must a broken reading.
   const Vec3 velocity =
       tracker_.add(reading.time, HapticRenderer::isInReach(position) ? reading.position : kBroken)
           .value;
@@ -264,7 +266,8 @@ void Session::offer(ScenePtr scene, const RendererSettings& settings) {
     const CarriedState carried = carryState(snapshot->state, from.kind, *from.scene, *scene);
     if (!renderer) renderer = makeRenderer(scene, settings);
     const bool is_carried = renderer->setState(carried.state);
-    // A hand that goes in and out all the time gets the last state however old it is: the proxy goes on from there.
+    // A hand that goes in and out all the time gets the last state however old it is: the proxy
+    // goes on from there.
     const bool is_last = i + 1 == kMostOffers;
     const std::uint64_t number =
         give(is_carried && !is_last ? std::optional(snapshot->entries) : std::nullopt);

@@ -45,7 +45,8 @@ ToolMotion VirtualCoupling::reach(const Vec3& hand, double dt) noexcept {
   free_ = hand + share_ * (tool_ - hand_);
   hand_ = hand;
 
-  // Solves with the answer of the last tick: its springs go on as they were there, its dampers act on what moves now.
+  // Solves with the answer of the last tick: its springs go on as they were there, its dampers act
+  // on what moves now.
   const double drag = answer_.drag * per_time_;
   const double across = answer_.sideways;
   Vec3 x = free_ + give_ * answer_.force;

@@ -1,5 +1,5 @@
-// How fast fields, meshes and labels become bands, and bands bricks, beside OpenVDB's own tools in the same
-// run. See README.md.
+// How fast fields, meshes and labels become bands, and bands bricks, beside OpenVDB's own tools in
+// the same run. See README.md.
 
 #include "bench/bake_bench.h"
 
@@ -57,8 +57,8 @@ class Results final : public benchmark::ConsoleReporter {
     }
   }
 
-  /// Adds to each row of two threads how much faster it was than that of one, and prints that beside the
-  /// control's.
+  /// Adds to each row of two threads how much faster it was than that of one, and prints that
+  /// beside the control's.
   void compareThreads() {
     std::string table;
     for (nlohmann::ordered_json& row : rows_) {

@@ -51,8 +51,8 @@ auto timed(benchmark::State& state, const Make& make) {
 /// What a run made: the thing itself, so that it stays there, and the memory [bytes] that it takes.
 using Made = std::pair<std::shared_ptr<const void>, std::uint64_t>;
 
-/// Runs `make` once more, untimed. Adds "memory_mb" of what it made, and "peak": the most memory that was
-/// in use on the way, as a share of that.
+/// Runs `make` once more, untimed. Adds "memory_mb" of what it made, and "peak": the most memory
+/// that was in use on the way, as a share of that.
 void addPeak(benchmark::State& state, const std::function<Made()>& make);
 
 }  // namespace palpate::vdb::bench

@@ -1,5 +1,6 @@
-// What two threads give on this machine at best: work that touches no memory, cut up as a bake is. Cores
-// that are shared with others, or clocked down when both are busy, give less than 2, and so they do to a bake.
+// What two threads give on this machine at best: work that touches no memory, cut up as a bake is.
+// Cores that are shared with others, or clocked down when both are busy, give less than 2, and so
+// they do to a bake.
 
 #include <benchmark/benchmark.h>
 #include <tbb/blocked_range.h>

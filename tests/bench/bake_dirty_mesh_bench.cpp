@@ -1,5 +1,6 @@
-// Meshes as people have them, beside OpenVDB's meshToVolume in the same run: clean, two hundred balls that overlap,
-// with specks, as a soup. `worst` is the largest error of some voxels of the band by brute force [voxels].
+// Meshes as people have them, beside OpenVDB's meshToVolume in the same run: clean, two hundred
+// balls that overlap, with specks, as a soup. `worst` is the largest error of some voxels of the
+// band by brute force [voxels].
 
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/MeshToVolume.h>

@@ -1,5 +1,5 @@
-// An analytic ball, a CSG of fourteen parts and four implicit shapes into bands, beside OpenVDB's createLevelSetSphere;
-// and a band into bricks.
+// An analytic ball, a CSG of fourteen parts and four implicit shapes into bands, beside OpenVDB's
+// createLevelSetSphere; and a band into bricks.
 
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/LevelSetSphere.h>
@@ -57,7 +57,8 @@ void bakeOf(benchmark::State& state, const FieldPtr& field) {
 void ball(benchmark::State& state) { bakeOf(state, sphere(kCenter, kRadius)); }
 void csg(benchmark::State& state) { bakeOf(state, fourteenParts()); }
 
-/// Fields whose values are not distances, so that the bake searches closest points. Also counts looks at the field for each voxel.
+/// Fields whose values are not distances, so that the bake searches closest points. Also counts
+/// looks at the field for each voxel.
 void bakeImplicit(benchmark::State& state, const FieldPtr& field,
                   const std::optional<Box3>& box = {}) {
   const bench::Threads threads(state.range(1));

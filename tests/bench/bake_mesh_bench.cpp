@@ -1,5 +1,6 @@
-// Balls of 20 k, 320 k and 1.3 M triangles into bands, at three voxel sizes, beside OpenVDB's meshToVolume. Each
-// row says how long the triangles' edges are: what a mesh costs depends on that, and 2 voxels are the usual.
+// Balls of 20 k, 320 k and 1.3 M triangles into bands, at three voxel sizes, beside OpenVDB's
+// meshToVolume. Each row says how long the triangles' edges are: what a mesh costs depends on that,
+// and 2 voxels are the usual.
 
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/MeshToVolume.h>

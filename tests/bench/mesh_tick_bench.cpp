@@ -1,6 +1,7 @@
-// What a tick costs, and how far a surface point and its normal are off, on meshes with sharp edges: as plain bricks,
-// with exact triangles by the edges, as half-spaces; strokes over faces and edges, 1 mm deep. One row each.
-// palpate_mesh_tick [MESH]: a mesh of a file too, made 50 mm long; a tooth, for one.
+// What a tick costs, and how far a surface point and its normal are off, on meshes with sharp
+// edges: as plain bricks, with exact triangles by the edges, as half-spaces; strokes over faces and
+// edges, 1 mm deep. One row each. palpate_mesh_tick [MESH]: a mesh of a file too, made 50 mm long;
+// a tooth, for one.
 
 #include <algorithm>
 #include <chrono>
@@ -100,7 +101,8 @@ Row measured(const FieldPtr& field, const FieldPtr& bricks, const Mesh& mesh) {
   const auto goal = [&] {
     return box.lo + Vec3(any(random), any(random), any(random)) * box.size();
   };
-  // The way that the hand would take over the surface: each point is brought to a depth of 1 mm by the field.
+  // The way that the hand would take over the surface: each point is brought to a depth of 1 mm by
+  // the field.
   std::vector<Vec3> path;
   Vec3 p = box.hi + 2.0 * kMm;
   for (Vec3 to = goal(); path.size() < 60000;) {

@@ -1,5 +1,6 @@
 #pragma once
-/// Samplers of others on the same grid and path: each runs the whole path once, for value and gradient.
+/// Samplers of others on the same grid and path: each runs the whole path once, for value and
+/// gradient.
 
 #include <functional>
 #include <span>

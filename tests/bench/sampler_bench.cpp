@@ -1,5 +1,5 @@
-// Value and gradient out of a grid, along a path: ours beside OpenVDB's and NanoVDB's samplers, in one run.
-// See README.md.
+// Value and gradient out of a grid, along a path: ours beside OpenVDB's and NanoVDB's samplers, in
+// one run. See README.md.
 
 #include <benchmark/benchmark.h>
 

@@ -1,5 +1,5 @@
-// The steps of the voxels that a hand feels when it strokes over a label: our surface beside those of OpenVDB's
-// topologyToLevelSet, with the same sampler, renderer and path.
+// The steps of the voxels that a hand feels when it strokes over a label: our surface beside those
+// of OpenVDB's topologyToLevelSet, with the same sampler, renderer and path.
 //   palpate_scan_stroke LABELS.nii.gz LABEL X FROM TO [SVG]
 // strokes in mm (RAS) along z on the front of LABEL, 100 mm/s, a tick a millisecond.
 
@@ -37,7 +37,8 @@ FieldPtr ours(const vdb::Image& image, int label, double voxel) {
   return vdb::gridField(vdb::surfaceFromLabels(image, {.values = {label}}, bake));
 }
 
-/// Their tool takes the voxels of a grid, so the label's go into cubic ones of the smallest spacing, each the nearest.
+/// Their tool takes the voxels of a grid, so the label's go into cubic ones of the smallest
+/// spacing, each the nearest.
 FieldPtr theirs(const vdb::Image& image, int label, double voxel, int smoothing) {
   vdb::initializeOpenVdb();
   openvdb::MaskGrid mask;
@@ -119,7 +120,7 @@ std::vector<Vec3> handPath(const Field& field, const Stroke& stroke) {
 std::vector<Vec3> strokeOver(const FieldPtr& field, const std::vector<Vec3>& path) {
   SceneDescription description;
   description.length_unit = "mm";
-  description.metres_per_unit = kMm;
+  description.meters_per_unit = kMm;
   Material bone;
   bone.name = "bone";
   bone.stiffness = 1000.0;
@@ -152,7 +153,8 @@ struct Spectrum {
   std::vector<std::pair<double, double>> amplitudes;  // [1/m], [degree]
 };
 
-/// Amplitudes of the direction over spatial frequency: Hann's window, all three components together.
+/// Amplitudes of the direction over spatial frequency: Hann's window, all three components
+/// together.
 Spectrum spectrumOf(std::string name, const std::vector<Vec3>& directions) {
   Spectrum result;
   result.name = std::move(name);
@@ -164,7 +166,8 @@ Spectrum spectrumOf(std::string name, const std::vector<Vec3>& directions) {
     result.jitter_max = std::max(result.jitter_max, turn);
   }
   result.jitter_rms = std::sqrt(result.jitter_rms);
-  // Straight changes from end to end are the shape's; Hann's window takes the rest of the ends away.
+  // Straight changes from end to end are the shape's; Hann's window takes the rest of the ends
+  // away.
   const Vec3 first = directions.front();
   const Vec3 slope = (directions.back() - first) / static_cast<double>(n - 1);
   std::vector<Vec3> left(n);

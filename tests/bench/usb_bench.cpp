@@ -1,6 +1,7 @@
-// How fast commands and replies of a Falcon go through the libusb that everybody uses, and how evenly: the kernel's
-// side is emulated in this process (tests/devices/usbfs_emulation.h), so that nothing but libusb, the driver and this
-// machine's scheduler takes time. By the clock of the wall, for information.
+// How fast commands and replies of a Falcon go through the libusb that everybody uses, and how
+// evenly: the kernel's side is emulated in this process (tests/devices/usbfs_emulation.h), so that
+// nothing but libusb, the driver and this machine's scheduler takes time. By the clock of the wall,
+// for information.
 //   palpate_usb_bench [SECONDS]   for each row (default 2)
 
 #include <pthread.h>

@@ -13,8 +13,8 @@ namespace palpate::bench {
 
 [[nodiscard]] nlohmann::ordered_json machineJson(const tools::Machine& machine);
 
-/// Takes `--NAME=VALUE` out of the arguments, which are Google Benchmark's otherwise; empty if it is not
-/// there.
+/// Takes `--NAME=VALUE` out of the arguments, which are Google Benchmark's otherwise; empty if it
+/// is not there.
 [[nodiscard]] std::string takeOption(const std::string& name, int& count, char** arguments);
 
 /// Writes `results` into FOLDER/CPU`suffix`.json, beside its place and renamed, and says so.

@@ -17,8 +17,8 @@ class CgalDistance {
 
   [[nodiscard]] double to(const Vec3& p) const;
 
-  /// Whether the walls on a ray from p, those left less those entered, are any: its winding number, of a closed
-  /// mesh.
+  /// Whether the walls on a ray from p, those left less those entered, are any: its winding number,
+  /// of a closed mesh.
   [[nodiscard]] bool isInside(const Vec3& p) const;
 
   /// [m^3] of all that the winding number is not 0 of: by lines along z, `spacing` [m] apart.

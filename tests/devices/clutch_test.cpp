@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kTick = 1e-3;  // [s]
 
-/// A wall below z = 0 with friction, which breaks loose without a jump, and damping, under a bath that drags.
+/// A wall below z = 0 with friction, which breaks loose without a jump, and damping, under a bath
+/// that drags.
 ScenePtr wallUnderOil() {
   return compile(parseScene(R"(
 palpate: 1
@@ -71,9 +72,9 @@ TEST(Clutch, NothingJumpsWhereAMovingHandEngagesOrLetsGo) {
         }
         if (n > 250) largest = std::max(largest, glm::length(tick.force));
         if (n > engaged) {
-          // From one tick to the next what is felt changes by at most 1.5 of itself in kFade; drag and damping, 4 N s/m, by
-          // the world's 0.46 m/s^2 and by the same fade of its 0.08 m/s; the springs, 800 N/m, by that speed. Without the
-          // fades drag alone would leap by 0.3 N.
+          // From one tick to the next what is felt changes by at most 1.5 of itself in kFade; drag
+          // and damping, 4 N s/m, by the world's 0.46 m/s^2 and by the same fade of its 0.08 m/s;
+          // the springs, 800 N/m, by that speed. Without the fades drag alone would leap by 0.3 N.
           const double fade = 1.5 * kTick / Clutch::kFade;
           const double most =
               fade * largest + 4.0 * (0.46 * kTick + fade * 0.08) + 800.0 * 0.08 * kTick;

@@ -1,5 +1,5 @@
-// A hand in the loop with what is not a wall: a puncture at its threshold, a lattice at the hand's resonance, a needle that is
-// held by its shaft.
+// A hand in the loop with what is not a wall: a puncture at its threshold, a lattice at the hand's
+// resonance, a needle that is held by its shaft.
 
 #include <gtest/gtest.h>
 
@@ -160,7 +160,8 @@ std::vector<Round> rounds() {
       "wall, content: content}\nstart: {region: block}\n";
   constexpr double kWave = 5e-3;
   std::vector<Round> all;
-  // In by the port, over its rim within the block, and out through it again; and the other way about.
+  // In by the port, over its rim within the block, and out through it again; and the other way
+  // about.
   for (const double side : {1.0, -1.0}) {
     all.push_back({side > 0.0 ? "round a rim" : "round a rim, the other way",
                    plain + block + "}\n" + hole + "}\n", Vec3(5e-3, 0.0, 0.0),
@@ -202,8 +203,8 @@ std::vector<Round> rounds() {
 }
 
 TEST(ContentLoops, WhatADictatedHandGetsByPortsAndContentsFallsWithThePeriod) {
-  // A force that is held for a tick gives at most K |dx|^2 / 2 more than the continuous one; what drags never gives. In the limit
-  // nothing is given but what a change of the content puts in.
+  // A force that is held for a tick gives at most K |dx|^2 / 2 more than the continuous one; what
+  // drags never gives. In the limit nothing is given but what a change of the content puts in.
   for (const Round& round : rounds()) {
     const ScenePtr scene = sceneOf(round.text);
     const auto renderer = makeLoopRenderer("constraint", scene);

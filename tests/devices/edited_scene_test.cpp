@@ -73,8 +73,8 @@ class Hand {
   Vec3 goal_{0.0, 0.0, 0.03};
 };
 
-// Within the syrup, through the mouth: in a bowl that is a little larger the probe is in the syrup still. A probe that
-// began anew would be outside, and be pushed out.
+// Within the syrup, through the mouth: in a bowl that is a little larger the probe is in the syrup
+// still. A probe that began anew would be outside, and be pushed out.
 TEST(EditedScene, TheProbeGoesOnInItsRegion) {
   Hand hand(sceneOf(bowlLines()));
   ASSERT_EQ(hand.to({0, 0, -0.030}).result.region, 1);
@@ -97,8 +97,8 @@ TEST(EditedScene, TheProbeGoesOnInItsRegion) {
   EXPECT_GT(hand.to({0, 0, -0.044}).force.z, 1.0);
 }
 
-// The probe goes through the mouth all the time: whatever region it is in when the state is taken, and in whatever it is
-// when the scene is, it is where its place is.
+// The probe goes through the mouth all the time: whatever region it is in when the state is taken,
+// and in whatever it is when the scene is, it is where its place is.
 TEST(EditedScene, WhoPassesAPortMeanwhileHasPassedIt) {
   Hand hand(sceneOf(bowlLines()));
   std::atomic<bool> is_over{false};
@@ -189,8 +189,8 @@ TEST(EditedScene, FiftyEditsWhileAHandTouches) {
     }
     is_over = true;
   });
-  // Strokes along the glass. The limit of growth holds for the renderer's force; the fade after an edit, from 0 to 1 in
-  // kSwapFade, adds to it what it brings back of that.
+  // Strokes along the glass. The limit of growth holds for the renderer's force; the fade after an
+  // edit, from 0 to 1 in kSwapFade, adds to it what it brings back of that.
   const double limit = (Hand::kSlew + kMost / Session::kSwapFade) * Hand::kTick + 1e-9;
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(-1.0, 1.0);

@@ -1,5 +1,5 @@
-// What an input device's events do to a position: closed forms, and random events against a model of their own. That the
-// kernel's interface is used as it should be is seen in tests/evdev.
+// What an input device's events do to a position: closed forms, and random events against a model
+// of their own. That the kernel's interface is used as it should be is seen in tests/evdev.
 
 #include "palpate/devices/evdev.h"
 
@@ -159,7 +159,8 @@ TEST(InputHand, ADeflectionIsASpeedBeyondTheDeadZone) {
 }
 
 TEST(InputHand, TheKernelsFlatRangeCountsWhereItIsWider) {
-  // 4096 of half of 65535 counts is an eighth: at the edge of it nothing moves, at the end everything.
+  // 4096 of half of 65535 counts is an eighth: at the edge of it nothing moves, at the end
+  // everything.
   Hand hand(gamepad(), {.max_speed = 0.05, .dead_zone = 0.01});
   hand.report(0, {{EV_ABS, ABS_X, 4095}});
   hand->advance(kSecond);

@@ -1,5 +1,5 @@
-// The Falcon's driver against a device that is not there, through the libusb that everybody uses. fault_matrix_test.cpp
-// has the faults that come while a hand is pushed, in the device's own time.
+// The Falcon's driver against a device that is not there, through the libusb that everybody uses.
+// fault_matrix_test.cpp has the faults that come while a hand is pushed, in the device's own time.
 
 #include "falcon/falcon_device.h"
 
@@ -101,8 +101,8 @@ TEST(FalconDevice, AForceMovesTheGripItsWay) {
     const Vec3 begin = rig.emulator.position();
     for (int i = 0; i < 30; ++i) (void)rig.turn(state, force);
     const Vec3 way = rig.emulator.position() - begin;
-    // 0.2 kg, 2 Ns/m: about F t^2 / 2 m in the first 30 ms. The direction is the force's to a few parts in a hundred: a
-    // motor's command has 1e-4 Nm, and the arms are taken where they were.
+    // 0.2 kg, 2 Ns/m: about F t^2 / 2 m in the first 30 ms. The direction is the force's to a few
+    // parts in a hundred: a motor's command has 1e-4 Nm, and the arms are taken where they were.
     EXPECT_GT(glm::dot(way, force), 0.99 * glm::length(way) * glm::length(force));
     EXPECT_GT(glm::length(way), 1e-3);
   }

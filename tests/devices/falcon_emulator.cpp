@@ -10,7 +10,8 @@ namespace {
 constexpr int kSubsteps = 20;
 constexpr double kZero = 35.0 * std::numbers::pi / 180.0;
 
-/// The thigh's angle of leg `i` at `p`, by bisection: the lower leg's length grows as the thigh turns outward.
+/// The thigh's angle of leg `i` at `p`, by bisection: the lower leg's length grows as the thigh
+/// turns outward.
 double thighAngle(int i, const Vec3& p) {
   const double azimuth = (105.0 - 120.0 * i) * std::numbers::pi / 180.0;
   const double u = std::cos(azimuth) * p.x + std::sin(azimuth) * p.y - 0.0400 + 0.01443;
@@ -69,9 +70,10 @@ void FalconEmulator::encode() {
 }
 
 void FalconEmulator::move(double seconds) {
-  // Virtual work, by differences: the force along an axis is the torque times what the thighs turn along it.
+  // Virtual work, by differences: the force along an axis is the torque times what the thighs turn
+  // along it.
   constexpr double kStep = 1e-6;          // [m]
-  constexpr double kNewtonMetre = -1e-4;  // [Nm] of a count
+  constexpr double kNewtonMeter = -1e-4;  // [Nm] of a count
   Vec3 push(0.0);
   quantum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -81,15 +83,16 @@ void FalconEmulator::move(double seconds) {
       d[k] = kStep;
       slope[k] = (thighAngle(i, position_ + d) - thighAngle(i, position_ - d)) / (2.0 * kStep);
     }
-    push += kNewtonMetre * motors[static_cast<std::size_t>(i)] * slope;
-    quantum += 0.5 * std::abs(kNewtonMetre) * glm::length(slope);
+    push += kNewtonMeter * motors[static_cast<std::size_t>(i)] * slope;
+    quantum += 0.5 * std::abs(kNewtonMeter) * glm::length(slope);
   }
   felt = push;
   const double dt = seconds / kSubsteps;
   for (int n = 0; n < kSubsteps; ++n) {
     Vec3 force = push - damping * velocity_;
     if (hand) force += hand(position_);
-    // The mean of the two speeds: exact for a force that is held, so that the emulation has no delay of its own.
+    // The mean of the two speeds: exact for a force that is held, so that the emulation has no
+    // delay of its own.
     const Vec3 before = velocity_;
     velocity_ += force * (dt / mass);
     position_ += 0.5 * dt * (before + velocity_);

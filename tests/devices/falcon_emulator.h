@@ -1,5 +1,6 @@
 #pragma once
-// A Falcon that is not there: its serial chip, boot ROM, firmware, motors, arms and the mass of its grip.
+// A Falcon that is not there: its serial chip, boot ROM, firmware, motors, arms and the mass of its
+// grip.
 
 #include <array>
 #include <atomic>
@@ -16,8 +17,8 @@ namespace palpate::devices {
 /// A firmware image in the format of the processor's boot ROM, of nothing but zeros and counters.
 [[nodiscard]] std::vector<std::uint8_t> syntheticFirmware(std::size_t words = 4000);
 
-/// What is behind the USB cable. Each command that the firmware answers takes 1 ms of the world: time is virtual. Not for
-/// several threads.
+/// What is behind the USB cable. Each command that the firmware answers takes 1 ms of the world:
+/// time is virtual. Not for several threads.
 class FalconEmulator {
  public:
   // What the world does to it.

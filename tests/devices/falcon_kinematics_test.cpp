@@ -25,8 +25,8 @@ Vec3 place(Random& random) {
   }
 }
 
-/// A place of the nominal workspace, 0.1 m across, about its middle: no arm is close to stretched there, as some are in the
-/// corners of the cube.
+/// A place of the nominal workspace, 0.1 m across, about its middle: no arm is close to stretched
+/// there, as some are in the corners of the cube.
 template <class Random>
 Vec3 nominalPlace(Random& random) {
   while (true) {
@@ -35,8 +35,8 @@ Vec3 nominalPlace(Random& random) {
   }
 }
 
-/// The grip's place by walking along the links of leg `i`: thigh, hinge, parallelogram, hinge, grip. `shin` and `tilt` are the
-/// parallelogram's angles.
+/// The grip's place by walking along the links of leg `i`: thigh, hinge, parallelogram, hinge,
+/// grip. `shin` and `tilt` are the parallelogram's angles.
 Vec3 chain(int i, double thigh, double shin, double tilt) {
   const Geometry& g = kGeometry;
   const double lower = 0.01125 + g.shin * std::sin(tilt) + 0.01125;
@@ -57,7 +57,8 @@ TEST(FalconKinematics, EachLegsChainOfLinksEndsAtTheGrip) {
     const auto arms = armsAt(p);
     ASSERT_TRUE(arms);
     for (int i = 0; i < 3; ++i) {
-      // The parallelogram's two angles are free: those that reach p are found from where the knee is.
+      // The parallelogram's two angles are free: those that reach p are found from where the knee
+      // is.
       const double azimuth = (90.0 - 120.0 * i + kGeometry.turn) * kDegree;
       const double u = std::cos(azimuth) * p.x + std::sin(azimuth) * p.y - kGeometry.radius;
       const double v = -std::sin(azimuth) * p.x + std::cos(azimuth) * p.y - kGeometry.shift;

@@ -1,5 +1,5 @@
-// A Falcon in a closed loop, through the libusb that everybody uses: how stiff a wall it holds, and the whole way
-// through a scene.
+// A Falcon in a closed loop, through the libusb that everybody uses: how stiff a wall it holds, and
+// the whole way through a scene.
 
 #ifdef PALPATE_LIBUSB
 
@@ -28,8 +28,9 @@ void expectLetGo(Rig& rig) {
   EXPECT_EQ(rig.usb.pending(), 0);
 }
 
-/// [N/m] of a wall at which a mass neither comes to rest nor swings up: the exact discrete system, in which a force
-/// that is computed from the reading at the end of one turn is held over the next, has a determinant of 1.
+/// [N/m] of a wall at which a mass neither comes to rest nor swings up: the exact discrete system,
+/// in which a force that is computed from the reading at the end of one turn is held over the next,
+/// has a determinant of 1.
 double limitOf(double mass, double damping) {
   constexpr double kPeriod = 1e-3;  // [s]
   const double e = std::exp(-damping * kPeriod / mass);
@@ -76,8 +77,9 @@ TEST(FalconLoop, AWallIsHeldWithoutAHiddenSample) {
   }
 }
 
-/// [m] The largest swing about its mean of the grip, which a hand pushes steadily against a wall of `stiffness` [N/m]:
-/// early and late, by scene, session, servo loop, driver and libusb. It is displaced by 2 mm once the push is there.
+/// [m] The largest swing about its mean of the grip, which a hand pushes steadily against a wall of
+/// `stiffness` [N/m]: early and late, by scene, session, servo loop, driver and libusb. It is
+/// displaced by 2 mm once the push is there.
 std::pair<double, double> swingAt(double stiffness, double mass, double damping) {
   SceneDescription scene = parseScene(
       "{palpate: 1, length: m, materials: {wall: {stiffness: " + std::to_string(stiffness) +
@@ -92,7 +94,8 @@ std::pair<double, double> swingAt(double stiffness, double mass, double damping)
   rig.emulator.mass = mass;
   rig.emulator.damping = damping;
   rig.emulator.place(Vec3(0.0, 0.0, 0.125));
-  // The push comes slowly, after the ramp of the force; it holds the grip 5 mm deep, so that it never leaves the wall.
+  // The push comes slowly, after the ramp of the force; it holds the grip 5 mm deep, so that it
+  // never leaves the wall.
   rig.emulator.hand = [&](const Vec3&) {
     const double t = 1e-9 * static_cast<double>(rig.emulator.now());
     return Vec3(0.0, 0.0, -5e-3 * stiffness * std::clamp(t - 1.0, 0.0, 1.0));
@@ -130,7 +133,8 @@ TEST(FalconLoop, AWallOfASceneGrowsFromTheExactLimitOnThroughTheWholeChain) {
 }
 
 TEST(FalconLoop, TheWholeChainInByTheMouthAlongTheWallAndOut) {
-  // data/scenes/container.yaml, in the device's own space: 30 mm above the bowl's center, down to its bottom, and back.
+  // data/scenes/container.yaml, in the device's own space: 30 mm above the bowl's center, down to
+  // its bottom, and back.
   const ScenePtr scene = compile(readScene(test::sourceFolder() + "/data/scenes/container.yaml"));
   Session session(scene);
   Rig rig;
@@ -163,8 +167,8 @@ TEST(FalconLoop, TheWholeChainInByTheMouthAlongTheWallAndOut) {
   };
   const ServoReport report = runServo(rig.device, tick, {}, stop, [&](const ServoTurn& turn) {
     const double off = glm::length(rig.emulator.felt - turn.written);
-    // Half a count of each motor is 0.5e-4 Nm, at 20 to 30 rad/m; and the arms are taken where the encoders say, which
-    // turns a force by less than two parts in a thousand.
+    // Half a count of each motor is 0.5e-4 Nm, at 20 to 30 rad/m; and the arms are taken where the
+    // encoders say, which turns a force by less than two parts in a thousand.
     const double allowed = 3e-3 + 2e-3 * glm::length(turn.written);
     worst = std::max(worst, off / allowed);
   });

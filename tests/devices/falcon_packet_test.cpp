@@ -112,8 +112,8 @@ TEST(FalconPacket, AByteThatCannotBeMakesAPacketNone) {
   }
 }
 
-/// Bytes as a line may bring them: packets, damaged ones, and garbage. Without memory of the heap, which sanitizers
-/// watch dearly.
+/// Bytes as a line may bring them: packets, damaged ones, and garbage. Without memory of the heap,
+/// which sanitizers watch dearly.
 class AnyBytes {
  public:
   explicit AnyBytes(unsigned seed) : random_(seed) {}

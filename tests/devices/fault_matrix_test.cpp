@@ -1,6 +1,7 @@
-// Faults while a Falcon behind the libusb that everybody uses pushes a hand, in the device's own time: each leads to its
-// state, its text, and zero force in time; plugged in again, the device is homed and ramped. Faults of opening are in
-// falcon_device_test.cpp, of a record in replay_device_test.cpp and tools/touch_record_test.cpp, of signals in
+// Faults while a Falcon behind the libusb that everybody uses pushes a hand, in the device's own
+// time: each leads to its state, its text, and zero force in time; plugged in again, the device is
+// homed and ramped. Faults of opening are in falcon_device_test.cpp, of a record in
+// replay_device_test.cpp and tools/touch_record_test.cpp, of signals in
 // tools/falcon_chain_test.cpp, of access in usb/falcon_node_test.cpp.
 
 #ifdef PALPATE_LIBUSB
@@ -48,8 +49,8 @@ struct Fault {
   SafetyState state;
   SafetyFault why;
   const char* text;
-  double
-      zero_within;  ///< [ms] of the device's time until its motors are zero; below 0: no command reaches it any more
+  double zero_within;  ///< [ms] of the device's time until its motors are zero; below 0: no command
+                       ///< reaches it any more
 };
 
 std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
@@ -98,8 +99,8 @@ constexpr const char* kGoneText = "the device reported a fault";
 constexpr const char* kSilentText = "the device gave no valid reply for too long";
 constexpr const char* kNothing = "no fault";
 
-// Zero force comes with the next command, 1 ms. In silence it comes after 10 ms and the wait of the reading that is
-// under way, of four packets at most, 1 ms each; and the command takes 1 ms.
+// Zero force comes with the next command, 1 ms. In silence it comes after 10 ms and the wait of the
+// reading that is under way, of four packets at most, 1 ms each; and the command takes 1 ms.
 constexpr double kNext = 1.0;
 constexpr double kSilence = 10.0 + 4.0 + 1.0;
 // The thread that watches cuts 20 ms after the last turn, which was up to 1 ms before.
@@ -160,7 +161,8 @@ std::vector<Fault> faults() {
       {"TheHandIsTooFast",
        [](World& world, Rig& rig) {
          world.reply = [&rig, n = 0](Reply&) mutable {
-           // 2.5 m/s over 80 mm; it counts as too fast once the filter of 10 ms has seen 2 m/s of it, after 16 ms.
+           // 2.5 m/s over 80 mm; it counts as too fast once the filter of 10 ms has seen 2 m/s of
+           // it, after 16 ms.
            rig.emulator.place(Vec3(0.0, 0.0, 0.085 + 2.5e-3 * std::min(n++, 32)));
          };
          rig.emulator.place(Vec3(0.0, 0.0, 0.085));
@@ -194,7 +196,8 @@ std::vector<Fault> faults() {
 
 class FaultMatrix : public ::testing::TestWithParam<Fault> {};
 
-/// Between two runs the device lost its origin: no force until it is homed, and then by the ramp of half a second.
+/// Between two runs the device lost its origin: no force until it is homed, and then by the ramp of
+/// half a second.
 void expectHomingAndARamp(Rig& rig) {
   const VirtualClock clock(rig.emulator);
   rig.usb.plugIn();
@@ -271,8 +274,8 @@ TEST_P(FaultMatrix, LeadsToItsStateItsTextAndZeroForceInTime) {
       EXPECT_EQ(rig.emulator.motors, (std::array<int, 3>{}));
     } else {
       std::printf("  %-32s the loop ended after %.1f ms: %s\n", fault.name, over, fault.text);
-      // At once, or when the next command is sent, which waits for two readings of up to 4 ms; or when the silence is
-      // over.
+      // At once, or when the next command is sent, which waits for two readings of up to 4 ms; or
+      // when the silence is over.
       EXPECT_LE(over, fault.why == SafetyFault::kDevice ? 2.0 * 4.0 + 2.0 : 100.0 + 10.0);
     }
   }

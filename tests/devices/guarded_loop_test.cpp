@@ -1,4 +1,5 @@
-// The whole program with passivity control or a virtual coupling, on walls far above the device's budget.
+// The whole program with passivity control or a virtual coupling, on walls far above the device's
+// budget.
 
 #include <gtest/gtest.h>
 
@@ -56,7 +57,8 @@ struct Felt {
   std::int64_t violations = 0;
 };
 
-/// A relaxed hand presses to about 3 N, within a second or (`taps`) at 0.5 m/s, and holds for one or more.
+/// A relaxed hand presses to about 3 N, within a second or (`taps`) at 0.5 m/s, and holds for one
+/// or more.
 Felt press(const ScenePtr& scene, double stiffness, const LoopModel& loop, bool taps = false) {
   SimulationSettings settings{
       .device = loop.device, .hand = loop.hand, .rate = 1.0 / loop.period, .delay = loop.delay};
@@ -111,7 +113,8 @@ std::vector<LoopModel> loopsOf(const std::string& device) {
   return both;
 }
 
-/// Calls `each` with a wall `times` as stiff as the budget, of a plane or a ball, pressed or tapped.
+/// Calls `each` with a wall `times` as stiff as the budget, of a plane or a ball, pressed or
+/// tapped.
 template <class Each>
 void eachWall(const LoopModel& loop, const std::vector<double>& times, const Each& each) {
   for (const std::string* shape : {&kFlat, &kBall}) {
@@ -146,8 +149,9 @@ TEST(GuardedLoop, ACouplingHoldsTenTimesTheBudget) {
           // Less than the tick's own cost: nothing at all.
           EXPECT_LE(felt->to_hand, 1e-9) << what;
           EXPECT_LE(felt->beyond, 1e-9) << what;
-          // Friction holds the device still. Without it a coupling below the limit rings down, the slower the heavier the
-          // device: an Excalibur's damping of 5 N s/m on 1.5 kg leaves 0.08 N of 8 after a second.
+          // Friction holds the device still. Without it a coupling below the limit rings down, the
+          // slower the heavier the device: an Excalibur's damping of 5 N s/m on 1.5 kg leaves 0.08
+          // N of 8 after a second.
           EXPECT_LE(felt->chatter, is_linear ? 0.1 : 1e-6) << what;
           if (shape == kFlat) {
             EXPECT_NEAR(felt->stiffness, feltStiffness(wall, coupling),
@@ -203,7 +207,8 @@ TEST(GuardedLoop, BelowTheBudgetOfTheDeviceAloneNothingIsAdded) {
 }
 
 TEST(GuardedLoop, ASceneScaleActsOnTheWallAndNotOnTheCoupling) {
-  // The same wall at the hand: half as large a world, four times as stiff, forces back half as large.
+  // The same wall at the hand: half as large a world, four times as stiff, forces back half as
+  // large.
   const LoopModel loop = loopOf("omega_3");
   const std::string coupling = "coupling: {stiffness: 800 N/m, damping: 4 N.s/m}";
   const Felt plain = press(sceneOf(kFlat, 5000.0, "device: {" + coupling + "}\n"), 5000.0, loop);

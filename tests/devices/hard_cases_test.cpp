@@ -1,5 +1,6 @@
-// A hand in the loop on hard cases, below the budget of its device: as calm as it is with a brute-force oracle. And hands that
-// are dictated: what a sampled world gives falls with the period.
+// A hand in the loop on hard cases, below the budget of its device: as calm as it is with a
+// brute-force oracle. And hands that are dictated: what a sampled world gives falls with the
+// period.
 //
 // One scene by its name: PALPATE_HARD_SCENE=corner-out.
 
@@ -31,7 +32,8 @@ bool isAsked(const HardScene& scene) {
 
 bool isSlow() { return std::getenv("PALPATE_SLOW_TESTS") != nullptr; }
 
-/// Coulomb's cone about a flat wall at z = 0, in closed form: the proxy sticks while the spring to it lies in the cone.
+/// Coulomb's cone about a flat wall at z = 0, in closed form: the proxy sticks while the spring to
+/// it lies in the cone.
 class FrictionWall final : public rivals::RivalRenderer {
  public:
   FrictionWall(ScenePtr scene, double coefficient)
@@ -67,8 +69,8 @@ class FrictionWall final : public rivals::RivalRenderer {
 /// Null where there is neither a closed form nor an oracle.
 std::unique_ptr<HapticRenderer> truthOf(const HardScene& scene, const ScenePtr& compiled) {
   if (scene.name == "texture") return nullptr;  // its height is not in the closed form
-  // Half a micrometer beside an open port, and beside an edge, an oracle that looks that far goes over it where that is nearer.
-  // Nothing pushes the hand aside.
+  // Half a micrometer beside an open port, and beside an edge, an oracle that looks that far goes
+  // over it where that is nearer. Nothing pushes the hand aside.
   if (scene.name == "rim" || scene.name == "corner-out")
     return std::make_unique<FrictionWall>(compiled, 0.0);
   if (scene.friction > 0.0) return std::make_unique<FrictionWall>(compiled, scene.friction);
@@ -182,8 +184,8 @@ TEST(HardCases, TheLoopIsAsCalmAsWithAnOracle) {
                     ours.chatter, theirs.chatter, ours.mean, theirs.mean);
         ++count;
         if (scene.name == "two-balls" && ours.touches && !theirs.touches) {
-          // All readings in the plane between the balls are free, and the oracle goes from one to the next through the point
-          // where the balls touch. A hand cannot.
+          // All readings in the plane between the balls are free, and the oracle goes from one to
+          // the next through the point where the balls touch. A hand cannot.
           ++through;
           continue;
         }
@@ -197,7 +199,8 @@ TEST(HardCases, TheLoopIsAsCalmAsWithAnOracle) {
 }
 
 TEST(HardCases, HollowsAreHeldDeeperThanTheirRadius) {
-  // Curvature times depth 0.5 to 1.2: pressed by as much as a wall of 0.8 times the budget needs, where the motors have it.
+  // Curvature times depth 0.5 to 1.2: pressed by as much as a wall of 0.8 times the budget needs,
+  // where the motors have it.
   int count = 0;
   for (const double radius : {0.5e-3, 1e-3, 2e-3}) {
     const HardScene scene = ballScene(radius, true);
@@ -227,8 +230,9 @@ TEST(HardCases, HollowsAreHeldDeeperThanTheirRadius) {
 }
 
 TEST(HardCases, AHandIsPushedOffABallByTheForceOverItsRadius) {
-  // Frictionless and convex: sideways the contact is a spring of -F / (R - d), which the hand's own has to hold. That is
-  // physics, and of no wall or renderer: the threshold is the same at every rate.
+  // Frictionless and convex: sideways the contact is a spring of -F / (R - d), which the hand's own
+  // has to hold. That is physics, and of no wall or renderer: the threshold is the same at every
+  // rate.
   constexpr double kRadius = 10e-3;
   HardScene scene = ballScene(kRadius, false);
   const ScenePtr compiled = compileHardScene(scene);
@@ -255,8 +259,9 @@ TEST(HardCases, AHandIsPushedOffABallByTheForceOverItsRadius) {
 }
 
 TEST(HardCases, WhatADictatedHandGetsFallsWithThePeriod) {
-  // In, along, and out again, closed. A force held for a tick gives (f_{k-1} - f_k) . dx / 2 more than the continuous one: where the
-  // force changes by no more than K per meter, K v^2 T^2 / 2 a tick, and so half as much in all at twice the rate.
+  // In, along, and out again, closed. A force held for a tick gives (f_{k-1} - f_k) . dx / 2 more
+  // than the continuous one: where the force changes by no more than K per meter, K v^2 T^2 / 2 a
+  // tick, and so half as much in all at twice the rate.
   for (const HardScene& scene : hardScenes()) {
     if (scene.friction > 0.0) continue;  // it takes more than sampling gives
     const ScenePtr compiled = compileHardScene(scene);
@@ -280,13 +285,15 @@ TEST(HardCases, WhatADictatedHandGetsFallsWithThePeriod) {
         before = p;
         force = renderer->update({p, Vec3(0.0), period}).force;
       }
-      // Where the surface bends away, the force turns faster than a flat wall's: up to 1 / (1 - kd) times, here below 1.5.
+      // Where the surface bends away, the force turns faster than a flat wall's: up to 1 / (1 - kd)
+      // times, here below 1.5.
       EXPECT_LE(work, 1.5 * 0.5 * kHardStiffness * squares) << scene.name << " at " << period;
       if (period == 1e-3) first = work;
       last = work;
     }
     std::printf("%s: %.3g J at 1 kHz, %.3g J at 8 kHz\n", scene.name.c_str(), first, last);
-    // An eighth, but for what a contact's first tick is late; below 1e-8 J there is nothing to fall.
+    // An eighth, but for what a contact's first tick is late; below 1e-8 J there is nothing to
+    // fall.
     EXPECT_LT(last, 0.2 * std::max(first, 0.0) + 1e-8) << scene.name;
   }
 }

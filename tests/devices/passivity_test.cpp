@@ -25,7 +25,8 @@ constexpr double kTick = 1e-3;  // [s]
 PassivitySettings settings() { return {.mass = 0.2, .damping = 0.5, .period = kTick}; }
 
 TEST(PassivityObserver, TheWorkOfAHeldForceIsTheForceTimesTheWay) {
-  // The motor's own account, integrated beside it. Random forces, so that no velocity of a tick says anything of the next.
+  // The motor's own account, integrated beside it. Random forces, so that no velocity of a tick
+  // says anything of the next.
   std::mt19937 random(1);
   std::uniform_real_distribution<double> force(-5.0, 5.0);
   for (int delay = 0; delay <= 3; ++delay) {
@@ -51,8 +52,9 @@ TEST(PassivityObserver, TheWorkOfAHeldForceIsTheForceTimesTheWay) {
 }
 
 TEST(PassivityObserver, TheVelocityOfTheTickThatComputesAForceSaysNothingOfItsWork) {
-  // A sampled spring: sum f_k . v_k T, with the backward velocity, is lower by K times the sum of the squared steps than
-  // what the motors gave: a loop that gave energy passes for one that took it.
+  // A sampled spring: sum f_k . v_k T, with the backward velocity, is lower by K times the sum of
+  // the squared steps than what the motors gave: a loop that gave energy passes for one that took
+  // it.
   constexpr double kSpring = 10000.0;  // [N/m]
   PassivityObserver observer(settings());
   double naive = 0.0;
@@ -67,7 +69,8 @@ TEST(PassivityObserver, TheVelocityOfTheTickThatComputesAForceSaysNothingOfItsWo
     last = x;
     observer.hold(Vec3(f, 0.0, 0.0));
   }
-  // Closed: the path ends where it began. Half of the squares is given by one, and taken by the other.
+  // Closed: the path ends where it began. Half of the squares is given by one, and taken by the
+  // other.
   EXPECT_NEAR(observer.given(), 0.5 * kSpring * squares, 1e-12);
   EXPECT_NEAR(naive, -0.5 * kSpring * squares, 1e-12);
   EXPECT_GT(observer.given(), 0.0);
@@ -132,8 +135,8 @@ TEST(PassivityObserver, AForceLongerThanTheMotorsHoldCountsAsItIsHeld) {
   EXPECT_DOUBLE_EQ(observer.given(), 2e-3);
 }
 
-/// A hand that presses slowly on a wall and holds, or taps on it, through a device of 0.2 kg and 0.5 N s/m; hand 300 N/m, 2 N s/m.
-/// Its largest stable stiffness is 5011 N/m.
+/// A hand that presses slowly on a wall and holds, or taps on it, through a device of 0.2 kg and
+/// 0.5 N s/m; hand 300 N/m, 2 N s/m. Its largest stable stiffness is 5011 N/m.
 struct Pressed {
   double wall = 0.0;  ///< [N/m]
   bool taps = false;
@@ -151,8 +154,8 @@ struct Felt {
 };
 
 constexpr double kBudget = 5011.0;  // [N/m]
-/// [N] rms while 3 N are held. Without the controller it is 4 N and more; a simulation that was written apart from this one left
-/// 0.16 N at most with it.
+/// [N] rms while 3 N are held. Without the controller it is 4 N and more; a simulation that was
+/// written apart from this one left 0.16 N at most with it.
 constexpr double kQuiet = 0.17;
 
 Felt press(const Pressed& how) {
@@ -253,7 +256,8 @@ TEST(PassivityController, WithADelayItNeedsTheLimitOfItsDamping) {
 }
 
 TEST(PassivityController, ItsDamperCalmsAMassWithAnyDelay) {
-  // On a mass alone such a damper is stable below 2 tan(pi / (4 (d + 1))) m / T: at 6 ticks 0.225, which is less than kDampingShare.
+  // On a mass alone such a damper is stable below 2 tan(pi / (4 (d + 1))) m / T: at 6 ticks 0.225,
+  // which is less than kDampingShare.
   for (int delay = 0; delay <= 12; ++delay) {
     PassivitySettings how = settings();
     how.damping = 0.0;
@@ -276,7 +280,8 @@ TEST(PassivityController, ItsDamperCalmsAMassWithAnyDelay) {
 }
 
 TEST(PassivityController, TheBoundGivesNothingBeforeItIsThere) {
-  // With no income counted the motor never gives more than the seed, whatever the wall, as long as the hand keeps to its force.
+  // With no income counted the motor never gives more than the seed, whatever the wall, as long as
+  // the hand keeps to its force.
   for (const double times : {0.8, 2.0, 5.0, 10.0}) {
     for (const double hand : {1.0, 5.0}) {
       PassivitySettings how = settings();

@@ -204,7 +204,8 @@ TEST(Generators, RefuseParametersOutOfRange) {
 
 TEST(Generators, RefuseAPathTooLongToHold) { expectRefused(PressPath{.speed = 1e-12}); }
 
-// What is computed row by row is what is kept in memory, bit for bit, and a hand that follows it is the same hand.
+// What is computed row by row is what is kept in memory, bit for bit, and a hand that follows it is
+// the same hand.
 TEST(PathFormula, IsThePathThatIsGenerated) {
   const auto compare = [](const auto& shape, double rate) {
     const Path path = generate(shape, rate);

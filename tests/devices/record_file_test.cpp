@@ -1,4 +1,5 @@
-// Records in files: what is written is read back, full disks leave whole rows, and no damage makes more of a file than is in it.
+// Records in files: what is written is read back, full disks leave whole rows, and no damage makes
+// more of a file than is in it.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -1,4 +1,5 @@
-// What goes into the recorder comes out of it, in order and without a wait of the loop, whatever its sinks do.
+// What goes into the recorder comes out of it, in order and without a wait of the loop, whatever
+// its sinks do.
 
 #include <gtest/gtest.h>
 

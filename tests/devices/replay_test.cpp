@@ -1,5 +1,6 @@
-// A random session, whatever its device, clutch, estimator, limits, changes and faults: felt anew from its record, from the start and from each state,
-// it is the same bit for bit; and what is not the same is found.
+// A random session, whatever its device, clutch, estimator, limits, changes and faults: felt anew
+// from its record, from the start and from each state, it is the same bit for bit; and what is not
+// the same is found.
 
 #include <gtest/gtest.h>
 

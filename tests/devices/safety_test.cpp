@@ -250,8 +250,9 @@ TEST(Safety, TheMotorsHeatIsThatOfTheContinuousForceAtMost) {
     ASSERT_LE(safety.heat(), 1.0 + 1e-9);
     full += felt == 8.0 ? 1 : 0;
   }
-  // Of a load of 16 the heat is 16 (1 - exp(-t)). 8 N are left out once the permitted force is below: at the heat h with
-  // 2 + 8 (1 - h) / 0.2 = 8, that is h = 0.85, after -ln(1 - 0.85 / 16) = 54.6 ms.
+  // Of a load of 16 the heat is 16 (1 - exp(-t)). 8 N are left out once the permitted force is
+  // below: at the heat h with 2 + 8 (1 - h) / 0.2 = 8, that is h = 0.85, after -ln(1 - 0.85 / 16)
+  // = 54.6 ms.
   EXPECT_NEAR(full, 55, 1);
   (void)safety.read(20'000 * kTurn, DeviceStatus::kOk, here);
   EXPECT_NEAR(safety.ask(push, here).force.x, 2.0, 1e-3);
@@ -264,7 +265,8 @@ double growth(const Vec3& last, const Vec3& now) {
   return glm::length(now - share * last);
 }
 
-/// What a hand may be sure of, from all that has happened so far, thought anew with the clock of the test.
+/// What a hand may be sure of, from all that has happened so far, thought anew with the clock of
+/// the test.
 struct Promise {
   SafetyLimits limits;
   std::int64_t longest;  // [ns] silence
@@ -363,7 +365,8 @@ TEST(Safety, KeepsItsPromisesWhateverHappens) {
       ASSERT_EQ(length > 0.0 && !permitsForce(safety.state()), false);
       // It grows no faster than permitted: 1 ms at most counts.
       ASSERT_LE(growth(p.last, force), p.limits.max_growth * 1e-3 + 1e-9);
-      // The motors' heat is that of the forces that were held, and hot motors get what they hold forever.
+      // The motors' heat is that of the forces that were held, and hot motors get what they hold
+      // forever.
       const double forever = p.limits.continuous_force;
       const double load = glm::dot(p.last, p.last) / (forever * forever);
       p.heat +=
@@ -374,7 +377,8 @@ TEST(Safety, KeepsItsPromisesWhateverHappens) {
       ASSERT_LE(length, std::max(p.max_force * cold + forever * (1.0 - cold), forever) + 1e-9);
       p.asked = now;
       if (is_broken || !may) p.broken = now;
-      // The ramp: no more than its share of the maximum since the force last had to begin anew. It lasts whole nanoseconds.
+      // The ramp: no more than its share of the maximum since the force last had to begin anew. It
+      // lasts whole nanoseconds.
       const double since = 1e-9 * static_cast<double>(now - p.broken + 1);
       ASSERT_LE(length, p.max_force * std::min(1.0, since / p.limits.ramp) + 1e-9);
       p.last = force;

@@ -11,8 +11,8 @@
 namespace palpate::devices {
 
 /// Answers read k with `reads[k]` and write k with `writes[k]` (kOk beyond its end), and remembers
-/// all that was asked of it. Position k is (k, 0, 0) [m]; a stale read leaves garbage in its argument,
-/// as a careless driver might.
+/// all that was asked of it. Position k is (k, 0, 0) [m]; a stale read leaves garbage in its
+/// argument, as a careless driver might.
 class ScriptedDevice final : public Device {
  public:
   std::vector<DeviceStatus> reads;

@@ -239,7 +239,8 @@ TEST(RunServo, TheLoopIsFreeOfAllocationsLocksAndThrows) {
     };
     ServoReport report;
     const testing::AllocGuard guard;
-    // The watchdog waits for long: on a machine that is busy with other things a turn may come late.
+    // The watchdog waits for long: on a machine that is busy with other things a turn may come
+    // late.
     report = runServo(device, tick, {.realtime = realtime, .rate = 10000.0, .watchdog = 100.0},
                       kNeverStop);
     EXPECT_EQ(guard.violations(), 0);
@@ -285,7 +286,8 @@ TEST(RunServo, ElevationIsReportedAndUndone) {
 }
 
 TEST(RunServo, WhatIsRequiredIsGrantedOrTheLoopDoesNotRun) {
-  // What is allowed depends on who runs the test: the one or the other, as the system says when it is asked.
+  // What is allowed depends on who runs the test: the one or the other, as the system says when it
+  // is asked.
   ScriptedDevice device;
   device.reads = {DeviceStatus::kOk, DeviceStatus::kOk};
   VirtualDevice asked({{0.0, Vec3(0.0)}});

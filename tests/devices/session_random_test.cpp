@@ -1,5 +1,6 @@
-// Whatever mapping, clutch, estimator and readings come together, a session says what a few lines of arithmetic say: the probe's
-// way summed up from the hand's, turned by Rodrigues' formula; the velocity from its definition; the force of one plane wall.
+// Whatever mapping, clutch, estimator and readings come together, a session says what a few lines
+// of arithmetic say: the probe's way summed up from the hand's, turned by Rodrigues' formula; the
+// velocity from its definition; the force of one plane wall.
 
 #include <gtest/gtest.h>
 
@@ -92,7 +93,8 @@ layers:
     hand_ = turned(Vec3(0.0, 0.0, 0.004) - offset_, -angle_) / scale_;
   }
 
-  /// The hand wanders toward places of which half are in the floor; buttons are pressed and let go for a while.
+  /// The hand wanders toward places of which half are in the floor; buttons are pressed and let go
+  /// for a while.
   DeviceState next(int n) {
     if (n % 40 == 0) way_ = Vec3(any(-1.0, 1.0), any(-1.0, 1.0), any(-1.0, 1.0)) * 1e-4;
     if (has_probe_ && probe_.z > 0.006) way_ = turned(Vec3(0.0, 0.0, -1e-4), -angle_);
@@ -145,7 +147,8 @@ layers:
     }
     return tx / tt;
   }
-  /// Of the chord that every shorter one leads up to, none left by a reading by more than the noise.
+  /// Of the chord that every shorter one leads up to, none left by a reading by more than the
+  /// noise.
   [[nodiscard]] double slopeOfChord(std::size_t begin, int axis) const {
     const std::size_t last = history_.size() - 1;
     double slope = 0.0;

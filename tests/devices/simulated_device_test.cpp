@@ -296,8 +296,8 @@ TEST(SimulatedDevice, FollowsAFineIntegrationThroughStickAndSlip) {
       const double rate = (path[row + 1].position.x - path[row].position.x) * settings.rate;
       fine.go(force, path[row].position.x, rate, 1.0 / settings.rate, 5000);
     }
-    // The fine steps are up to 0.8 us. A stop is found to the square of one, some um/s^2 times it; and
-    // a slip begins up to one late, which is of the second order too.
+    // The fine steps are up to 0.8 us. A stop is found to the square of one, some um/s^2 times it;
+    // and a slip begins up to one late, which is of the second order too.
     EXPECT_LT(worst, settings.device.friction > 0.0 ? 1e-9 : 1e-12) << n;
   }
 }
@@ -335,8 +335,8 @@ TEST(SimulatedDevice, EnergyBalances) {
   EXPECT_GT(device.work().viscous, 0.1);
 }
 
-// A hand that presses slowly holds a device where friction and force are equal but for rounding: there each look found
-// what the next one did not, and reading went on for hours.
+// A hand that presses slowly holds a device where friction and force are equal but for rounding:
+// there each look found what the next one did not, and reading went on for hours.
 TEST(SimulatedDevice, WhereFrictionAndForceAreEqualButForRoundingItGoesOn) {
   std::mt19937 random(11);
   const auto any = [&](double lo, double hi) {

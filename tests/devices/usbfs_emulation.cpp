@@ -137,7 +137,8 @@ class UsbfsEmulation::Kernel {
     return 0;
   }
 
-  /// Answers a request for a string: of index 0 the languages, of others the serial number. Its length with the setup.
+  /// Answers a request for a string: of index 0 the languages, of others the serial number. Its
+  /// length with the setup.
   int describe(usbdevfs_urb* urb) const {
     auto* bytes = static_cast<std::uint8_t*>(urb->buffer);
     constexpr std::size_t kSetup = 8;
@@ -254,7 +255,8 @@ bool UsbfsEmulation::wasClaimed() const noexcept { return kernel_->wasClaimed();
 
 }  // namespace palpate::devices
 
-/// Stands before the C library's for the whole process: what is not the emulation's goes to the kernel.
+/// Stands before the C library's for the whole process: what is not the emulation's goes to the
+/// kernel.
 extern "C" int ioctl(int fd, unsigned long request, ...) {
   va_list list;
   va_start(list, request);

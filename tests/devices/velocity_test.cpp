@@ -36,7 +36,8 @@ TEST(VelocityTracker, EvenMotionIsExactForAll) {
 }
 
 TEST(VelocityTracker, ItIsTheVelocityAsLongAgoAsItSays) {
-  // x = a t^2 / 2: the slope of a chord, and of the least-squares line through even times, is a times the time of their middle.
+  // x = a t^2 / 2: the slope of a chord, and of the least-squares line through even times, is a
+  // times the time of their middle.
   constexpr double kA = 2.0;  // [m/s^2]
   for (const VelocityEstimator estimator : kAll) {
     VelocityTracker tracker = trackerOf(estimator, 0.02, 1e-5);
@@ -109,7 +110,8 @@ TEST(VelocityTracker, GapsRepeatedTimesAndBrokenReadings) {
 }
 
 TEST(VelocityTracker, AWrongTimeStampIsForgottenWhateverItIs) {
-  // A hand moves at 0.1 m/s until one stamp is wrong, or the clock is set for good, and then rests. The window is over 10 ms later.
+  // A hand moves at 0.1 m/s until one stamp is wrong, or the clock is set for good, and then rests.
+  // The window is over 10 ms later.
   const double inf = std::numeric_limits<double>::infinity();
   for (const VelocityEstimator estimator : kAll) {
     for (const double wrong : {-inf, -1e300, -5.0, 0.1, 0.3, 3.0, 1000.0, 1e300, inf}) {

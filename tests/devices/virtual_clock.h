@@ -5,8 +5,9 @@
 
 namespace palpate::devices {
 
-/// While it lives, CLOCK_MONOTONIC goes on from where it was by the emulation's time, and by half a microsecond for
-/// each look, so that nobody waits forever. Sleeps take real time all the same. One at a time.
+/// While it lives, CLOCK_MONOTONIC goes on from where it was by the emulation's time, and by half a
+/// microsecond for each look, so that nobody waits forever. Sleeps take real time all the same. One
+/// at a time.
 class VirtualClock {
  public:
   explicit VirtualClock(const FalconEmulator& falcon);

@@ -81,7 +81,8 @@ TEST(VirtualCoupling, InContactWithAFlatWallItIsBackwardEulerToRounding) {
       z += 1e-5 * push(random);
       const ToolForce answer = wall(coupling.reach(Vec3(0.0, 0.0, z), kTick), k, b);
       const double force = coupling.push(answer).z;
-      // The wall's damper never pulls: where it would, this tick or the last, the two are not alike.
+      // The wall's damper never pulls: where it would, this tick or the last, the two are not
+      // alike.
       const bool was_pressed = std::exchange(is_pressed, answer.force.z > 0.0);
       if (n >= 100 && is_pressed && was_pressed) {
         const double x = (kc * z + bc / kTick * (tool + z - before) + b / kTick * tool) /
@@ -106,8 +107,8 @@ TEST(VirtualCoupling, ItNeverPulls) {
 }
 
 TEST(VirtualCoupling, DragThicknessDoesNotMatter) {
-  // A steady motion through something thick: of the device's velocity the drag is in series with the coupling's damper at
-  // first, and all of it once the spring has stretched.
+  // A steady motion through something thick: of the device's velocity the drag is in series with
+  // the coupling's damper at first, and all of it once the spring has stretched.
   for (const double viscosity : {1.0, 100.0, 1e4}) {
     VirtualCoupling coupling({200.0, 1.0});
     double force = 0.0;
@@ -161,7 +162,8 @@ TEST(CouplingDesign, ForAnySceneAsTheFrequencyResponseHasIt) {
   EXPECT_EQ(stiffestForAnyScene(loop(0), 1.01 * b), 0.0);
 }
 
-/// Largest deflection of the last quarter over that of the second, of a device alone on coupling and spring.
+/// Largest deflection of the last quarter over that of the second, of a device alone on coupling
+/// and spring.
 double growth(const LoopModel& loop, const CouplingSettings& c, double spring) {
   TinyPlant plant({.mass = loop.device.mass, .damping = loop.device.damping}, loop.period, 1.0);
   const double slope = c.stiffness + c.damping / loop.period;

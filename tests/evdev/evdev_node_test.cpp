@@ -1,4 +1,5 @@
-// The driver of input devices over the C library's open(), ioctl() and read(), which umockdev answers as the kernel would.
+// The driver of input devices over the C library's open(), ioctl() and read(), which umockdev
+// answers as the kernel would.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

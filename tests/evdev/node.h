@@ -1,6 +1,6 @@
 #pragma once
-// An event node that umockdev makes: open(), ioctl() and read() of this process go to it, by its library that is loaded first.
-// Needs no right and no kernel module.
+// An event node that umockdev makes: open(), ioctl() and read() of this process go to it, by its
+// library that is loaded first. Needs no right and no kernel module.
 
 #include <linux/input.h>
 #include <umockdev.h>
@@ -45,7 +45,8 @@ class Node {
   bool refuses_clock = false;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Puts events into the queue, with a SYN_REPORT after them, all of the time `at` [ns, monotonic].
+  /// Puts events into the queue, with a SYN_REPORT after them, all of the time `at` [ns,
+  /// monotonic].
   struct Input {
     int type, code, value;
   };

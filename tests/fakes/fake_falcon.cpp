@@ -1,8 +1,10 @@
-// Plugs an emulated Falcon into a program that was started with this library before all others (LD_PRELOAD): its node is the
-// open descriptor kDescriptor, and time is the Falcon's. FAKE_FALCON_HAND names a file of where the hand wants to be, rows
-// `t x y z` in s and m of the device's frame; FAKE_FALCON_LOG one for what the motors gave, rows `x,y,z,quantum` in N, a command each
-// (FalconEmulator::quantum). At command number FAKE_FALCON_AT the process gets the signal FAKE_FALCON_SIGNAL, or the cable is
-// pulled if that is 0. Everything between the command line and the kernel is the real thing.
+// Plugs an emulated Falcon into a program that was started with this library before all others
+// (LD_PRELOAD): its node is the open descriptor kDescriptor, and time is the Falcon's.
+// FAKE_FALCON_HAND names a file of where the hand wants to be, rows `t x y z` in s and m of the
+// device's frame; FAKE_FALCON_LOG one for what the motors gave, rows `x,y,z,quantum` in N, a
+// command each (FalconEmulator::quantum). At command number FAKE_FALCON_AT the process gets the
+// signal FAKE_FALCON_SIGNAL, or the cable is pulled if that is 0. Everything between the command
+// line and the kernel is the real thing.
 
 #include <unistd.h>
 

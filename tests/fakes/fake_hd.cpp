@@ -1,5 +1,5 @@
-// Stands for OpenHaptics' libHD.so: it reads what a test sets, and remembers the calls. It has no thread: a turn of its
-// scheduler is fakeTurn().
+// Stands for OpenHaptics' libHD.so: it reads what a test sets, and remembers the calls. It has no
+// thread: a turn of its scheduler is fakeTurn().
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
-// Where the sources and the build are. One file of the tests holds these paths, so that the compiler's cache serves the
-// other files in every clone.
+// Where the sources and the build are. One file of the tests holds these paths, so that the
+// compiler's cache serves the other files in every clone.
 
 #include <string>
 

@@ -86,7 +86,8 @@ void addMeshes(std::vector<Find>& out) {
                    for (int i = 0; i < 100'000; ++i) text += R"({"extras":)";
                    return text;
                  }()});
-  // Found by the fuzzer: who believes the promised length looks at no part, and Assimp asks for the first one's gigabytes.
+  // Found by the fuzzer: who believes the promised length looks at no part, and Assimp asks for the
+  // first one's gigabytes.
   const std::string glb = seedsOf("glb").front();
   for (const std::uint32_t promised : {1U, 12U, 19U}) {
     out.push_back({"glb_promises_" + std::to_string(promised), "glb",

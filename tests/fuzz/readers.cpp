@@ -59,8 +59,8 @@ const palpate::testing::TempFolder& folder() {
   return one;
 }
 
-/// A slice alone makes no volume; with sound ones beside it the pixels are read as well, and structure sets have a
-/// series to lie in.
+/// A slice alone makes no volume; with sound ones beside it the pixels are read as well, and
+/// structure sets have a series to lie in.
 void putMoreSlices(const std::string& own) {
   for (const char* const z : {"1", "2"}) {
     const std::string path = own + "/slice" + z + ".dcm";

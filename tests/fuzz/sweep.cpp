@@ -1,10 +1,11 @@
-// palpate_damage_sweep [MUTANTS] [SEED] [COMMAND] [FORMAT...]: damages files of every format in every way, MUTANTS
-// times each, and gives each to the command with 4 GB of address space and 20 s more than the sound file
-// takes (a scene may be one of a whole head). It reports signals, hangs, exit codes that are not documented, and runs that
-// took more than 1 GB for an input of less than 10 MB, and keeps such inputs beside. Exit 1 if there are any. The command runs
-// in forks of this process, which have loaded its libraries already, as many formats at a time as there are processors;
-// with COMMAND, another build of palpate ("-": this one), it is started anew each time. Formats that are named are the
-// only ones.
+// palpate_damage_sweep [MUTANTS] [SEED] [COMMAND] [FORMAT...]: damages files of every format in
+// every way, MUTANTS times each, and gives each to the command with 4 GB of address space and 20 s
+// more than the sound file takes (a scene may be one of a whole head). It reports signals, hangs,
+// exit codes that are not documented, and runs that took more than 1 GB for an input of less than
+// 10 MB, and keeps such inputs beside. Exit 1 if there are any. The command runs in forks of this
+// process, which have loaded its libraries already, as many formats at a time as there are
+// processors; with COMMAND, another build of palpate ("-": this one), it is started anew each time.
+// Formats that are named are the only ones.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -38,8 +39,9 @@ namespace fs = std::filesystem;
 constexpr rlim_t kMemory = rlim_t{4} << 30U;
 constexpr double kSeconds = 20.0;
 constexpr double kMostSound = 300.0;  ///< [s] of a sound file
-/// A sound file that takes longer than this [s] is damaged in one of so many of its turns, and a quicker one stands in
-/// for it in the others: the scene of a whole head has the same readers as a small one, and takes a thousand times as long.
+/// A sound file that takes longer than this [s] is damaged in one of so many of its turns, and a
+/// quicker one stands in for it in the others: the scene of a whole head has the same readers as a
+/// small one, and takes a thousand times as long.
 constexpr double kSlowSound = 0.5;
 constexpr std::size_t kTurnsOfSlow = 50;
 constexpr long kMostResident = 1L << 20U;  // [kB]

@@ -14,7 +14,8 @@ struct ItkImage {
   std::map<double, std::size_t> histogram;
 };
 
-/// NIfTI, NRRD or MetaImage by its extension, of single numbers in three dimensions. @throws std::runtime_error
+/// NIfTI, NRRD or MetaImage by its extension, of single numbers in three dimensions. @throws
+/// std::runtime_error
 [[nodiscard]] ItkImage readWithItk(const std::string& path);
 
 /// The one DICOM series in a folder, by ITK's own search for its files. @throws std::runtime_error

@@ -9,8 +9,8 @@
 namespace palpate::testing {
 
 /// Adds up F . v dt over ticks: force k, written at tick k, is held until tick k + 1 (as a real
-/// device's output stage holds it), so its work on the hand is F_k . (x_{k+1} - x_k). A passive world
-/// that began at rest never gives more than it was given: gained() stays at or below what the
+/// device's output stage holds it), so its work on the hand is F_k . (x_{k+1} - x_k). A passive
+/// world that began at rest never gives more than it was given: gained() stays at or below what the
 /// sampling itself leaks.
 class EnergyMeter {
  public:

@@ -146,8 +146,8 @@ bool insideOf(const FieldCase& field_case, const Field& field, const Vec3& p) {
 
 /// Smallest distance found from `p` to a point on the other side, by shooting in all directions and
 /// then ever closer around the best shot: a bound from above that converges to the distance. The
-/// gradient only hints where to shoot first, and how far (`claimed`, and a little more: `expected`).
-/// `others` are some points of the other side.
+/// gradient only hints where to shoot first, and how far (`claimed`, and a little more:
+/// `expected`). `others` are some points of the other side.
 double shootAtBorder(const FieldCase& field_case, const Field& field, const Vec3& p,
                      const std::vector<Vec3>& others, double claimed, double expected, double reach,
                      Random& random) {

@@ -70,7 +70,8 @@ class Random {
 [[nodiscard]] ::testing::AssertionResult checkJet(const FieldCase& field_case);
 /// value() is sample().value, bit for bit.
 [[nodiscard]] ::testing::AssertionResult checkValue(const FieldCase& field_case);
-/// values() of a batch is value() of each point, bit for bit, wherever the point stands in the batch.
+/// values() of a batch is value() of each point, bit for bit, wherever the point stands in the
+/// batch.
 [[nodiscard]] ::testing::AssertionResult checkValues(const FieldCase& field_case);
 /// Nothing but finite numbers and usable gradients at the awkward points; no finite value for a
 /// point that is not finite.

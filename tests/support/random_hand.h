@@ -1,5 +1,6 @@
 #pragma once
-// A hand that stays about the proxy, at 0.1 m/s and 1 kHz: it wanders, presses, and now and then stands still.
+// A hand that stays about the proxy, at 0.1 m/s and 1 kHz: it wanders, presses, and now and then
+// stands still.
 
 #include <algorithm>
 #include <functional>
@@ -62,7 +63,8 @@ class RandomHand {
       left_ = static_cast<int>(random_.uniform(10, 60));
     } else if (which < 0.8) {
       kind_ = Kind::kPress;
-      // On along what is pressed, which slides into corners; now and then straight into the nearest wall.
+      // On along what is pressed, which slides into corners; now and then straight into the nearest
+      // wall.
       const Vec3 ahead = random_.uniform(0.0, 1.0) < 0.7 ? heading_ : downhill(tree);
       push_ = unitOr(ahead + random_.direction(), heading_);
       depth_ = random_.uniform(0.3, 1.0) * kReach;

@@ -37,8 +37,8 @@ struct RandomScene {
   [[nodiscard]] FieldPtr solid() const;
 };
 
-/// The same number and options give the same scene, on every platform. It may turn out empty, or full: then its
-/// start region has no point.
+/// The same number and options give the same scene, on every platform. It may turn out empty, or
+/// full: then its start region has no point.
 [[nodiscard]] RandomScene randomScene(std::uint64_t number, const RandomSceneOptions& options = {});
 
 }  // namespace palpate::test

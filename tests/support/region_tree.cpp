@@ -71,7 +71,8 @@ bool RegionTree::leaveNoRoom(const std::array<int, 3>& literals, const Vec3& cen
       sum += value;
       size += std::fabs(value);
     }
-    // Far above rounding (1e-12 of the reach), far below what bends do to surfaces that only touch (1e-4).
+    // Far above rounding (1e-12 of the reach), far below what bends do to surfaces that only touch
+    // (1e-4).
     if (std::fabs(sum) > 1e-8 * size) known->second = false;
   }
   return known->second;
@@ -145,8 +146,8 @@ Slope RegionTree::slopeAt(const Literal& literal, const Vec3& p, double widest) 
   Slope best;
   best.gap = literal.value(p);
   best.doubt = kInfinity;
-  // Order 4 over h, order 2 over h / 4; both near 1e-9 on a smooth surface. A seam or an apex within reach shows
-  // in their difference, and asks for a smaller h.
+  // Order 4 over h, order 2 over h / 4; both near 1e-9 on a smooth surface. A seam or an apex
+  // within reach shows in their difference, and asks for a smaller h.
   for (double h = std::min(1e-3 * literal.feature, widest); best.doubt > 1e-8 && h > 5e-10;
        h *= 0.1) {
     Vec3 fine(0.0);

@@ -1,5 +1,6 @@
 #pragma once
-// Where a proxy of a scene may be, asked of values of fields alone: nothing of lib's contact or rendering.
+// Where a proxy of a scene may be, asked of values of fields alone: nothing of lib's contact or
+// rendering.
 
 #include <array>
 #include <cstdint>
@@ -33,7 +34,8 @@ struct Slope {
   static constexpr double kSingular = 1e-3;
 };
 
-/// What decides within a ball: the border is a tree of AND and OR over the literals that come into it.
+/// What decides within a ball: the border is a tree of AND and OR over the literals that come into
+/// it.
 struct Nearby {
   std::vector<int> literals;  ///< that can change their sign in the ball; at most 32
   std::vector<std::uint32_t>
@@ -43,20 +45,20 @@ struct Nearby {
 
 class RegionTree {
  public:
-  /// What a proxy in `region` must not leave: its own layer, and no later layer may hold it. Walls only: no
-  /// ports, no sheets, no absent walls.
+  /// What a proxy in `region` must not leave: its own layer, and no later layer may hold it. Walls
+  /// only: no ports, no sheets, no absent walls.
   RegionTree(const Scene& scene, RegionId region);
 
-  /// At least 0 where allowed [m], by the layers' own values; at most the distance to the border, for exact
-  /// and bound fields.
+  /// At least 0 where allowed [m], by the layers' own values; at most the distance to the border,
+  /// for exact and bound fields.
   [[nodiscard]] double value(const Vec3& p) const noexcept;
 
   [[nodiscard]] const std::vector<Literal>& literals() const noexcept { return literals_; }
   /// By differences over `widest` [m] at most.
   [[nodiscard]] Slope slopeAt(const Literal& literal, const Vec3& p,
                               double widest = kInfinity) const noexcept;
-  /// Whether `slope`, of the literal at `p`, is the mean of those on both sides of a crease: differences across it agree
-  /// in that, which is less steep than either.
+  /// Whether `slope`, of the literal at `p`, is the mean of those on both sides of a crease:
+  /// differences across it agree in that, which is less steep than either.
   [[nodiscard]] bool isOnCrease(const Literal& literal, const Vec3& p,
                                 const Slope& slope) const noexcept;
   /// Of value / steepness.
@@ -67,7 +69,8 @@ class RegionTree {
   void nearby(const Vec3& center, double radius, Nearby& out) const;
 
   [[nodiscard]] double feature() const noexcept { return feature_; }  ///< [m] the smallest
-  /// [m] Being on a surface means within a billionth of its leaf's feature size; the largest of those.
+  /// [m] Being on a surface means within a billionth of its leaf's feature size; the largest of
+  /// those.
   [[nodiscard]] double onSurface() const noexcept { return 1e-9 * largest_feature_; }
   [[nodiscard]] std::size_t nodeCount() const noexcept { return nodes_.size(); }
 
@@ -80,8 +83,8 @@ class RegionTree {
   };
   enum class State : std::uint8_t { kAllowed, kForbidden, kOpen };
 
-  /// Whether literals that come near `center` ask for a surface or a line together, not for a place to be: their values
-  /// sum to 0 all around. Labels that touch have such pairs and triples.
+  /// Whether literals that come near `center` ask for a surface or a line together, not for a place
+  /// to be: their values sum to 0 all around. Labels that touch have such pairs and triples.
   [[nodiscard]] bool leaveNoRoom(const std::array<int, 3>& literals, const Vec3& center) const;
   /// Drops the cells that hold such literals.
   void dropEmpty(const Vec3& center, Nearby& out) const;

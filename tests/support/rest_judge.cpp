@@ -93,15 +93,16 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
     out.has_kink = checked.has_kink;
     is_rest = checked.residual <= (3e-8 + checked.doubt) * depth + 1e-15;
     if (!is_rest && checked.has_kink && checked.residual <= 10.0 * kTolerance * depth) {
-      // The normals about a crease are those of places beside it: Newton's step says how far off the minimum is, and values
-      // that it is one.
+      // The normals about a crease are those of places beside it: Newton's step says how far off
+      // the minimum is, and values that it is one.
       is_pinned = checked.residual <= kTolerance * depth * oracle_.leastCurvature(now.proxy, hip) &&
                   oracle_.gainNear(now.proxy, hip, 1e-4 * depth) == 0.0;
       is_rest = is_pinned;
     }
     is_minimum = is_rest;
     if (is_minimum && (sampled || is_suspect)) {
-      // By the tree alone: within a ten-thousandth of the depth nothing is nearer by more than a bulge allows.
+      // By the tree alone: within a ten-thousandth of the depth nothing is nearer by more than a
+      // bulge allows.
       is_minimum = oracle_.gainNear(now.proxy, hip, 1e-4 * depth) <= 0.02 &&
                    oracle_.leastCurvature(now.proxy, hip) >= -1e-4;
     }
@@ -126,7 +127,8 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
     out.is_ambiguous |= glm::length(other - rest.point) > 10.0 * allowed;
     off = std::min(off, glm::length(now.proxy - other));
   }
-  // What is thinner than its steps the oracle goes through: then it starts where the proxy is, with steps as small.
+  // What is thinner than its steps the oracle goes through: then it starts where the proxy is, with
+  // steps as small.
   if (is_rest && off > allowed) {
     out.is_ambiguous |=
         is_pinned || glm::length(oracle_.stay(now.proxy, hip) - now.proxy) <= allowed;
@@ -135,7 +137,8 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   // Either end will do, or another minimum between them; a point that is none will not.
   if (off <= allowed || (out.is_ambiguous && is_minimum)) return out;
   if (!rest.has_settled) {
-    // The oracle does not know where it ends; values can still show a place nearby that is nearer to the hand.
+    // The oracle does not know where it ends; values can still show a place nearby that is nearer
+    // to the hand.
     for (const double share : {1e-2, 1e-3, 1e-4}) {
       const double gain = oracle_.gainNear(now.proxy, hip, share * depth);
       if (gain > 0.02) return is_at_fault(Fault::kPlace, gain * share * depth);

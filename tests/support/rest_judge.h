@@ -1,5 +1,6 @@
 #pragma once
-// One renderer, judged tick by tick by what it says to the outside: where the proxy is and what the force is.
+// One renderer, judged tick by tick by what it says to the outside: where the proxy is and what the
+// force is.
 
 #include <array>
 #include <string>
@@ -19,7 +20,8 @@ enum class Fault {
   kContact,  ///< `contact` does not say whether the proxy is off the hand
   kStep,     ///< not at the minimum, and the force is more than 10 mN off
   kPlace,    ///< not at the minimum, by more than 1e-6 of the depth
-  kFrozen,  ///< the hand stood still: not settled after 30 ticks, or the force still changes by 1 mN
+  kFrozen,   ///< the hand stood still: not settled after 30 ticks, or the force still changes by 1
+             ///< mN
   kCount
 };
 [[nodiscard]] const char* nameOf(Fault fault);

@@ -22,7 +22,8 @@ std::array<Vec3, 2> across(const Vec3& n) {
   return {u, glm::cross(n, u)};
 }
 
-/// [m] from a kink so far are the normals about it asked for: nearer by, differences would reach over it.
+/// [m] from a kink so far are the normals about it asked for: nearer by, differences would reach
+/// over it.
 double aroundKink(const Literal& literal, double radius) {
   return std::max(radius, 4e-5 * literal.feature);
 }
@@ -42,8 +43,8 @@ std::optional<HalfSpaceBound> RestOracle::planeAtKink(const Literal& literal, co
 
 bool RestOracle::addKink(Cell& cell, const Literal& literal, int index, const Vec3& x,
                          double radius) const {
-  // The normals around it, taken together where the literal bends as an apex does from within. Where it bends
-  // the other way any of them would do, and this is not the place to tell.
+  // The normals around it, taken together where the literal bends as an apex does from within.
+  // Where it bends the other way any of them would do, and this is not the place to tell.
   constexpr int kAround = 48;
   const double center = literal.value(x);
   const double around = aroundKink(literal, radius);
@@ -119,8 +120,8 @@ RestCheck RestOracle::check(const Vec3& x, const Vec3& hip) const {
     }
     out.doubt = std::max(out.doubt, cell.doubt);
   }
-  // A point that no cell holds is inside a wall, so it does not rest there; its value alone does not tell where a blend is
-  // far less steep than one.
+  // A point that no cell holds is inside a wall, so it does not rest there; its value alone does
+  // not tell where a blend is far less steep than one.
   if (is_inside) out.residual = depth;
   return out;
 }

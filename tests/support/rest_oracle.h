@@ -11,8 +11,8 @@ namespace palpate::testing {
 
 /// How far a point is from being a local minimum of |x - P|.
 struct RestCheck {
-  /// [m] How far the nearest point of the linearized region, in the worst cell that holds x, lies from x; walls
-  /// nearer than 4 RegionTree::onSurface() count as touched.
+  /// [m] How far the nearest point of the linearized region, in the worst cell that holds x, lies
+  /// from x; walls nearer than 4 RegionTree::onSurface() count as touched.
   double residual = 0.0;
   double doubt = 0.0;  ///< [-] of the normals that decided it
   bool is_judged =
@@ -25,9 +25,9 @@ struct Rest {
   Vec3 point{0.0, 0.0, 0.0};
   bool has_settled = false;  ///< the flow came to a point that passes the check
   std::vector<Vec3> others =
-      {};  ///< where it ends with steps of a tenth, or off a saddle the other way
-  double blunt =
-      1.0;  ///< [-] least singular value of the normals that hold it: 1 for one wall, small in wedges
+      {};              ///< where it ends with steps of a tenth, or off a saddle the other way
+  double blunt = 1.0;  ///< [-] least singular value of the normals that hold it: 1 for one wall,
+                       ///< small in wedges
 };
 
 class RestOracle {
@@ -36,7 +36,8 @@ class RestOracle {
 
   [[nodiscard]] RestCheck check(const Vec3& x, const Vec3& hip) const;
 
-  /// The limit h -> 0 of x <- nearest allowed point to x + h (P - x) / |P - x|, to a second-order minimum.
+  /// The limit h -> 0 of x <- nearest allowed point to x + h (P - x) / |P - x|, to a second-order
+  /// minimum.
   [[nodiscard]] Rest solve(const Vec3& previous, const Vec3& hip) const;
   /// One run of it, with the coarser step: a tenth of the time.
   [[nodiscard]] Rest solveOnce(const Vec3& previous, const Vec3& hip) const;
@@ -44,11 +45,12 @@ class RestOracle {
   /// Where it goes from `x` with steps of 1e-6 of the depth: the finest walls hold it.
   [[nodiscard]] Vec3 stay(const Vec3& x, const Vec3& hip) const;
 
-  /// [-] Most that |x - P| falls on the way to a point `radius` away, as a share of it, by the tree's value
-  /// alone: directions tried, then refined. Nothing if all of them are closed.
+  /// [-] Most that |x - P| falls on the way to a point `radius` away, as a share of it, by the
+  /// tree's value alone: directions tried, then refined. Nothing if all of them are closed.
   [[nodiscard]] double gainNear(const Vec3& x, const Vec3& hip, double radius) const;
 
-  /// Least curvature of |x - P|^2 / 2 along the walls that hold x, of the worst cell; infinite at a corner.
+  /// Least curvature of |x - P|^2 / 2 along the walls that hold x, of the worst cell; infinite at a
+  /// corner.
   [[nodiscard]] double leastCurvature(const Vec3& x, const Vec3& hip) const;
 
  private:
@@ -69,7 +71,8 @@ class RestOracle {
   };
   [[nodiscard]] Cell cellAt(const Vec3& x, const Nearby& nearby, std::uint32_t bits, double radius,
                             double granted, bool asks_creases) const;
-  /// Of a literal that has no normal at `x`, the plane there that continues its surface at `x + out`.
+  /// Of a literal that has no normal at `x`, the plane there that continues its surface at `x +
+  /// out`.
   [[nodiscard]] std::optional<HalfSpaceBound> planeAtKink(const Literal& literal, const Vec3& x,
                                                           const Vec3& out) const;
   [[nodiscard]] bool addKink(Cell& cell, const Literal& literal, int index, const Vec3& x,

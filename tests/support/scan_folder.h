@@ -1,6 +1,6 @@
 #pragma once
-// Scans and meshes that are not part of the repository: in the folder that PALPATE_SCANS names, or in ../shared/data
-// beside the repository.
+// Scans and meshes that are not part of the repository: in the folder that PALPATE_SCANS names, or
+// in ../shared/data beside the repository.
 
 #include <gtest/gtest.h>
 

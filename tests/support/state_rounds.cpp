@@ -77,7 +77,8 @@ std::vector<Felt> feel(HapticRenderer& renderer, const std::vector<HipState>& mo
   return ::testing::AssertionSuccess();
 }
 
-/// Null if the scene is refused. What is felt is limited in its growth, so that those limits are part of the state too.
+/// Null if the scene is refused. What is felt is limited in its growth, so that those limits are
+/// part of the state too.
 std::unique_ptr<HapticRenderer> rendererOf(const ScenePtr& scene, RendererKind kind) {
   RendererSettings settings;
   settings.kind = kind;

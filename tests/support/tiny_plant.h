@@ -1,13 +1,14 @@
 #pragma once
-// One axis of a held device, integrated exactly: an oracle of its own for what closes a loop around it.
+// One axis of a held device, integrated exactly: an oracle of its own for what closes a loop around
+// it.
 
 #include <cmath>
 
 namespace palpate::testing {
 
-/// A mass with two dampers, its own and a hand's, and the hand's spring to where the hand wants to be. The motor's
-/// force is held for a period, and so is where the hand wants to be. The motion in between is the closed form of the
-/// damped oscillator, which may swing or creep.
+/// A mass with two dampers, its own and a hand's, and the hand's spring to where the hand wants to
+/// be. The motor's force is held for a period, and so is where the hand wants to be. The motion in
+/// between is the closed form of the damped oscillator, which may swing or creep.
 class TinyPlant {
  public:
   struct Parts {
@@ -38,7 +39,8 @@ class TinyPlant {
   [[nodiscard]] double velocity() const noexcept { return v_; }
   /// [J] that the motor gave.
   [[nodiscard]] double work() const noexcept { return work_; }
-  /// [J] that came out at the hand's side of the device: what the motor gave, less what the device lost and keeps moving with.
+  /// [J] that came out at the hand's side of the device: what the motor gave, less what the device
+  /// lost and keeps moving with.
   [[nodiscard]] double givenToHand() const noexcept { return work_ - lost_ - energy() + first_; }
 
  private:

@@ -147,7 +147,8 @@ TEST(AccuracyTruth, EdgesAndTightBendsAreToldFromSmoothParts) {
   EXPECT_FALSE(isSmoothAround(*brick, Vec3(20e-3, 18e-3, 0.0), 1e-3));    // the edge
   EXPECT_FALSE(isSmoothAround(*brick, Vec3(21e-3, 19.5e-3, 0.0), 1e-3));  // outside of it
   EXPECT_TRUE(isSmoothAround(*brick, Vec3(20e-3, 18e-3, 0.0), 0.25e-3));
-  // A ball of 6 voxels is smooth, though its center is an axis; of 1 voxel it is as good as a corner.
+  // A ball of 6 voxels is smooth, though its center is an axis; of 1 voxel it is as good as a
+  // corner.
   EXPECT_TRUE(isSmoothAround(*sphere(Vec3(0.0), 7e-3), Vec3(7e-3, 0.0, 0.0), 1e-3));
   EXPECT_FALSE(isSmoothAround(*sphere(Vec3(0.0), 1e-3), Vec3(1.5e-3, 0.2e-3, 0.0), 1e-3));
   // A crease of 4 degrees.

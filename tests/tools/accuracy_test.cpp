@@ -1,5 +1,5 @@
-// `palpate accuracy`: the errors and orders that its samplers have, the form of what it prints, and its
-// manners. Times are figures to print, never to assert.
+// `palpate accuracy`: the errors and orders that its samplers have, the form of what it prints, and
+// its manners. Times are figures to print, never to assert.
 
 #include <algorithm>
 #include <map>
@@ -70,7 +70,8 @@ TEST(Accuracy, TheTorusHasTheErrorsAndOrdersOfItsSamplers) {
   const Json& fine = torus["grids"][1];
   EXPECT_EQ(number(fine["voxel_size_m"]), 1e-3);
   EXPECT_GT(fine["active_voxels"].get<int>(), 200000);
-  // A cubic spline leaves 1.8e-4 degree and 2e-6 mm of such a torus; its jitter is within 5 % of the exact surface's.
+  // A cubic spline leaves 1.8e-4 degree and 2e-6 mm of such a torus; its jitter is within 5 % of
+  // the exact surface's.
   const Json& cubic = samplerOf(fine, "cubic");
   EXPECT_LE(number(cubic["smooth"]["normal_error_degrees"]["rms"]), 1.8e-4);
   EXPECT_LE(number(cubic["smooth"]["value_error_m"]["rms"]), 2e-9);
@@ -104,8 +105,8 @@ TEST(Accuracy, TheTorusHasTheErrorsAndOrdersOfItsSamplers) {
     }
   }
 
-  // The README's table (tools/bench.sh makes it, with more points) says the same: to its two digits, and
-  // to what an RMS over 1500 points strays.
+  // The README's table (tools/bench.sh makes it, with more points) says the same: to its two
+  // digits, and to what an RMS over 1500 points strays.
   int rows = 0;
   for (std::string line : linesOf(textOf(test::sourceFolder() + "/README.md"))) {
     std::replace(line.begin(), line.end(), '|', ',');
@@ -122,8 +123,9 @@ TEST(Accuracy, TheTorusHasTheErrorsAndOrdersOfItsSamplers) {
   EXPECT_EQ(rows, 3);
 }
 
-// Where ball and cylinder meet, curvature jumps: a strip of a stencil's width is off by the square of the voxel, and its normal by
-// the voxel. In the RMS over the surface that makes half an order more.
+// Where ball and cylinder meet, curvature jumps: a strip of a stencil's width is off by the square
+// of the voxel, and its normal by the voxel. In the RMS over the surface that makes half an order
+// more.
 TEST(Accuracy, TheSeamOfACapsuleShowsInItsOrders) {
   const CommandResult result = runPalpate({"accuracy", scenePath("reference.yaml"), "--repeat", "1",
                                            "--quiet", "--field", "pill", "--ladder", "2,1,0.5",
@@ -160,8 +162,9 @@ TEST(Accuracy, ImplicitFieldsAreJudgedByTheExactDistance) {
   EXPECT_EQ(gyroid["metric"], "implicit");
   EXPECT_EQ(gyroid["truth"], "projection");
   EXPECT_EQ(gyroid["layer"], true);
-  // S / |grad S| is off by second order: some micrometers and a degree, as measured elsewhere (reference:
-  // 3.8e-3 mm and 0.69 degree). The grid holds the exact distance, and is better than the field.
+  // S / |grad S| is off by second order: some micrometers and a degree, as measured elsewhere
+  // (reference: 3.8e-3 mm and 0.69 degree). The grid holds the exact distance, and is better than
+  // the field.
   const Json& analytic = gyroid["analytic"]["errors"];
   EXPECT_NEAR(number(analytic["value_error_m"]["rms"]), 3.8e-6, 0.5e-6);
   EXPECT_NEAR(number(analytic["normal_error_degrees"]["rms"]), 0.69, 0.07);

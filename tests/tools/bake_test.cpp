@@ -29,7 +29,8 @@ std::string cubeObj(double side, std::size_t faces = 12) {
   return text;
 }
 
-/// A ball of value 100 (label 3) in an image of 24^3 voxels of 1 mm, and a small one of 60 (label 5).
+/// A ball of value 100 (label 3) in an image of 24^3 voxels of 1 mm, and a small one of 60 (label
+/// 5).
 vdb::test::NiftiFile balls(bool labels) {
   vdb::test::NiftiFile file;
   file.dim = {24, 24, 24};
@@ -205,16 +206,16 @@ layers:
 
 TEST(Bake, AnImageByThresholdOrByLabel) {
   const TempFolder folder;
-  const std::string grey = writeImage(folder, "gray.nii", balls(false));
+  const std::string gray = writeImage(folder, "gray.nii", balls(false));
   const CommandResult skin =
-      runPalpate({"bake", grey, "-o", folder.path("g.vdb"), "--above", "50", "--json"});
+      runPalpate({"bake", gray, "-o", folder.path("g.vdb"), "--above", "50", "--json"});
   ASSERT_EQ(skin.exit_code, 0) << skin.err << skin.out;
   EXPECT_EQ(parseOnly(skin)["grids"][0]["name"], "gray/surface");
   // Only the large ball, whose radius is 6.5 mm about (9, 10, 11) mm.
   EXPECT_LT(parseOnly(skin)["grids"][0]["bounds_m"]["hi"][0], 0.0215);
 
   const CommandResult both = runPalpate(
-      {"bake", grey, "-o", folder.path("h.vdb"), "--above", "50", "--keep", "all", "--json"});
+      {"bake", gray, "-o", folder.path("h.vdb"), "--above", "50", "--keep", "all", "--json"});
   ASSERT_EQ(both.exit_code, 0) << both.err << both.out;
   EXPECT_GT(parseOnly(both)["grids"][0]["bounds_m"]["hi"][0], 0.0215);
 
@@ -238,7 +239,8 @@ TEST(Bake, AnImageByThresholdOrByLabel) {
   EXPECT_NE(slip.err.find("kidney"), std::string::npos) << slip.err;
 }
 
-// A plate of one voxel of 1 mm, beside a ball: voxels of 1 mm hold it, voxels of 5 mm, at 0 and 5 mm, pass it by.
+// A plate of one voxel of 1 mm, beside a ball: voxels of 1 mm hold it, voxels of 5 mm, at 0 and 5
+// mm, pass it by.
 TEST(Bake, WhatTheVoxelsCannotHoldOfALabelIsTold) {
   const TempFolder folder;
   vdb::test::NiftiFile file = balls(true);

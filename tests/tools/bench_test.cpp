@@ -1,5 +1,5 @@
-// `palpate bench contact`: errors within bounds on scenes of known truth, and well-formed files. Times are
-// figures to print, never to assert.
+// `palpate bench contact`: errors within bounds on scenes of known truth, and well-formed files.
+// Times are figures to print, never to assert.
 
 #include <iterator>
 #include <map>
@@ -57,7 +57,8 @@ TEST(Bench, NamesTheMachineAndJudgesTheSphere) {
   EXPECT_EQ(good["ticks"], 15394);
   EXPECT_EQ(good["judged"], 15394);
   EXPECT_EQ(good["missed"], 0);
-  // Analytic contact is asked to be exact to 1e-6 degree and 1e-6 of the magnitude; the true turn is 0.244 degree.
+  // Analytic contact is asked to be exact to 1e-6 degree and 1e-6 of the magnitude; the true turn
+  // is 0.244 degree.
   EXPECT_LE(good["direction_error_degrees"]["max"].get<double>(), 1e-6);
   EXPECT_LE(good["magnitude_error"]["max"].get<double>(), 1e-6);
   EXPECT_LE(good["largest_turn_degrees"].get<double>(), 0.245);
@@ -116,8 +117,8 @@ TEST(Bench, EveryTickAboutATipIsJudged) {
     const Json& row = resultOf(report, scene, "constraint");
     EXPECT_EQ(row["judged"], row["ticks"]) << scene;
     EXPECT_EQ(row["missed"], 0) << scene;
-    // Wherever the proxy is, the hand does not outrun it: its force is what the formula has, but for what is
-    // still to slide.
+    // Wherever the proxy is, the hand does not outrun it: its force is what the formula has, but
+    // for what is still to slide.
     EXPECT_LE(row["magnitude_error"]["max"].get<double>(), 0.01) << scene;
   }
 }
@@ -137,7 +138,8 @@ TEST(Bench, WhatIsNotJudgedMeasuredOrSaidIsADashAndNoNumber) {
   EXPECT_LE(unsettled["longest_run"], unsettled["ticks"]);
   EXPECT_NEAR(unsettled["share"].get<double>() * lump["ticks"].get<double>(),
               unsettled["ticks"].get<double>(), 1e-6);
-  // Of a scene without composite walls the paper's renderer has forces, and does not say whether it settled.
+  // Of a scene without composite walls the paper's renderer has forces, and does not say whether it
+  // settled.
   EXPECT_TRUE(resultOf(report, "groove", "paper")["unsettled"].is_null());
 
   const TempFolder folder;

@@ -31,9 +31,10 @@ class DeviceInTheLoop : public ::testing::Test {
 };
 
 TEST_F(DeviceInTheLoop, ATouchMovesTheDeviceByTheHandAndTheWall) {
-  // A relaxed hand wants to go 4 mm into the wall. At rest its spring, 250 N/m, its grip, 800 N/m, and the wall,
-  // 1000 N/m, are in series: the wall takes 1 / 1000 of 4 mm / (1 / 250 + 1 / 800 + 1 / 1000), 0.64 mm and 0.64 N; the
-  // device's friction, 0.3 N, and the encoder's step, 9 um, may hold it off that by the share of the wall.
+  // A relaxed hand wants to go 4 mm into the wall. At rest its spring, 250 N/m, its grip, 800 N/m,
+  // and the wall, 1000 N/m, are in series: the wall takes 1 / 1000 of 4 mm / (1 / 250 + 1 / 800 + 1
+  // / 1000), 0.64 mm and 0.64 N; the device's friction, 0.3 N, and the encoder's step, 9 um, may
+  // hold it off that by the share of the wall.
   const CommandResult result =
       run({"touch", "wall.yaml", "--press", "0,0,0", "--depth", "4", "--hold", "2", "--device",
            "omega_3", "--trace", "trace.csv", "--json"});

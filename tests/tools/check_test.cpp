@@ -155,7 +155,8 @@ TEST(Check, SeveralFilesAndBadOnes) {
 
 TEST(Check, PlacesAreInRasWhicheverWayTheAxesOfTheMeshRun) {
   const TempFolder folder;
-  // A cube about (20, 0, 0) without its last two triangles, whose hole is at y = 5 in the file's own axes.
+  // A cube about (20, 0, 0) without its last two triangles, whose hole is at y = 5 in the file's
+  // own axes.
   (void)folder.file("open.obj", cube(10.0, 20.0, 1, true, 10));
   const auto hole = [&](const std::vector<std::string>& arguments) {
     const Json file = checked(folder, arguments).file;

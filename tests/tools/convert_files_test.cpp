@@ -1,5 +1,5 @@
-// palpate convert, its files read by others: meshes from their bytes and images by nibabel (file_oracle.py),
-// grids made by python3-openvdb (tests/vdb/vdb_interop.py).
+// palpate convert, its files read by others: meshes from their bytes and images by nibabel
+// (file_oracle.py), grids made by python3-openvdb (tests/vdb/vdb_interop.py).
 
 #include <cmath>
 #include <cstdio>
@@ -84,7 +84,7 @@ TEST(ConvertFiles, MeshesOfEveryFormatWindOutwardsInTheirUnit) {
   }
 }
 
-TEST(ConvertFiles, DistancesAreMillimetresInAnImage) {
+TEST(ConvertFiles, DistancesAreMillimetersInAnImage) {
   const TempFolder folder;
   (void)folder.file("two.yaml", kTwo);
   (void)converted(folder, {"two.yaml", "-o", "two.vdb", "--voxel", "0.5mm", "--half-width", "4"});
@@ -143,8 +143,8 @@ TEST(ConvertFiles, ALabelScanBecomesAGridForEachLabel) {
     EXPECT_GT(mesh.volume, 0.4 * ballVolume(15.0));
     sum += mesh.volume;
   }
-  // A third of a voxel of 1 x 1 x 1.5 mm all around: how exact labels are is tested with them; here, that all of
-  // them arrive, in the right size.
+  // A third of a voxel of 1 x 1 x 1.5 mm all around: how exact labels are is tested with them;
+  // here, that all of them arrive, in the right size.
   EXPECT_NEAR(sum, ballVolume(15.0), 0.06 * ballVolume(15.0));
 }
 
@@ -233,7 +233,8 @@ TEST_F(ConvertGrids, TurnedMirroredAndStretchedGridsAreStraightened) {
 
 TEST_F(ConvertGrids, DensitiesAndMasksGetASurface) {
   expectGrid("fog", {"--above", "0.5"}, 0.015);
-  // Voxels of a mask end half a voxel before the ball where it is widest, at steps of a voxel of 0.5 mm.
+  // Voxels of a mask end half a voxel before the ball where it is widest, at steps of a voxel of
+  // 0.5 mm.
   expectGrid("mask", {"--labels", "1"}, 0.05, 0.35);
 }
 

@@ -68,15 +68,15 @@ TEST(Convert, UnitsOfMeshes) {
   const Json inches = converted(folder, {"ball.obj", "-o", "inches.stl", "--to-units", "in"});
   EXPECT_EQ(inches["unit"], "in");
   EXPECT_NEAR(described(folder, "inches.stl", "in")["volume_m3"], kVolume, 0.01 * kVolume);
-  const Json metres = converted(folder, {"inches.stl", "--units", "in", "-o", "meters.glb"});
-  EXPECT_EQ(metres["unit"], "m");
-  EXPECT_NEAR(metres["volume_m3"], kVolume, 0.01 * kVolume);
+  const Json meters = converted(folder, {"inches.stl", "--units", "in", "-o", "meters.glb"});
+  EXPECT_EQ(meters["unit"], "m");
+  EXPECT_NEAR(meters["volume_m3"], kVolume, 0.01 * kVolume);
   const Json back =
       converted(folder, {"meters.glb", "--units", "m", "-o", "b.vdb", "--voxel", "1mm"});
   EXPECT_EQ(back["schema"], "palpate.bake/1");
 }
 
-TEST(Convert, GltfIsMetresAsItsStandardSays) {
+TEST(Convert, GltfIsMetersAsItsStandardSays) {
   const TempFolder folder;
   (void)folder.file("ball.yaml", kBall);
   (void)converted(folder, {"ball.yaml", "-o", "ball.glb", "--voxel", "1"});

@@ -1,5 +1,5 @@
-// Scans that Debian packages carry, through the command: what it imports, bakes and lets feel, against loops over the
-// voxels themselves.
+// Scans that Debian packages carry, through the command: what it imports, bakes and lets feel,
+// against loops over the voxels themselves.
 
 #include "vdb/debian_scans.h"
 
@@ -129,9 +129,11 @@ tissues:
     }
     std::printf("  wall off %+.2f mm along, %+.2f across; depth %.2f mm, nearest outside %.2f mm\n",
                 along, across, depth, nearest);
-    // Centers stay on their side of a smooth wall: what is off across is half a voxel, and a little where the wall bends.
+    // Centers stay on their side of a smooth wall: what is off across is half a voxel, and a little
+    // where the wall bends.
     EXPECT_NEAR(across, 0.0, 0.7);
-    // So K times the depth: not beyond the nearest center outside, and not a voxel's diagonal in front of it.
+    // So K times the depth: not beyond the nearest center outside, and not a voxel's diagonal in
+    // front of it.
     EXPECT_LT(depth, nearest + 0.15);
     EXPECT_GT(depth, nearest - std::sqrt(3.0) / 2.0);
   }
@@ -163,7 +165,8 @@ TEST(HeadCt, ASkullHasTheVolumeThatInVesaliusGivesIt) {
   const Json grid = run(folder, {"check", "skull.vdb", "--json"})["files"][0]["grids"][0];
   const double volume = grid["volume_m3"].get<double>() * 1e9;
   std::printf("  %.1f ml, InVesalius %.1f ml\n", volume * 1e-3, ct.surface_volume * 1e-3);
-  // Two iso-surfaces of the same voxels, one smoothed and the other in coarse voxels: 0.2 % apart, 0.1 % in fine ones.
+  // Two iso-surfaces of the same voxels, one smoothed and the other in coarse voxels: 0.2 % apart,
+  // 0.1 % in fine ones.
   EXPECT_NEAR(volume / ct.surface_volume, 1.0, 0.005);
   EXPECT_TRUE(grid["findings"].empty()) << grid;
 }
@@ -220,13 +223,15 @@ layers:
     const double depth = glm::length(last.hand - last.proxy);
     std::printf("  wall off %+.2f voxel, %.2f mm deep, %.3f N\n", off, depth,
                 glm::length(last.force));
-    // A cubic spline bends a little away from the line between the two; a tick is a twentieth of a voxel.
+    // A cubic spline bends a little away from the line between the two; a tick is a twentieth of a
+    // voxel.
     EXPECT_NEAR(off, 0.0, 0.25);
     EXPECT_NEAR(glm::length(last.force), kStiffness * depth * 1e-3, 1e-5);
     // No deeper than straight back; these walls slant by less than 45 degrees.
     EXPECT_LT(depth, 1.5 + 0.25 * size);
     EXPECT_GT(depth, (1.5 - 0.25 * size) * std::sqrt(0.5));
-    // What holds the probe is where bone begins: a quarter of a voxel out there is less than the threshold, as much in more.
+    // What holds the probe is where bone begins: a quarter of a voxel out there is less than the
+    // threshold, as much in more.
     const Vec3 out = glm::normalize(last.proxy - last.hand) * 0.25 * size;
     EXPECT_LT(image.interpolate((last.proxy + out) * 1e-3), kThreshold);
     EXPECT_GT(image.interpolate((last.proxy - out) * 1e-3), kThreshold);

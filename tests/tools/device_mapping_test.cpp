@@ -59,8 +59,9 @@ TEST_F(MappedDevice, ItsPathIsFeltAsThatOfTheWorldIs) {
     const auto one = cellsOf(by_world[i]);
     const auto other = cellsOf(by_device[i]);
     for (std::size_t k = 0; k < 10; ++k) {
-      // Rounding of positions of 0.2 m is 3e-17 m; a way into a wall ends at a share of its feature of 40 mm that
-      // this may change by as much again and again: 1e-12 m, times 1.5 kN/m of the wall or 4 N s/m over a millisecond.
+      // Rounding of positions of 0.2 m is 3e-17 m; a way into a wall ends at a share of its feature
+      // of 40 mm that this may change by as much again and again: 1e-12 m, times 1.5 kN/m of the
+      // wall or 4 N s/m over a millisecond.
       const double allowed = k < 4 ? 1e-15 : k < 7 ? 1e-12 : 4e-9;
       EXPECT_NEAR(std::stod(one[k]), std::stod(other[k]), allowed)
           << "row " << i << " column " << k;

@@ -1,5 +1,5 @@
-// `palpate devices`, `palpate doctor`, `palpate bench servo`: well-formed reports, whatever is plugged in here. What this
-// machine grants and how late it wakes is not asserted.
+// `palpate devices`, `palpate doctor`, `palpate bench servo`: well-formed reports, whatever is
+// plugged in here. What this machine grants and how late it wakes is not asserted.
 
 #include <set>
 
@@ -75,7 +75,8 @@ TEST(DeviceVerbs, AFirmwareThatIsNoneIsRefusedBeforeAnyDeviceIsLookedFor) {
   EXPECT_EQ(parseOnly(result)["error"]["code"], "falcon.firmware");
 }
 
-/// The loop stood still because this machine was busy: the only fault that a device at rest may end with here.
+/// The loop stood still because this machine was busy: the only fault that a device at rest may end
+/// with here.
 bool stoodStill(const std::string& text) {
   return text.find("the servo loop stood still for too long") != std::string::npos;
 }

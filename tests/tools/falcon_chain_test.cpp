@@ -1,5 +1,5 @@
-// `palpate touch` with a Falcon that is not there, behind the libusb that everybody uses: from the command line to the
-// kernel.
+// `palpate touch` with a Falcon that is not there, behind the libusb that everybody uses: from the
+// command line to the kernel.
 
 // The hand of the emulated Falcon goes along a path, held by a spring of 250 N/m.
 
@@ -75,8 +75,8 @@ class Environment {
 
 class FalconChain : public ::testing::Test {
  protected:
-  /// The command with a Falcon on descriptor 100, in the Falcon's time. At command `at` the process gets `signal`, or
-  /// the cable is pulled if that is 0.
+  /// The command with a Falcon on descriptor 100, in the Falcon's time. At command `at` the process
+  /// gets `signal`, or the cable is pulled if that is 0.
   CommandResult run(std::vector<std::string> arguments, std::size_t at = 1'000'000,
                     int signal = 0) {
     if (arguments.front() == "touch") arguments.insert(arguments.end(), {"--device", "falcon"});
@@ -96,8 +96,9 @@ class FalconChain : public ::testing::Test {
     return out;
   }
 
-  /// Feels `scene` with the Falcon for `seconds`, at one place with `most` [N] or more, and again with the virtual
-  /// device on the same way of the hand: the motors must have given the virtual device's forces. Its report.
+  /// Feels `scene` with the Falcon for `seconds`, at one place with `most` [N] or more, and again
+  /// with the virtual device on the same way of the hand: the motors must have given the virtual
+  /// device's forces. Its report.
   Json feel(const std::string& scene, const std::string& seconds, double most,
             const Turn& turn = {}) {
     const CommandResult result = run({"touch", scene, "--seconds", seconds, "--trace", "felt.csv",
@@ -135,8 +136,8 @@ class FalconChain : public ::testing::Test {
       double worst = 0.0;
       for (std::size_t i = 0; i < asked.size() && i + offset < given.size(); ++i) {
         largest = std::max(largest, length(asked[i]));
-        // Half a count of each motor, in N at that place; and the arms are taken where the encoders say, which turns a
-        // force by less than two parts in a thousand.
+        // Half a count of each motor, in N at that place; and the arms are taken where the encoders
+        // say, which turns a force by less than two parts in a thousand.
         const double allowed = given[i + offset][3] + 2e-3 * length(asked[i]);
         worst = std::max(worst, distance(asked[i], given[i + offset]) / allowed);
       }
@@ -153,7 +154,8 @@ class FalconChain : public ::testing::Test {
   TempFolder folder_;
 };
 
-/// From 30 mm above the middle to 60 mm below it and back: through the container's mouth to its bottom.
+/// From 30 mm above the middle to 60 mm below it and back: through the container's mouth to its
+/// bottom.
 constexpr const char* kToTheBottom = "0.8 0.005 0 0.03\n2.8 0.005 0 -0.06\n4.8 0.005 0 0.03\n";
 
 TEST_F(FalconChain, InByTheMouthAlongTheWallAndOutAndTheMotorsGiveWhatTheSceneAsks) {
@@ -164,9 +166,9 @@ TEST_F(FalconChain, InByTheMouthAlongTheWallAndOutAndTheMotorsGiveWhatTheSceneAs
   EXPECT_EQ(runPalpate({"replay", "felt.npy"}, folder_.path()).exit_code, 0);
 }
 
-// Through the incision and the opened dura 15 mm deep into the brain, 14 mm aside, back against the dura from inside,
-// and by the same way on into the thalamus and out again. In the device's frame of the scene, whose z points out of the
-// head.
+// Through the incision and the opened dura 15 mm deep into the brain, 14 mm aside, back against the
+// dura from inside, and by the same way on into the thalamus and out again. In the device's frame
+// of the scene, whose z points out of the head.
 TEST_F(FalconChain, IntoAScannedHeadAgainstTheDuraFromInsideIntoTheThalamusAndOut) {
   (void)folder_.file("hand",
                      "0.8 0 0 0.042\n1.8 0 0 -0.004\n2.3 0.0037 -0.0135 -0.004\n"
@@ -175,8 +177,8 @@ TEST_F(FalconChain, IntoAScannedHeadAgainstTheDuraFromInsideIntoTheThalamusAndOu
   const Json report = feel(scenePath("head.yaml"), "8.2", 1.0, {Vec3(24.0, -88.0, 0.0), 60.3});
   EXPECT_EQ(regionsOf(report), (std::vector<std::string>{"outside", "skin", "brain", "thalamus",
                                                          "brain", "skin", "outside"}));
-  // Aside of the opening the dura holds the hand in, whose spring and the wall's of 400 N/m are in series: the proxy
-  // stays at the wall, 1 mm or more in front of the hand.
+  // Aside of the opening the dura holds the hand in, whose spring and the wall's of 400 N/m are in
+  // series: the proxy stays at the wall, 1 mm or more in front of the hand.
   double most_held = 0.0;
   for (const std::string& line : linesOf(textOf(folder_.path("felt.csv")))) {
     const std::vector<std::string> cells = cellsOf(line);
@@ -196,8 +198,8 @@ TEST_F(FalconChain, ASelfTestAndACalibrationReadWhereTheGripIsHeldAndPushNobody)
   EXPECT_EQ(result["state"], "active");
   EXPECT_EQ(result["fault"], "no fault");
   EXPECT_EQ(result["jumps"], 0);
-  // A reply each millisecond of the Falcon's time, and half a microsecond for each look at the clock: some of them a
-  // turn.
+  // A reply each millisecond of the Falcon's time, and half a microsecond for each look at the
+  // clock: some of them a turn.
   EXPECT_NEAR(result["ticks"].get<double>(), 1950.0, 50.0);
   EXPECT_NEAR(result["interval_ns"]["p50"].get<double>(), 1.05e6, 0.05e6);
 

@@ -1,4 +1,5 @@
-// The gallery shows every example scene, its pictures are there, and all of them are small enough for a repository.
+// The gallery shows every example scene, its pictures are there, and all of them are small enough
+// for a repository.
 
 #include <filesystem>
 

@@ -42,8 +42,8 @@ inline Json converted(const TempFolder& folder, std::vector<std::string> argumen
   return parseOnly(result);
 }
 
-/// Runs `palpate ARGUMENTS...` in `folder` and sends it `signal` as soon as it talks; it must end as
-/// interrupted.
+/// Runs `palpate ARGUMENTS...` in `folder` and sends it `signal` as soon as it talks; it must end
+/// as interrupted.
 inline CommandResult runInterrupted(const std::vector<std::string>& arguments,
                                     const std::string& folder, int signal = SIGTERM) {
   bool sent = false;

@@ -59,7 +59,8 @@ ImportedScan scanOf(const Names& names, const Numbers& numbers, const TissueTabl
   return scan;
 }
 
-/// The scene that is written, with spheres for what would be made of labels: the same layers, walls and ports.
+/// The scene that is written, with spheres for what would be made of labels: the same layers, walls
+/// and ports.
 ScenePtr compiled(const ImportedScan& scan, const Numbers& numbers, const TissueTable& tissues) {
   tools::ImportOptions options;
   options.scans = {"labels.nii.gz"};
@@ -153,7 +154,8 @@ TEST_P(ImportCrossings, NoNumberingLeadsIntoWhatIsRigid) {
         ASSERT_FALSE(kRigid.contains(scene->regions()[met].name)) << "from " << start.name;
       }
     }
-    // From outside everything soft in front of the bone is reached, and from the innermost all behind it.
+    // From outside everything soft in front of the bone is reached, and from the innermost all
+    // behind it.
     std::set<std::string> reached;
     for (const RegionId r : walkedFrom(*scene, kOutside)) reached.insert(scene->regions()[r].name);
     for (const RegionId r : walkedFrom(*scene, regionOf(*scene, names[kLayers - 1]))) {

@@ -11,8 +11,8 @@
 namespace palpate::testing {
 namespace {
 
-/// A head of shells about the origin, `numbers[n]` from the outside in: scalp, skull with a burr hole around +z, dura, CSF,
-/// white matter, ventricle. [mm]
+/// A head of shells about the origin, `numbers[n]` from the outside in: scalp, skull with a burr
+/// hole around +z, dura, CSF, white matter, ventricle. [mm]
 constexpr std::array<double, 6> kRadii = {22.0, 20.0, 17.0, 15.5, 13.0, 6.0};
 constexpr double kHole = 6.0;
 
@@ -40,8 +40,8 @@ TEST(ImportFelt, AVentricleIsEnteredFromWhiteMatterWithoutSlidingAlongIt) {
   const TempFolder folder;
   writeHead(folder, {5, 2, 3, 6, 1, 4});
   (void)run(folder, {"import", "head.nii.gz", "--names", "names.csv", "-o", "head.yaml", "--json"});
-  // Down the hole, off the middle: it meets the ventricle's wall at 30 degrees to its normal, and goes out of it on the
-  // far side.
+  // Down the hole, off the middle: it meets the ventricle's wall at 30 degrees to its normal, and
+  // goes out of it on the far side.
   constexpr double kOff = 3.0;
   const std::vector<TracedTick> ticks =
       touched(folder, "head.yaml", {Vec3(kOff, 0, 30), Vec3(kOff, 0, -9)}, "10mm/s");
@@ -65,8 +65,8 @@ TEST(ImportFelt, AVentricleIsEnteredFromWhiteMatterWithoutSlidingAlongIt) {
   order.erase(order.begin(), order.end() - 4);
   EXPECT_EQ(order,
             (std::vector<std::string>{"CSF", "white matter", "lateral ventricle", "white matter"}));
-  // The ependyma gives way at 0.05 N of its 80 N/m either way: 0.63 mm across it, 0.72 along the needle at 30 degrees; a
-  // tick of 0.01 mm more.
+  // The ependyma gives way at 0.05 N of its 80 N/m either way: 0.63 mm across it, 0.72 along the
+  // needle at 30 degrees; a tick of 0.01 mm more.
   std::printf("  ventricle: pressed %.3f mm in, %.3f mm out, %.3f mm aside\n", into, out_of,
               farthest);
   EXPECT_NEAR(into, 0.05 / 80.0 * 1e3, 0.12);
@@ -104,7 +104,8 @@ TEST(ImportFelt, NoWayLeadsIntoBone) {
   std::shuffle(numbers.begin(), numbers.end(), random);
   writeHead(folder, numbers);
   (void)run(folder, {"import", "head.nii.gz", "--names", "names.csv", "-o", "head.yaml", "--json"});
-  // Into the hole and out of it through the inner side of the skull in all directions, as deep as a hand can go.
+  // Into the hole and out of it through the inner side of the skull in all directions, as deep as a
+  // hand can go.
   std::vector<Vec3> points;
   for (int n = 0; n < 12; ++n) {
     Vec3 way = vdb::test::direction(random);

@@ -1,4 +1,5 @@
-// Scans that the tests make, through the command: imported, and felt where their closed forms have walls.
+// Scans that the tests make, through the command: imported, and felt where their closed forms have
+// walls.
 
 #include <cmath>
 #include <cstdio>
@@ -21,7 +22,8 @@ const Json& regionOf(const Json& json, const std::string& name) {
   return json;
 }
 
-// Labels for bone and muscle, gray values for the skin, both oblique; walls that the lightest touch opens, but bone's.
+// Labels for bone and muscle, gray values for the skin, both oblique; walls that the lightest touch
+// opens, but bone's.
 TEST(ImportMade, LayersOfALimbAreFeltAtTheRadiiOfItsCylinders) {
   const TempFolder folder;
   const Limb limb;
@@ -57,7 +59,8 @@ tissues:
   }
   for (const auto& [name, count] : voxels) EXPECT_EQ(regionOf(json, name)["voxels"], count) << name;
 
-  // From 35 mm in to 6.5 mm, 1.5 mm into the bone, from eight sides; from one to the next it is never nearer than 32 mm.
+  // From 35 mm in to 6.5 mm, 1.5 mm into the bone, from eight sides; from one to the next it is
+  // never nearer than 32 mm.
   constexpr double kDepth = 1.5;
   std::vector<Vec3> points, ways;
   for (int n = 0; n < 8; ++n) {
@@ -92,7 +95,8 @@ tissues:
     EXPECT_NEAR(radii[0], Limb::kBody, 0.1);
     EXPECT_NEAR(radii[1], Limb::kMuscle, 0.25);
     EXPECT_NEAR(limb.radius(last.proxy), Limb::kBone, 0.25);
-    // K times the depth, to the same quarter of a voxel; and straight outwards, as walls of labels turn by some degrees.
+    // K times the depth, to the same quarter of a voxel; and straight outwards, as walls of labels
+    // turn by some degrees.
     EXPECT_NEAR(force, 1000.0 * kDepth * 1e-3, 1000.0 * 0.25e-3);
     EXPECT_GT(glm::dot(last.force, ways[n]), 0.97 * force);
     EXPECT_NEAR(force, glm::length(last.hand - last.proxy),
@@ -100,7 +104,8 @@ tissues:
   }
 }
 
-/// A shell of 4 mm around a core, each a label of its own, and the table that opens its walls at 3 N and 2 N.
+/// A shell of 4 mm around a core, each a label of its own, and the table that opens its walls at 3
+/// N and 2 N.
 void writeBall(const TempFolder& folder) {
   (void)vdb::test::writeNifti(
       vdb::test::imageAround(Vec3(0.0), vdb::test::obliqueAxes(Vec3(1, 1, 1.2)), 40.0,

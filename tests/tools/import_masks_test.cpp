@@ -1,4 +1,5 @@
-// palpate import of structures that were segmented one by one: folders and lists of masks, DICOM SEG and RTSTRUCT.
+// palpate import of structures that were segmented one by one: folders and lists of masks, DICOM
+// SEG and RTSTRUCT.
 
 #include <algorithm>
 #include <cstdlib>
@@ -16,7 +17,8 @@ namespace {
 constexpr const char* kOracle = "vdb/structures_oracle.py";
 constexpr int kSize = 21;
 
-/// A mask in `folder`, voxels of 1 mm with the middle one at the origin, moved by `shift` [mm] along x.
+/// A mask in `folder`, voxels of 1 mm with the middle one at the origin, moved by `shift` [mm]
+/// along x.
 void writeMask(const TempFolder& folder, const std::string& name,
                const std::function<bool(int, int, int)>& is_in, double shift = 0.0) {
   vdb::test::NiftiFile file;
@@ -70,7 +72,8 @@ TEST(ImportMasks, AFolderIsASceneThatAHandFeels) {
   EXPECT_EQ(voxelsOf(parseOnly(result)),
             (std::map<std::string, std::uint64_t>{{"a_vastus muscle", 11 * kLayer},
                                                   {"femur", 7 * kLayer}}));
-  // The scene names the folder; a needle goes through the muscle and stands on the bone, whose border is at -2.5 mm.
+  // The scene names the folder; a needle goes through the muscle and stands on the bone, whose
+  // border is at -2.5 mm.
   EXPECT_NE(textOf(folder.path("leg.yaml")).find("labels: {file: \"segmentations\"}"),
             std::string::npos);
   const std::vector<TracedTick> ticks =

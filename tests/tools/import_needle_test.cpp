@@ -31,7 +31,8 @@ void writeImage(const TempFolder& folder, const std::string& name,
                     std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-/// [N/m^2] Of a solid steel rod in a tissue of Young's modulus `young` [Pa] (Vesic 1961, on both sides of it).
+/// [N/m^2] Of a solid steel rod in a tissue of Young's modulus `young` [Pa] (Vesic 1961, on both
+/// sides of it).
 double vesic(double young) {
   constexpr double kSteel = 193e9;
   constexpr double kNu = 0.45;
@@ -64,8 +65,8 @@ TEST(ImportNeedle, EveryTissueThatCanBeCutHoldsTheShaftByVesicsModulus) {
   const TempFolder folder;
   const std::string scene = importedLeg(folder);
   const std::string stiffness = "lateral: {stiffness: ";
-  // Young's moduli of data/materials/tissues.yaml; that of skin is what its wall's 400 N/m at a tip of 1 mm comes to. Three
-  // digits are written.
+  // Young's moduli of data/materials/tissues.yaml; that of skin is what its wall's 400 N/m at a tip
+  // of 1 mm comes to. Three digits are written.
   EXPECT_NEAR(numberOf(scene, "muscle", stiffness) / vesic(62.2e3), 1.0, 5e-3);
   EXPECT_NEAR(numberOf(scene, "fat", stiffness) / vesic(26.1e3), 1.0, 5e-3);
   const double skin = 400.0 * (1.0 - 0.45 * 0.45) / 2e-3;
@@ -101,8 +102,8 @@ tissues:
   EXPECT_EQ(textOf(folder.path("plain_leg.yaml")).find("lateral"), std::string::npos);
 }
 
-/// z of the force on the hand [N] at the end of a way in and then sideways, and y [mm] of the proxy where it came into fat,
-/// into muscle, and at the end.
+/// z of the force on the hand [N] at the end of a way in and then sideways, and y [mm] of the proxy
+/// where it came into fat, into muscle, and at the end.
 struct Walked {
   double force = 0.0;
   std::vector<double> y;
@@ -141,8 +142,8 @@ TEST(ImportNeedle, ANeedleThatIsWalkedSidewaysIsHeld) {
   }
   (void)folder.file("free.yaml", scene);
   const Walked free = walked(folder, "free.yaml");
-  // tools/docs/scene.md: from s0 to s1 below the hole a tissue holds the tip by k (s1^3 - s0^3) / (3 L) sin(angle), square to
-  // the needle. What the tip cuts at is the same in both.
+  // tools/docs/scene.md: from s0 to s1 below the hole a tissue holds the tip by k (s1^3 - s0^3) /
+  // (3 L) sin(angle), square to the needle. What the tip cuts at is the same in both.
   const double to_muscle = (held.y[0] - held.y[1]) * 1e-3;
   const double length = std::hypot((held.y[0] - held.y[2]) * 1e-3, 2e-3);
   const double angle = std::asin(2e-3 / length);
@@ -156,7 +157,8 @@ TEST(ImportNeedle, ANeedleThatIsWalkedSidewaysIsHeld) {
   std::printf("  sideways %.3f N, without %.3f N, by the formula %.3f N more\n", held.force,
               free.force, expected);
   EXPECT_GT(expected, 0.1);
-  // 3 %: the needle gets 0.5 % longer as it turns, which counts by its cube, and what the tip presses on turns with it.
+  // 3 %: the needle gets 0.5 % longer as it turns, which counts by its cube, and what the tip
+  // presses on turns with it.
   EXPECT_NEAR(std::fabs(held.force - free.force), expected, 0.03 * expected);
 }
 

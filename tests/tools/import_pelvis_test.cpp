@@ -1,5 +1,5 @@
-// A scanned pelvis, imported and touched: its layers are felt where the labels have them, and a needle feels them as
-// its model says.
+// A scanned pelvis, imported and touched: its layers are felt where the labels have them, and a
+// needle feels them as its model says.
 
 #include <array>
 #include <cmath>
@@ -23,8 +23,8 @@ const std::string kSets = kMuscles + ";1,2,3,4";
 /// The head of a femur.
 constexpr int kSlice = 56;
 
-/// All of it takes minutes, and is felt with PALPATE_SLOW_TESTS=1, each label a region; else one half of 11
-/// slices, all muscles one region and all bones another.
+/// All of it takes minutes, and is felt with PALPATE_SLOW_TESTS=1, each label a region; else one
+/// half of 11 slices, all muscles one region and all bones another.
 struct Pelvis {
   bool is_whole = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   TempFolder folder;
@@ -68,9 +68,9 @@ struct Ray {
   [[nodiscard]] double widestAngle() const { return *std::max_element(angle.begin(), angle.end()); }
 };
 
-/// Of twenty rays all around, those that meet each of the three borders at less than 60 degrees. A ray that grazes a
-/// border has no certain place on it: half a voxel across is a whole one along, and more. The femur is the thicker one of
-/// the slice; nothing here depends on what is felt.
+/// Of twenty rays all around, those that meet each of the three borders at less than 60 degrees. A
+/// ray that grazes a border has no certain place on it: half a voxel across is a whole one along,
+/// and more. The femur is the thicker one of the slice; nothing here depends on what is felt.
 std::vector<Ray> raysOf(const Pelvis& pelvis) {
   std::vector<Ray> rays;
   for (const std::vector<double>& row : vdb::test::askScript(
@@ -130,8 +130,8 @@ TEST(ImportPelvis, LayersAreFeltAsDeepAsTheLabelsHaveThem) {
   const Pelvis pelvis;
   const std::vector<Ray> rays = raysOf(pelvis);
   ASSERT_GE(rays.size(), 10U);
-  // Walls that the lightest touch opens, so that the probe goes where the hand goes, and all that it tells is where
-  // it comes into the next region.
+  // Walls that the lightest touch opens, so that the probe goes where the hand goes, and all that
+  // it tells is where it comes into the next region.
   (void)pelvis.folder.file("open.yaml", R"(palpate_tissues: 1
 tip_radius: {value: 1 mm, basis: assumed, source: a needle}
 stiffest: {value: 2000 N/m, basis: assumed, source: a device}
@@ -196,8 +196,8 @@ tissues:
                     r, kNames[k], ray.depth[k] - ray.depth[0], off, ray.angle[k]);
       told.emplace_back(line);
       EXPECT_NEAR(off, 0.0, ray.voxel) << line;
-      // Depth below the skin is between two borders, so both have to be met well: at less than 45 degrees half a voxel
-      // across is less than one along.
+      // Depth below the skin is between two borders, so both have to be met well: at less than 45
+      // degrees half a voxel across is less than one along.
       if (ray.widestAngle() < 45.0) {
         EXPECT_NEAR(felt[k] - felt[0], ray.depth[k] - ray.depth[0], ray.voxel) << line;
         met_well += k == 0 ? 1 : 0;
@@ -225,7 +225,8 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
   PALPATE_NEEDS_SCAN(kData);
   const Pelvis pelvis;
   const std::vector<Ray> rays = raysOf(pelvis);
-  // The one that meets skin and muscle most squarely: there no wall is slid along before it gives way.
+  // The one that meets skin and muscle most squarely: there no wall is slid along before it gives
+  // way.
   const auto slant = [](const Ray& ray) { return std::max(ray.angle[0], ray.angle[1]); };
   const Ray ray = *std::min_element(
       rays.begin(), rays.end(), [&](const Ray& a, const Ray& b) { return slant(a) < slant(b); });
@@ -291,12 +292,12 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
     const bool is_held = glm::length(row.hand - row.proxy) > 1e-6;  // by a wall
     if (!is_in || is_held) continue;
     const Model by_labels = model(depth);
-    // Out of a muscle it presses up to 10 mm before that gives way (1.5 N at 156 N/m, slant), and then up to 4 mm before it
-    // cuts (0.6 N); and borders are a voxel off.
+    // Out of a muscle it presses up to 10 mm before that gives way (1.5 N at 156 N/m, slant), and
+    // then up to 4 mm before it cuts (0.6 N); and borders are a voxel off.
     if (by_labels.since < 15.0 || by_labels.until < ray.voxel) continue;
-    // Each border is up to a voxel off, and the force by as much of what the friction of its two sides differs by; the
-    // first has nothing on its outer side.
-    // Out of the muscle the tip may slide along a slant wall as far as it presses on it, so that the border is off by that.
+    // Each border is up to a voxel off, and the force by as much of what the friction of its two
+    // sides differs by; the first has nothing on its outer side. Out of the muscle the tip may
+    // slide along a slant wall as far as it presses on it, so that the border is off by that.
     const double slid = borders > 2 ? 12.0 * 1.5 / 156.0 : 0.0;
     const double off = ray.voxel * 1e-3 * (35.0 + 12.0 * static_cast<double>(borders - 1)) + slid;
     EXPECT_NEAR(force, by_labels.force, off) << "at " << depth << " mm";
@@ -310,9 +311,10 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
   }
   std::printf("  %zu ticks, off by %.4f N at most\n", compared, worst);
   ASSERT_GE(before.size(), 2U);
-  // The skin gives way at its force, and the muscle at its own with what the needle feels in the fat on top of that; up
-  // to the depth's error, damping at 10 mm/s, and what a wall that is not met squarely adds by its friction: the hand
-  // pushes along the ray, and the wall opens by what is across it. Its normal is known to some 5 degrees.
+  // The skin gives way at its force, and the muscle at its own with what the needle feels in the
+  // fat on top of that; up to the depth's error, damping at 10 mm/s, and what a wall that is not
+  // met squarely adds by its friction: the hand pushes along the ray, and the wall opens by what is
+  // across it. Its normal is known to some 5 degrees.
   const auto aside = [&](double opens_at, std::size_t border) {
     constexpr double kDamping = 0.01;
     return kDamping +

@@ -18,8 +18,8 @@ struct Ray {
   Vec3 direction{0.0};
 };
 
-/// Where a probe would be: [mm] of the way to the body and from there to each group of regions; -1: never.
-/// Regions are asked for in steps of 0.25 mm.
+/// Where a probe would be: [mm] of the way to the body and from there to each group of regions; -1:
+/// never. Regions are asked for in steps of 0.25 mm.
 std::vector<std::vector<double>> depths(const TempFolder& folder, const std::string& scene,
                                         const std::vector<Ray>& rays, double length,
                                         const std::vector<std::vector<std::string>>& groups) {
@@ -161,8 +161,8 @@ TEST(ImportScan, AShellIsFeltOnBothFacesAndItsCoreReachedThroughItAlone) {
   ASSERT_EQ(core["within"], "vertebra shell");
   ASSERT_EQ(core["touches"].size(), 1U);
 
-  // Through the middle of one of the three vertebrae, from three sides and out at the other. Along z the
-  // next ones are 18 mm and more away.
+  // Through the middle of one of the three vertebrae, from three sides and out at the other. Along
+  // z the next ones are 18 mm and more away.
   const Vec3 middle(-25.5, -156.0, -64.2);
   const auto reach = [](int side) { return side / 2 == 2 ? 16.5 : 45.0; };
   const auto point = [](const Vec3& p) {

@@ -101,8 +101,9 @@ TEST(Import, AProbeGoesThroughSkinFatAndMuscleAndStopsAtTheBone) {
   // It stands on the bone: its surface is between the centers at 5 and 6 mm.
   EXPECT_NEAR(last_y, 5.5, 0.5);
 
-  // The peak in front of each wall is what its port opens at; friction acts along the wall only. A needle in the fat
-  // feels its cutting force as well, and friction along the part of its shaft that is in.
+  // The peak in front of each wall is what its port opens at; friction acts along the wall only. A
+  // needle in the fat feels its cutting force as well, and friction along the part of its shaft
+  // that is in.
   const Json told = parseOnly(touch);
   const std::map<std::string, double> peak = [&] {
     std::map<std::string, double> of;
@@ -193,7 +194,7 @@ TEST(Import, IslandsAreToldAndChangedOnRequest) {
   EXPECT_EQ(dropped["changed"][0]["to"], "unlabeled");
 }
 
-TEST(Import, TheSkinIsFoundInGreyValues) {
+TEST(Import, TheSkinIsFoundInGrayValues) {
   const TempFolder folder;
   (void)writeLabels(folder, "l.nii.gz", 31,
                     [](int x, int y, int z) { return std::hypot(x, y, z) < 5 ? 1 : 0; });
@@ -310,7 +311,8 @@ TEST(Import, TheProjectsTableGivesEveryNumberASourceAndFitsTheNamesInUse) {
 TEST(Import, StiffnessComesFromCtNumbersOnRequest) {
   const TempFolder folder;
   writeLeg(folder);
-  // A CT of it: air, fat, muscle that is dense in front and fatty behind, bone that is softer behind.
+  // A CT of it: air, fat, muscle that is dense in front and fatty behind, bone that is softer
+  // behind.
   (void)writeLabels(folder, "ct.nii.gz", 41, [](int x, int y, int) {
     const double r = std::hypot(x, y);
     if (r < 6) return y > 0 ? 1500.0 : 100.0;

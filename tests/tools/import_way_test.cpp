@@ -1,4 +1,5 @@
-// palpate import --to: the way it finds is open in the voxels, and is felt as predicted; none is refused that there is.
+// palpate import --to: the way it finds is open in the voxels, and is felt as predicted; none is
+// refused that there is.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,8 @@ constexpr double kInner = 19.0;  // of the bone
 constexpr double kTarget = 4.0;
 constexpr int kBrainLabel = 1, kBoneLabel = 2, kTargetLabel = 3, kVesselLabel = 4, kFatLabel = 5;
 
-/// A head: brain in a skull with a round opening, a target off its center, and a vessel that runs past.
+/// A head: brain in a skull with a round opening, a target off its center, and a vessel that runs
+/// past.
 struct Head {
   Vec3 opening{0.0, 0.0, 1.0};  ///< unit, from the origin
   double half_angle = 0.5;      ///< [rad] of the opening; below 0: none
@@ -109,8 +111,8 @@ double clearanceOf(const Image& image, const Vec3& from, const Vec3& to) {
   return nearest;
 }
 
-Vec3 pointOf(const Json& metres) {
-  return 1e3 * Vec3(metres[0].get<double>(), metres[1].get<double>(), metres[2].get<double>());
+Vec3 pointOf(const Json& meters) {
+  return 1e3 * Vec3(meters[0].get<double>(), meters[1].get<double>(), meters[2].get<double>());
 }
 
 Head randomHead(std::mt19937& random) {

@@ -1,5 +1,6 @@
 #pragma once
-// What tests of imported scans need: the command run to its good end, and what a hand feels on a straight way.
+// What tests of imported scans need: the command run to its good end, and what a hand feels on a
+// straight way.
 
 #include <cstdio>
 
@@ -49,7 +50,8 @@ inline std::vector<TracedTick> touched(const TempFolder& folder, const std::stri
   return ticks;
 }
 
-/// Tissues for a shell around a core, whatever they are called: bone that opens at 3 N, and at 2 N on the way back.
+/// Tissues for a shell around a core, whatever they are called: bone that opens at 3 N, and at 2 N
+/// on the way back.
 inline constexpr const char* kBoneThatOpens = R"(palpate_tissues: 1
 tip_radius: {value: 1 mm, basis: assumed, source: a needle}
 stiffest: {value: 2000 N/m, basis: assumed, source: a device}

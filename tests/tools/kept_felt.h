@@ -26,7 +26,8 @@ inline void importLimb(const TempFolder& folder, double voxel = 1.5) {
   (void)run(folder, {"import", "limb.nii.gz", "--names", "names.csv", "-o", "limb.yaml", "--json"});
 }
 
-/// A touch of `scene` from outside the limb to its axis and back, but for the times of its ticks; empty if that failed.
+/// A touch of `scene` from outside the limb to its axis and back, but for the times of its ticks;
+/// empty if that failed.
 struct Felt {
   std::vector<std::string> ticks;
   std::size_t made = 0;

@@ -1,4 +1,5 @@
-// Scenes whose grids were kept by an earlier run of the command, by several at once, and by one that was killed.
+// Scenes whose grids were kept by an earlier run of the command, by several at once, and by one
+// that was killed.
 
 #include <sys/wait.h>
 
@@ -40,7 +41,8 @@ TEST(KeptScenes, TheSecondTouchOfAnImportedScanBakesNothingAndFeelsTheSame) {
   EXPECT_EQ(second.kept, kGrids);
   EXPECT_EQ(without.ticks, first.ticks);
   EXPECT_EQ(first.ticks, second.ticks);
-  // Other verbs take the same grids; a scene that is edited only where no grid depends on it does as well.
+  // Other verbs take the same grids; a scene that is edited only where no grid depends on it does
+  // as well.
   std::string text = textOf(folder.path("limb.yaml"));
   (void)folder.file("edited.yaml", text + "# A word more.\n");
   EXPECT_EQ(feltIn(folder, "edited.yaml", "d.csv").kept, kGrids);
@@ -92,7 +94,8 @@ TEST(KeptScenes, WhoeverIsKilledLeavesNothingThatHarms) {
   int killings = 0;
   for (int i = 0; i < 8; ++i) {
     fs::remove_all(folder.path("cache"));
-    // While a grid is made or written, so many of them being there, or at once; and some time on from there.
+    // While a grid is made or written, so many of them being there, or at once; and some time on
+    // from there.
     const std::string grids = std::to_string(static_cast<std::size_t>(i) % kGrids);
     const std::string on = std::to_string(0.005 * static_cast<double>(random() % 6));
     const std::string killed =

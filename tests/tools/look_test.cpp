@@ -253,7 +253,8 @@ TEST(Explain, SheetsAndTheirMaterials) {
   EXPECT_EQ(info["sheets"][1]["wall"], "skin");
 }
 
-// Whatever the fields are made of: explain, info, query and render take every shipped analytic scene.
+// Whatever the fields are made of: explain, info, query and render take every shipped analytic
+// scene.
 TEST(EveryVerb, TakesTheShippedScenes) {
   for (const char* name : {"container", "csg_part", "valve_tube", "fields", "sponge", "flag",
                            "composite_tube", "cup", "metaballs", "heart", "csg"}) {
@@ -395,8 +396,8 @@ TEST(Render, SheetsStandInSpace) {
   ASSERT_EQ(with.colors.size(), without.colors.size());
   std::size_t changed = 0;
   std::size_t lo_x = with.width, hi_x = 0, lo_y = with.height, hi_y = 0;
-  // Below the titles, which hold the file's name, and left of the post, whose edges may be found elsewhere by a
-  // share of a pixel.
+  // Below the titles, which hold the file's name, and left of the post, whose edges may be found
+  // elsewhere by a share of a pixel.
   for (std::size_t y = 60; y < with.height; ++y) {
     for (std::size_t x = 0; x < with.width - 50; ++x) {
       // More than by where along its ray a surface was found.
@@ -408,8 +409,8 @@ TEST(Render, SheetsStandInSpace) {
       hi_y = std::max(hi_y, y);
     }
   }
-  // A disk of 24 mm, seen from the side by 35 degrees and from above by 24: an ellipse of which three quarters
-  // of its box are full; all in the right part, where the scene stands in space.
+  // A disk of 24 mm, seen from the side by 35 degrees and from above by 24: an ellipse of which
+  // three quarters of its box are full; all in the right part, where the scene stands in space.
   ASSERT_GT(changed, 1000U);
   EXPECT_GT(lo_x, 500U);
   const double width = static_cast<double>(hi_x - lo_x + 1);

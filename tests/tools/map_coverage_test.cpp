@@ -66,7 +66,7 @@ TEST_F(MapCoverage, AMapOfHalfItsLayerIsTold) {
   EXPECT_NE(checked.dump().find("scene.map_partial"), std::string::npos) << checked.dump(1);
 }
 
-TEST_F(MapCoverage, MetresReadAsMillimetresAreDoubted) {
+TEST_F(MapCoverage, MetersReadAsMillimetersAreDoubted) {
   write(image(0.0, 0.002));  // an image whose author counted in meters
   const std::string said = touch().err;
   EXPECT_NE(said.find("times as long as the layer: is its length unit right"), std::string::npos)

@@ -1,4 +1,5 @@
-// Maps of materials through the command: told by explain, query and info, written by bake, read back the same.
+// Maps of materials through the command: told by explain, query and info, written by bake, read
+// back the same.
 
 #include "tools/helpers.h"
 #include "vdb/nifti_writer.h"
@@ -6,8 +7,9 @@
 namespace palpate::testing {
 namespace {
 
-/// 16^3 voxels of 2 mm, about the origin; gray values from 0 to 150, rising along x, in waves along y.
-std::string greyImage(const TempFolder& folder) {
+/// 16^3 voxels of 2 mm, about the origin; gray values from 0 to 150, rising along x, in waves along
+/// y.
+std::string grayImage(const TempFolder& folder) {
   vdb::test::NiftiFile file;
   file.dim = {16, 16, 16};
   file.datatype = 16;  // float
@@ -43,7 +45,7 @@ const char* const kBall = "sphere: {center: [0, 0, 0], radius: 12}";
 class MaterialMapFiles : public ::testing::Test {
  protected:
   MaterialMapFiles() {
-    (void)greyImage(folder_);
+    (void)grayImage(folder_);
     (void)folder_.file("scene.yaml", mapped(kBall));
   }
   Json asked(std::vector<std::string> arguments) {

@@ -1,4 +1,5 @@
-// palpate pack: a scene with its grids in one folder, which is felt the same elsewhere and without its scan.
+// palpate pack: a scene with its grids in one folder, which is felt the same elsewhere and without
+// its scan.
 
 #include "tools/kept_felt.h"
 

@@ -15,7 +15,8 @@ void expectTenPointsAsScipyHasThem(const std::string& scan) {
   const vdb::Image image = vdb::readNifti(scan);
   const Vec3 last(image.size[0] - 1, image.size[1] - 1, image.size[2] - 1);
 
-  // Ten places well inside, at thousandths of a millimeter so that both sides read the same numbers.
+  // Ten places well inside, at thousandths of a millimeter so that both sides read the same
+  // numbers.
   std::vector<std::string> arguments{"query", scan, "--json", "--at"};
   std::string lines;
   for (int i = 0; i < 10; ++i) {

@@ -48,7 +48,8 @@ TEST(RayMarch, ABallIsSeenAsTheFormulaSays) {
         if (hit.part == -1) continue;
         const Vec3 normal =
             (u * camera.right + v * camera.up + 0.5 * chord * camera.toward) / kRadius;
-        // The surface is found to 2^-12 of a step, which near the rim turns the normal by up to some 1e-3.
+        // The surface is found to 2^-12 of a step, which near the rim turns the normal by up to
+        // some 1e-3.
         expectNear(hit.color, tools::scaled(tools::regionColor(1), tools::shadeOf(normal, camera)),
                    2e-3, std::to_string(x) + " " + std::to_string(y));
       }
@@ -87,7 +88,8 @@ TEST(RayMarch, TheCutFaceIsFlatAndItsFrontIsGone) {
   EXPECT_EQ(RayMarch(look.space, back).cast(32.0, 32.0).part, 2 * 1 + 1) << "its rounded back";
 }
 
-// The way that a block of rays shares is free for each of them: nothing is seen otherwise than without it.
+// The way that a block of rays shares is free for each of them: nothing is seen otherwise than
+// without it.
 TEST(RandomRays, TheSharedWayHidesNothing) {
   for (const char* name : {"csg_part", "metaballs", "heart", "sponge", "flag", "valve_tube"}) {
     const std::string file = scenePath(std::string(name) + ".yaml");
@@ -116,7 +118,8 @@ TEST(RandomRays, TheSharedWayHidesNothing) {
           const double ry = y + off * std::sin(angle);
           const Hit without = march.cast(rx, ry);
           const Hit with = march.cast(rx, ry, free);
-          // Steps fall elsewhere, so that a chord shorter than the least step is met by one and not by the other.
+          // Steps fall elsewhere, so that a chord shorter than the least step is met by one and not
+          // by the other.
           if (without.part == with.part) continue;
           const Hit near = march.cast(rx + 0.5, ry + 0.5);
           const Hit other = march.cast(rx - 0.5, ry - 0.5);
@@ -170,7 +173,8 @@ TEST(RayMarch, LightComesThroughAsWallsLetIt) {
   EXPECT_EQ(light(1, 1, {0, 0, 0}), 1.0) << "what was before it is cut away";
 }
 
-// The whole picture of a ball: white around it, within it what its normal says, finer rays only at its rim.
+// The whole picture of a ball: white around it, within it what its normal says, finer rays only at
+// its rim.
 TEST(DrawSpace, ABallIsWhatItsFormulaSays) {
   const Look look(
       "palpate: 1\nlength: mm\nlayers:\n  - {name: ball, inside: {sphere: {center: [0, 0, 0], "
@@ -191,7 +195,8 @@ TEST(DrawSpace, ABallIsWhatItsFormulaSays) {
         ASSERT_EQ(word, 0xFFFFFFU) << x << " " << y;
         ++outer;
       }
-      // Within 3 pixels of the rim the shade changes by more than a pixel's worth, and there is an edge.
+      // Within 3 pixels of the rim the shade changes by more than a pixel's worth, and there is an
+      // edge.
       if (off > kRadius - 3.0 * camera.step) continue;
       const Vec3 normal = (u * camera.right + v * camera.up +
                            std::sqrt(kRadius * kRadius - off * off) * camera.toward) /

@@ -21,7 +21,8 @@ constexpr const char* kTraceHeader =
     "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_"
     "ns\n";
 
-/// The text of a page without its tags, references read back; "?" first if the tags are not those of well-formed markup.
+/// The text of a page without its tags, references read back; "?" first if the tags are not those
+/// of well-formed markup.
 std::string readBack(const std::string& page) {
   std::string text;
   std::vector<std::string> open;
@@ -171,7 +172,8 @@ TEST(TickColumns, KeepPeaksAndWorkOfAnyNumberOfTicks) {
 
 TEST(Report, ATraceOfKnownForcesAndWork) {
   const TempFolder folder;
-  // 10 mm in steps of 1 mm against 2 N: the hand puts 20 mJ in, and the proxy stays 10 mm behind it.
+  // 10 mm in steps of 1 mm against 2 N: the hand puts 20 mJ in, and the proxy stays 10 mm behind
+  // it.
   std::string trace = kTraceHeader;
   for (int i = 0; i <= 10; ++i) {
     trace += rowOf(0.001 * i, 0.001 * i, 0.0, -2.0, "outside", i == 10 ? "in;out" : "");

@@ -1,5 +1,5 @@
-// What is made from the declarations of scene files and of the command line: it is what is committed, and a key
-// that is added in one place is in all of it.
+// What is made from the declarations of scene files and of the command line: it is what is
+// committed, and a key that is added in one place is in all of it.
 
 #include <cstdio>
 #include <filesystem>

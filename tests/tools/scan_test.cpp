@@ -1,5 +1,5 @@
-// Scans of all formats through the verbs: what info tells of them, names and colors out of tables, and options that
-// say what files leave open.
+// Scans of all formats through the verbs: what info tells of them, names and colors out of tables,
+// and options that say what files leave open.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -100,7 +100,8 @@ TEST(Scan, SegmentsAreBakedByTheirNames) {
   EXPECT_NEAR(ask["bounds_m"]["hi"][0], 0.0, 3e-4);
 }
 
-// Voxels of 5 mm cannot hold a plate of 1 mm beside a block: every verb that makes the scene's grids says so, and where.
+// Voxels of 5 mm cannot hold a plate of 1 mm beside a block: every verb that makes the scene's
+// grids says so, and where.
 TEST(Scan, WhatAScenesGridsLoseIsTold) {
   const TempFolder folder;
   std::string voxels = segmentation();

@@ -37,8 +37,8 @@ TEST_F(RenderView, StandsInSpace) {
   const Pixels pixels = pixelsOf(textOf(folder_.path("p.png")));
   ASSERT_EQ(pixels.width, 640U);
   ASSERT_EQ(pixels.height, 400U);
-  // A bowl of 80 mm, cut flat 15 mm above its center, from the side: the widest row is wider than the lot is high by
-  // 80 : 55. In its panel, beyond the title and left of the legend.
+  // A bowl of 80 mm, cut flat 15 mm above its center, from the side: the widest row is wider than
+  // the lot is high by 80 : 55. In its panel, beyond the title and left of the legend.
   std::size_t left = pixels.width, right = 0, top = pixels.height, bottom = 0;
   for (std::size_t y = 40; y < pixels.height; ++y) {
     for (std::size_t x = 5; x < 440; ++x) {

@@ -1,4 +1,5 @@
-// palpate touch and needles: the summary names every layer that the tip came into, however many in one tick.
+// palpate touch and needles: the summary names every layer that the tip came into, however many in
+// one tick.
 
 #include <cmath>
 
@@ -45,7 +46,8 @@ void expectLayers(Json& json, const std::vector<Layer>& layers) {
   }
 }
 
-// The hand goes 50 mm in a tick: skin, fat and muscle, each with its own rupture, depth and force, in that tick.
+// The hand goes 50 mm in a tick: skin, fat and muscle, each with its own rupture, depth and force,
+// in that tick.
 TEST_F(TouchNeedle, AHandFarAheadLeavesNoLayerOut) {
   (void)folder_.file("p.csv", "t,x,y,z\n0,0,0,0.005\n0.001,0,0,-0.045\n0.002,0,0,-0.045\n");
   Json json = touch({"--path", "p.csv"});
@@ -62,7 +64,8 @@ TEST_F(TouchNeedle, AHandFarAheadLeavesNoLayerOut) {
   EXPECT_EQ(json["events"].size(), 4U);
 }
 
-// At 50 mm/s the skin gives way when the hand is 5.8 mm deep: in fat. Depths are of the walls, not of the hand.
+// At 50 mm/s the skin gives way when the hand is 5.8 mm deep: in fat. Depths are of the walls, not
+// of the hand.
 TEST_F(TouchNeedle, DepthsAreOfTheWallsAndTheTip) {
   Json json = touch({"--insert", "0,0,5", "0,0,-25", "--speed", "50"});
   ASSERT_EQ(json["regions"].size(), 4U) << json["regions"];

@@ -1,4 +1,5 @@
-// palpate touch --record and palpate replay: what was felt is kept whatever ends the run, NumPy reads it, and it is felt anew bit for bit.
+// palpate touch --record and palpate replay: what was felt is kept whatever ends the run, NumPy
+// reads it, and it is felt anew bit for bit.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -1,4 +1,5 @@
-// palpate touch --set: contents that change while the hand moves; the paper's parameters; presses that miss.
+// palpate touch --set: contents that change while the hand moves; the paper's parameters; presses
+// that miss.
 
 #include <cmath>
 
@@ -135,7 +136,8 @@ TEST_F(TouchSet, APressThatMissesSaysSoAndEndsWith1) {
     EXPECT_EQ(hit.exit_code, 0);
     EXPECT_EQ(parseOnly(hit)["met_something"], true);
   }
-  // Into the syrup by the mouth is not a miss, though no wall is there; and a stroke may well meet nothing.
+  // Into the syrup by the mouth is not a miss, though no wall is there; and a stroke may well meet
+  // nothing.
   EXPECT_EQ(touch({"--press", "0,0,15"}).exit_code, 0);
   EXPECT_EQ(touch({"--stroke", "0,100,0", "0,100,10"}).exit_code, 0);
 }
@@ -150,7 +152,8 @@ TEST_F(TouchSet, ThePapersParametersAreFlags) {
     const std::vector<double> x = column(7);
     return x[x.size() - 3];
   };
-  // The wall's normal leans by 1 in 41 there, and by as much more where the paper's contact point has drifted.
+  // The wall's normal leans by 1 in 41 there, and by as much more where the paper's contact point
+  // has drifted.
   const double by_wall = last_x({"--interior", "wall"});
   EXPECT_NEAR(by_wall, -1.0 / 41.0, 1.0 / 41.0);
   EXPECT_NEAR(last_x({}) - by_wall, -4.0 * 0.05, 1e-9) << "drag along the wall";

@@ -1,4 +1,5 @@
-// palpate touch MESH, IMAGE or GRID: whatever has a surface is touched in one line, as the scene that it writes.
+// palpate touch MESH, IMAGE or GRID: whatever has a surface is touched in one line, as the scene
+// that it writes.
 
 #include <cmath>
 
@@ -56,7 +57,7 @@ TEST_F(TouchShape, AMeshOfFlatFacesIsExact) {
   EXPECT_NE(result.err.find("sharp edges"), std::string::npos) << result.err;
 }
 
-TEST_F(TouchShape, AGlbIsInMetres) {
+TEST_F(TouchShape, AGlbIsInMeters) {
   make("ball.glb");
   expectPressed(touch({"ball.glb"}));
 }
@@ -68,7 +69,8 @@ TEST_F(TouchShape, AGrid) {
 
 TEST_F(TouchShape, AnImage) {
   make("ball.nii.gz");
-  // Distances in mm: above -3 is a room with a ball of 17 mm cut out, and the image's border is its wall.
+  // Distances in mm: above -3 is a room with a ball of 17 mm cut out, and the image's border is its
+  // wall.
   expectPressed(touch({"ball.nii.gz", "--above", "-3"}), 0.05);
   const CommandResult none = touch({"ball.nii.gz"});
   EXPECT_EQ(none.exit_code, 2) << none.err;

@@ -1,4 +1,5 @@
-// What a touch keeps of its ticks in constant memory: order statistics of times, and rows for pictures.
+// What a touch keeps of its ticks in constant memory: order statistics of times, and rows for
+// pictures.
 
 #include <gtest/gtest.h>
 

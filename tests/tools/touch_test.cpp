@@ -55,7 +55,8 @@ TEST_F(Touch, RegionsComeInOrderWithDepthAndPeakForce) {
   EXPECT_EQ(json["regions"][0]["region"], "outside");
   EXPECT_EQ(json["regions"][1]["region"], "liquid");
   EXPECT_EQ(json["regions"][2]["region"], "outside");
-  // From the mouth at z = 15 mm to -10 mm; a tick is 0.05 mm, and the first one inside may be as deep.
+  // From the mouth at z = 15 mm to -10 mm; a tick is 0.05 mm, and the first one inside may be as
+  // deep.
   EXPECT_NEAR(json["regions"][1]["depth_m"], 0.025, 6e-5);
   EXPECT_NEAR(json["regions"][1]["entry_depth_m"], 0.0, 6e-5);
   EXPECT_NEAR(json["regions"][1]["peak_force_N"], 4.0 * 0.05, 1e-9);  // drag 4 N.s/m at 50 mm/s
@@ -289,7 +290,8 @@ TEST_F(Touch, WorkIsThatOfTheTrace) {
   const CommandResult result = touch({"--insert", "0,0,35", "0,0,-10", "--back", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   Json json = parseOnly(result);
-  // 25 mm of syrup at 4 N.s/m and 50 mm/s, twice; the first quarter millimeter behind the mouth fades.
+  // 25 mm of syrup at 4 N.s/m and 50 mm/s, twice; the first quarter millimeter behind the mouth
+  // fades.
   EXPECT_NEAR(json["work_on_hand_J"], -2 * 0.2 * 0.025, 0.2 * 0.5e-3);
   EXPECT_EQ(json["source_work_J"], 0.0);
 }

@@ -1,4 +1,5 @@
-// What `palpate view` is made of: surfaces, the hand that a page moves, recorded runs, and the desk that answers pages.
+// What `palpate view` is made of: surfaces, the hand that a page moves, recorded runs, and the desk
+// that answers pages.
 
 #include <gtest/gtest.h>
 

@@ -198,7 +198,8 @@ TEST(PageServer, OnePageSteersAndOthersWatch) {
   second.say(R"({"steer":false})");
   first->say(R"({"to":[1,1,1]})");
   ASSERT_TRUE(waitUntil([&] { return !served.notes.commands().empty(); }));
-  // What the second one said came before or not at all: it hears that it does not steer, after all of it was read.
+  // What the second one said came before or not at all: it hears that it does not steer, after all
+  // of it was read.
   second.say("x");
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(second.hear().has_value());
   EXPECT_EQ(served.notes.commands(), std::vector<std::string>{R"({"to":[1,1,1]})"});
@@ -253,7 +254,8 @@ TEST(PageServer, AFloodIsCutOffAndOthersGoOn) {
   PageLine other(served.server.port());
   ASSERT_TRUE(flood.open(served.server.token()));
   ASSERT_TRUE(other.open(served.server.token()));
-  // So many that, however slowly they come through, some second has too many: it ends by the server's will.
+  // So many that, however slowly they come through, some second has too many: it ends by the
+  // server's will.
   int sent = 0;
   constexpr int kMost = 10'000'000;
   while (sent < kMost && flood.say(R"({"to":[0,0,0]})")) ++sent;

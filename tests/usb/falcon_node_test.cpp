@@ -1,5 +1,5 @@
-// A Falcon that is found, opened, unplugged and plugged in again by libusb's own search: umockdev stands for sysfs,
-// udev and the device's node, the emulation for the kernel behind the node.
+// A Falcon that is found, opened, unplugged and plugged in again by libusb's own search: umockdev
+// stands for sysfs, udev and the device's node, the emulation for the kernel behind the node.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -20,7 +20,8 @@
 namespace palpate::devices {
 namespace {
 
-/// Device, configuration, interface with bulk IN 0x81 and bulk OUT 0x02: of a Falcon, and of another maker's device.
+/// Device, configuration, interface with bulk IN 0x81 and bulk OUT 0x02: of a Falcon, and of
+/// another maker's device.
 constexpr const char* kFalcon =
     "12010002000000400304 48CB 0006 010203 01"
     "09022000010100803209040000 02FFFFFF 0007058102400000 07050202400000";
@@ -158,7 +159,8 @@ TEST_F(FalconNode, UnpluggedItIsGoneAndPluggedInAgainElsewhereItIsHomedAndRamped
   std::atomic<bool> stop{false};
   const auto push = [](const DeviceState&) { return Vec3(0.0, 0.0, 1.0); };
   usb_.fault = [this](UsbfsEmulation::Step) { return emulator_.commands >= 600 ? ENODEV : 0; };
-  // Turns count as a millisecond each: the ramp of half a second is over before the cable is pulled.
+  // Turns count as a millisecond each: the ramp of half a second is over before the cable is
+  // pulled.
   const ServoReport first = runServo(*device, push, {}, stop);
   EXPECT_EQ(first.exit, ServoExit::kDisconnected);
   EXPECT_EQ(first.fault, SafetyFault::kDevice);

@@ -1,5 +1,5 @@
-// Fields whose value is not a distance, baked: every voxel has the distance to the surface, at few looks at the field, and what a hand
-// feels of the grid is what it feels of the surface.
+// Fields whose value is not a distance, baked: every voxel has the distance to the surface, at few
+// looks at the field, and what a hand feels of the grid is what it feels of the surface.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -43,7 +43,8 @@ struct Shape {
 
 void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
 
-/// Two balls of 30 and 45 mm reach with a saddle between, and a medial axis within the band at 2 mm.
+/// Two balls of 30 and 45 mm reach with a saddle between, and a medial axis within the band at 2
+/// mm.
 FieldPtr twoBalls() {
   return metaballs({{Vec3(-14 * kMm, 0.3 * kMm, 0.0), 30 * kMm, 1.0},
                     {Vec3(16 * kMm, 0.0, -0.2 * kMm), 45 * kMm, 1.0}},
@@ -96,8 +97,8 @@ BakeOptions optionsOf(const Shape& shape, double voxel) {
 TEST_P(BakeImplicit, VoxelsHoldTrueDistances) {
   const Shape& shape = GetParam();
   const LevelSet grid = bake(*shape.field, optionsOf(shape, 1 * kMm));
-  // A tenth of what the cubic sampler leaves of a bend over 8 voxels, 0.037 / 8^3. The heart bends within a voxel, where points
-  // creep: what a grid is stated to be off even where it is smooth.
+  // A tenth of what the cubic sampler leaves of a bend over 8 voxels, 0.037 / 8^3. The heart bends
+  // within a voxel, where points creep: what a grid is stated to be off even where it is smooth.
   const double tolerance = (shape.name == "heart" ? 2e-2 : 1e-5) * kMm;
   std::uint64_t compared = 0;
   std::uint64_t nearer = 0;
@@ -126,12 +127,14 @@ TEST_P(BakeImplicit, VoxelsHoldTrueDistances) {
   EXPECT_GT(compared, 3000U);
   EXPECT_LE(nearer, compared / 100);
   EXPECT_LE(worst, tolerance);
-  // Beside a medial axis or a center of curvature, so far a voxel knows a nearer part by its neighbors' points only.
+  // Beside a medial axis or a center of curvature, so far a voxel knows a nearer part by its
+  // neighbors' points only.
   EXPECT_LE(worst_far, 0.13 * kMm);
 }
 
 TEST_P(BakeImplicit, NoVoxelIsFartherThanTheSurfaceNorLeftOut) {
-  // From points of the surface, every voxel within the band says at most the way to that point, and is there.
+  // From points of the surface, every voxel within the band says at most the way to that point, and
+  // is there.
   const Shape& shape = GetParam();
   for (const double voxel : {2 * kMm, 0.7 * kMm}) {
     const LevelSet grid = bake(*shape.field, optionsOf(shape, voxel));
@@ -186,8 +189,8 @@ TEST_P(BakeImplicit, LipschitzBoundIsThatOfADistance) {
     const FieldPtr made = gridField(bake(*shape.field, optionsOf(shape, voxel)));
     std::printf("%s at %.1f mm: slopes up to %.3f\n", shape.name.c_str(), voxel / kMm,
                 made->lipschitz());
-    // 1 but where distances to several sides meet, which the spline rounds off: its cells' control values are bounded by 2.6 at a
-    // crease along their diagonal, and at the tip of a cone.
+    // 1 but where distances to several sides meet, which the spline rounds off: its cells' control
+    // values are bounded by 2.6 at a crease along their diagonal, and at the tip of a cone.
     EXPECT_LE(made->lipschitz(), 3.0);
   }
 }
@@ -202,7 +205,8 @@ struct Touched {
   double strongest = 0.0;     // [N]
 };
 
-/// Whether the true surface bends over no less than `least_radius` anywhere within `reach` of the point.
+/// Whether the true surface bends over no less than `least_radius` anywhere within `reach` of the
+/// point.
 bool isSmooth(const Field& field, const Vec3& on, double reach, double least_radius) {
   const auto bends_enough = [&](const Vec3& p) {
     const auto foot = footPoint(field, p);
@@ -219,7 +223,8 @@ bool isSmooth(const Field& field, const Vec3& on, double reach, double least_rad
     const Vec3 along = direction - glm::dot(direction, normal) * normal;
     const auto there = onSurface(field, on + reach * along);
     if (!there || !bends_enough(*there)) return false;
-    // A cusp is too small to be met itself, but turns the normal by more than such a bend on the way past it.
+    // A cusp is too small to be met itself, but turns the normal by more than such a bend on the
+    // way past it.
     const double turn =
         std::acos(std::min(1.0, glm::dot(normal, glm::normalize(field.sample(*there).gradient))));
     if (turn * least_radius > reach) return false;
@@ -260,7 +265,8 @@ Touched touched(const Shape& shape, const FieldPtr& made, double voxel) {
 }
 
 TEST_P(BakeImplicit, TouchedEverywhereItGivesTheForceOfTheTrueSurface) {
-  // Metaballs at 2 mm gave 43.9 N instead of 1 N, a heart no force for 1117 of 1549 ticks of contact.
+  // Metaballs at 2 mm gave 43.9 N instead of 1 N, a heart no force for 1117 of 1549 ticks of
+  // contact.
   const Shape& shape = GetParam();
   for (const double voxel : {2 * kMm, 1 * kMm, 0.5 * kMm}) {
     const LevelSet grid = bake(*shape.field, optionsOf(shape, voxel));
@@ -274,14 +280,16 @@ TEST_P(BakeImplicit, TouchedEverywhereItGivesTheForceOfTheTrueSurface) {
         shape.name.c_str(), voxel / kMm, stated.off / kMm, t.points, t.without_force, t.strongest,
         t.worst_force, t.worst_smooth, t.smooth);
     EXPECT_GT(t.points, 100);
-    // Nothing of a heart 15 voxels wide is smooth over eight of them, nor of a gyroid that turns round within 20.
+    // Nothing of a heart 15 voxels wide is smooth over eight of them, nor of a gyroid that turns
+    // round within 20.
     const bool is_tight = shape.name == "heart" || shape.name == "gyroid";
     EXPECT_GT(t.smooth, is_tight && voxel > 1.5 * kMm ? -1 : 0);
     EXPECT_EQ(t.without_force, 0);
-    // The force is K times the way to the surface, and that is off by no more than the surface is; which was measured at one
-    // point a voxel, and can be some more between them.
+    // The force is K times the way to the surface, and that is off by no more than the surface is;
+    // which was measured at one point a voxel, and can be some more between them.
     EXPECT_LE(t.worst_force, 1.25 * kDefaultK * stated.off);
-    // Where it is smooth over what the spline looks at, 0.02 voxel of the surface and 1 degree of 1 N are stated of any grid.
+    // Where it is smooth over what the spline looks at, 0.02 voxel of the surface and 1 degree of 1
+    // N are stated of any grid.
     EXPECT_LE(t.worst_smooth, kDefaultK * (smooth.off + 1 * kMm * smooth.turn));
   }
 }
@@ -328,7 +336,8 @@ TEST_P(BakeImplicit, AStrokeAllOverItNeverLosesTheSurfaceNorThrowsTheHand) {
 }
 
 TEST(BakeImplicitEdges, WhatIsCutFromAnImplicitFieldHasItsEdgesAndWalls) {
-  // A ball out of half a maze: every voxel's value is at most what the distance to either surface allows.
+  // A ball out of half a maze: every voxel's value is at most what the distance to either surface
+  // allows.
   const FieldPtr maze = gyroid(Vec3(0.1 * kMm), 40 * kMm);
   const FieldPtr ball = sphere(Vec3(0.0), 30 * kMm);
   const FieldPtr both = intersect({maze, ball});
@@ -347,8 +356,8 @@ TEST(BakeImplicitEdges, WhatIsCutFromAnImplicitFieldHasItsEdgesAndWalls) {
     }
   }
   EXPECT_EQ(wrong_side, 0U);
-  // Beside a medial axis a voxel knows of the other side by the closest points of its neighbors, up to a voxel off its own:
-  // 1 / (2 d) farther, at some three voxels.
+  // Beside a medial axis a voxel knows of the other side by the closest points of its neighbors, up
+  // to a voxel off its own: 1 / (2 d) farther, at some three voxels.
   EXPECT_LE(farthest, 0.17 * voxel);
   EXPECT_LE(gridField(grid)->lipschitz(), 3.0);
 }

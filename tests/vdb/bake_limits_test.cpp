@@ -99,7 +99,8 @@ TEST(BakeLimits, SuggestedVoxelSizeFits) {
   }
 }
 
-// The estimate before is near what is taken then, so that a limit refuses neither too much nor too little.
+// The estimate before is near what is taken then, so that a limit refuses neither too much nor too
+// little.
 TEST(BakeLimits, TheEstimateIsCloseToWhatIsTaken) {
   const FieldPtr ball = sphere(Vec3(0.0), 20e-3);
   const FieldPtr holes = subtract({ball, torus(15e-3, 6e-3), sphere(Vec3(0.0), 8e-3)});

@@ -93,8 +93,8 @@ void expectExact(const Mesh& mesh, const Known& known, double told_volume = 0.0)
   const Off off = offOf(set, exact, 5000, true);
   EXPECT_LE(off.nearer, 1e-5);
   EXPECT_EQ(off.wrong_sides, 0U);
-  // Parts overlap in some of them: walls within the solid are gone, and what was near to those is farther
-  // from the surface than from them.
+  // Parts overlap in some of them: walls within the solid are gone, and what was near to those is
+  // farther from the surface than from them.
   EXPECT_LE(static_cast<double>(off.farther), known.overlaps * static_cast<double>(off.voxels));
   if (known.overlaps == 0.0) {
     EXPECT_LE(off.worst, 1e-5);

@@ -1,5 +1,5 @@
-// Meshes as they come: holes, turned, doubled, missing and crossing triangles, thin plates, numbers that
-// are none. Each is the solid that a person expects, or an error that names the place.
+// Meshes as they come: holes, turned, doubled, missing and crossing triangles, thin plates, numbers
+// that are none. Each is the solid that a person expects, or an error that names the place.
 
 #include <gtest/gtest.h>
 
@@ -184,8 +184,8 @@ TEST(MeshDefects, SpindleIsNamedUnlessTheUserDecides) {
   EXPECT_EQ(problem.code, "mesh.ambiguous");
   EXPECT_NE(problem.message.find("passes through itself at ("), std::string::npos)
       << problem.message;
-  // By the lens's rim two walls meet: the larger of their distances is not a distance there, and what is
-  // filled is known to a voxel only.
+  // By the lens's rim two walls meet: the larger of their distances is not a distance there, and
+  // what is filled is known to a voxel only.
   const auto by_rim = [](const Vec3& p) {
     return std::hypot(p.x - kCenter.x, p.y - kCenter.y) < 4e-3 && std::abs(p.z - kCenter.z) > 6e-3;
   };
@@ -297,7 +297,8 @@ TEST(MeshDefects, VerticesThatAreAlmostTheSame) {
 }
 
 TEST(MeshDefects, ASmallGapOfAGoodMeshStays) {
-  // Two closed cubes with 5e-7 of their size between them are not welded, nor is a closed mesh with so short edges.
+  // Two closed cubes with 5e-7 of their size between them are not welded, nor is a closed mesh with
+  // so short edges.
   const Mesh two =
       together(boxMesh(Vec3(0.0), Vec3(10e-3)), boxMesh(Vec3(10e-3 + 1e-8, 0.0, 0.0), Vec3(10e-3)));
   const LevelSet set = baked(two);

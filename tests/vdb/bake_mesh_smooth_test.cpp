@@ -127,8 +127,8 @@ TEST(SmoothMesh, RimOfACylinderIsRoundAndSharp) {
     }
     return most;
   };
-  // Flat sides of 15 degrees: R (1 - cos 7.5) = 0.17 voxel. Smooth, the triangles' own 0.0045 voxel is left, and
-  // what the surface's pieces are off.
+  // Flat sides of 15 degrees: R (1 - cos 7.5) = 0.17 voxel. Smooth, the triangles' own 0.0045 voxel
+  // is left, and what the surface's pieces are off.
   EXPECT_GT(worst(voxels(0.5e-3, 3.0)), 0.15);
   BakeOptions options = smoothed(0.5e-3, 40.0);
   options.half_width = 3.0;

@@ -1,5 +1,5 @@
-// Surfaces as they come out of scans: good, but for specks, slivers, small open shells and gaps. What a voxel
-// cannot show is dropped and reported; what it could show is refused.
+// Surfaces as they come out of scans: good, but for specks, slivers, small open shells and gaps.
+// What a voxel cannot show is dropped and reported; what it could show is refused.
 
 #include <gtest/gtest.h>
 
@@ -68,8 +68,9 @@ void expectSame(const LevelSet& got, const LevelSet& wanted) {
   }
 }
 
-/// Outside the same to rounding, inside no nearer to the surface: walls inside the solid, where a surface passes
-/// through itself by less than the lines of voxels show, are looked for only in one that is not closed as it comes.
+/// Outside the same to rounding, inside no nearer to the surface: walls inside the solid, where a
+/// surface passes through itself by less than the lines of voxels show, are looked for only in one
+/// that is not closed as it comes.
 void expectSameSurface(const LevelSet& got, const LevelSet& wanted) {
   auto other = wanted.impl().grid->getConstAccessor();
   const double unit = wanted.info().voxel_size * 1e3;
@@ -90,7 +91,7 @@ void expectSameSurface(const LevelSet& got, const LevelSet& wanted) {
   EXPECT_GT(both, wanted.info().active_voxels * 999 / 1000);
 }
 
-TEST(MeshSpecks, AFragmentOfAHundredthOfAMillimetreIsDroppedAndTold) {
+TEST(MeshSpecks, AFragmentOfAHundredthOfAMillimeterIsDroppedAndTold) {
   Mesh mesh = together(ball(), bowl(Vec3(25, 0, 0) * kMm, 0.005 * kMm));
   const LevelSet set = bakeMesh(mesh, voxels(1 * kMm, 3.0));
   expectSame(set, bakeMesh(ball(), voxels(1 * kMm, 3.0)));

@@ -165,7 +165,8 @@ TEST(BakeMesh, UnsignedHasNoInside) {
         const Vec3 p =
             middle + off * glm::normalize(glm::cross(bowl.vertices[b] - bowl.vertices[a],
                                                      bowl.vertices[c] - bowl.vertices[a]));
-        // Edges of the distance, of the bowl's facets and of its rim, are rounded within a tenth of a voxel.
+        // Edges of the distance, of the bowl's facets and of its rim, are rounded within a tenth of
+        // a voxel.
         EXPECT_NEAR(shell->value(p), distance(p) - 1e-3, 0.05e-3);
       }
     }
@@ -189,7 +190,8 @@ TEST(BakeMesh, ThreadsDoNotMatter) {
   }
 }
 
-/// The squares that a kernel finds in the leaf about the origin, against brute force over `mesh` [voxels].
+/// The squares that a kernel finds in the leaf about the origin, against brute force over `mesh`
+/// [voxels].
 void expectSquares(void (*find_squares)(const LeafQuery&) noexcept, const Mesh& mesh) {
   std::vector<Facet> facets;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -204,7 +206,8 @@ void expectSquares(void (*find_squares)(const LeafQuery&) noexcept, const Mesh& 
     const Vec3 p = Vec3(n / 64, n / 8 % 8, n % 8) - 3.5;
     const double wanted = std::abs(signedDistance(p, mesh));
     const double found = std::sqrt(squares[static_cast<std::size_t>(n)]);
-    // "Off by some 1e-6 of a voxel times the distance"; outside the band no more is known than that.
+    // "Off by some 1e-6 of a voxel times the distance"; outside the band no more is known than
+    // that.
     if (wanted < half_width) {
       ++near;
       EXPECT_NEAR(found, wanted, 1e-5) << n;

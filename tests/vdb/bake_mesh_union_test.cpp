@@ -1,4 +1,5 @@
-// Solids that overlap, as people put models together: one surface, exact, without anything left inside.
+// Solids that overlap, as people put models together: one surface, exact, without anything left
+// inside.
 
 #include <gtest/gtest.h>
 
@@ -24,8 +25,8 @@ Mesh joined(const std::vector<Mesh>& parts) {
   return all;
 }
 
-/// Every `step`th voxel of the band. The bound is what bakeMesh() promises, and as much again for the places
-/// that lie nearer to two walls than they can be told apart.
+/// Every `step`th voxel of the band. The bound is what bakeMesh() promises, and as much again for
+/// the places that lie nearer to two walls than they can be told apart.
 void expectExact(const LevelSet& set, const UnionOracle& oracle, std::uint64_t step) {
   const double voxel = set.info().voxel_size;
   double worst = 0.0;

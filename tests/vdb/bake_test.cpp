@@ -91,8 +91,8 @@ std::vector<BakeCase> cases() {
 
 class BakeField : public testing::TestWithParam<BakeCase> {};
 
-// Every voxel of a block that is well larger than the shape, band or not, against the definition. It
-// shows that culling misses no voxel of the band, and that tiles and background have their sign.
+// Every voxel of a block that is well larger than the shape, band or not, against the definition.
+// It shows that culling misses no voxel of the band, and that tiles and background have their sign.
 TEST_P(BakeField, EveryVoxelHoldsWhatItShould) {
   const BakeCase& given = GetParam();
   BakeOptions options = voxels(given.voxel, given.half_width);

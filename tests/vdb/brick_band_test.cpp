@@ -23,7 +23,8 @@ using palpate::test::Random;
 
 constexpr double kVoxel = 0.5e-3;  // [m]
 
-/// |value| and its sign against the true distance, at the rim of the band, beyond it and deep inside.
+/// |value| and its sign against the true distance, at the rim of the band, beyond it and deep
+/// inside.
 TEST(Bricks, OutOfTheBandTheyBoundTheDistance) {
   const std::vector<FieldPtr> shapes{sphere(Vec3(0.0), 12e-3), torus(10e-3, 4.5e-3),
                                      box(Vec3(0.0), Vec3(20e-3, 13e-3, 14e-3))};

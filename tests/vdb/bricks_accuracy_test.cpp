@@ -76,8 +76,8 @@ TEST(BricksAccuracy, TorusOfFifteenVoxels) {
   EXPECT_LE(there.normal, 1.8e-4 * kDegree);
 }
 
-/// The second difference of the normal along a stroke of 0.2 mm a step is the jump of the force. The
-/// spline adds less than 5 % to that of the surface.
+/// The second difference of the normal along a stroke of 0.2 mm a step is the jump of the force.
+/// The spline adds less than 5 % to that of the surface.
 TEST(BricksAccuracy, AStrokeFeelsTheSurfaceAndNotTheVoxels) {
   const FieldPtr exact = palpate::torus(kCenter, kAxis, 35e-3, 15e-3);
   const FieldPtr grid = cubic(*exact, 1e-3);
@@ -149,8 +149,8 @@ FieldPtr distanceTo(const FieldPtr& function, const Box3& bounds) {
     return FieldSample{distance, normal, true};
   };
   FunctionField::Claims claims{bounds};
-  // Where it finds another point than the closest it jumps, and is too large. A bake drops what is beyond
-  // this bound, so it is generous.
+  // Where it finds another point than the closest it jumps, and is too large. A bake drops what is
+  // beyond this bound, so it is generous.
   claims.lipschitz = 16.0;
   return std::make_shared<FunctionField>(sample, claims);
 }
@@ -165,7 +165,8 @@ TEST(BricksAccuracy, ConvergesOnAGyroid) {
   const double radius = 6e-3;
   const Errors coarse = expectOrders("gyroid", *exact, region, radius, {8.0, 16.0}, box);
   if (std::getenv("PALPATE_SLOW_TESTS") == nullptr) return;
-  // With voxels of 0.15 mm it has come down to what the grid's floats can hold: 2e-8 mm and 3e-6 degree.
+  // With voxels of 0.15 mm it has come down to what the grid's floats can hold: 2e-8 mm and 3e-6
+  // degree.
   const double voxel = radius / 40.0;
   const Errors fine = errorsOf(*cubic(*exact, voxel, box), *exact, region, voxel, 8000);
   std::printf("gyroid  r/h  40.0: value %.3g r, normal %.3g degree\n", fine.value / radius,

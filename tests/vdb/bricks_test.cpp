@@ -1,5 +1,5 @@
-// Bricks against a plain evaluation of the same spline, on noise: a voxel that is taken from a wrong place
-// shows at once. And what holds at borders.
+// Bricks against a plain evaluation of the same spline, on noise: a voxel that is taken from a
+// wrong place shows at once. And what holds at borders.
 
 #include "brick/bricks.h"
 
@@ -73,7 +73,8 @@ double spline(const Vec3& q, const std::array<int, 3>& orders) {
   return sum;
 }
 
-// Coefficients are floats of up to 6 voxels: 2.4e-7 each, added up with weights of up to 1, 3 and 8.
+// Coefficients are floats of up to 6 voxels: 2.4e-7 each, added up with weights of up to 1, 3
+// and 8.
 constexpr double kRounding = 1e-6;
 
 void expectIsSpline(const Field& field, const Vec3& q) {
@@ -138,8 +139,8 @@ TEST(Bricks, RefuseATableWithoutEnd) {
   }
 }
 
-/// Value, gradient and Hessian from both sides of faces, edges and corners of cells, leaves, and nodes
-/// of 128 voxels: a billionth of a voxel apart, third derivatives of noise are below 100.
+/// Value, gradient and Hessian from both sides of faces, edges and corners of cells, leaves, and
+/// nodes of 128 voxels: a billionth of a voxel apart, third derivatives of noise are below 100.
 TEST(Bricks, AreTwiceDifferentiableAcrossEveryBorder) {
   const BrickField field(noiseGrid({Coord(0), Coord(128), Coord(-128, 128, 8)}, 14));
   Random random(5);
@@ -174,7 +175,8 @@ TEST(Bricks, AreTwiceDifferentiableAcrossEveryBorder) {
   EXPECT_EQ(checked, 2100);
 }
 
-/// A cell is known if its 64 coefficients are, and each of those if its voxel and its six neighbors are.
+/// A cell is known if its 64 coefficients are, and each of those if its voxel and its six neighbors
+/// are.
 TEST(Bricks, AreKnownWhereAllVoxelsAre) {
   const BrickField cubic(noiseGrid({Coord(3)}, 9));  // voxels -6 to 11
   const BrickField linear(noiseGrid({Coord(3)}, 9), Sampler::kTrilinear);

@@ -32,7 +32,8 @@ inline void expectBoundsHold(const std::string& name, const LevelSet& grid, Samp
   for (int i = 0; i < 200000; ++i) {
     const Vec3 p = random.in(box);
     const FieldSample s = made->sample(p);
-    // A step along the gradient leads to the surface, where that is near; from there on points within w answer.
+    // A step along the gradient leads to the surface, where that is near; from there on points
+    // within w answer.
     if (s.in_band && std::fabs(s.value) < 0.3 * voxel) {
       const Vec3 on = p - s.value / glm::dot(s.gradient, s.gradient) * s.gradient;
       if (std::fabs(made->sample(on).value) > 1e-3 * voxel) continue;

@@ -26,8 +26,8 @@ CertifyOptions own() {
   return options;
 }
 
-/// [voxels] How far the sampled surface of a ball's grid is off the ball, at worst over many directions; infinite where a way
-/// outward meets no surface.
+/// [voxels] How far the sampled surface of a ball's grid is off the ball, at worst over many
+/// directions; infinite where a way outward meets no surface.
 double worstOf(const LevelSet& grid, const Vec3& center, double radius) {
   const FieldPtr made = gridField(grid, Sampler::kCubic);
   palpate::test::Random random(5);

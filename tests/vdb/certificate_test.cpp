@@ -1,4 +1,5 @@
-// What contact relies on in a grid: made sure of, kept with the grid, and asked of every grid that is touched.
+// What contact relies on in a grid: made sure of, kept with the grid, and asked of every grid that
+// is touched.
 
 #include "palpate/vdb/certificate.h"
 
@@ -158,7 +159,8 @@ Vec3 onSurface(const Field& truth, const Vec3& p) {
   return p - s.value * s.gradient;
 }
 
-/// Where the truth is smooth over some voxels: the gradient around does not turn by more than a ball of eight voxels'.
+/// Where the truth is smooth over some voxels: the gradient around does not turn by more than a
+/// ball of eight voxels'.
 bool isSmooth(const Field& truth, const Vec3& p, double voxel) {
   const Vec3 here = truth.sample(p).gradient;
   palpate::test::Random random(1);
@@ -169,7 +171,8 @@ bool isSmooth(const Field& truth, const Vec3& p, double voxel) {
   return true;
 }
 
-// 200 grids: what `check` says is what a scene does, and what is touched without a note is felt within its stated error.
+// 200 grids: what `check` says is what a scene does, and what is touched without a note is felt
+// within its stated error.
 TEST(Certificate, CheckAndTouchAgreeOnTwoHundredGrids) {
   const TempFolder folder;
   int whole_refused = 0;
@@ -286,13 +289,14 @@ TEST(Certificate, WrongValuesAwayFromTheSurfaceAreRebuiltAndTold) {
     if (!s.in_band) continue;
     EXPECT_NEAR(s.value, (-1.0 + 0.05 * i) * kMm, 0.02 * kMm);
   }
-  // Of the spline's coefficients at the band's rim, sharpened ones beside plain ones; one coefficient too many is three times as steep.
+  // Of the spline's coefficients at the band's rim, sharpened ones beside plain ones; one
+  // coefficient too many is three times as steep.
   EXPECT_LE(field.lipschitz(), 1.75);
 }
 
 TEST(Certificate, OutOfTheBandInContactTheForceHoldsOrFalls) {
-  // A hand pushed from the surface to the middle of a ball whose band ends 6 voxels deep, and back: along the way the force
-  // is that of the depth, never more.
+  // A hand pushed from the surface to the middle of a ball whose band ends 6 voxels deep, and back:
+  // along the way the force is that of the depth, never more.
   const TempFolder folder;
   const std::string path = folder.path("ball.vdb");
   test::writeAsOthers(path, sphereOfOthers(3.0));

@@ -1,4 +1,5 @@
-// The constraint renderer on grids: what the hand feels of a baked surface is what it feels of the true one.
+// The constraint renderer on grids: what the hand feels of a baked surface is what it feels of the
+// true one.
 
 #include <gtest/gtest.h>
 
@@ -66,8 +67,8 @@ TEST(ContactOnBricks, ASphereStrokeHasTheDirectionOfTheTrueSphere) {
   EXPECT_LE(strength, 1e-6);
 }
 
-/// [N] By how much the force's change from tick to tick differs from the true one, at most, on a stroke
-/// that presses a ball of eight voxels with 3 N.
+/// [N] By how much the force's change from tick to tick differs from the true one, at most, on a
+/// stroke that presses a ball of eight voxels with 3 N.
 double worstStep(Sampler sampler, double speed) {
   const double voxel = 1 * kMm;
   const double radius = 8 * voxel;

@@ -15,8 +15,8 @@ namespace {
 
 const char* const kProject = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3";
 
-/// The file of a tar archive whose name ends in `name`; each starts on a block of 512 bytes, behind a block that
-/// tells its name and its size in octal digits.
+/// The file of a tar archive whose name ends in `name`; each starts on a block of 512 bytes, behind
+/// a block that tells its name and its size in octal digits.
 std::string fileOf(const std::string& tar, const std::string& name) {
   constexpr std::size_t kBlock = 512;
   for (std::size_t at = 0; at + kBlock <= tar.size() && tar[at] != '\0';) {
@@ -71,7 +71,8 @@ HeadCt readHeadCt() {
   }
   const std::string voxels = fileOf(tar, "matrix.dat");
   ct.values.resize(voxels.size() / 2);
-  std::memcpy(ct.values.data(), voxels.data(), voxels.size());  // the file is little endian, and so are the machines this runs on
+  std::memcpy(ct.values.data(), voxels.data(),
+              voxels.size());  // the file is little endian, and so are the machines this runs on
   if (ct.values.size() != ct.index(0, 0, ct.size[2])) throw std::runtime_error("not all voxels");
 
   // A mask has one more voxel along each axis, in front, for the program's own use.

@@ -1,6 +1,7 @@
 #pragma once
-/// Scans that Debian packages carry: mricron-data (heads and atlases as NIfTI) and invesalius-examples (a head's CT).
-/// tools/setup.sh installs both; a test that does not find them fails.
+/// Scans that Debian packages carry: mricron-data (heads and atlases as NIfTI) and
+/// invesalius-examples (a head's CT). tools/setup.sh installs both; a test that does not find them
+/// fails.
 
 #include <array>
 #include <cstdint>
@@ -33,7 +34,8 @@ struct HeadCt {
 /// @throws std::runtime_error if the package is not installed, or holds something else.
 [[nodiscard]] HeadCt readHeadCt();
 
-/// The voxels from `lo` to `hi` as MetaImage, that of `lo` at the origin, axes along L, P, S; the path of the .mhd.
+/// The voxels from `lo` to `hi` as MetaImage, that of `lo` at the origin, axes along L, P, S; the
+/// path of the .mhd.
 std::string writePart(const HeadCt& ct, const std::array<int, 3>& lo, const std::array<int, 3>& hi,
                       const palpate::testing::TempFolder& folder);
 
@@ -41,8 +43,8 @@ std::string writePart(const HeadCt& ct, const std::array<int, 3>& lo, const std:
 [[nodiscard]] Image cropped(const Image& image, const std::array<int, 3>& lo,
                             const std::array<int, 3>& hi);
 
-/// Of mricron's aal, the voxels around the nuclei of the left half of the brain: thalamus, putamen, pallidum, and the
-/// parts of their neighbors that are larger than 100 voxels there.
+/// Of mricron's aal, the voxels around the nuclei of the left half of the brain: thalamus, putamen,
+/// pallidum, and the parts of their neighbors that are larger than 100 voxels there.
 [[nodiscard]] Image deepBrain();
 
 /// Triangles around one of its labels: 73 putamen, 75 pallidum, 77 thalamus.

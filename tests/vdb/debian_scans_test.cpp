@@ -1,4 +1,5 @@
-// Scans that Debian packages carry, as they are read: against nibabel, ITK, and the program that made one of them.
+// Scans that Debian packages carry, as they are read: against nibabel, ITK, and the program that
+// made one of them.
 #include "vdb/debian_scans.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,8 @@ namespace {
 
 using palpate::testing::TempFolder;
 
-// Bytes and floats, from the left to the right and the other way round. nibabel takes the sform where both are set.
+// Bytes and floats, from the left to the right and the other way round. nibabel takes the sform
+// where both are set.
 TEST(DebianScans, TemplatesAreAsNibabelHasThem) {
   const std::vector<std::string> files = {test::mricron("AICHAmc.nii.gz"),
                                           test::mricron("inia19-t1-brain.nii.gz")};
@@ -40,7 +42,8 @@ TEST(HeadCt, IsAsItkHasIt) {
   EXPECT_NEAR(glm::length(image.axes[2]), 1.5e-3, 1e-12);
 }
 
-// InVesalius kept which voxels it took for bone: those are the ones above the threshold, and no other.
+// InVesalius kept which voxels it took for bone: those are the ones above the threshold, and no
+// other.
 TEST(HeadCt, BoneIsWhatInVesaliusTookForIt) {
   const test::HeadCt ct = test::readHeadCt();
   const TempFolder folder;

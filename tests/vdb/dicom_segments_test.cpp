@@ -1,4 +1,5 @@
-// DICOM segmentations and structure sets that pydicom writes, against pydicom and numpy; damaged ones are refused.
+// DICOM segmentations and structure sets that pydicom writes, against pydicom and numpy; damaged
+// ones are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -169,7 +170,8 @@ TEST(DicomSegmentation, DamageIsRefusedByNameAndNeverTakenForWhole) {
             "dicom.truncated");
 }
 
-/// A series of 64 x 64 pixels of 1 mm, slices of 3 mm from 10 mm, and contours on them; the structure set's path.
+/// A series of 64 x 64 pixels of 1 mm, slices of 3 mm from 10 mm, and contours on them; the
+/// structure set's path.
 std::string writeContoured(const TempFolder& folder, int seed) {
   (void)test::writeSeries(folder, "c", 8, {0, 0, 3}, [](test::DicomFile& file, int k) {
     file.rows = 64;
@@ -217,7 +219,8 @@ TEST(DicomContours, WithoutTheirSeriesHaveAGridOfTheirOwn) {
       return static_cast<double>(std::count(image.values.begin(), image.values.end(), of)) *
              std::abs(glm::determinant(image.axes)) * 1e9;
     };
-    // 250 mm^2 on each of 6 slices, an outline of 60 to 90 mm in pixels of 1 mm: a slice is off by a few mm^2 at random.
+    // 250 mm^2 on each of 6 slices, an outline of 60 to 90 mm in pixels of 1 mm: a slice is off by
+    // a few mm^2 at random.
     EXPECT_NEAR(cubic_mm(moved) / cubic_mm(file), 1.0, 0.03) << name;
   }
 }

@@ -1,4 +1,5 @@
-// DICOM series: where slices lie, what they hold, and what is refused. Against pydicom and ITK in scans_test.cpp.
+// DICOM series: where slices lie, what they hold, and what is refused. Against pydicom and ITK in
+// scans_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +33,8 @@ TEST(Dicom, PlacesSlicesByPositionAndSpacingByRowAndColumn) {
     const Image image = readImage(name);
     EXPECT_EQ(image.size, (std::array{6, 4, 5}));
     for (int k = 0; k < 5; ++k) {
-      // Stored 100 + k, less 1000; column 4 is 4 * 0.5 mm to the left, row 2 is 2 * 2 mm to the back.
+      // Stored 100 + k, less 1000; column 4 is 4 * 0.5 mm to the left, row 2 is 2 * 2 mm to the
+      // back.
       EXPECT_EQ(image.at(4, 2, k), static_cast<float>(100 + k - 1000));
       EXPECT_LT(apartMm(image.toWorld({4, 2, k}), Vec3(-12, -14, 10 + 3 * k) * 1e-3), 1e-9);
     }
@@ -59,7 +61,8 @@ TEST(Dicom, AnObliqueSeriesFromFeetToHeadAndBackIsOneGeometry) {
   EXPECT_LT(apartMm(back.toWorld({0, 0, 3}), Vec3(-10, -10, 10) * 1e-3), 1e-9);
 }
 
-// A scanner's tilted gantry: slices upright in their own plane, moved along the table. ITK makes a box of it.
+// A scanner's tilted gantry: slices upright in their own plane, moved along the table. ITK makes a
+// box of it.
 TEST(Dicom, ATiltedGantryShearsTheVoxels) {
   const TempFolder folder;
   const double tilt = 12.0 * std::acos(-1.0) / 180.0;

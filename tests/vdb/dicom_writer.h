@@ -35,7 +35,8 @@ struct DicomFile {
 
 [[nodiscard]] std::string bytesOf(const DicomFile& file);
 
-/// `count` slices, `step` apart (x\y\z), each file made by `change`, in a folder of its own below `folder`.
+/// `count` slices, `step` apart (x\y\z), each file made by `change`, in a folder of its own below
+/// `folder`.
 template <typename Change>
 std::string writeSeries(const palpate::testing::TempFolder& folder, const std::string& name,
                         int count, const std::array<double, 3>& step, const Change& change) {

@@ -18,8 +18,9 @@ struct ForeignGrid {
   bool is_damaged = false;
 };
 
-/// The same for the same number: a ball, a ring, a box, two balls in one; by our bake or by OpenVDB's tools; half of them
-/// damaged in one of a dozen ways, from a single value to the whole band.
+/// The same for the same number: a ball, a ring, a box, two balls in one; by our bake or by
+/// OpenVDB's tools; half of them damaged in one of a dozen ways, from a single value to the whole
+/// band.
 [[nodiscard]] ForeignGrid foreignGrid(std::uint64_t seed);
 
 /// Writes it as OpenVDB does, with `length_unit: mm`.

@@ -222,7 +222,8 @@ TEST(GridCaches, KeepWithinTheirBoundWhatWasUsedLast) {
     model.remove(n);
     model.push_back(n);
     if (model.size() > room) model.pop_front();
-    // Times of files may be as coarse as some milliseconds; here each use is a second later than the one before.
+    // Times of files may be as coarse as some milliseconds; here each use is a second later than
+    // the one before.
     now += std::chrono::seconds(1);
     ASSERT_TRUE(fs::exists(file)) << step;
     fs::last_write_time(file, now);

@@ -107,8 +107,8 @@ TEST(GridField, BallConvergesWithTheVoxelSize) {
     const double value_order = std::log2(before.value_rms / e.value_rms);
     const double normal_order = std::log2(before.normal_rms / e.normal_rms);
     std::printf(" %11.2f %7.2f\n", value_order, normal_order);
-    // Trilinear interpolation of exact distances: voxel^2 for the value, voxel for the gradient. The
-    // coarsest grid has 7 voxels to the radius, where the next terms still show.
+    // Trilinear interpolation of exact distances: voxel^2 for the value, voxel for the gradient.
+    // The coarsest grid has 7 voxels to the radius, where the next terms still show.
     EXPECT_NEAR(value_order, 2.0, 0.1);
     EXPECT_NEAR(normal_order, 1.0, 0.1);
   }
@@ -132,8 +132,8 @@ TEST(GridField, OutOfTheBandItIsABoundWithTheRightSign) {
   for (const Shape& shape : shapes) {
     const FieldPtr grid = baked(shape.exact, shape.voxel, shape.half_width);
     const double rim = shape.half_width * shape.voxel;
-    // In cells at the rim of the band the interpolant must join the band, error and all: it is off by
-    // voxel^2 / 8 of the second derivatives, 2 / distance in all.
+    // In cells at the rim of the band the interpolant must join the band, error and all: it is off
+    // by voxel^2 / 8 of the second derivatives, 2 / distance in all.
     const double slack = shape.voxel * shape.voxel / 4.0 / (rim - std::sqrt(3.0) * shape.voxel);
     Random random(5);
     int out = 0, deep = 0, far = 0;

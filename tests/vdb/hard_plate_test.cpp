@@ -74,7 +74,8 @@ TEST(HardPlate, OfFourVoxelsIsNeverTunnelled) {
 }
 
 TEST(HardPlate, WhatAGridCannotHoldIsRefusedOrWhole) {
-  // Whatever its thickness and pose: either the bake is refused, or no straight way leads through the plate.
+  // Whatever its thickness and pose: either the bake is refused, or no straight way leads through
+  // the plate.
   palpate::test::Random random(3);
   int refused = 0;
   int whole = 0;

@@ -54,7 +54,8 @@ TEST(HeadScene, ANeedlePassesSkinBrainAndThalamusInThatOrder) {
   // The end is well inside: the tip does not graze the far wall.
   EXPECT_LT(scene->regions()[scene->regionNamed("thalamus")].field->value(to), -2 * kMm);
 
-  // There and back at 50 mm/s: every port is open where the path crosses it, and nothing else is passed.
+  // There and back at 50 mm/s: every port is open where the path crosses it, and nothing else is
+  // passed.
   const std::unique_ptr<HapticRenderer> renderer = makeRenderer(scene);
   std::vector<std::string> felt;
   std::vector<std::string> passed;

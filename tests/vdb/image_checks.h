@@ -14,7 +14,8 @@
 
 namespace palpate::vdb::test {
 
-/// [mm] Numbers of files are decimal or single precision, and both sides compute in double: far below it.
+/// [mm] Numbers of files are decimal or single precision, and both sides compute in double: far
+/// below it.
 inline constexpr double kSamePlace = 1e-5;
 
 inline std::map<double, std::size_t> histogramOf(const Image& image) {

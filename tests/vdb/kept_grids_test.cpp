@@ -1,5 +1,5 @@
-// Grids that scenes bake for themselves are kept by content: the second load bakes nothing and feels the same, and whatever
-// happens to the folder costs time only.
+// Grids that scenes bake for themselves are kept by content: the second load bakes nothing and
+// feels the same, and whatever happens to the folder costs time only.
 #include "palpate/vdb/kept_grids.h"
 
 #include <gtest/gtest.h>
@@ -359,8 +359,8 @@ TEST_F(KeptGrids, AVoxelCountsWhereverItsFileIs) {
   }
 }
 
-// What came with its scene is enough, wherever it is and whoever owns it; and a scan that is not there is missed only where a
-// layer needs it.
+// What came with its scene is enough, wherever it is and whoever owns it; and a scan that is not
+// there is missed only where a layer needs it.
 TEST_F(KeptGrids, ABundleStandsForItsScans) {
   const std::string bundle = folder_.path("bundle");
   fs::create_directory(bundle);
@@ -392,8 +392,8 @@ TEST_F(KeptGrids, ABundleStandsForItsScans) {
   EXPECT_THROW((void)load_from(layers, false), Error);
 }
 
-// If this fails because baking has changed, raise kBakerVersion in vdb/src/register.cpp and put the new values here: grids
-// that users have kept must not be taken for what is baked now.
+// If this fails because baking has changed, raise kBakerVersion in vdb/src/register.cpp and put the
+// new values here: grids that users have kept must not be taken for what is baked now.
 TEST_F(KeptGrids, WhatIsBakedIsWhatTheBakersVersionStandsFor) {
   const Loaded loaded = load(kLayers, "");
   const test::Limb limb;

@@ -1,4 +1,5 @@
-// Labels that meet leave nothing between them: each point is in exactly one of them, or in what is in none.
+// Labels that meet leave nothing between them: each point is in exactly one of them, or in what is
+// in none.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -164,13 +165,13 @@ void checkSeams(const char* name, const Image& image, bool by_themselves = true)
   EXPECT_EQ(not_one, 0U);
   EXPECT_EQ(left, 0U);
   EXPECT_EQ(left_alone, 0U);
-  // Laps blur walls by edges of thin parts: 43 of the vertebra's 36348 centers, 2 of the abdomen's 345988. Grids
-  // without laps have 0 and 4.
+  // Laps blur walls by edges of thin parts: 43 of the vertebra's 36348 centers, 2 of the abdomen's
+  // 345988. Grids without laps have 0 and 4.
   EXPECT_LT(static_cast<double>(astray), 1.5e-3 * static_cast<double>(centers));
 }
 
-/// A ball of two halves and a third label that caps one side: three meet in a line within it, and along lines on its
-/// skin. `axes` in mm.
+/// A ball of two halves and a third label that caps one side: three meet in a line within it, and
+/// along lines on its skin. `axes` in mm.
 Image dividedBall(const Mat3& axes) {
   Image image;
   image.source = "made.nii";
@@ -229,8 +230,9 @@ TEST(LabelSeam, NothingIsUnitedWhereNoLabelsMeet) {
   EXPECT_FALSE(nested.united(0.0, {}).has_value());
 }
 
-// A layer with a label in common is not a neighbor, and what it holds is not the rest either: a part of two layers has the
-// same surface as by itself where it meets only that one, and its wall to a third is shared.
+// A layer with a label in common is not a neighbor, and what it holds is not the rest either: a
+// part of two layers has the same surface as by itself where it meets only that one, and its wall
+// to a third is shared.
 TEST(LabelSeam, ALayerWithinAnotherKeepsItsOwnSurface) {
   const Image image = dividedBall(Mat3(1.0));
   LabelSurfaces nested(image, {{1, 2}, {2}, {3}});
@@ -262,8 +264,9 @@ TEST(LabelSeam, ALayerWithinAnotherKeepsItsOwnSurface) {
   EXPECT_GT(at_wall, 100);
 }
 
-// Along the line within the ball where three parts meet, from each part in turn: where all walls between the parts are
-// open, a probe that is dragged along and across it is never in what is in no part.
+// Along the line within the ball where three parts meet, from each part in turn: where all walls
+// between the parts are open, a probe that is dragged along and across it is never in what is in no
+// part.
 TEST(LabelSeam, AProbeAlongTheLineOfThreePartsNeverFallsOut) {
   const Image image = dividedBall(Mat3(1.0));
   LabelSurfaces surfaces(image, {{1}, {2}, {3}});

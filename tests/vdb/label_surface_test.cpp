@@ -171,8 +171,8 @@ TEST(LabelSurface, ThickSlicesAndAnyOrientation) {
   }
 }
 
-// A ball whose edge rises like a sigmoid 1.5 mm wide, with its own gradient of intensity: the iso-surface is
-// known, and differs from the half-way mask's.
+// A ball whose edge rises like a sigmoid 1.5 mm wide, with its own gradient of intensity: the
+// iso-surface is known, and differs from the half-way mask's.
 TEST(ThresholdSurface, IsTheIsoSurfaceOfTheImage) {
   Mat3 thick(1.0);
   thick[2] *= 3.0;
@@ -233,8 +233,8 @@ Image dividedBall(const Mat3& axes) {
   return image;
 }
 
-// What is in the ball is in exactly one of its parts: the fields of the two that have a point least have
-// opposite signs there.
+// What is in the ball is in exactly one of its parts: the fields of the two that have a point least
+// have opposite signs there.
 TEST(LabelSurface, NeighborsShareOneWallWithoutGapOrOverlap) {
   Mat3 awkward = rotationAbout(Vec3(1, 2, 3), 0.7);
   awkward[0] *= -0.8;
@@ -264,8 +264,8 @@ TEST(LabelSurface, NeighborsShareOneWallWithoutGapOrOverlap) {
         "three parts of a ball: gap %.4f, overlap %.4f voxel; where two meet %.1e, at their wall "
         "%.1e\n",
         gap, overlap, apart, at_wall);
-    // Each layer's grid has its own distances to the shared wall. Along the line where three walls meet grids
-    // round their edge off.
+    // Each layer's grid has its own distances to the shared wall. Along the line where three walls
+    // meet grids round their edge off.
     EXPECT_LT(apart, 0.2);
     EXPECT_LT(at_wall, 0.15);
     EXPECT_LT(gap, 0.35);
@@ -273,12 +273,12 @@ TEST(LabelSurface, NeighborsShareOneWallWithoutGapOrOverlap) {
   }
 }
 
-/// Enclosed volume [voxels of the grid] as the spline has it: in 3^3 parts of every voxel by the surface, a
-/// Heaviside as wide as a part over the distances.
+/// Enclosed volume [voxels of the grid] as the spline has it: in 3^3 parts of every voxel by the
+/// surface, a Heaviside as wide as a part over the distances.
 double volumeOf(const LevelSet& grid) {
   const Image image = gridImage(grid);
   const FieldPtr field = gridField(grid);
-  const auto h = static_cast<float>(grid.info().voxel_size / grid.info().metres_per_unit);
+  const auto h = static_cast<float>(grid.info().voxel_size / grid.info().meters_per_unit);
   double sum = 0.0;
   std::size_t n = 0;
   for (int k = 0; k < image.size[2]; ++k) {
@@ -300,8 +300,8 @@ double volumeOf(const LevelSet& grid) {
   return sum;
 }
 
-/// Every label of an image as a layer: its volume, and that no two leave a gap or overlap between two
-/// voxels that belong to them.
+/// Every label of an image as a layer: its volume, and that no two leave a gap or overlap between
+/// two voxels that belong to them.
 void checkScan(const Image& image) {
   std::map<int, std::size_t> counts;
   for (const float value : image.values) ++counts[static_cast<int>(value)];
@@ -438,8 +438,8 @@ Image slab(int thickness) {
   return image;
 }
 
-// Thin parts are kept where the grid's voxels can hold them, with their volume; where they cannot, the grid says
-// how many voxels it lost, and where.
+// Thin parts are kept where the grid's voxels can hold them, with their volume; where they cannot,
+// the grid says how many voxels it lost, and where.
 TEST(LabelSurface, ThinPartsAreKeptOrTold) {
   for (const int thickness : {1, 2}) {
     const Image image = slab(thickness);
@@ -455,7 +455,8 @@ TEST(LabelSurface, ThinPartsAreKeptOrTold) {
     EXPECT_NEAR(volumeOf(kept), 400.0 * thickness, 0.08 * 400.0 * thickness) << thickness;
   }
 
-  // Voxels of 5 mm have their centers at 10 and 15 mm: the slab at 12 mm is between them, the block above is not.
+  // Voxels of 5 mm have their centers at 10 and 15 mm: the slab at 12 mm is between them, the block
+  // above is not.
   const Image both = [] {
     Image image = slab(1);
     for (int k = 20; k < 27; ++k) {

@@ -1,4 +1,5 @@
-// What a label image holds, against brute force on random images, and against shapes with known areas.
+// What a label image holds, against brute force on random images, and against shapes with known
+// areas.
 #include "palpate/vdb/label_survey.h"
 
 #include <gtest/gtest.h>
@@ -155,8 +156,8 @@ TEST(LabelSurvey, ContactsOfRandomImagesAreTheirFacesCountedOneByOne) {
 }
 
 TEST(LabelSurvey, WhatEncloses) {
-  // Balls in one another about the middle: body 18, muscle 14, shell 9 of bone, core 6; and a nerve of 3
-  // voxels that leads from outside into the muscle.
+  // Balls in one another about the middle: body 18, muscle 14, shell 9 of bone, core 6; and a nerve
+  // of 3 voxels that leads from outside into the muscle.
   const Image image = imageOf({41, 41, 41}, Vec3(kMm), [](int i, int j, int k) {
     const double r = std::hypot(i - 20, j - 20, k - 20);
     if (j == 20 && k == 20 && i < 9) return 4;
@@ -212,15 +213,16 @@ TEST(LabelSurvey, AreaAndVolumeOfABallInLongVoxels) {
   });
   const LabelSurvey survey = surveyLabels(image, {{7}}, nullptr);
   const double area = 4.0 * std::numbers::pi * kRadius * kRadius;
-  // All directions are there, so that faces average to 3/2 of the area; slices of 3 mm cost some percent.
+  // All directions are there, so that faces average to 3/2 of the area; slices of 3 mm cost some
+  // percent.
   EXPECT_NEAR(survey.regions[0].area, area, 0.03 * area);
   EXPECT_NEAR(survey.regions[0].volume, area * kRadius / 3.0, 0.02 * area * kRadius / 3.0);
   EXPECT_NEAR(survey.regions[0].bounds.size().x, 40.0 * kMm, 1e-12);
 }
 
 TEST(LabelSurvey, IslandsAndCavities) {
-  // A block of label 1 with a cavity of two voxels that meet at an edge, an island of label 2 (whose largest
-  // piece is elsewhere) in it, and a speck of label 1 apart.
+  // A block of label 1 with a cavity of two voxels that meet at an edge, an island of label 2
+  // (whose largest piece is elsewhere) in it, and a speck of label 1 apart.
   const auto label = [](int i, int j, int k) {
     if ((i == 4 && j == 4 && k == 4) || (i == 5 && j == 5 && k == 4)) return 0;
     if (i == 6 && j == 6 && k == 6) return 2;
@@ -321,10 +323,10 @@ TEST(LabelSurvey, CountsAndWhatIsNoLabelImage) {
   EXPECT_EQ(errorOf([&] { (void)countLabels(below); }).problem().code, "labels.not_labels");
   // Gray values are whole numbers too.
   std::mt19937 random(7);
-  const Image grey = imageOf({20, 20, 20}, Vec3(kMm),
+  const Image gray = imageOf({20, 20, 20}, Vec3(kMm),
                              [&](int, int, int) { return static_cast<int>(random() % 256); });
-  EXPECT_EQ(errorOf([&] { (void)countLabels(grey); }).problem().code, "labels.not_labels");
-  EXPECT_EQ(errorOf([&] { (void)bodyMask(grey, 300.0, grey); }).problem().code, "scan.empty");
+  EXPECT_EQ(errorOf([&] { (void)countLabels(gray); }).problem().code, "labels.not_labels");
+  EXPECT_EQ(errorOf([&] { (void)bodyMask(gray, 300.0, gray); }).problem().code, "scan.empty");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Meshes with parts too thin for their voxels: refused where the grid would have holes, and only there.
+// Meshes with parts too thin for their voxels: refused where the grid would have holes, and only
+// there.
 
 #include <gtest/gtest.h>
 
@@ -41,8 +42,8 @@ Problem outcome(const Mesh& mesh, MeshSign sign = MeshSign::kVote) {
   return {};
 }
 
-/// [voxels] The largest trilinear value on the middle plane of an endless plate, out of exact distances at
-/// the voxels: above 0, where a grid has a hole.
+/// [voxels] The largest trilinear value on the middle plane of an endless plate, out of exact
+/// distances at the voxels: above 0, where a grid has a hole.
 double worstInMiddle(const Vec3& normal, double thickness) {
   const double offset = glm::dot(normal, kCenter) / kVoxel;
   const auto at_voxel = [&](const Vec3& p) {

@@ -1,4 +1,5 @@
-// A made limb of three cylinders, oblique in oblique voxels: where its files place it, and where its walls are.
+// A made limb of three cylinders, oblique in oblique voxels: where its files place it, and where
+// its walls are.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -106,7 +107,8 @@ TEST(MadeLimb, LabelsOfOneGridLieOnTheSlicesOfAnother) {
   const auto expected = test::askPython("mean", {series, labels, "1", "1"});
   EXPECT_EQ(static_cast<double>(count), expected.at(0).at(1));
   EXPECT_NEAR(mean, expected[0][0], 1e-6);
-  // Half a voxel off, one way as often as the other; if the labels lay elsewhere, muscle would be in the mean.
+  // Half a voxel off, one way as often as the other; if the labels lay elsewhere, muscle would be
+  // in the mean.
   EXPECT_NEAR(mean, truth / static_cast<double>(count), 10.0);
   // pi r^2 l of 1.5 mm voxels.
   const double voxels = std::numbers::pi * Limb::kBone * Limb::kBone * 2.0 * Limb::kHalf / 3.375;
@@ -164,7 +166,8 @@ TEST(MadeLimb, WallsOfItsLabelsAreItsCylinders) {
     const Offset offset = offsetOf(*field, limb, radius);
     std::printf("  wall at %4.1f mm: %+.3f mm in the mean, %.3f at most\n", radius, offset.mean,
                 offset.worst);
-    // Voxels of 1 mm say of a wall that it passes between their centers: within a third of a voxel, and in the mean next to nothing.
+    // Voxels of 1 mm say of a wall that it passes between their centers: within a third of a voxel,
+    // and in the mean next to nothing.
     EXPECT_LT(std::abs(offset.mean), 0.05);
     EXPECT_LT(offset.worst, 0.35);
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// Scans of shapes whose numbers are known, made voxel by voxel; and files of them by the tests' own writers, so that
-/// the readers are not tested against the library that they are part of.
+/// Scans of shapes whose numbers are known, made voxel by voxel; and files of them by the tests'
+/// own writers, so that the readers are not tested against the library that they are part of.
 
 #include <functional>
 #include <random>
@@ -15,15 +15,16 @@ namespace palpate::vdb::test {
 /// Any direction is as likely.
 [[nodiscard]] Vec3 direction(std::mt19937& random);
 
-/// Voxels of `axes` [mm] around `center` [mm], as many as a cube of `side` [mm] takes however it is turned, each with the
-/// value at its own center [mm].
+/// Voxels of `axes` [mm] around `center` [mm], as many as a cube of `side` [mm] takes however it is
+/// turned, each with the value at its own center [mm].
 [[nodiscard]] Image imageAround(const Vec3& center, const Mat3& axes, double side,
                                 const std::function<double(const Vec3&)>& value);
 
 /// Cubic, anisotropic or mirrored voxels [mm], turned about an axis that is none of the image's.
 [[nodiscard]] Mat3 obliqueAxes(const Vec3& spacing, double angle = 0.6);
 
-/// Three cylinders with flat ends: bone within muscle within fat. Their common axis is oblique to every image. [mm]
+/// Three cylinders with flat ends: bone within muscle within fat. Their common axis is oblique to
+/// every image. [mm]
 struct Limb {
   static constexpr double kBone = 8.0;
   static constexpr double kMuscle = 16.0;
@@ -43,7 +44,8 @@ struct Limb {
   [[nodiscard]] double radius(const Vec3& mm) const;
   /// 1 bone, 2 muscle, 3 fat, 0 what is around.
   [[nodiscard]] double label(const Vec3& mm) const;
-  /// Hounsfield units: half-way between two materials at their wall, and all of the way 1.5 mm from it.
+  /// Hounsfield units: half-way between two materials at their wall, and all of the way 1.5 mm from
+  /// it.
   [[nodiscard]] double ct(const Vec3& mm) const;
 
   [[nodiscard]] Image labels(const Mat3& axes) const;

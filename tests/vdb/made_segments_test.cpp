@@ -65,7 +65,8 @@ TEST(MadeSegments, WhereTheyOverlapTheLaterHasTheVoxelsAndTheWall) {
                                : in_first  ? label_of(first)
                                            : 0.0F);
   }
-  // Voxels are 1 mm^3 each: those of the slab, of a ball, and of the lens that two balls share, which the reader reports.
+  // Voxels are 1 mm^3 each: those of the slab, of a ball, and of the lens that two balls share,
+  // which the reader reports.
   const auto voxels_of = [&](const test::Segment& segment) {
     return static_cast<double>(countOf(image, label_of(segment)));
   };

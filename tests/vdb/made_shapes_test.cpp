@@ -85,7 +85,8 @@ TEST(MadeShell, OfOneToTwoVoxelsHasTwoWallsAndNoHole) {
     }
     std::printf("  %.1f mm: inner wall %+.2f mm off, outer %+.2f, %.2f at most\n", thickness, inner,
                 outer, worst);
-    // A wall passes between voxel centers, so that it is known to about half a diagonal; the volume is kept.
+    // A wall passes between voxel centers, so that it is known to about half a diagonal; the volume
+    // is kept.
     EXPECT_NEAR(inner, 0.0, 0.15);
     EXPECT_NEAR(outer, 0.0, 0.15);
     EXPECT_LT(worst, 1.0);
@@ -130,8 +131,8 @@ Image shellOf(const Vec3& center, const Mat3& axes, double radius, double thickn
   });
 }
 
-// Where its wall is a single voxel between places of two, smoothing leaves 0.06 mm of it, and a grid
-// of the scan's voxels has a hole there, in 1 of 4000 directions.
+// Where its wall is a single voxel between places of two, smoothing leaves 0.06 mm of it, and a
+// grid of the scan's voxels has a hole there, in 1 of 4000 directions.
 TEST(MadeShell, OfOneAndAHalfVoxelsReportsItsHoleInAGridOfTheScansVoxels) {
   const Vec3 center(4, -9, 21);
   const Image image = shellOf(center, test::obliqueAxes(Vec3(1, 1, 1)), 16.0, 1.5);
@@ -156,7 +157,8 @@ TEST(MadeShell, OfOneAndAHalfVoxelsAndMoreReportsEveryHole) {
     };
     const Vec3 center(in(-10, 10), in(-10, 10), in(-10, 10));
     const double radius = in(6, 14);
-    // A mask's outside voxels hang together across edges: a wall thinner than the diagonal of a voxel's face may be open in the scan itself.
+    // A mask's outside voxels hang together across edges: a wall thinner than the diagonal of a
+    // voxel's face may be open in the scan itself.
     const double thickness = in(1.42, 2);
     const double voxel = in(0.5, 1);
     const Image image =
@@ -172,8 +174,8 @@ TEST(MadeShell, OfOneAndAHalfVoxelsAndMoreReportsEveryHole) {
   std::printf("  %d of %d shells have holes, all reported\n", with_holes, shells);
 }
 
-/// A sheet 3 mm thick around z = 8 sin(2 pi x / 9), as long as it likes along y: gyri and sulci, which close to nothing
-/// at their bottoms. [mm]
+/// A sheet 3 mm thick around z = 8 sin(2 pi x / 9), as long as it likes along y: gyri and sulci,
+/// which close to nothing at their bottoms. [mm]
 struct Cortex {
   static constexpr double kHeight = 8.0;
   static constexpr double kLength = 9.0;
@@ -215,7 +217,8 @@ TEST(MadeCortex, FoldsThatTouchKeepTheirSulciAsFarAsVoxelsTellThem) {
   EXPECT_EQ(scanLoss(set.info()).lost + scanLoss(set.info()).filled, 0U);
   const FieldPtr field = gridField(set);
 
-  // Nothing is known of a place nearer to the wall than half a voxel's diagonal; all others are on their side.
+  // Nothing is known of a place nearer to the wall than half a voxel's diagonal; all others are on
+  // their side.
   std::mt19937 random(4);
   std::uniform_real_distribution<double> x(-16, 16), y(-2, 2), z(-12, 12);
   std::size_t known = 0, wrong = 0, sulci = 0;
@@ -238,8 +241,9 @@ TEST(MadeCortex, FoldsThatTouchKeepTheirSulciAsFarAsVoxelsTellThem) {
   EXPECT_GT(sulci, 300U);
   EXPECT_EQ(wrong, 0U);
 
-  // Down into a sulcus, and from there 2.5 mm into one of its banks: the probe stays in it, although the next sulcus is
-  // hardly farther. The bank at this height is steep; what is felt is K times the depth, to half a voxel and its slope.
+  // Down into a sulcus, and from there 2.5 mm into one of its banks: the probe stays in it,
+  // although the next sulcus is hardly farther. The bank at this height is steep; what is felt is K
+  // times the depth, to half a voxel and its slope.
   const ScenePtr scene = sceneOf(field, 400.0);
   const double valley = -0.25 * Cortex::kLength;  // where the sheet is lowest
   const Vec3 mouth(valley, 0, 12), middle(valley, 0, 3);

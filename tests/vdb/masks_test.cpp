@@ -1,4 +1,5 @@
-// Masks of one structure each, in a folder or listed: one label image, whose voxels lie where nibabel has them.
+// Masks of one structure each, in a folder or listed: one label image, whose voxels lie where
+// nibabel has them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -186,14 +187,14 @@ TEST(Masks, OnAnotherGridAreRefusedWithTheShift) {
   EXPECT_EQ(readImage(first, options).values[7], 2.0F);
 }
 
-TEST(Masks, GreyValuesAndDamageAreRefusedByFileAndPlace) {
+TEST(Masks, GrayValuesAndDamageAreRefusedByFileAndPlace) {
   const TempFolder folder;
   std::filesystem::create_directory(folder.path("m"));
   (void)write(folder, "m/a.nii.gz", maskOf({5}));
-  NiftiFile grey = maskOf({5});
-  grey.values[8] = 1.0;
-  grey.values[119] = 40.0;
-  const std::string file = write(folder, "m/ct.nii.gz", grey);
+  NiftiFile gray = maskOf({5});
+  gray.values[8] = 1.0;
+  gray.values[119] = 40.0;
+  const std::string file = write(folder, "m/ct.nii.gz", gray);
   const Problem problem = errorOf([&] { (void)readImage(folder.path("m")); }).problem();
   EXPECT_EQ(problem.code, "masks.values");
   EXPECT_EQ(problem.file, file);
@@ -223,7 +224,8 @@ TEST(Masks, OfAScanLieWhereNibabelHasThem) {
   EXPECT_EQ(image.labels.names.size(), 61U);
   test::expectLabelsAt(
       image, test::askScript(test::kStructuresOracle, "masks", {folder.path(), "1000", "5"}), 1000);
-  // The files are called by label and sorted so: the volume that they were made of has the same order.
+  // The files are called by label and sorted so: the volume that they were made of has the same
+  // order.
   const Image whole = readImage(labels);
   for (std::size_t v = 0; v < whole.values.size(); ++v) {
     if (whole.values[v] == 0.0F) {

@@ -1,5 +1,5 @@
-// What findDefects() finds: closed forms, known defects, and self-intersections against separating axes in
-// whole numbers.
+// What findDefects() finds: closed forms, known defects, and self-intersections against separating
+// axes in whole numbers.
 
 #include "palpate/vdb/mesh_defects.h"
 
@@ -122,7 +122,8 @@ TEST(FindDefects, DoubledDegenerateAndNonManifold) {
 }
 
 TEST(FindDefects, SelfIntersectionsAreCountedWithAPlace) {
-  // Two boxes with their edges across each other: four edges of each pass through a face of the other.
+  // Two boxes with their edges across each other: four edges of each pass through a face of the
+  // other.
   const Mesh crossed = together(boxMesh(Vec3(0.0), Vec3(4.0, 1.0, 1.0)),
                                 boxMesh(Vec3(0.25, 0.25, 0.125), Vec3(1.0, 4.0, 1.0)));
   MeshDefects d = findDefects(crossed);
@@ -149,8 +150,8 @@ Point cross(const Point& a, const Point& b) {
 }
 Int dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Whether the hulls of two or three points each have a point in common: no direction of those that can
-/// separate them does. Exact.
+/// Whether the hulls of two or three points each have a point in common: no direction of those that
+/// can separate them does. Exact.
 bool hullsMeet(const std::vector<Point>& a, const std::vector<Point>& b) {
   std::vector<Point> edges;
   for (const auto& hull : {a, b}) {

@@ -1,5 +1,5 @@
-// A needle in the scanned head of data/scenes: its force against the model, with the depths of the brain taken
-// from the grids that are felt, and these held against the image.
+// A needle in the scanned head of data/scenes: its force against the model, with the depths of the
+// brain taken from the grids that are felt, and these held against the image.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -62,7 +62,8 @@ TEST(NeedleScene, BrainIsCutAndHoldsTheShaft) {
       EXPECT_GT(glm::dot(r.force, -way), 0.07);
     }
     last = glm::length(r.force);
-    // The first millimeter is pressed before it is cut (0.05 N / 90 N/m), and slides from 0.15 mm on.
+    // The first millimeter is pressed before it is cut (0.05 N / 90 N/m), and slides from 0.15 mm
+    // on.
     if (depth > entry + kMm && depth < nucleus) {
       ASSERT_EQ(r.region, brain);
       const double model = 0.05 + (depth - entry) * (1.0 + 10.0 * speed);
@@ -76,8 +77,8 @@ TEST(NeedleScene, BrainIsCutAndHoldsTheShaft) {
   EXPECT_GT(pierced, nucleus);
   EXPECT_LT(pierced, nucleus + 0.005);
 
-  // By the image the brain begins where its interpolated value passes 20: within a voxel of 1.5 mm, and
-  // the force with it, by the slope of 1.2 N/m.
+  // By the image the brain begins where its interpolated value passes 20: within a voxel of 1.5 mm,
+  // and the force with it, by the slope of 1.2 N/m.
   const Image image = readNifti("/usr/share/mricron/templates/ch2bet.nii.gz");
   double by_image = 0.0;
   while (by_image < end && !(image.interpolate(from + by_image * way) > 20.0)) {

@@ -131,7 +131,8 @@ void expectInterpolatedAsScipyDoes(const std::string& path) {
   ASSERT_EQ(expected.size(), points.size());
   double brightest = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    // Same formula, gray values up to some thousand: round-off of the index (1e-13) times the steepest step.
+    // Same formula, gray values up to some thousand: round-off of the index (1e-13) times the
+    // steepest step.
     EXPECT_NEAR(image.interpolate(points[i]), expected[i].at(0), 1e-8) << i;
     brightest = std::max(brightest, expected[i][0]);
   }
@@ -150,7 +151,7 @@ TEST(Nifti, InterpolatesAnObliqueScanAsScipyDoes) {
   expectInterpolatedAsScipyDoes(path);
 }
 
-TEST(Nifti, InterpolatesUpToTheOutermostCentresAndNotBeyond) {
+TEST(Nifti, InterpolatesUpToTheOutermostCentersAndNotBeyond) {
   const Image image = readNifti(writeTemporary("a.nii", bytesOf({})));
   const Vec3 last(3, 4, 5);
   // Exact but for the round-off of the inverse affine.
@@ -228,12 +229,12 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Nifti, ScalesSpacingAndOriginByTheUnit) {
   // 2 units of spacing, first voxel at (-3, -4, -5) units.
-  for (const auto& [code, metres] : {std::pair{1, 1.0}, {2, 1e-3}, {3, 1e-6}, {0, 1e-3}}) {
+  for (const auto& [code, meters] : {std::pair{1, 1.0}, {2, 1e-3}, {3, 1e-6}, {0, 1e-3}}) {
     NiftiFile file;
     file.units = code;
     const Image image = readNifti(writeTemporary("unit.nii", bytesOf(file)));
-    EXPECT_NEAR(image.axes[1][1], 2.0 * metres, 1e-12 * metres) << code;
-    EXPECT_NEAR(image.origin.z, -5.0 * metres, 1e-12 * metres) << code;
+    EXPECT_NEAR(image.axes[1][1], 2.0 * meters, 1e-12 * meters) << code;
+    EXPECT_NEAR(image.origin.z, -5.0 * meters, 1e-12 * meters) << code;
     EXPECT_EQ(image.notes.size(), code == 0 ? 1U : 0U);
     if (code == 0) {
       EXPECT_NE(image.notes.at(0).find("taken as mm"), std::string::npos);

@@ -1,4 +1,5 @@
-// Meshes of few flat faces: felt as the solid between their planes, with edges and corners as they are.
+// Meshes of few flat faces: felt as the solid between their planes, with edges and corners as they
+// are.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -134,7 +135,8 @@ bool isInside(const Mesh& mesh, const Vec3& p) {
   return walls % 2 == 1;
 }
 
-/// The field is zero on the mesh, has its inside, and never says more than the distance (by a slope of 1).
+/// The field is zero on the mesh, has its inside, and never says more than the distance (by a slope
+/// of 1).
 void expectSolid(const Mesh& mesh) {
   const FieldPtr field = polyhedronField(mesh);
   ASSERT_TRUE(field);
@@ -221,7 +223,8 @@ TEST(Polyhedron, WhatIsNoneIsLeftToTheGrid) {
   EXPECT_FALSE(polyhedronField(star(), 11));  // it has twelve faces
 }
 
-/// From face to face, and now and then out: all ticks beside the oracle, which projects onto the true solid.
+/// From face to face, and now and then out: all ticks beside the oracle, which projects onto the
+/// true solid.
 void feelsTrue(const Mesh& mesh, bool from_within, const Vec3& free, double reach, int seed) {
   const FieldPtr field = polyhedronField(mesh);
   ASSERT_TRUE(field);

@@ -6,7 +6,8 @@
 
 namespace palpate::vdb::test {
 
-/// The numbers that `script command arguments...` prints, a row for each line; `script` is below tests.
+/// The numbers that `script command arguments...` prints, a row for each line; `script` is below
+/// tests.
 /// @throws std::runtime_error if it fails; python3-nibabel and python3-scipy are test dependencies.
 [[nodiscard]] std::vector<std::vector<double>> askScript(const std::string& script,
                                                          const std::string& command,

@@ -1,7 +1,8 @@
-// Random constructive solid geometry of which some leaves are grids: at every tick the proxy is where an oracle comes
-// to rest that reads the same fields.
+// Random constructive solid geometry of which some leaves are grids: at every tick the proxy is
+// where an oracle comes to rest that reads the same fields.
 //
-// One scene by its number: PALPATE_CSG_FIRST=14 PALPATE_CSG_SCENES=1; more ticks: PALPATE_CSG_CONTACTS=300000.
+// One scene by its number: PALPATE_CSG_FIRST=14 PALPATE_CSG_SCENES=1; more ticks:
+// PALPATE_CSG_CONTACTS=300000.
 
 #include <gtest/gtest.h>
 

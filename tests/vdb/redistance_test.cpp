@@ -1,4 +1,5 @@
-// Distances from voxels: to the nearest one on the other side, and to the surface of the spline through a band.
+// Distances from voxels: to the nearest one on the other side, and to the surface of the spline
+// through a band.
 #include "scan/redistance.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +50,8 @@ Mask maskOfOnes(const Image& image, int margin) {
       image, [](float value) { return value > 0.5F; }, margin);
 }
 
-// Every voxel of every block, against all voxels within reach, with spacings that make ties and others.
+// Every voxel of every block, against all voxels within reach, with spacings that make ties and
+// others.
 TEST(Opposite, FindsTheNearestVoxelOnTheOtherSide) {
   constexpr int kReach = Opposite::kReach;
   for (const Vec3 spacing : {Vec3(1.0), Vec3(1.0, 1.5, 3.0), Vec3(2.0, 1.0, 1.0)}) {
@@ -112,8 +114,8 @@ struct Made {
         grid(bakeSpline(spline, band, mask, image, bake, {})) {}
 };
 
-/// Where lines between lattice neighbors on two sides pass through the surface, by bisection on the baked grid's
-/// own source, the spline: found as closest points of points that lie on it nearly.
+/// Where lines between lattice neighbors on two sides pass through the surface, by bisection on the
+/// baked grid's own source, the spline: found as closest points of points that lie on it nearly.
 std::vector<Vec3> surfacePoints(const Made& made, int per_edge) {
   std::vector<Vec3> points;
   const auto [nx, ny, nz] = made.image.size;
@@ -165,8 +167,8 @@ TEST(Redistance, IsTheDistanceToTheSurfaceOfTheSpline) {
           start = q;
         }
       }
-      // Never further than a point that is on the surface; and no nearer than the closest one around that, but
-      // for where another dale of the surface is deeper.
+      // Never further than a point that is on the surface; and no nearer than the closest one
+      // around that, but for where another dale of the surface is deeper.
       beyond += std::abs(value) > nearest + 0.02 * voxel ? 1 : 0;
       const auto foot = made.spline.foot(p, start);
       // By the surface voxels move a little, so that the spline through the grid fits.
@@ -176,12 +178,14 @@ TEST(Redistance, IsTheDistanceToTheSurfaceOfTheSpline) {
     std::printf("%d points, %d beyond, %d far\n", seen, beyond, far);
     EXPECT_LT(beyond, seen / 200);
     EXPECT_GT(seen, 2000);
-    // Newton's method finds nothing beside creases, and another dale than the grid's where two are as near.
+    // Newton's method finds nothing beside creases, and another dale than the grid's where two are
+    // as near.
     EXPECT_LT(far, seen / 200);
   }
 }
 
-// Against all neighbors one by one, where a third of the voxels have no point, and blocks are missing.
+// Against all neighbors one by one, where a third of the voxels have no point, and blocks are
+// missing.
 TEST(NearestFeet, AreThoseOfTheVoxelsAround) {
   const Mat3 axes(Vec3(1.0, 0.1, 0.0), Vec3(0.0, 1.2, -0.2), Vec3(0.3, 0.0, 3.0));
   std::mt19937 random(11);
@@ -225,7 +229,8 @@ TEST(NearestFeet, AreThoseOfTheVoxelsAround) {
   }
 }
 
-// Also where every voxel is another piece: signs are those of the voxels, and values change no faster than the way.
+// Also where every voxel is another piece: signs are those of the voxels, and values change no
+// faster than the way.
 TEST(Redistance, HasTheSignsOfTheVoxelsAndIsADistance) {
   for (unsigned run = 0; run < 6; ++run) {
     BakeOptions bake;

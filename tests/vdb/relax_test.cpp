@@ -1,4 +1,5 @@
-// The inner loops that smooth masks: against the energy's own derivative, and one kind of processor against the other.
+// The inner loops that smooth masks: against the energy's own derivative, and one kind of processor
+// against the other.
 #include "scan/relax.h"
 
 #include <gtest/gtest.h>

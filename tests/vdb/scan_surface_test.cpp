@@ -50,8 +50,8 @@ FieldPtr labelField(const Image& image, std::vector<int> values) {
   return gridField(surfaceFromLabels(image, {.values = std::move(values)}, {}), Sampler::kAccessor);
 }
 
-/// Enclosed volume [m^3]: a Heaviside as wide as a sample step, over the field's box. Where the surface
-/// is smooth on that scale its error is of second order.
+/// Enclosed volume [m^3]: a Heaviside as wide as a sample step, over the field's box. Where the
+/// surface is smooth on that scale its error is of second order.
 double volumeOf(const Field& field, double step) {
   const Box3 box = field.bounds().grownBy(2.0 * step);
   double sum = 0.0;
@@ -98,8 +98,8 @@ Mat3 awkwardAxes() {
   return axes;
 }
 
-// A ball through an awkward affine, as an intensity with its distance and as bare labels. Spacings are
-// 0.04 to 0.08 of the radius.
+// A ball through an awkward affine, as an intensity with its distance and as bare labels. Spacings
+// are 0.04 to 0.08 of the radius.
 TEST(ScanSurface, BallThroughAnAwkwardAffine) {
   const Mat3 axes = awkwardAxes();
   ASSERT_LT(glm::determinant(axes), 0.0);
@@ -109,24 +109,24 @@ TEST(ScanSurface, BallThroughAnAwkwardAffine) {
   const auto depth = [&](const Vec3& index) {
     return (radius - glm::length(axes * index + origin - center)) / kMm;
   };
-  const Image grey =
+  const Image gray =
       imageOf({68, 50, 36}, axes, origin, [&](const Vec3& i) { return 100 + depth(i); });
   const Image label =
       imageOf({68, 50, 36}, axes, origin, [&](const Vec3& i) { return depth(i) > 0 ? 7 : 0; });
 
-  const FieldPtr from_grey = thresholdField(grey, {.above = 100});
+  const FieldPtr from_gray = thresholdField(gray, {.above = 100});
   const FieldPtr from_label = labelField(label, {7});
-  EXPECT_DOUBLE_EQ(from_grey->featureSize(), 0.8 * kMm);  // voxels of the smallest spacing
-  const BallErrors g = errorsOnSphere(*from_grey, center, radius);
+  EXPECT_DOUBLE_EQ(from_gray->featureSize(), 0.8 * kMm);  // voxels of the smallest spacing
+  const BallErrors g = errorsOnSphere(*from_gray, center, radius);
   const BallErrors l = errorsOnSphere(*from_label, center, radius);
   std::printf(
       "ball R = 20 mm, voxels 0.8 x 1.1 x 1.6 mm, oblique, left-handed\n"
       "  threshold: bias %+.3f mm, rms %.3f mm, normal %.2f degrees\n"
       "  labels:    bias %+.3f mm, rms %.3f mm, normal %.2f degrees\n",
       g.bias / kMm, g.rms / kMm, g.normal, l.bias / kMm, l.rms / kMm, l.normal);
-  // Chords of triangles as long as a voxel's diagonal (d = 2.1 mm) lie up to d^2 / (8 R) = 0.028 mm too
-  // deep, and a linear interpolant of the distance (step h = 0.8 mm) h^2 / (4 R) = 0.008 mm deeper still;
-  // facets lean up to d / (2 R) = 3 degrees against the sphere, 1.5 in the mean.
+  // Chords of triangles as long as a voxel's diagonal (d = 2.1 mm) lie up to d^2 / (8 R) = 0.028 mm
+  // too deep, and a linear interpolant of the distance (step h = 0.8 mm) h^2 / (4 R) = 0.008 mm
+  // deeper still; facets lean up to d / (2 R) = 3 degrees against the sphere, 1.5 in the mean.
   EXPECT_LT(std::abs(g.bias), 0.036 * kMm);
   EXPECT_LT(g.rms, 0.04 * kMm);
   EXPECT_LT(g.normal, 1.5);
@@ -135,7 +135,7 @@ TEST(ScanSurface, BallThroughAnAwkwardAffine) {
   EXPECT_LT(l.rms, 0.12 * kMm);
   EXPECT_LT(l.normal, 5.0);
   // Inside is in.
-  EXPECT_LT(from_grey->value(center), 0.0);
+  EXPECT_LT(from_gray->value(center), 0.0);
   EXPECT_LT(from_label->value(center), 0.0);
 }
 
@@ -163,8 +163,8 @@ TEST(ScanSurface, IsClosedHalfAVoxelBeyondTheImagesBorder) {
         EXPECT_NEAR(field->sample(wall).gradient[axis], side, 1e-5);
       }
     }
-    // All voxels, less what the grid rounds off along the twelve edges (144 voxels): less than a quarter of
-    // a voxel's face.
+    // All voxels, less what the grid rounds off along the twelve edges (144 voxels): less than a
+    // quarter of a voxel's face.
     const double volume = volumeOf(*field, kMm);
     EXPECT_LT(volume, 10 * 12 * 14 * 8e-9);
     EXPECT_GT(volume, (10 * 12 * 14 - 36) * 8e-9);
@@ -383,7 +383,8 @@ void expectVolumesKept(const Image& image, const NameTable& names,
         "in the mean), %.1f %% of the voxel centers outside, by %.2f voxel at most\n",
         name.c_str(), voxels, counted * 1e6, enclosed * 1e6, 100 * (enclosed / counted - 1), offset,
         100.0 * static_cast<double>(outside) / static_cast<double>(voxels), worst / spacing);
-    // The label ball of R = 20 mm above has 0.07 / 0.8 = 0.09; the aorta has a radius of 3.5 voxels.
+    // The label ball of R = 20 mm above has 0.07 / 0.8 = 0.09; the aorta has a radius of 3.5
+    // voxels.
     EXPECT_LT(std::abs(offset), 0.2) << name;
     EXPECT_LT(worst, 0.5 * spacing) << name;
   }

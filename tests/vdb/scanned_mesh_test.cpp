@@ -45,7 +45,8 @@ TEST(ScannedMesh, IsClosedAndOfOnePartInEveryFormat) {
   }
 }
 
-/// How far a point is from the nearest face between a voxel of the label and one of another [voxels].
+/// How far a point is from the nearest face between a voxel of the label and one of another
+/// [voxels].
 double offBorder(const Image& image, float label, const Vec3& p) {
   const Vec3 index = image.toIndex(p);
   const auto is_label = [&](const Vec3& v) {
@@ -96,7 +97,8 @@ TEST(ScannedMesh, AModelInLpsLiesOnItsLabels) {
   for (const Vec3& v : mesh.vertices) worst = std::max(worst, offBorder(brain, 77.0F, v));
   std::printf("  %zu vertices, %.2f voxel from the voxels' faces at most\n", mesh.vertices.size(),
               worst);
-  // Smooth walls cut the steps of voxels: their centers, half a voxel from each face, stay on their side.
+  // Smooth walls cut the steps of voxels: their centers, half a voxel from each face, stay on their
+  // side.
   EXPECT_LT(worst, 0.75);
 }
 

@@ -1,4 +1,5 @@
-// `baked` in scene files: what is made when, what notes say, ports on its faces, and where errors point.
+// `baked` in scene files: what is made when, what notes say, ports on its faces, and where errors
+// point.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -234,7 +235,8 @@ TEST_F(SceneBaked, FieldsInItCountAsNested) {
   }
 }
 
-// What the device cannot reach of a grid is not made; within its reach nothing tells the difference.
+// What the device cannot reach of a grid is not made; within its reach nothing tells the
+// difference.
 TEST_F(SceneBaked, BeyondTheWorkspaceNoGridIsMade) {
   const std::string scene =
       "  ring: {torus: {center: [0, 0, 0], axis: [0, 0, 1], radius: 20, tube: 8}}\n"
@@ -263,7 +265,8 @@ TEST_F(SceneBaked, BeyondTheWorkspaceNoGridIsMade) {
   for (int i = 0; i < 60000; ++i) {
     const double t = 0.001 * i;
     const Vec3 wave(std::sin(3.1 * t), std::cos(2.3 * t), std::sin(1.7 * t + 1.0));
-    // On the border of the workspace as well, but no deeper in a wall than is kept beyond it: 2.7 mm.
+    // On the border of the workspace as well, but no deeper in a wall than is kept beyond it: 2.7
+    // mm.
     const HipState hip{glm::clamp(reach.center() + 0.6 * reach.size() * wave, reach.lo, reach.hi),
                        Vec3(0.0)};
     if (is_lost && all->regionAt(hip.position) == kOutside) {
@@ -277,8 +280,8 @@ TEST_F(SceneBaked, BeyondTheWorkspaceNoGridIsMade) {
     const TickResult one = a->update(hip);
     ASSERT_EQ(one.region, two.region) << i;
     ASSERT_EQ(one.contact, two.contact) << i;
-    // The steepest slope of the bricks made is the bound on all steps: the proxy stops elsewhere within its tolerance of
-    // 1e-9 voxels, and slides by as much of what it has slid.
+    // The steepest slope of the bricks made is the bound on all steps: the proxy stops elsewhere
+    // within its tolerance of 1e-9 voxels, and slides by as much of what it has slid.
     ASSERT_LT(glm::distance(one.proxy, two.proxy), 1e-8 * kMm) << i;
     touched += one.contact ? 1 : 0;
   }

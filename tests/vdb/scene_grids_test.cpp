@@ -67,7 +67,8 @@ TEST_F(SceneGrids, WhatIsSlowBecomesAGridWithinTheTolerance) {
       }
       return inside;
     };
-    // Along a ray the distance between two surfaces is longer than across them, by 1 / cos of the slant.
+    // Along a ray the distance between two surfaces is longer than across them, by 1 / cos of the
+    // slant.
     EXPECT_NEAR(surface(grid), surface(exact), 3.0 * kTolerance) << i;
   }
 }

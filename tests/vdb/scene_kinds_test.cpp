@@ -1,4 +1,5 @@
-// Scene files that name meshes, grids and images: what is read when, what notes say, and where errors point.
+// Scene files that name meshes, grids and images: what is read when, what notes say, and where
+// errors point.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -85,7 +86,8 @@ TEST_F(SceneKinds, LayersOfAnImageAreMadeWhenAskedForAndShareTheirGroup) {
   EXPECT_EQ(scene.layers[1].inside->summary(), "labels 2 7 of labels.nii");
   EXPECT_EQ(scene.layers[2].inside->summary(), "labels.nii above 0.5");
   EXPECT_TRUE(grids_.empty());
-  // Unit code 0 is noted once, although two images, three layers and their voxels come from the file.
+  // Unit code 0 is noted once, although two images, three layers and their voxels come from the
+  // file.
   ASSERT_EQ(notes_.size(), 1U);
   EXPECT_NE(notes_[0].find("labels.nii"), std::string::npos);
   EXPECT_NE(notes_[0].find("taken as mm"), std::string::npos);

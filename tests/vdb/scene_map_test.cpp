@@ -1,5 +1,5 @@
-// Parameters of a scene that come from .vdb files and images: read as python3-openvdb writes them, felt as they
-// say, and refused with a place and a remedy.
+// Parameters of a scene that come from .vdb files and images: read as python3-openvdb writes them,
+// felt as they say, and refused with a place and a remedy.
 
 #include <gtest/gtest.h>
 
@@ -146,7 +146,8 @@ TEST_F(SceneMaps, AFlowComesFromAnImageAndMayBeBelowZero) {
                 ", viscosity: 2 N.s/m, flow: [{image: ct, transfer: [[-100, -20 mm/s], [300, 1 "
                 "cm/s]]}, 0 mm/s, 5 mm/s]"));
   const Flow& flow = description.materials[0].flow;
-  // -20, -5 and 10 mm/s at the second to fourth voxel: an eighth of each neighbor, three quarters of its own.
+  // -20, -5 and 10 mm/s at the second to fourth voxel: an eighth of each neighbor, three quarters
+  // of its own.
   EXPECT_NEAR(flow.at({4e-3, 0, 0}).x, -5e-3, 1e-6);
   EXPECT_NEAR(flow.at({0, 0, 0}).x, -20e-3, 1e-6);
   EXPECT_NEAR(flow.x.range().least, -20e-3, 1e-6);
@@ -217,7 +218,8 @@ TEST_F(SceneMaps, PythonReadsWhatIsWritten) {
   const NamedMaterialGrid named = {"skin/stiffness", grid, "N/m", "mm", {{"layer", "skin"}}};
   const std::string path = home->path("written.vdb");
   writeVdb(path, {}, true, std::span(&named, 1));
-  // 11 x 9 x 7 voxels of 2 mm; steps of 200 / 255 N/m, so that 20 N/m apart they are off by 0.39 at most.
+  // 11 x 9 x 7 voxels of 2 mm; steps of 200 / 255 N/m, so that 20 N/m apart they are off by 0.39 at
+  // most.
   const std::string out = oracle("read '" + path + "' skin/stiffness");
   int n[7];
   double p[6];

@@ -1,4 +1,5 @@
-// Grids of booleans, masks and densities as openings of ports: they say where, and are not taken for distances.
+// Grids of booleans, masks and densities as openings of ports: they say where, and are not taken
+// for distances.
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>

@@ -28,7 +28,8 @@ constexpr double kAngle = 30.0 * kDegree;
 constexpr double kRadius = 15 * kMm;
 constexpr double kHalf = 10 * kMm;
 
-/// A can about z out of `sides` facets around, whose rims are sharp; its walls in strips as high as wide.
+/// A can about z out of `sides` facets around, whose rims are sharp; its walls in strips as high as
+/// wide.
 Mesh can(int sides) {
   Mesh mesh;
   mesh.source = "can";
@@ -108,8 +109,8 @@ TEST(SharpEdges, ARimIsWhereItIsAndHasItsNormals) {
 
 TEST(SharpEdges, BricksAndTrianglesJoinWithoutAStep) {
   const Fields fields = fieldsOf(can(320));
-  // Away from the rim across where they join, on both faces: value and gradient change no more than the
-  // triangles' own facets do (half the turn between two of them, in a step).
+  // Away from the rim across where they join, on both faces: value and gradient change no more than
+  // the triangles' own facets do (half the turn between two of them, in a step).
   double step = 0.0;
   double turn = 0.0;
   for (int line = 0; line < 50; ++line) {
@@ -150,7 +151,8 @@ TEST(SharpEdges, ValueAndGradientAgree) {
     const Vec3 d = 1e-3 * kVoxel * Vec3(any(random), any(random), any(random));
     const FieldSample ahead = fields.sharp->sample(p + d);
     const FieldSample behind = fields.sharp->sample(p - d);
-    // Where the band ends, exact values end with it: beyond, a value only says how far it is at least.
+    // Where the band ends, exact values end with it: beyond, a value only says how far it is at
+    // least.
     if (!ahead.in_band || !behind.in_band) continue;
     const double change = ahead.value - behind.value;
     EXPECT_LE(std::abs(change), fields.sharp->lipschitz() * 2.0 * glm::length(d) * (1.0 + 1e-6));
@@ -187,7 +189,8 @@ TEST(SharpEdges, WhatIsNotOneClosedSurfaceIsRefused) {
 }
 
 TEST(SharpEdges, AWallWithinTheSolidBesideASharpEdgeIsNotFelt) {
-  // Within the can and three voxels and a half from its rim, deeper than the grid rounds anything off: a part of its own is left out.
+  // Within the can and three voxels and a half from its rim, deeper than the grid rounds anything
+  // off: a part of its own is left out.
   const Vec3 within(13.4 * kMm, 0.0, 8.4 * kMm);
   const Fields fields = fieldsOf(together(can(160), ballMesh(within, 0.4 * kMm, 2)));
   for (int n = 0; n < 100; ++n) {
@@ -206,8 +209,8 @@ TEST(SharpEdges, BesideAWallThatPassesThroughAnotherTheGridAnswers) {
   EXPECT_GT(sharp.left_to_grid, 0U);
   EXPECT_LT(sharp.left_to_grid, 40U);
   EXPECT_LT(glm::length(sharp.place - middle), 2.5 * kMm + 5.0 * kVoxel);
-  // The part of the ball that lies within the can, and of the can within the ball, is never felt: 0.2 mm are below what
-  // the grid rounds the crease of both by.
+  // The part of the ball that lies within the can, and of the can within the ball, is never felt:
+  // 0.2 mm are below what the grid rounds the crease of both by.
   for (int n = 0; n < 2000; ++n) {
     const Vec3 way(std::cos(n) * std::sin(0.7 * n), std::sin(n) * std::sin(0.7 * n),
                    std::cos(0.7 * n));
@@ -219,7 +222,8 @@ TEST(SharpEdges, BesideAWallThatPassesThroughAnotherTheGridAnswers) {
   // Away from it the rim is exact.
   const Vec3 rim(-kRadius, 0.0, kHalf);
   EXPECT_NEAR(sharp.field->value(rim + Vec3(-0.3 * kMm, 0.0, 0.4 * kMm)), 0.5 * kMm, 4e-6);
-  // Where no sharp edge is near, a ball through the side does no harm: there the grid answers anyway.
+  // Where no sharp edge is near, a ball through the side does no harm: there the grid answers
+  // anyway.
   const Mesh aside = together(can(160), ballMesh(Vec3(15.0, 0.0, 0.0) * kMm, 3.0 * kMm, 3));
   const FieldPtr others = gridField(bakeMesh(aside, voxels(kVoxel)));
   EXPECT_EQ(withSharpEdges(others, aside, kAngle, kVoxel).left_to_grid, 0U);

@@ -58,7 +58,8 @@ TEST(SingleWalls, ALoneVoxelOnABodyAndAPitInItAreNone) {
 }
 
 TEST(SingleWalls, WhatHasAnEdgeOpenBesideItPartsNothing) {
-  // A sheet one voxel thick with a voxel moved up: outside leads by edges around the moved one, inside does not.
+  // A sheet one voxel thick with a voxel moved up: outside leads by edges around the moved one,
+  // inside does not.
   const auto sheet = [](const std::array<int, 3>& at) {
     const bool is_moved = at[0] == 10 && at[1] == 10;
     return at[2] == (is_moved ? 10 : 9);

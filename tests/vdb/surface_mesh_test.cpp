@@ -38,11 +38,13 @@ TEST(SurfaceMesh, BallIsClosedOutwardAndOnTheBall) {
   EXPECT_EQ(report.components, 1U);
   EXPECT_EQ(report.flipped_edges, 0U);
   EXPECT_EQ(report.non_manifold_edges, 0U);
-  // The cubic spline is off by less than 1e-4 of a voxel at r / h = 30, and vertices by a thousandth of that.
+  // The cubic spline is off by less than 1e-4 of a voxel at r / h = 30, and vertices by a
+  // thousandth of that.
   for (const Vec3& v : mesh.vertices) {
     ASSERT_NEAR(glm::length(v - Vec3(0.003, -0.02, 0.04)), kRadius, 1e-3 * kVoxel);
   }
-  // Flat triangles between points of a ball lose edge^2 / 8 r of its radius, with edges of up to 1.5 voxels.
+  // Flat triangles between points of a ball lose edge^2 / 8 r of its radius, with edges of up
+  // to 1.5 voxels.
   const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3.0);
   const double sag = std::pow(1.5 * kVoxel, 2.0) / (8.0 * kRadius);
   EXPECT_LT(report.volume, volume);
@@ -71,7 +73,8 @@ void expectSame(const Mesh& a, const Mesh& b, double tolerance) {
 TEST(EncodeMesh, EveryFormatReadsBack) {
   const Mesh& mesh = ballMesh();
   const TempFolder folder;
-  // 0.06 m from the origin: a float holds 4e-9 m there. Dividing and multiplying by the unit rounds twice.
+  // 0.06 m from the origin: a float holds 4e-9 m there. Dividing and multiplying by the unit rounds
+  // twice.
   struct {
     const char* extension;
     double unit, tolerance;
@@ -90,13 +93,14 @@ TEST(EncodeMesh, EveryFormatReadsBack) {
   }
 }
 
-TEST(EncodeMesh, GlbIsInMetresWhateverTheUnit) {
+TEST(EncodeMesh, GlbIsInMetersWhateverTheUnit) {
   const Mesh& mesh = ballMesh();
   EXPECT_EQ(encodeMesh(mesh, MeshFormat::kGlb, 1e-3), encodeMesh(mesh, MeshFormat::kGlb, 1.0));
 }
 
 TEST(EncodeMesh, FilesOfFloatsHaveNoTriangleWithTwoCornersInOnePlace) {
-  // Two vertices that differ by less than a float at 0.1 m tells: the side between them goes, with both its triangles.
+  // Two vertices that differ by less than a float at 0.1 m tells: the side between them goes, with
+  // both its triangles.
   Mesh mesh = ballMesh();
   const auto [a, b, c] = mesh.triangles[7];
   for (Vec3& v : mesh.vertices) v += Vec3(0.1);

@@ -7,12 +7,12 @@
 
 namespace palpate::vdb::test {
 
-/// Knows nothing of the ways that bakeMesh() goes: a solid is the planes of its triangles, and what of a triangle is
-/// in another solid is cut away, one plane after the other.
+/// Knows nothing of the ways that bakeMesh() goes: a solid is the planes of its triangles, and what
+/// of a triangle is in another solid is cut away, one plane after the other.
 class UnionOracle {
  public:
-  /// Convex solids, wound outwards. Faces of two that look the same way in one plane must not overlap: each would be
-  /// taken off the other.
+  /// Convex solids, wound outwards. Faces of two that look the same way in one plane must not
+  /// overlap: each would be taken off the other.
   explicit UnionOracle(const std::vector<Mesh>& parts);
 
   /// The signed distance at `p`, if it is less than `reach`; else `reach` or its opposite.

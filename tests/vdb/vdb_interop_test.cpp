@@ -1,5 +1,5 @@
-// .vdb files of others: what python3-openvdb and OpenVDB write is read rightly or refused with a reason and what
-// helps; what is written here is read by vdb_print and vdb_render.
+// .vdb files of others: what python3-openvdb and OpenVDB write is read rightly or refused with a
+// reason and what helps; what is written here is read by vdb_print and vdb_render.
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>

@@ -379,11 +379,13 @@ TEST(VdbIo, DamagedFilesAreErrorsNotCrashes) {
     }
   }
   EXPECT_GT(misplaced, 0);
-  // Flipped bits may pass unseen in a voxel's value; they may not crash or come out as another type.
+  // Flipped bits may pass unseen in a voxel's value; they may not crash or come out as another
+  // type.
   std::mt19937 random(3);
   // A damaged size can cost a second and a gigabyte before it is refused, so few by default.
 #if defined(__SANITIZE_ADDRESS__)
-  // OpenVDB asks for terabytes then. That operator new throws is what is tested; the sanitizer's ends the process.
+  // OpenVDB asks for terabytes then. That operator new throws is what is tested; the sanitizer's
+  // ends the process.
   const int damages = 0;
 #else
   const int damages = std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 1500 : 150;

@@ -1,4 +1,5 @@
-// Legacy VTK polydata: cells of all kinds in every version, RAS and LPS, and real models on their labels.
+// Legacy VTK polydata: cells of all kinds in every version, RAS and LPS, and real models on their
+// labels.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -158,8 +159,9 @@ TEST(Vtk, SpaceIsAsAskedElseAsTheFileSaysElseRas) {
       Vec3(-1, -2, 3));
 }
 
-// Slicer smoothed and decimated its models, which drew a few vertices in at tips and rims: of these four 1 to 11 of some
-// 7000 are more than a voxel off, as they are when read by other means; nothing is by half a voxel more.
+// Slicer smoothed and decimated its models, which drew a few vertices in at tips and rims: of these
+// four 1 to 11 of some 7000 are more than a voxel off, as they are when read by other means;
+// nothing is by half a voxel more.
 TEST(Vtk, ModelsOfTheHeadLieOnTheirLabels) {
   const std::string folder = palpate::testing::scanPath("head_neck/");
   PALPATE_NEEDS_SCAN(folder);
@@ -175,7 +177,8 @@ TEST(Vtk, ModelsOfTheHeadLieOnTheirLabels) {
     EXPECT_NE(file.find(names.at(label)), std::string::npos);
     const Mesh mesh = readMesh(entry.path().string(), 1e-3);
     EXPECT_EQ(checkMesh(mesh).degenerate_triangles, 0U);
-    // How far a vertex is, along one axis at least, from a change between the label and what is not [voxels].
+    // How far a vertex is, along one axis at least, from a change between the label and what is not
+    // [voxels].
     std::vector<double> off;
     for (const Vec3& v : mesh.vertices) {
       const Vec3 index = labels.toIndex(v);

@@ -47,8 +47,8 @@ TEST(Widen, ABandOfThreeVoxelsBecomesTheOneOfSix) {
   }
   EXPECT_LT(missing, wide.info().active_voxels / 1000);
   EXPECT_LT(widened_set.info().active_voxels, wide.info().active_voxels * 1001 / 1000);
-  // [voxels] Closest points on a spline that is off by 0.037 r (h / r)^4 at r/h = 12: 2e-5 voxels. A few
-  // voxels whose Newton steps do not converge keep their first guess, tenths of a voxel off.
+  // [voxels] Closest points on a spline that is off by 0.037 r (h / r)^4 at r/h = 12: 2e-5 voxels.
+  // A few voxels whose Newton steps do not converge keep their first guess, tenths of a voxel off.
   EXPECT_LT(std::sqrt(square / static_cast<double>(count)), 3e-3);
 
   const FieldPtr by_wide = gridField(wide);
@@ -70,9 +70,9 @@ TEST(Widen, ABandOfThreeVoxelsBecomesTheOneOfSix) {
 }
 
 TEST(Widen, OutsideSharpEdgesItClaimsNoRoomThatIsNotThere) {
-  // The spline rounds the edges off, so that closest points there are guesses; contact may leap only as far
-  // as values say. Half a voxel is what three layers of steps to 26 neighbors are longer than straight ways,
-  // and where two walls meet inside.
+  // The spline rounds the edges off, so that closest points there are guesses; contact may leap
+  // only as far as values say. Half a voxel is what three layers of steps to 26 neighbors are
+  // longer than straight ways, and where two walls meet inside.
   const FieldPtr solid = palpate::box(Vec3(0.1e-3, 0.2e-3, 0.3e-3), Vec3(40e-3, 30e-3, 20e-3));
   constexpr double kVoxel = 1e-3;
   const LevelSet widened_set = widened(bake(*solid, voxels(kVoxel, 3.0)), 6.0);

@@ -54,8 +54,8 @@ BakedGrid timed(Make&& make) {
   return baked;
 }
 
-/// The description without what the layers asked for do not depend on. Labels of one image share it, so they
-/// stay together; nothing is entered, so ports and walls go.
+/// The description without what the layers asked for do not depend on. Labels of one image share
+/// it, so they stay together; nothing is entered, so ports and walls go.
 SceneDescription neededFor(const BakeOptions& options, SceneDescription description) {
   std::set<std::string> groups;
   for (const auto& layer : description.layers) {

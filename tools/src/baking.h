@@ -16,12 +16,13 @@ struct BakedGrid {
   FieldPtr analytic = {};  ///< what it was made of, if that was not a grid, mesh or image
 };
 
-/// The grid of all labels together. A point belongs to the label whose grid has the smallest value there, or
-/// to none if the opposite of this grid's is smaller: no gap, no overlap (vdb::LabelSurfaces).
+/// The grid of all labels together. A point belongs to the label whose grid has the smallest value
+/// there, or to none if the opposite of this grid's is smaller: no gap, no overlap
+/// (vdb::LabelSurfaces).
 inline constexpr const char* kUnitedGrid = "united";
 
-/// One grid for each layer of a scene, for a mesh, for an image's threshold, or for each of its labels; one more of
-/// all labels together, if some of them meet.
+/// One grid for each layer of a scene, for a mesh, for an image's threshold, or for each of its
+/// labels; one more of all labels together, if some of them meet.
 /// @throws Error: kUsage for options that do not apply to this kind of input.
 /// A scene's maps of parameters are added to `materials`, if that is given.
 [[nodiscard]] std::vector<BakedGrid> bakeInput(

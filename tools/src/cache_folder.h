@@ -7,8 +7,9 @@
 
 namespace palpate::tools {
 
-/// Of the grids of scenes above all (vdb/README.md, "Kept grids"). $PALPATE_CACHE; else $XDG_CACHE_HOME/palpate, else
-/// $HOME/.cache/palpate. Empty, which means nowhere, if the first is "off" or none is an absolute path.
+/// Of the grids of scenes above all (vdb/README.md, "Kept grids"). $PALPATE_CACHE; else
+/// $XDG_CACHE_HOME/palpate, else $HOME/.cache/palpate. Empty, which means nowhere, if the first is
+/// "off" or none is an absolute path.
 [[nodiscard]] std::string cacheFolder();
 
 /// From now on it is nowhere (--no-cache).

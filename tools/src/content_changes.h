@@ -18,11 +18,13 @@ struct ContentSetting {
   double time = 0.0;    ///< [s]
 };
 
-/// From texts MATERIAL.KEY=VALUE@TIME, by time. @throws Error (kUsage) for one that is not such a text.
+/// From texts MATERIAL.KEY=VALUE@TIME, by time. @throws Error (kUsage) for one that is not such a
+/// text.
 [[nodiscard]] std::vector<ContentSetting> readSettings(const std::vector<std::string>& texts);
 
-/// What they come to in a scene, by time and each with what was set before, for a motion that lasts to `end` [s]. @throws Error (kInput) for a material
-/// that is not a region's content, a value that it cannot have, or a time after the end.
+/// What they come to in a scene, by time and each with what was set before, for a motion that lasts
+/// to `end` [s]. @throws Error (kInput) for a material that is not a region's content, a value that
+/// it cannot have, or a time after the end.
 [[nodiscard]] std::vector<devices::ContentEvent> contentEvents(
     const std::vector<ContentSetting>& settings, const Scene& scene, double end);
 

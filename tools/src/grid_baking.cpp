@@ -64,8 +64,8 @@ double voxelOr(const BakeOptions& options, const std::string& unit, double fallb
   return voxel;
 }
 
-/// A level set whose voxels are not cubes along the axes: the surface where its interpolated distances pass
-/// zero, in new voxels.
+/// A level set whose voxels are not cubes along the axes: the surface where its interpolated
+/// distances pass zero, in new voxels.
 vdb::LevelSet straightened(const BakeOptions& options, Console& console) {
   const auto grid = summaryOf(options, askedName(options));
   const std::string name = grid ? grid->name : "";
@@ -76,7 +76,7 @@ vdb::LevelSet straightened(const BakeOptions& options, Console& console) {
       {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])});
   const double voxel = voxelOr(options, unit, spacing);
   console.note(options.input + ": its surface is put into cubic voxels of " +
-               formatNumber(voxel / lengthUnit(unit).metres, 3) + " " + unit + " along the axes");
+               formatNumber(voxel / lengthUnit(unit).meters, 3) + " " + unit + " along the axes");
   vdb::ThresholdOptions threshold;
   threshold.largest_component = false;
   return vdb::surfaceFromThreshold(image, threshold, bakeOptions(options, name, unit, voxel),

@@ -52,8 +52,8 @@ std::optional<std::map<int, std::size_t>> countValues(const std::vector<float>& 
   return counts;
 }
 
-/// Whole values that are not gray: none is below 0, and a voxel beside another that is not 0 mostly has its value. A
-/// parcel is more than a few voxels wide, and gray values have noise.
+/// Whole values that are not gray: none is below 0, and a voxel beside another that is not 0 mostly
+/// has its value. A parcel is more than a few voxels wide, and gray values have noise.
 bool lookLikeLabels(const std::vector<float>& values) {
   constexpr double kSame = 0.7;
   std::size_t pairs = 0;

@@ -19,7 +19,8 @@ struct FileReport {
 /// "x y z to x y z mm"; `unit` [m].
 [[nodiscard]] std::string boxText(const Box3& box, double unit, const std::string& name);
 
-/// A scan: its place in space, its values, and its labels with their names and how many voxels each has.
+/// A scan: its place in space, its values, and its labels with their names and how many voxels each
+/// has.
 [[nodiscard]] FileReport imageReport(const std::string& file, const InfoOptions& options,
                                      Console& console);
 

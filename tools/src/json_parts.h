@@ -18,8 +18,8 @@ namespace palpate::tools {
   return {{"lo", vectorJson(box.lo)}, {"hi", vectorJson(box.hi)}};
 }
 
-/// The number; of one that differs from place to place {"least": .., "most": ..}, or, if a point is given [m], its
-/// value there.
+/// The number; of one that differs from place to place {"least": .., "most": ..}, or, if a point is
+/// given [m], its value there.
 [[nodiscard]] inline Json parameterJson(const Parameter& parameter, const Vec3* at = nullptr) {
   if (at != nullptr) return parameter.at(*at);
   const MaterialMap::Range range = parameter.range();

@@ -55,7 +55,7 @@ LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_
 }
 
 LengthUnit LoadedScene::unit() const {
-  return {description_.length_unit, description_.metres_per_unit};
+  return {description_.length_unit, description_.meters_per_unit};
 }
 
 ScenePtr LoadedScene::compile(Purpose purpose) const {
@@ -93,7 +93,7 @@ Table LoadedScene::gridsTable() const {
   Table table({"grid", "voxel", "active voxels", "memory", "made in"});
   for (const auto& grid : grids_) {
     table.add({grid.what,
-               formatNumber(grid.info.voxel_size / description_.metres_per_unit, 3) + " " +
+               formatNumber(grid.info.voxel_size / description_.meters_per_unit, 3) + " " +
                    description_.length_unit,
                formatCount(grid.info.active_voxels), formatBytes(grid.info.memory),
                formatSeconds(grid.seconds) + (vdb::wasKept(grid.info) ? ", kept" : "")});

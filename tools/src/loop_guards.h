@@ -11,8 +11,8 @@
 
 namespace palpate::tools {
 
-/// What --passivity, --hand-force and --coupling say, and else `mapping`, the scene's `device`; without --device the numbers
-/// have to be in the scene, or in --coupling. @throws Error (kUsage).
+/// What --passivity, --hand-force and --coupling say, and else `mapping`, the scene's `device`;
+/// without --device the numbers have to be in the scene, or in --coupling. @throws Error (kUsage).
 [[nodiscard]] devices::HandGuards guardsOf(const TouchOptions& options, DeviceMapping mapping,
                                            const std::optional<devices::LoopModel>& loop);
 

@@ -122,12 +122,12 @@ std::vector<MapGap> mapGaps(const SceneDescription& description, const Scene& sc
   return gaps;
 }
 
-std::string gapText(const MapGap& gap, const std::string& unit, double metres_per_unit) {
+std::string gapText(const MapGap& gap, const std::string& unit, double meters_per_unit) {
   std::string text = "the map of " + gap.parameter + " (" + gap.source + ") ";
   if (gap.misses()) {
     text += "does not reach its layer";
     if (gap.away > 0.0) {
-      text += ": it lies " + formatNumber(gap.away / metres_per_unit, 3) + " " + unit + " away";
+      text += ": it lies " + formatNumber(gap.away / meters_per_unit, 3) + " " + unit + " away";
     }
   } else {
     text += "covers " + formatNumber(100.0 * gap.share, 2) + " % of its layer";

@@ -28,6 +28,6 @@ struct MapGap {
 
 /// "the map of skin/stiffness (map.vdb) does not reach its layer: ..." `unit` is that of the scene.
 [[nodiscard]] std::string gapText(const MapGap& gap, const std::string& unit,
-                                  double metres_per_unit);
+                                  double meters_per_unit);
 
 }  // namespace palpate::tools

@@ -6,8 +6,8 @@
 
 namespace palpate::tools {
 
-/// `text` with <, >, &, " and ' written as references, fit between tags and between quotes. What is not UTF-8, and control
-/// characters that XML forbids, become U+FFFD.
+/// `text` with <, >, &, " and ' written as references, fit between tags and between quotes. What is
+/// not UTF-8, and control characters that XML forbids, become U+FFFD.
 [[nodiscard]] std::string markupText(std::string_view text);
 
 /// `bytes` in base 64.

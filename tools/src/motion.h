@@ -9,7 +9,8 @@
 
 namespace palpate::tools {
 
-/// Exactly one motion, or none where a hand moves the device, and only parameters that apply to it. @throws Error (kUsage).
+/// Exactly one motion, or none where a hand moves the device, and only parameters that apply to it.
+/// @throws Error (kUsage).
 void checkMotion(const TouchOptions& options);
 
 /// A hand's motion: of a file, or by a formula.

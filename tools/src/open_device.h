@@ -16,8 +16,10 @@
 
 namespace palpate::tools {
 
-/// The model that --device, --hand and --delay mean, at `rate` [Hz]: of falcon as of virtual:falcon; none without --device.
-/// @throws Error (kUsage) for an unknown name, or one without a model; --hand or --delay without a device.
+/// The model that --device, --hand and --delay mean, at `rate` [Hz]: of falcon as of
+/// virtual:falcon; none without --device.
+/// @throws Error (kUsage) for an unknown name, or one without a model; --hand or --delay without a
+/// device.
 [[nodiscard]] std::optional<devices::SimulationSettings> simulationOf(const DeviceOptions& options,
                                                                       double rate);
 
@@ -28,7 +30,8 @@ namespace palpate::tools {
 /// The loop of a touch, as far as a model of its device is known. @throws Error as simulationOf().
 [[nodiscard]] std::optional<devices::LoopModel> touchLoop(const TouchOptions& options);
 
-/// @throws Error (kUsage) as simulationOf(), and for a motion or options that the device has nothing to do with.
+/// @throws Error (kUsage) as simulationOf(), and for a motion or options that the device has
+/// nothing to do with.
 void checkDevice(const TouchOptions& options);
 
 /// The device of a touch that has a motion: a simulated one in a hand that means to go along

@@ -1,6 +1,6 @@
 #pragma once
-/// What the user asked for: one plain struct a verb. Lengths and points stay text until the unit of the
-/// input is known.
+/// What the user asked for: one plain struct a verb. Lengths and points stay text until the unit of
+/// the input is known.
 
 #include <cstdint>
 #include <optional>

@@ -26,10 +26,10 @@ class OutputFiles {
   OutputFiles(const OutputFiles&) = delete;
   OutputFiles& operator=(const OutputFiles&) = delete;
 
-  /// Announces an output. @throws Error: kOperation if it exists (and --force is not given), its folder
-  /// is missing or cannot be written to, or it is neither file, pipe nor character device; kUsage
-  /// if it is one of `inputs` or was announced before, or is "-" and cannot be (with --json, for
-  /// one).
+  /// Announces an output. @throws Error: kOperation if it exists (and --force is not given), its
+  /// folder is missing or cannot be written to, or it is neither file, pipe nor character device;
+  /// kUsage if it is one of `inputs` or was announced before, or is "-" and cannot be (with --json,
+  /// for one).
   void announce(const std::string& path, const std::vector<std::string>& inputs,
                 Streams streams = Streams::kNo);
 
@@ -39,11 +39,13 @@ class OutputFiles {
   /// Writes `text` to the temporary of `path`. @throws Error (kOperation).
   void write(const std::string& path, std::string_view text) const;
 
-  /// Gives the announced file `path` its name now, before it is written whole: for a record, of which what is there should
-  /// have its name whatever ends the run. @throws Error: kOperation as commit(); kUsage if it is a pipe or a device.
+  /// Gives the announced file `path` its name now, before it is written whole: for a record, of
+  /// which what is there should have its name whatever ends the run. @throws Error: kOperation as
+  /// commit(); kUsage if it is a pipe or a device.
   void place(const std::string& path);
 
-  /// The same for what a run that failed has to keep; nothing for a pipe or a device, or if `path` is empty.
+  /// The same for what a run that failed has to keep; nothing for a pipe or a device, or if `path`
+  /// is empty.
   void keep(const std::string& path);
 
   /// Gives all announced files their names. @throws Error (kOperation).
@@ -61,7 +63,8 @@ class OutputFiles {
   std::vector<File> files_;
 };
 
-/// True once a run has been asked to write a file to standard output: its summary then goes to stderr.
+/// True once a run has been asked to write a file to standard output: its summary then goes to
+/// stderr.
 [[nodiscard]] bool standardOutputIsTaken() noexcept;
 
 /// "-" as a name that opens standard input; any other name as it is.

@@ -41,7 +41,8 @@ Node* valueAt(Node& map, std::string_view key) {
   return nullptr;
 }
 
-/// The node at `layers: [{name: LAYER, inside: ...}]`; null if the layer has another kind of surface.
+/// The node at `layers: [{name: LAYER, inside: ...}]`; null if the layer has another kind of
+/// surface.
 Node* insideOf(Node& root, const std::string& layer) {
   Node* layers = valueAt(root, "layers");
   if (layers == nullptr) return nullptr;

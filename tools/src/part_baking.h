@@ -1,5 +1,6 @@
 #pragma once
-/// A scene baked in parts: grids of what is smooth, and a scene that puts them together with its edges.
+/// A scene baked in parts: grids of what is smooth, and a scene that puts them together with its
+/// edges.
 
 #include <string>
 #include <vector>
@@ -20,8 +21,8 @@ struct BakedParts {
   std::string scene;  ///< the text of the scene file `options.parts`
 };
 
-/// Of each layer asked for that is given by `inside`: grids of the parts that a grid holds and that are not
-/// exact by themselves. Faces that ports are on stay as they are.
+/// Of each layer asked for that is given by `inside`: grids of the parts that a grid holds and that
+/// are not exact by themselves. Faces that ports are on stay as they are.
 /// @throws Error: kUsage for inputs other than scenes; kOperation if no part became a grid.
 [[nodiscard]] BakedParts bakeParts(const BakeOptions& options, Console& console);
 

@@ -37,7 +37,7 @@ std::vector<Vec3> readPoints(const std::string& file, const LengthUnit& unit) {
       }
       p[i] = *value;
     }
-    points.push_back(p * unit.metres);
+    points.push_back(p * unit.meters);
   }
   if (points.empty()) throw inputError("points.empty", "there are no points in the file", "", file);
   return points;

@@ -23,9 +23,10 @@ namespace palpate::tools {
 /// The first option that is given, such as "--serial"; empty: none is.
 [[nodiscard]] std::string givenOption(const RealDeviceOptions& options);
 
-/// Not opened yet. `seconds` [s] after it was opened it says that it has come to an end; none: it never does.
-/// @throws Error: kUsage for options that are not of this device, kInput for its files, kDevice if this build has no driver
-/// for it.
+/// Not opened yet. `seconds` [s] after it was opened it says that it has come to an end; none: it
+/// never does.
+/// @throws Error: kUsage for options that are not of this device, kInput for its files, kDevice if
+/// this build has no driver for it.
 [[nodiscard]] std::unique_ptr<devices::Device> makeRealDevice(const std::string& name,
                                                               const RealDeviceOptions& options,
                                                               std::optional<double> seconds);

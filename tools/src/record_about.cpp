@@ -96,8 +96,8 @@ class Values {
   std::string file_;
 };
 
-/// Calls `visit` with section ("" for the object itself), key and value for each that a record's file holds: so writing and
-/// reading name the same.
+/// Calls `visit` with section ("" for the object itself), key and value for each that a record's
+/// file holds: so writing and reading name the same.
 template <typename About, typename Visit>
 void eachValue(About& about, const Visit& visit) {
   visit("", "version", about.version);
@@ -153,7 +153,8 @@ Json jsonOf(devices::DeviceFrame frame) {
   return frame == devices::DeviceFrame::kDevice ? "device" : "world";
 }
 
-/// Refuses what the command line would refuse; quantities are read later, for the scene that they are of.
+/// Refuses what the command line would refuse; quantities are read later, for the scene that they
+/// are of.
 void checkOptions(const TouchOptions& options, const Values& all) {
   const auto need = [&](bool may_be, const char* key) {
     if (!may_be) throw all.bad(key);

@@ -1,5 +1,6 @@
 #pragma once
-/// What a record was made with: FILE.npy.json, beside the ticks in FILE.npy and the states in FILE.npy.states.
+/// What a record was made with: FILE.npy.json, beside the ticks in FILE.npy and the states in
+/// FILE.npy.states.
 
 #include <cstdint>
 #include <string>
@@ -48,7 +49,8 @@ struct ReadAbout {
   RecordAbout about;
   std::string text;  ///< of the file
 };
-/// Of the record FILE.npy. @throws Error (kInput, record.about) for a file that is missing, or that aboutText() did not write.
+/// Of the record FILE.npy. @throws Error (kInput, record.about) for a file that is missing, or that
+/// aboutText() did not write.
 [[nodiscard]] ReadAbout readAbout(const std::string& record);
 
 }  // namespace palpate::tools

@@ -18,7 +18,8 @@ class ReportRows {
     table_.add(std::move(cells));
     json_.push_back(std::move(json));
   }
-  /// The array as `key`; the table below `title`, or, without any rows, `none` (nothing at all if that is empty).
+  /// The array as `key`; the table below `title`, or, without any rows, `none` (nothing at all if
+  /// that is empty).
   void writeTo(Report& report, const std::string& key, const std::string& title,
                const std::string& none = {}) {
     report.json[key] = std::move(json_);

@@ -6,8 +6,8 @@
 
 namespace palpate::tools {
 
-/// Parses `arguments` (without the program's name), runs one verb, prints once, and returns the exit code that what went wrong
-/// has. Once in a process: it takes over the signals that stop it.
+/// Parses `arguments` (without the program's name), runs one verb, prints once, and returns the
+/// exit code that what went wrong has. Once in a process: it takes over the signals that stop it.
 [[nodiscard]] int runCommand(const std::vector<std::string>& arguments);
 
 }  // namespace palpate::tools

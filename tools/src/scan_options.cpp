@@ -36,7 +36,7 @@ vdb::Mesh readMeshFile(const std::string& file, const std::string& units,
     console.note(file + ": one unit is taken as 1 mm; --units says otherwise");
   }
   const LengthUnit unit = prescribed.empty() ? meshUnit(units) : lengthUnit(prescribed);
-  vdb::Mesh mesh = vdb::readMesh(file, unit.metres, spaceOf(options));
+  vdb::Mesh mesh = vdb::readMesh(file, unit.meters, spaceOf(options));
   // Of models of scans it matters; other meshes have no patient.
   if (options.space.empty() && (mesh.space_is_stated || vdb::hasExtension(file, ".vtk"))) {
     console.note(file + ": coordinates are " + spaceText(mesh, options) +

@@ -13,7 +13,8 @@ namespace palpate::tools {
 
 [[nodiscard]] vdb::ImageOptions imageOptions(const ScanOptions& options);
 
-/// The mesh in `file`, in `units`; if they are empty in those of its format, else in mm. Says what was taken for granted of its unit and, if it may be of a scan, its space.
+/// The mesh in `file`, in `units`; if they are empty in those of its format, else in mm. Says what
+/// was taken for granted of its unit and, if it may be of a scan, its space.
 [[nodiscard]] vdb::Mesh readMeshFile(const std::string& file, const std::string& units,
                                      const ScanOptions& options, Console& console);
 

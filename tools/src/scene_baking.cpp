@@ -56,7 +56,7 @@ double defaultVoxel(const LengthUnit& unit, const Box3& bounds, const std::strin
                     Console& console) {
   const Vec3 size = bounds.size();
   const double voxel = std::max({size.x, size.y, size.z}) / kDefaultVoxelsPerSide;
-  console.note(what + ": voxels of " + formatNumber(voxel / unit.metres, 3) + " " + unit.name +
+  console.note(what + ": voxels of " + formatNumber(voxel / unit.meters, 3) + " " + unit.name +
                ", 1/128 of the longest side; --voxel says otherwise");
   return voxel;
 }

@@ -11,7 +11,8 @@ namespace palpate::tools {
 
 [[nodiscard]] Error bakeUsageError(std::string message, std::string hint = {});
 
-/// Options that make no sense for a scene are refused, not ignored, and so are layers that it lacks.
+/// Options that make no sense for a scene are refused, not ignored, and so are layers that it
+/// lacks.
 void checkSceneOptions(const BakeOptions& options, const SceneDescription& description);
 
 /// Whether --layer asks for this one.

@@ -192,7 +192,8 @@ std::optional<SurfacePoint> meetFromAbove(const Field& field, const Box3& box, d
   const double step = std::max(1e-4 * glm::length(box.size()), 0.25 * field.featureSize());
   double above = box.hi.z + step;
   double below = above;
-  // Far from the surface a grid's value is a lower bound of the distance, so that no step goes too far.
+  // Far from the surface a grid's value is a lower bound of the distance, so that no step goes too
+  // far.
   for (double z = above; z > box.lo.z - step;) {
     const double value = field.value({x, y, z});
     below = z;

@@ -12,10 +12,10 @@ namespace palpate::tools {
 /// True unless `path` is a scene already. @throws Error as inputKind() does.
 [[nodiscard]] bool isShape(const std::string& path);
 
-/// The scene's text; paths in it are absolute. A layer for the mesh, for what is --above, for each of --labels,
-/// or for each surface of a .vdb.
-/// @throws Error: kUsage for options that are missing or do not apply to this kind of file; kInput for a .vdb
-/// without a surface.
+/// The scene's text; paths in it are absolute. A layer for the mesh, for what is --above, for each
+/// of --labels, or for each surface of a .vdb.
+/// @throws Error: kUsage for options that are missing or do not apply to this kind of file; kInput
+/// for a .vdb without a surface.
 [[nodiscard]] std::string shapeSceneText(const TouchOptions& options);
 
 /// For a scene: that none of the options was given which only shapes have. @throws Error (kUsage).
@@ -27,8 +27,8 @@ struct SurfacePoint {
   Vec3 normal{0.0};  ///< [-] outward, of length 1
 };
 
-/// The highest place of the scene's layers on the line down through their middle, or, where that meets none, on
-/// the nearest line that does and whose normal looks up.
+/// The highest place of the scene's layers on the line down through their middle, or, where that
+/// meets none, on the nearest line that does and whose normal looks up.
 /// @throws Error (kOperation) if no line meets a surface.
 [[nodiscard]] SurfacePoint findSurfacePoint(const Scene& scene);
 

@@ -42,16 +42,16 @@ bool looksNumeric(const std::string& text) {
 }  // namespace
 
 LengthUnit lengthUnit(const std::string& name) {
-  if (const auto metres = metresPer(name)) return {name, *metres};
+  if (const auto meters = metersPer(name)) return {name, *meters};
   throw usageError("--units", "'" + name + "' is not a length unit", "one of mm, cm, m, um, in");
 }
 
 double parseLength(std::string_view text, const LengthUnit& unit, const char* what) {
-  return parseWithUnit(trimmed(text), Dimension::kLength, unit.metres, unit.name, what);
+  return parseWithUnit(trimmed(text), Dimension::kLength, unit.meters, unit.name, what);
 }
 
 double parseSpeed(std::string_view text, const LengthUnit& unit, const char* what) {
-  return parseWithUnit(trimmed(text), Dimension::kVelocity, unit.metres, unit.name + "/s", what);
+  return parseWithUnit(trimmed(text), Dimension::kVelocity, unit.meters, unit.name + "/s", what);
 }
 
 double parseForce(std::string_view text, const char* what) {
@@ -127,7 +127,7 @@ Vec3 parseVector(std::string_view text, const char* what) {
 }
 
 Vec3 parsePoint(std::string_view text, const LengthUnit& unit, const char* what) {
-  return parseVector(text, what) * unit.metres;
+  return parseVector(text, what) * unit.meters;
 }
 
 std::string formatNumber(double value, int digits) {

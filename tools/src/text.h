@@ -14,7 +14,7 @@ namespace palpate::tools {
 /// The unit that lengths without one are in.
 struct LengthUnit {
   std::string name = "mm";
-  double metres = 1e-3;  ///< [m] in one
+  double meters = 1e-3;  ///< [m] in one
 };
 /// @throws Error (kUsage) for a unit that is not known.
 [[nodiscard]] LengthUnit lengthUnit(const std::string& name);

@@ -10,9 +10,10 @@
 
 namespace palpate::tools {
 
-/// All rows of a touch of up to kExact ticks. Of a longer one, of each stretch of ticks (all of one length, a power of 2 times kKept): the first and
-/// the last row, those with the largest and smallest force and coordinates of the hand, and the first few in which the proxy came
-/// into another region.
+/// All rows of a touch of up to kExact ticks. Of a longer one, of each stretch of ticks (all of one
+/// length, a power of 2 times kKept): the first and the last row, those with the largest and
+/// smallest force and coordinates of the hand, and the first few in which the proxy came into
+/// another region.
 class ThinTrace final : public devices::RecordSink {
  public:
   static constexpr std::size_t kKept =

@@ -41,11 +41,11 @@ std::string curve(const std::vector<Sample>& samples, std::size_t first, std::si
          points + "'/>\n";
 }
 
-/// The same forces along the hand's own way and square to it, over the length of that way: what a hand that turns off
-/// the straight way in meets.
+/// The same forces along the hand's own way and square to it, over the length of that way: what a
+/// hand that turns off the straight way in meets.
 std::string wayPanel(const Trace& trace, const Scene& scene) {
   const std::span<const TraceRow> rows = trace.rows();
-  const double unit = scene.metresPerUnit();
+  const double unit = scene.metersPerUnit();
   std::vector<Sample> along;
   std::vector<Sample> across;
   std::vector<double> port_at;
@@ -109,7 +109,7 @@ std::string forcePlot(const Trace& trace, const Scene& scene, const std::string&
     }
   }
   const Vec3 axis = unitOr(furthest, Vec3(0.0, 0.0, -1.0));
-  const double unit = scene.metresPerUnit();
+  const double unit = scene.metersPerUnit();
   std::vector<Sample> samples;
   Sample lowest{0.0, 0.0};
   Sample highest{0.0, 0.0};
@@ -136,8 +136,8 @@ std::string forcePlot(const Trace& trace, const Scene& scene, const std::string&
   }
   out += evenAxes(kFrame, x, y, "depth of the hand, " + scene.lengthUnit(),
                   "force against the way in, N");
-  // Ports passed on the way in hang from the top, those on the way back stand on the bottom; names that would
-  // run into each other stand one above the other.
+  // Ports passed on the way in hang from the top, those on the way back stand on the bottom; names
+  // that would run into each other stand one above the other.
   constexpr double kNameWidth = 130.0;
   std::array<double, 2> last_at = {-kWidth, -kWidth};
   std::array<int, 2> level = {0, 0};

@@ -7,10 +7,11 @@
 
 namespace palpate::tools {
 
-/// The hand's force against its depth. The depth counts from the first wall met, along the straight line
-/// from there to the furthest that the hand got; the force is what pushes the hand back along it. Ports
-/// passed stand beside the curve. Where the hand leaves that line, a second plot below has the force along the hand's own
-/// way and square to it, over the length of that way. Empty rows or a hand that never met a surface give axes alone.
+/// The hand's force against its depth. The depth counts from the first wall met, along the straight
+/// line from there to the furthest that the hand got; the force is what pushes the hand back along
+/// it. Ports passed stand beside the curve. Where the hand leaves that line, a second plot below
+/// has the force along the hand's own way and square to it, over the length of that way. Empty rows
+/// or a hand that never met a surface give axes alone.
 [[nodiscard]] std::string forcePlot(const Trace& trace, const Scene& scene,
                                     const std::string& title);
 

@@ -1,5 +1,6 @@
 #pragma once
-/// A touch as it runs: the session, and all that uses its ticks, in constant memory however long it lasts.
+/// A touch as it runs: the session, and all that uses its ticks, in constant memory however long it
+/// lasts.
 
 #include <optional>
 #include <string>
@@ -21,14 +22,17 @@ struct TouchRun {
   std::optional<Trace> thin;  ///< for pictures
 };
 
-/// Announces --trace and --record. @throws Error as OutputFiles::announce(); kUsage for a record's name.
+/// Announces --trace and --record. @throws Error as OutputFiles::announce(); kUsage for a record's
+/// name.
 void announceRecords(OutputFiles& files, const TouchOptions& options,
                      const std::vector<std::string>& inputs);
 
-/// Runs `session` until the device or a stop ends it. The record has its name from before the first tick; the trace is in the
-/// file that `files` says. `wants_thin`: rows for pictures are asked for. `more` gets the ticks as well.
-/// @throws Error: kOperation where a file took no more, once the session is over; kCancelled after a stop; kDevice if the
-/// device failed. What was felt until then is kept in either case: the trace then has its name too.
+/// Runs `session` until the device or a stop ends it. The record has its name from before the first
+/// tick; the trace is in the file that `files` says. `wants_thin`: rows for pictures are asked for.
+/// `more` gets the ticks as well.
+/// @throws Error: kOperation where a file took no more, once the session is over; kCancelled after
+/// a stop; kDevice if the device failed. What was felt until then is kept in either case: the trace
+/// then has its name too.
 [[nodiscard]] TouchRun runTouch(devices::Session& session, devices::Device& device,
                                 const TouchOptions& options, const RecordAbout& about,
                                 OutputFiles& files, Console& console, bool wants_thin,

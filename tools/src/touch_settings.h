@@ -10,7 +10,8 @@
 
 namespace palpate::tools {
 
-/// --renderer, the paper's parameters and the limits of the force, but for their period. @throws Error (kUsage).
+/// --renderer, the paper's parameters and the limits of the force, but for their period. @throws
+/// Error (kUsage).
 [[nodiscard]] RendererSettings rendererSettings(const TouchOptions& o, const LengthUnit& unit);
 
 /// True if one of them was given.

@@ -133,12 +133,12 @@ Json summaryJson(const TouchSummary& s, const Scene& scene) {
 }
 
 std::string summaryText(const TouchSummary& s, const Scene& scene) {
-  const double unit = scene.metresPerUnit();
+  const double unit = scene.metersPerUnit();
   const std::string& name = scene.lengthUnit();
   // A proxy stands off its wall by a rounding error, which does not count as a depth.
   constexpr double kNoDepth = 1e-9;  // [m]
-  const auto length = [&](double metres) {
-    return formatNumber(metres < kNoDepth ? 0.0 : metres / unit, 4) + " " + name;
+  const auto length = [&](double meters) {
+    return formatNumber(meters < kNoDepth ? 0.0 : meters / unit, 4) + " " + name;
   };
 
   std::string text = "Regions in order (depth of walls and tip from the first wall met)\n";

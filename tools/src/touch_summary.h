@@ -26,8 +26,8 @@ struct Visit {
   double entry_depth =
       0.0;  ///< [m] of the wall it was entered by, straight from where the first wall was met
   double depth = 0.0;  ///< [m] the same of the proxy, and of the wall it was left by, at most
-  /// [N] on the hand. Where the tip went all through it within one tick: what its far wall gave way to, plus what its
-  /// content took to be cut.
+  /// [N] on the hand. Where the tip went all through it within one tick: what its far wall gave way
+  /// to, plus what its content took to be cut.
   double peak_force = 0.0;
   std::uint64_t ticks = 0;  ///< that ended in it
 };

@@ -8,7 +8,8 @@
 
 namespace palpate::tools {
 
-/// Writes whole rows only, some hundreds at a time or at flush(): memory does not grow with the trace.
+/// Writes whole rows only, some hundreds at a time or at flush(): memory does not grow with the
+/// trace.
 class TraceFile final : public devices::RecordSink {
  public:
   /// `file` is emptied; `name`: for messages. @throws Error (kOperation, record.write).

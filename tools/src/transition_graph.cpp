@@ -26,7 +26,8 @@ struct Spot {
   double y = 0.0;
 };
 
-/// How many arrows lie between the start and each state; one more than the most for those without a way.
+/// How many arrows lie between the start and each state; one more than the most for those without a
+/// way.
 std::vector<std::size_t> columnsOf(std::span<const GraphState> states,
                                    std::span<const GraphArrow> arrows) {
   const std::size_t unknown = states.size();
@@ -88,8 +89,8 @@ Spot borderOf(const Spot& from, const Spot& to) {
   return {from.x + x / share, from.y + y / share};
 }
 
-/// A bent arrow, and its label at `label_at` (0: its begin, 1: its end); `bend` is how far the middle lies to the left
-/// of the way.
+/// A bent arrow, and its label at `label_at` (0: its begin, 1: its end); `bend` is how far the
+/// middle lies to the left of the way.
 struct ArrowSvg {
   std::string line;
   std::string label;

@@ -21,8 +21,8 @@ struct GraphArrow {
   bool is_wall_absent = false;
 };
 
-/// An SVG page. States stand in columns by how many arrows lie between the start and them; those that no way
-/// leads to stand last.
+/// An SVG page. States stand in columns by how many arrows lie between the start and them; those
+/// that no way leads to stand last.
 [[nodiscard]] std::string transitionSvg(const std::string& title,
                                         std::span<const GraphState> states,
                                         std::span<const GraphArrow> arrows);

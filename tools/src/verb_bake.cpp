@@ -27,7 +27,7 @@ class GridList {
   /// The added grid's JSON, for more to be said of it.
   Json& add(const vdb::LevelSet& grid, double seconds) {
     const vdb::LevelSetInfo& info = grid.info();
-    const double unit = info.metres_per_unit;
+    const double unit = info.meters_per_unit;
     table_.add({info.name, formatNumber(info.voxel_size / unit, 3) + " " + info.length_unit,
                 formatCount(info.active_voxels), formatBytes(info.memory), formatSeconds(seconds),
                 formatVector(info.bounds.lo / unit) + " to " + formatVector(info.bounds.hi / unit) +
@@ -47,7 +47,7 @@ class GridList {
 
   void add(const vdb::NamedMaterialGrid& material) {
     const vdb::MaterialGridInfo& info = material.grid->info();
-    const double unit = lengthUnit(material.length_unit).metres;
+    const double unit = lengthUnit(material.length_unit).meters;
     const auto voxels = static_cast<std::uint64_t>(info.size[0]) *
                         static_cast<std::uint64_t>(info.size[1]) *
                         static_cast<std::uint64_t>(info.size[2]);
@@ -97,7 +97,7 @@ void tellError(const BakedGrid& baked, Json& json, Console& console) {
                    {"where_m", {error.where.x, error.where.y, error.where.z}},
                    {"holds_shape", holds_shape}};
   if (holds_shape) return;
-  const double unit = info.metres_per_unit;
+  const double unit = info.meters_per_unit;
   console.note(
       info.name + " does not hold all of the shape: it is off by up to " +
       formatNumber(error.off / unit, 2) + " " + info.length_unit + " and " +
@@ -107,8 +107,9 @@ void tellError(const BakedGrid& baked, Json& json, Console& console) {
       "parts as they are");
 }
 
-/// What was made here goes into the file with what contact may rely on. A grid of a file that is put into another form, a band
-/// too narrow to be read as it is, and distances without a side are looked at when they are touched.
+/// What was made here goes into the file with what contact may rely on. A grid of a file that is
+/// put into another form, a band too narrow to be read as it is, and distances without a side are
+/// looked at when they are touched.
 vdb::LevelSet sure(const vdb::LevelSet& grid, const BakeOptions& options, Console& console) {
   const bool is_whole =
       !vdb::isTooNarrow(grid.info()) && !grid.info().metadata.contains(vdb::kDistanceKey);

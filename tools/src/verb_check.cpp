@@ -55,7 +55,7 @@ std::string countOf(std::uint64_t count, const std::string& one, const std::stri
 }
 
 std::string placeText(const Vec3& place, const LengthUnit& unit) {
-  return formatVector(place / unit.metres) + " " + unit.name;
+  return formatVector(place / unit.meters) + " " + unit.name;
 }
 
 Report run(const CheckOptions& options, const GeneralOptions&, Console& console) {

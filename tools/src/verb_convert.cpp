@@ -79,14 +79,14 @@ Written asMesh(const ConvertOptions& options, Console& console) {
     grid = onlyGrid(options, console);
     mesh = vdb::surfaceMesh(grid, console.progress());
   }
-  const bool metres = format == vdb::MeshFormat::kGlb;
-  if (metres && !options.to_units.empty() && options.to_units != "m") {
+  const bool meters = format == vdb::MeshFormat::kGlb;
+  if (meters && !options.to_units.empty() && options.to_units != "m") {
     throw usageError("a .glb file is always in meters", "leave --to-units out");
   }
-  const LengthUnit unit = lengthUnit(metres ? "m" : unitOf(options, grid));
+  const LengthUnit unit = lengthUnit(meters ? "m" : unitOf(options, grid));
   const vdb::MeshReport report = vdb::checkMesh(mesh);
   Written out;
-  out.bytes = vdb::encodeMesh(mesh, format, unit.metres);
+  out.bytes = vdb::encodeMesh(mesh, format, unit.meters);
   out.json = {{"kind", "mesh"},
               {"unit", unit.name},
               {"vertices", mesh.vertices.size()},
@@ -101,19 +101,19 @@ Written asMesh(const ConvertOptions& options, Console& console) {
 
 Written asImage(const ConvertOptions& options, Console& console) {
   vdb::Image image;
-  double metres = 1.0;
+  double meters = 1.0;
   const bool as_it_is = isTakenAsItIs(options.bake);
   vdb::LevelSet grid = as_it_is ? takenAsItIs(options.bake, console) : onlyGrid(options, console);
   if (!grid) {
     // A grid that is turned or stretched becomes an image that is as well, with the same voxels.
     image = readDistances(options.bake, console);
-    metres = lengthUnit(unitOfGrid(options.bake)).metres;
+    meters = lengthUnit(unitOfGrid(options.bake)).meters;
   } else {
     image = vdb::gridImage(grid);
-    metres = grid.info().metres_per_unit;
+    meters = grid.info().meters_per_unit;
   }
-  constexpr double kMillimetre = 1e-3;  // the unit of a NIfTI file
-  for (float& value : image.values) value *= static_cast<float>(metres / kMillimetre);
+  constexpr double kMillimeter = 1e-3;  // the unit of a NIfTI file
+  for (float& value : image.values) value *= static_cast<float>(meters / kMillimeter);
   Vec3 spacing(0.0);
   for (int axis = 0; axis < 3; ++axis) spacing[axis] = glm::length(image.axes[axis]);
   Written out;

@@ -46,7 +46,8 @@ struct Watched {
   std::uint32_t buttons = 0;  ///< that were pressed
 };
 
-/// Runs `device`, whose time ends after `seconds` [s]. @throws Error: as runServo(); kCancelled after a stop.
+/// Runs `device`, whose time ends after `seconds` [s]. @throws Error: as runServo(); kCancelled
+/// after a stop.
 Watched watch(devices::Device& device, double seconds, Console& console) {
   Watched out;
   constexpr double kLast = 1.0;  // [s] that the mean is of

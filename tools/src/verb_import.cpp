@@ -49,8 +49,8 @@ vdb::Image readScan(const std::string& path, const ImportOptions& options, Conso
   return readNoted(path, imageOptions(options.reading), console);
 }
 
-/// `path`, as seen from the folder of the scene. One that was given as absolute stays so, unless it is in that folder or
-/// beneath it, so that the folder can be moved.
+/// `path`, as seen from the folder of the scene. One that was given as absolute stays so, unless it
+/// is in that folder or beneath it, so that the folder can be moved.
 std::string seenFrom(const std::string& scene, const std::string& path) {
   if (path.empty()) return path;
   const fs::path folder = fs::absolute(scene).lexically_normal().parent_path();
@@ -65,8 +65,8 @@ std::vector<std::vector<int>> labelsOf(const RegionPlan& plan) {
   return labels;
 }
 
-/// Stiffness from an image that does not hold what it should is noted, not refused: a crop of bone may be
-/// bright all over.
+/// Stiffness from an image that does not hold what it should is noted, not refused: a crop of bone
+/// may be bright all over.
 void tellOfStiffness(const vdb::Image& image, const vdb::Image& labels,
                      const ImportOptions& options, Console& console) {
   constexpr float kDarkest = -20.0F;  // [HU] fat is darker
@@ -110,8 +110,8 @@ vdb::VoxelMask bodyOf(const ImportOptions& options, const vdb::Image* image, Imp
   return vdb::bodyMask(*image, *options.skin, scan.labels, console.progress());
 }
 
-/// Air that reaches the border of the image is what is around: no region. With a body, labels of air that are in it as
-/// well (a sinus) stay, as their rest would become the body's.
+/// Air that reaches the border of the image is what is around: no region. With a body, labels of
+/// air that are in it as well (a sinus) stay, as their rest would become the body's.
 void leaveOutAir(ImportedScan& scan, Console& console) {
   std::vector<PlannedRegion> kept;
   for (std::size_t r = 0; r < scan.plan.regions.size(); ++r) {
@@ -138,7 +138,7 @@ void leaveOutAir(ImportedScan& scan, Console& console) {
     return;
   }
   for (const OpenAir& air : scan.open_air) {
-    console.note("'" + air.name + "' (" + cubicCentimetres(air.volume) +
+    console.note("'" + air.name + "' (" + cubicCentimeters(air.volume) +
                  " cm^3) is air that reaches the image's border: it is outside, and no region");
   }
   scan.plan.regions = std::move(kept);
@@ -177,7 +177,7 @@ void refuseUnknown(const ImportOptions& options, const ImportedScan& scan) {
     std::uint64_t voxels = 0;
     for (const int label : region.labels) voxels += scan.counts.at(label);
     text += (count++ == 0 ? "" : ", ") + region.name + " (" +
-            cubicCentimetres(voxel * static_cast<double>(voxels)) + " cm^3)";
+            cubicCentimeters(voxel * static_cast<double>(voxels)) + " cm^3)";
   }
   if (count == 0) return;
   throw inputError("tissues.unmatched", formatCount(count) + " regions fit no tissue: " + text,
@@ -197,15 +197,15 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
   scan.counts = vdb::countLabels(scan.labels);
   scan.plan = planRegions(options, scan.counts, table, tissues);
   if (options.strict) refuseUnknown(options, scan);
-  std::optional<vdb::Image> grey;
-  if (!options.image.empty()) grey = readScan(options.image, options, console);
+  std::optional<vdb::Image> gray;
+  if (!options.image.empty()) gray = readScan(options.image, options, console);
   if (options.hounsfield) {
-    tellOfStiffness(*grey, scan.labels, options, console);
-    scan.ct_voxels = grey->values.size();
+    tellOfStiffness(*gray, scan.labels, options, console);
+    scan.ct_voxels = gray->values.size();
   }
-  scan.image_voxels = scan.labels.values.size() + (grey ? grey->values.size() : 0);
-  scan.body = bodyOf(options, grey ? &*grey : nullptr, scan, console);
-  grey.reset();
+  scan.image_voxels = scan.labels.values.size() + (gray ? gray->values.size() : 0);
+  scan.body = bodyOf(options, gray ? &*gray : nullptr, scan, console);
+  gray.reset();
   scan.has_body = !scan.body.empty();
   const vdb::VoxelMask* const in_body = scan.has_body ? &scan.body : nullptr;
   std::vector<std::vector<int>> labels = labelsOf(scan.plan);
@@ -224,7 +224,8 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
       scan.survey = vdb::surveyLabels(scan.labels, labels, in_body, console.progress());
     }
   }
-  // Slices are often thicker than their voxels are wide; a grid of the same volume holds what is there.
+  // Slices are often thicker than their voxels are wide; a grid of the same volume holds what is
+  // there.
   const double same_volume = std::cbrt(std::abs(glm::determinant(scan.labels.axes)));
   scan.voxel = options.voxel.empty()
                    ? std::round(same_volume * 1e5) * 1e-5  // hundredths of a millimeter
@@ -247,7 +248,7 @@ void tellUnknown(const ImportedScan& scan, Console& console) {
     felt_as = scan.plan.regions[r].tissue;
   }
   if (count == 0 || scan.names.empty()) return;
-  console.note(formatCount(count) + " regions (" + cubicCentimetres(volume) +
+  console.note(formatCount(count) + " regions (" + cubicCentimeters(volume) +
                " cm^3) fit no tissue and are felt as " + felt_as->name +
                "; --tissue gives them one, --strict refuses them");
 }

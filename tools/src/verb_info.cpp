@@ -85,7 +85,7 @@ FileReport gridInfo(const std::string& file) {
   for (const auto& grid : grids) {
     const auto& info = grid.info;
     const bool unit_known = !info.length_unit.empty();
-    const double unit = unit_known ? info.metres_per_unit : 1.0;
+    const double unit = unit_known ? info.meters_per_unit : 1.0;
     const std::string name = unit_known ? info.length_unit : "units (no length unit in the file)";
     out.text += "  " + (grid.name.empty() ? "(no name)" : grid.name) + ": " + grid.type + ", " +
                 grid.grid_class + "\n    " + plural(info.active_voxels, "active voxel") + " of " +
@@ -147,13 +147,13 @@ FileReport meshInfo(const std::string& file, const InfoOptions& options, Console
              formatCount(mesh.vertices.size()) + " vertices in " + plural(r.components, "piece") +
              "\n";
   out.text += "  space   " + spaceText(mesh, options.scan) + "\n";
-  out.text += "  bounds  " + boxText(r.bounds, unit.metres, unit.name) + " (RAS)\n";
-  out.text += "  volume  " + formatNumber(r.volume / std::pow(unit.metres, 3)) + " " + unit.name +
+  out.text += "  bounds  " + boxText(r.bounds, unit.meters, unit.name) + " (RAS)\n";
+  out.text += "  volume  " + formatNumber(r.volume / std::pow(unit.meters, 3)) + " " + unit.name +
               "^3" + (r.volume < 0.0 ? " (the triangles wind inwards)" : "") + "\n";
   if (!r.isClosed()) {
     out.json["first_boundary_m"] = vectorJson(r.first_boundary);
     out.text += "  open at " + plural(r.boundary_edges, "edge") + ", one of them at " +
-                formatVector(r.first_boundary / unit.metres) + " " + unit.name + "\n";
+                formatVector(r.first_boundary / unit.meters) + " " + unit.name + "\n";
   }
   if (r.non_manifold_edges > 0) {
     out.text += "  " + plural(r.non_manifold_edges, "edge") + " with three triangles or more\n";

@@ -44,8 +44,8 @@ Report queryImage(const QueryOptions& options, Console& console) {
     const bool there = std::isfinite(value);
     if (!there) ++outside;
     report.json["points"].push_back(
-        {{"at", vectorJson(p / mm.metres)}, {"value", there ? Json(value) : Json()}});
-    table.add({formatVector(p / mm.metres, 6), there ? formatNumber(value, 8) : "outside"});
+        {{"at", vectorJson(p / mm.meters)}, {"value", there ? Json(value) : Json()}});
+    table.add({formatVector(p / mm.meters, 6), there ? formatNumber(value, 8) : "outside"});
   }
   if (outside > 0) {
     console.note(std::to_string(outside) + " of " + std::to_string(points.size()) +
@@ -85,14 +85,14 @@ Report queryScene(const QueryOptions& options, Console& console) {
   for (const Vec3& p : points) {
     const Region& region = scene->regions()[scene->regionAt(p)];
     Json json = {
-        {"at", vectorJson(p / unit.metres)},
+        {"at", vectorJson(p / unit.meters)},
         {"region", region.name},
         {"content", contentJson(*scene, region, p)},
         {"wall", region.wall < 0
                      ? Json()
                      : materialJson(scene->materials()[static_cast<std::size_t>(region.wall)], &p)},
         {"fields", Json::array()}};
-    report.text += "at " + formatVector(p / unit.metres, 6) + " " + unit.name + ": " + region.name;
+    report.text += "at " + formatVector(p / unit.meters, 6) + " " + unit.name + ": " + region.name;
     if (region.content >= 0) {
       const Material& m = scene->materials()[static_cast<std::size_t>(region.content)];
       report.text += ", content " + m.name + " (" + formatNumber(m.viscosity.at(p)) + " N.s/m)";
@@ -105,12 +105,12 @@ Report queryScene(const QueryOptions& options, Console& console) {
     Table table({"field", "value [" + unit.name + "]", "gradient", "value is"});
     for (const AskedField& asked : fields) {
       const FieldSample s = asked.field->sample(p);
-      json["fields"].push_back(sampleJson(asked, s, unit.metres));
+      json["fields"].push_back(sampleJson(asked, s, unit.meters));
       table.add({asked.name,
                  (s.in_band       ? ""
                   : s.value < 0.0 ? "< "
                                   : "> ") +
-                     formatNumber(s.value / unit.metres, 8),
+                     formatNumber(s.value / unit.meters, 8),
                  s.in_band ? formatVector(s.gradient, 6) : "-",
                  s.in_band ? metricName(asked.field->metric()) : "beyond the band"});
     }

@@ -37,8 +37,8 @@ void parseSize(const std::string& text, PictureOptions& picture) {
   picture.height = number(1);
 }
 
-/// From the scene at the viewer; none: at a corner of the cut. In a scan the sides are the patient's, whose front is where y
-/// grows; in other scenes one looks along y, with x to the right.
+/// From the scene at the viewer; none: at a corner of the cut. In a scan the sides are the
+/// patient's, whose front is where y grows; in other scenes one looks along y, with x to the right.
 std::optional<Vec3> parseView(const std::string& text, bool is_anatomical) {
   if (text == "corner") return std::nullopt;
   const std::pair<const char*, Vec3> names[] = {{"front", {0.0, is_anatomical ? 1.0 : -1.0, 0.0}},
@@ -72,7 +72,7 @@ SpaceView::Around parseAround(const std::string& text, const LengthUnit& unit) {
   for (std::size_t i = 0; is_good && i < 4; ++i) {
     const auto number = parseNumber(parts[i]);
     is_good = number.has_value();
-    if (is_good) numbers[i] = *number * unit.metres;
+    if (is_good) numbers[i] = *number * unit.meters;
   }
   if (!is_good) throw usageError("--around: '" + text + "' is not four numbers", "X,Y,Z,RADIUS");
   const SpaceView::Around around{Vec3(numbers[0], numbers[1], numbers[2]), numbers[3]};

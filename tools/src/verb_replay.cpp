@@ -45,7 +45,8 @@ ReplayScene sceneOf(const ReplayOptions& options, const RecordAbout& about, Cons
   return {about.scene, about.scene_text, is_as_felt};
 }
 
-/// What `read` makes of the options in FILE.npy.json, whose faults are that file's, not of a command line.
+/// What `read` makes of the options in FILE.npy.json, whose faults are that file's, not of a
+/// command line.
 template <typename Read>
 auto fromOptions(const std::string& record, const Read& read) {
   try {
@@ -116,7 +117,7 @@ std::string reportText(const devices::ReplayReport& report, std::uint64_t begun_
   text += "Force       apart by up to " + formatNumber(report.most_force, 4) + " N" +
           at(report.most_force_tick, report.most_force);
   text += "Proxy       apart by up to " +
-          formatNumber(report.most_proxy / scene.metresPerUnit(), 4) + " " + scene.lengthUnit() +
+          formatNumber(report.most_proxy / scene.metersPerUnit(), 4) + " " + scene.lengthUnit() +
           at(report.most_proxy_tick, report.most_proxy);
   return text + "Regions     other in " + formatCount(report.regions) + " ticks, contact in " +
          formatCount(report.contacts) + "\n";

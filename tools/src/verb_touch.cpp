@@ -39,10 +39,10 @@ void pressOnSurface(const Scene& scene, TouchOptions& options, Console& console)
   const auto text = [](const Vec3& v) {
     return formatNumber(v.x, 17) + "," + formatNumber(v.y, 17) + "," + formatNumber(v.z, 17);
   };
-  options.press = text(found.place / scene.metresPerUnit());
+  options.press = text(found.place / scene.metersPerUnit());
   if (options.normal.empty()) options.normal = text(found.normal);
   console.note("pressing on its surface at " +
-               formatVector(found.place / scene.metresPerUnit(), 6) + " " + scene.lengthUnit() +
+               formatVector(found.place / scene.metersPerUnit(), 6) + " " + scene.lengthUnit() +
                "; --press X,Y,Z presses elsewhere");
 }
 
@@ -116,7 +116,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   limits = limits.over(scene->forceLimits());
   limits.period = options.device.name.empty() ? motion.period : 1.0 / options.rate;
   for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
-    console.warn(gapText(gap, scene->lengthUnit(), scene->metresPerUnit()));
+    console.warn(gapText(gap, scene->lengthUnit(), scene->metersPerUnit()));
   }
   if (!is_paper) {
     for (const WallNote& note : wallNotes(*scene)) {

@@ -1,5 +1,6 @@
 #pragma once
-/// The verbs. Each does its work, writes its files and says what came out; each throws palpate::Error.
+/// The verbs. Each does its work, writes its files and says what came out; each throws
+/// palpate::Error.
 
 #include "console.h"
 #include "options.h"

@@ -15,7 +15,7 @@ constexpr double kMuchSideways = 0.5;
 
 std::vector<WallNote> wallNotes(const Scene& scene) {
   std::vector<WallNote> notes;
-  const double unit = scene.metresPerUnit();
+  const double unit = scene.metersPerUnit();
   const auto lengthText = [&](double meters) {
     return formatNumber(meters / unit, 3) + " " + scene.lengthUnit();
   };

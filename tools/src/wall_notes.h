@@ -1,6 +1,6 @@
 #pragma once
-/// What is to be said of a scene's walls before they are felt: sharp contrasts of stiffness, and shading
-/// that looks further than a grid knows.
+/// What is to be said of a scene's walls before they are felt: sharp contrasts of stiffness, and
+/// shading that looks further than a grid knows.
 
 #include <string>
 #include <vector>
@@ -18,7 +18,8 @@ struct WallNote {
   Json json;
 };
 
-/// Of a compiled scene, as the `constraint` renderer feels it. Lengths in texts are in the scene's unit.
+/// Of a compiled scene, as the `constraint` renderer feels it. Lengths in texts are in the scene's
+/// unit.
 [[nodiscard]] std::vector<WallNote> wallNotes(const Scene& scene);
 
 }  // namespace palpate::tools

@@ -7,8 +7,8 @@
 
 namespace palpate::vdb {
 
-/// Memory in huge pages where it is large and the system has some; std::free() gives it back. A wish: without them
-/// all works, only slower. @throws std::bad_alloc
+/// Memory in huge pages where it is large and the system has some; std::free() gives it back. A
+/// wish: without them all works, only slower. @throws std::bad_alloc
 [[nodiscard]] void* allocateHuge(std::size_t bytes, std::size_t alignment);
 
 template <typename T>
@@ -28,8 +28,8 @@ struct HugeAllocator {
   }
 };
 
-/// For blocks of some kilobytes each, read across many neighbors: with small pages, most of the time goes into finding
-/// where they are.
+/// For blocks of some kilobytes each, read across many neighbors: with small pages, most of the
+/// time goes into finding where they are.
 template <typename T>
 using HugeVector = std::vector<T, HugeAllocator<T>>;
 

@@ -56,8 +56,8 @@ struct GridSource {
   std::string file = {};                             ///< that notes are about, if not `what`
 };
 
-/// A field that makes its grid when it is first asked for it, or takes the one that was kept of the same content; of several
-/// processes one makes it, and the others wait.
+/// A field that makes its grid when it is first asked for it, or takes the one that was kept of the
+/// same content; of several processes one makes it, and the others wait.
 [[nodiscard]] FieldSourcePtr lazyField(const CommonPtr& common, GridSource source);
 
 }  // namespace palpate::vdb

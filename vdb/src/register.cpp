@@ -36,8 +36,8 @@ CertifyOptions madeHere() {
   return options;
 }
 
-/// To be raised whenever what is baked of the same source changes: grids that were kept before are made again then. A test
-/// says when.
+/// To be raised whenever what is baked of the same source changes: grids that were kept before are
+/// made again then. A test says when.
 constexpr int kBakerVersion = 1;
 
 ContentKey beginKey(const char* kind) {
@@ -93,7 +93,7 @@ FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
   bake.max_memory = common->options.max_memory;
   bake.length_unit = reader.loader().lengthUnit();
   const std::string prescribed = prescribedUnit(path);
-  const double metres = *metresPer(reader.has("units")  ? reader.text("units")
+  const double meters = *metersPer(reader.has("units")  ? reader.text("units")
                                    : prescribed.empty() ? bake.length_unit
                                                         : prescribed);
   bake.voxel_size = reader.value("voxel");
@@ -102,9 +102,9 @@ FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
   const Space space = readSpace(reader);
   bake.metadata["source"] = path;
   const Sampler sampler = readSampler(reader);
-  const auto read = [common, path, metres, space](const Progress& progress) {
+  const auto read = [common, path, meters, space](const Progress& progress) {
     report(progress, "read", 0.0);
-    Mesh mesh = readMesh(path, metres, space);
+    Mesh mesh = readMesh(path, meters, space);
     if (mesh.space_is_stated && mesh.space == Space::kLps) {
       common->notes->add(path, {"coordinates are LPS, as the file says: x and y are negated"});
     }
@@ -119,7 +119,7 @@ FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
         common->notes->add(
             path, {std::to_string(made.left_to_grid) + " of " + std::to_string(made.edges) +
                    " sharp edges are rounded as in a grid, as parts overlap beside them, at " +
-                   eachInMillimetres(made.place) + " for one; one solid would keep them sharp"});
+                   eachInMillimeters(made.place) + " for one; one solid would keep them sharp"});
       }
       return std::move(made.field);
     };
@@ -148,8 +148,8 @@ FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
     }
     return bakeMesh(mesh, options, progress);
   };
-  source.measure = [path, metres, space, shell = bake.shell_thickness](const Progress&) {
-    return boxOf(readMesh(path, metres, space)).grownBy(shell);
+  source.measure = [path, meters, space, shell = bake.shell_thickness](const Progress&) {
+    return boxOf(readMesh(path, meters, space)).grownBy(shell);
   };
   source.ways = std::move(ways);
   source.certify = madeHere();

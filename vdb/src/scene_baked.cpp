@@ -72,8 +72,8 @@ std::string readFile(const MapReader& reader) {
   return readExistingFile(reader, "file");
 }
 
-/// `field` with the grids of the file at `path` in the place of its parts: that of part 2.1 is called NAME/2.1, where
-/// NAME is the one in `asked`.
+/// `field` with the grids of the file at `path` in the place of its parts: that of part 2.1 is
+/// called NAME/2.1, where NAME is the one in `asked`.
 FieldPtr withSaved(const FieldPtr& field, const std::string& path, const HybridOptions& asked,
                    const std::string& what, const RegisterOptions& options) {
   const std::string& name = asked.bake.name;

@@ -12,8 +12,8 @@ namespace palpate::vdb {
 /// Path of the file at `key`, which must be there; nothing of it is read.
 [[nodiscard]] std::string readExistingFile(const MapReader& reader, std::string_view key);
 
-/// `error` as one of the scene's, at `place`: errors of input that are not told there already. Others
-/// are thrown as they are.
+/// `error` as one of the scene's, at `place`: errors of input that are not told there already.
+/// Others are thrown as they are.
 [[noreturn]] void throwAt(const SourcePlace& place, const Error& error);
 
 }  // namespace palpate::vdb

@@ -55,7 +55,8 @@ class ImageFile {
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   /// @throws Error (kInput): what readImage() throws, and pack.no_scan if only a stand-in is there.
   [[nodiscard]] const Image& image();
-  /// [m] The box around the voxels of these labels, as boxWhere() has it. The image is walked once for all calls.
+  /// [m] The box around the voxels of these labels, as boxWhere() has it. The image is walked once
+  /// for all calls.
   [[nodiscard]] Box3 boxOfLabels(const std::vector<int>& labels);
 
   /// Of the bytes of all its files, which are read once, and of how they are understood.

@@ -14,17 +14,18 @@
 namespace palpate::vdb {
 namespace {
 
-/// Of the span between the least and the most value of a transfer function: far below what a hand can tell
-/// apart (some percent), and met by 16 bits.
+/// Of the span between the least and the most value of a transfer function: far below what a hand
+/// can tell apart (some percent), and met by 16 bits.
 constexpr double kDefaultTolerance = 1e-5;
 
-/// A quantity of `kind` [SI unit], a length in the scene's unit too, or a number for a ratio; nothing if it is none.
+/// A quantity of `kind` [SI unit], a length in the scene's unit too, or a number for a ratio;
+/// nothing if it is none.
 std::optional<double> quantityOf(const SceneLoader& loader, const Node& node,
                                  std::optional<Dimension> dimension) {
   if (node.kind != Node::Kind::kScalar || node.quoted) return {};
   if (!dimension || *dimension == Dimension::kLength) {
     if (const auto number = parseNumber(node.text)) {
-      return dimension ? *number * loader.metresPerUnit() : *number;
+      return dimension ? *number * loader.metersPerUnit() : *number;
     }
     if (!dimension) return {};
   }

@@ -1,5 +1,6 @@
 #pragma once
-/// Grids that say where, not how far: booleans, masks and densities, as the surface of what they hold.
+/// Grids that say where, not how far: booleans, masks and densities, as the surface of what they
+/// hold.
 
 #include <optional>
 #include <string>
@@ -17,9 +18,9 @@ struct MaskOptions {
   double voxel_size = 0.0;  ///< [m] of the surface; 0: the grid's
 };
 
-/// A grid of booleans, integers or a mask holds the voxels that are not 0; a fog volume is cut where its
-/// density is `above`. @throws Error (kInput): a level set (it says how far, and is not a mask), a grid of
-/// vectors, `above` for one without densities, nothing held.
+/// A grid of booleans, integers or a mask holds the voxels that are not 0; a fog volume is cut
+/// where its density is `above`. @throws Error (kInput): a level set (it says how far, and is not a
+/// mask), a grid of vectors, `above` for one without densities, nothing held.
 [[nodiscard]] LevelSet surfaceOfMask(const MaskOptions& options, const BakeOptions& bake,
                                      const Progress& progress = {});
 

@@ -1,9 +1,11 @@
-// Four doubles or eight floats at a time, for kernels. No include guard: a kernel is a translation unit for one instruction
-// set, and includes this once, after PALPATE_TARGET names the instructions; without it, it is for every processor.
+// Four doubles or eight floats at a time, for kernels. No include guard: a kernel is a translation
+// unit for one instruction set, and includes this once, after PALPATE_TARGET names the
+// instructions; without it, it is for every processor.
 //   PALPATE_KERNEL  before every function of a kernel
 //   PALPATE_ENTRY   before those that are called from elsewhere
-// Attributes rather than compiler flags, so that no inline function of another header is compiled for more than the least
-// processor. Only the operations that say so are fused: all others give the same bits for every instruction set.
+// Attributes rather than compiler flags, so that no inline function of another header is compiled
+// for more than the least processor. Only the operations that say so are fused: all others give the
+// same bits for every instruction set.
 
 #include <cstdint>
 
@@ -57,8 +59,8 @@ PALPATE_KERNEL Doubles fnma(Doubles a, Doubles b, Doubles c) noexcept {
 PALPATE_KERNEL Doubles all(double a) noexcept { return Doubles{a, a, a, a}; }
 PALPATE_KERNEL Floats all(float a) noexcept { return Floats{a, a, a, a, a, a, a, a}; }
 
-/// The same, where much is made of it: on all lanes at once. The compiler would reckon with one lane
-/// and copy each of the results.
+/// The same, where much is made of it: on all lanes at once. The compiler would reckon with one
+/// lane and copy each of the results.
 PALPATE_KERNEL Doubles allOnce(double a) noexcept {
   Doubles lanes = all(a);
 #if defined(PALPATE_TARGET)
@@ -101,7 +103,8 @@ PALPATE_KERNEL Floats whereLess(Floats a, Floats b, Floats yes, Floats no) noexc
 #if defined(PALPATE_TARGET)
   return a < b ? yes : no;
 #else
-  // In halves, which every processor compares at once; of wholes the compiler would take lane by lane.
+  // In halves, which every processor compares at once; of wholes the compiler would take lane by
+  // lane.
   using Four = float __attribute__((vector_size(16)));
   Four halves[4][2];
   const Floats wholes[4] = {a, b, yes, no};

@@ -15,19 +15,19 @@ std::string inGigabytes(double bytes) {
   return text.data();
 }
 
-std::string inMillimetres(double metres, int digits) {
-  return shortNumber(metres * 1e3, digits) + " mm";
+std::string inMillimeters(double meters, int digits) {
+  return shortNumber(meters * 1e3, digits) + " mm";
 }
 
-std::string inMillimetres(const Vec3& metres, int digits) {
-  const Vec3 p = metres * 1e3;
+std::string inMillimeters(const Vec3& meters, int digits) {
+  const Vec3 p = meters * 1e3;
   return "(" + shortNumber(p.x, digits) + ", " + shortNumber(p.y, digits) + ", " +
          shortNumber(p.z, digits) + ") mm";
 }
 
-std::string eachInMillimetres(const Vec3& metres, int digits) {
-  return "(" + inMillimetres(metres.x, digits) + ", " + inMillimetres(metres.y, digits) + ", " +
-         inMillimetres(metres.z, digits) + ")";
+std::string eachInMillimeters(const Vec3& meters, int digits) {
+  return "(" + inMillimeters(meters.x, digits) + ", " + inMillimeters(meters.y, digits) + ", " +
+         inMillimeters(meters.z, digits) + ")";
 }
 
 std::string listOf(const std::vector<int>& labels) {

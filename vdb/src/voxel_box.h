@@ -18,8 +18,8 @@ namespace palpate::vdb {
   return step;
 }
 
-/// [m] The box around the voxels of an image that hold(value), half a voxel and one more to each side of their
-/// centers.
+/// [m] The box around the voxels of an image that hold(value), half a voxel and one more to each
+/// side of their centers.
 template <typename F>
 Box3 boxWhere(const Image& image, const F& holds) {
   Box3 box;
@@ -34,7 +34,8 @@ Box3 boxWhere(const Image& image, const F& holds) {
   return box.grownBy(1.5 * longestStep(image));
 }
 
-/// [m] Of each value in an image, the box of its voxels' centers, in one walk however many labels there are.
+/// [m] Of each value in an image, the box of its voxels' centers, in one walk however many labels
+/// there are.
 [[nodiscard]] inline std::map<float, Box3> boxesOfValues(const Image& image) {
   std::map<float, Box3> boxes;
   float last = std::numeric_limits<float>::quiet_NaN();

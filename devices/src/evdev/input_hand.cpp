@@ -105,7 +105,8 @@ bool InputHand::take(std::uint16_t type, std::uint16_t code, std::int32_t value,
       finish(at);
       return false;
     }
-    // Up to here it is unknown what was dropped. Relative axes report again if they are still deflected.
+    // Up to here it is unknown what was dropped. Relative axes report again if they are still
+    // deflected.
     is_dropping_ = false;
     advance(at);
     if (is_relative_) now_.deflection = {};

@@ -1,5 +1,6 @@
 #pragma once
-// A position out of an input device's events. Real time: nothing here allocates, locks, throws or blocks.
+// A position out of an input device's events. Real time: nothing here allocates, locks, throws or
+// blocks.
 
 #include <array>
 #include <bitset>
@@ -15,8 +16,9 @@ class InputHand {
   /// Axes beyond kMostAxes have no use.
   InputHand(const InputMap& map, const EvdevSettings& settings, std::int64_t now);
 
-  /// An event of the time `at`. Events count from the SYN_REPORT on that ends them. True if the kernel has dropped events: what
-  /// the device is at now has to be asked for, and given by setAxis() and setKeys().
+  /// An event of the time `at`. Events count from the SYN_REPORT on that ends them. True if the
+  /// kernel has dropped events: what the device is at now has to be asked for, and given by
+  /// setAxis() and setKeys().
   [[nodiscard]] bool take(std::uint16_t type, std::uint16_t code, std::int32_t value,
                           std::int64_t at) noexcept;
   void setAxis(std::uint16_t code, std::int32_t value) noexcept;  ///< an absolute one
@@ -29,8 +31,8 @@ class InputHand {
   [[nodiscard]] const Mat3& orientation() const noexcept { return orientation_; }  ///< a rotation
   [[nodiscard]] std::uint32_t buttons() const noexcept { return now_.buttons; }
 
-  /// [ns] for which a relative axis keeps its deflection without being told it again. Assumed: such devices repeat it every 8 to
-  /// 16 ms while they are deflected.
+  /// [ns] for which a relative axis keeps its deflection without being told it again. Assumed: such
+  /// devices repeat it every 8 to 16 ms while they are deflected.
   static constexpr std::int64_t kHold = 50'000'000;
 
  private:

@@ -5,7 +5,8 @@
 namespace palpate::devices::evdev {
 namespace {
 
-/// [counts] A SpaceMouse's full deflection, where the kernel reports relative axes, which have no range.
+/// [counts] A SpaceMouse's full deflection, where the kernel reports relative axes, which have no
+/// range.
 constexpr double kSpaceMouseReach = 350.0;
 
 /// One of an input device's axes, and the frame's that it moves along or turns about.
@@ -17,7 +18,8 @@ struct Row {
   bool is_trigger = false;  // rests at its least value
 };
 
-/// X to the right, Y towards the hand, Z down; the rotations about the same. REL_X to REL_RZ have the same numbers.
+/// X to the right, Y towards the hand, Z down; the rotations about the same. REL_X to REL_RZ have
+/// the same numbers.
 constexpr std::array<Row, 6> kSpaceMouse = {{{ABS_X, AxisUse::kSpeed, 0, 1.0},
                                              {ABS_Y, AxisUse::kSpeed, 2, 1.0},
                                              {ABS_Z, AxisUse::kSpeed, 1, -1.0},
@@ -99,7 +101,8 @@ bool hasAll(const std::bitset<kSize>& axes) {
 std::vector<std::uint16_t> buttonsOf(const Capabilities& has) {
   constexpr std::size_t kMost = 32;
   std::vector<std::uint16_t> out;
-  // Of miscellaneous devices, mice, joysticks and gamepads: the kernel's codes for buttons that are not tools of a pen.
+  // Of miscellaneous devices, mice, joysticks and gamepads: the kernel's codes for buttons that are
+  // not tools of a pen.
   for (std::uint16_t code = BTN_MISC; code < BTN_DIGI && out.size() < kMost; ++code) {
     if (has.keys[code]) out.push_back(code);
   }

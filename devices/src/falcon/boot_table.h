@@ -15,7 +15,8 @@ struct BootTable {
   std::size_t words = 0;  ///< of 16 bits, in all blocks
 };
 
-/// Reads the table without using it: key 0x08AA, 8 words, entry, blocks of {count, address, words}, count 0, and nothing after.
+/// Reads the table without using it: key 0x08AA, 8 words, entry, blocks of {count, address, words},
+/// count 0, and nothing after.
 /// @throws Error (kInput), naming `file`, if it is not a boot table.
 [[nodiscard]] BootTable readBootTable(std::span<const std::uint8_t> image, const std::string& file);
 

@@ -58,7 +58,8 @@ void FalconDevice::open() {
       start();
     } catch (const Error& error) {
       transport_.reset();
-      // Loading the firmware is known to fail now and then; an absent device, or one without permission, stays so.
+      // Loading the firmware is known to fail now and then; an absent device, or one without
+      // permission, stays so.
       const std::string& code = error.problem().code;
       const bool may_help = code == "falcon.boot" || code == "device.usb";
       if (!may_help || attempt == kStarts) throw;
@@ -202,7 +203,8 @@ DeviceStatus FalconDevice::take(const Reply& reply, DeviceState& out) noexcept {
   }
   auto grip = gripAt(angles, is_placed_ ? grip_ : middle());
   if (!grip && is_placed_) grip = gripAt(angles, middle());
-  // Before homing the angles mean nothing, and may fit no pose; the reply still shows that it lives.
+  // Before homing the angles mean nothing, and may fit no pose; the reply still shows that it
+  // lives.
   if (!grip && is_homed) return DeviceStatus::kStale;
   is_placed_ = grip.has_value() && is_homed;
   if (grip) grip_ = grip->position;
@@ -255,7 +257,8 @@ DeviceStatus FalconDevice::write(const Vec3& force) noexcept {
   Command command;
   command.motors = motorsFor(force);
   const bool is_zero = command.motors == std::array<int, 3>{};
-  // One command for each reply; without one for a while the command is said again. Letting go waits for nothing.
+  // One command for each reply; without one for a while the command is said again. Letting go waits
+  // for nothing.
   const bool says_again = silent_reads_ > 0 && silent_reads_ % kPatience == 0;
   const bool lets_go = is_zero && !is_let_go_;
   if (is_owed_ && !says_again && !lets_go) return DeviceStatus::kOk;

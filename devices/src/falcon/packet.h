@@ -1,5 +1,6 @@
 #pragma once
-// The packets of a Novint Falcon. Protocol from public sources (libnifalcon), unverified on hardware.
+// The packets of a Novint Falcon. Protocol from public sources (libnifalcon), unverified on
+// hardware.
 
 #include <array>
 #include <cstddef>
@@ -31,7 +32,8 @@ struct Reply {
 
 [[nodiscard]] Packet encode(const Command& command) noexcept;
 
-/// Bytes in, replies out. Whatever stands between two sound packets is dropped. A value; real-time safe.
+/// Bytes in, replies out. Whatever stands between two sound packets is dropped. A value; real-time
+/// safe.
 class Parser {
  public:
   [[nodiscard]] std::optional<Reply> push(std::uint8_t byte) noexcept;

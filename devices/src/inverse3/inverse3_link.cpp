@@ -107,8 +107,8 @@ class Link::Work {
     beast::get_lowest_layer(socket_).socket().close(ignored);
   }
 
-  /// Hangs up in kConnectTime, unless it is set again or canceled. It is a timer of its own: the stream's may not be set
-  /// while the stream reads or writes.
+  /// Hangs up in kConnectTime, unless it is set again or canceled. It is a timer of its own: the
+  /// stream's may not be set while the stream reads or writes.
   void setDeadline() {
     deadline_.expires_after(kConnectTime);
     deadline_.async_wait([this](const error_code& canceled) {

@@ -11,7 +11,8 @@ namespace palpate::devices::inverse3 {
 
 class Link {
  public:
-  /// Connects, and waits until the service has said where the device is. `mail` must outlive the link.
+  /// Connects, and waits until the service has said where the device is. `mail` must outlive the
+  /// link.
   /// @throws Error (kDevice).
   Link(const Inverse3Settings& settings, plugin::Mailbox& mail);
   /// Sends zero force and ends.

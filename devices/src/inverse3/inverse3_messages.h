@@ -14,7 +14,8 @@ struct Message {
   DeviceState state;  ///< its position and velocity
 };
 
-/// The device `id` (empty: the first) in a message of the service. None if the message is not of its kind, or not sound.
+/// The device `id` (empty: the first) in a message of the service. None if the message is not of
+/// its kind, or not sound.
 [[nodiscard]] std::optional<Message> readMessage(std::string_view text, const std::string& id);
 
 /// Asks for `force` [N] at the cursor.

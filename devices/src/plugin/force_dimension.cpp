@@ -11,7 +11,8 @@ namespace {
 
 using plugin::SharedLibrary;
 
-// Force Dimension's DHD interface, as programs that use it call it. Each call ends with the number of the device; below 0: error.
+// Force Dimension's DHD interface, as programs that use it call it. Each call ends with the number
+// of the device; below 0: error.
 struct Functions {
   int (*open)();
   int (*close)(char);
@@ -39,7 +40,8 @@ struct Functions {
   Functions() = default;
 };
 
-/// [N] Of the weakest of the family that CHAI3D lists (omega.3): the library limits to what the device has.
+/// [N] Of the weakest of the family that CHAI3D lists (omega.3): the library limits to what the
+/// device has.
 constexpr double kMaxForce = 12.0;
 
 constexpr const char* kHint = "install Force Dimension's SDK, or give the path of its library";

@@ -1,5 +1,6 @@
 #pragma once
-// Between the servo thread and a thread that talks to a device: the last reading one way, the last force the other.
+// Between the servo thread and a thread that talks to a device: the last reading one way, the last
+// force the other.
 
 #include <cstdint>
 

@@ -1,5 +1,6 @@
 #pragma once
-// What an FTDI FT232R wants to hear, and what it puts before the bytes of the device. Facts of libftdi and libnifalcon.
+// What an FTDI FT232R wants to hear, and what it puts before the bytes of the device. Facts of
+// libftdi and libnifalcon.
 
 #include <algorithm>
 #include <cstdint>

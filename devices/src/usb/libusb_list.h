@@ -14,7 +14,8 @@ namespace palpate::devices::usb {
 /// libusb's own state.
 class Context {
  public:
-  /// `is_blind`: does not look for devices, for one that is opened by its descriptor. @throws Error (kDevice).
+  /// `is_blind`: does not look for devices, for one that is opened by its descriptor. @throws Error
+  /// (kDevice).
   explicit Context(bool is_blind);
   ~Context();
   Context(const Context&) = delete;

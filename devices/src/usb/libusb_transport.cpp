@@ -58,7 +58,8 @@ Status statusOf(libusb_transfer_status status) noexcept {
   return Status::kError;
 }
 
-/// One direction: a transfer with its buffer, made once. The callback may run in another thread, while that one is in cut().
+/// One direction: a transfer with its buffer, made once. The callback may run in another thread,
+/// while that one is in cut().
 struct Line {
   libusb_transfer* transfer = nullptr;
   std::array<unsigned char, Transport::kPacket> buffer{};

@@ -39,7 +39,8 @@ class Transport {
   /// Sends up to kPacket bytes; waits at most a few ms for those before them.
   [[nodiscard]] virtual Status send(std::span<const std::uint8_t> bytes) noexcept = 0;
 
-  /// One packet as it came, at most `wait` [ms] from now; the next is asked for at once. `into` has room for kPacket bytes.
+  /// One packet as it came, at most `wait` [ms] from now; the next is asked for at once. `into` has
+  /// room for kPacket bytes.
   [[nodiscard]] virtual Status receive(std::span<std::uint8_t> into, std::size_t& got,
                                        int wait) noexcept = 0;
 
@@ -62,7 +63,8 @@ struct Choice {
 /// Opens a device anew. @throws Error (kDevice).
 using Opener = std::function<std::unique_ptr<Transport>()>;
 
-/// Through libusb. @throws Error (kDevice) with a remedy: none there, no access, in use; or built without libusb.
+/// Through libusb. @throws Error (kDevice) with a remedy: none there, no access, in use; or built
+/// without libusb.
 [[nodiscard]] std::unique_ptr<Transport> openUsb(const Choice& choice);
 
 /// The error of a set-up step that ended with `status`.

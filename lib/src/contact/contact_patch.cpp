@@ -74,7 +74,8 @@ constexpr std::array kMany{
     std::array{-0.681724038, 0.718635647, 0.137168302},
     std::array{0.448836110, 0.611958838, 0.651193156},
 };
-/// Contrasts in the radius: up to here a step of the map is felt evenly in few places; from twice that on in many.
+/// Contrasts in the radius: up to here a step of the map is felt evenly in few places; from twice
+/// that on in many.
 constexpr double kEvenInFew = 8.0;
 
 struct Radius {

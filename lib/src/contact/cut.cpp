@@ -15,7 +15,8 @@ Cut::Near Cut::nearest(const Vec3& tip) const noexcept {
   return near;
 }
 
-/// The end moves on with the tip; a side takes the whole straight cut along, about where it was entered.
+/// The end moves on with the tip; a side takes the whole straight cut along, about where it was
+/// entered.
 void Cut::moveTo(const Near& near, const Vec3& torn) noexcept {
   end_ = near.share < 1.0 ? entry_ + near.length * unitOr(torn - entry_, near.way / near.length)
                           : torn;

@@ -54,7 +54,8 @@ FeltHeight textureHeight(const Texture& texture, const Vec3& p) noexcept {
 double textureReach(const Texture& texture) noexcept {
   const double amplitude = texture.amplitude.range().most;
   if (!(amplitude > 0.0)) return kInfinity;
-  // Sideways a bump is a spring of stiffness * amplitude * k^2 / 3 times the depth that counts, one and a half times this.
+  // Sideways a bump is a spring of stiffness * amplitude * k^2 / 3 times the depth that counts, one
+  // and a half times this.
   const double k = 2.0 * std::numbers::pi / texture.wavelength;
   return std::max(2.0 * amplitude, 1.0 / (amplitude * k * k));
 }

@@ -9,14 +9,17 @@
 namespace palpate {
 namespace {
 
-// In an incompressible layer every field of wave number k is one that dies out downwards and one that dies out
-// upwards. With u = (radial, vertical) displacement and t = (shear, normal) stress on a level plane, the first
-// has t = -2 mu k u, the second t = +2 mu k u. A distance s / k further on the first is
+// In an incompressible layer every field of wave number k is one that dies out downwards and one
+// that dies out upwards. With u = (radial, vertical) displacement and t = (shear, normal) stress on
+// a level plane, the first has t = -2 mu k u, the second t = +2 mu k u. A distance s / k further on
+// the first is
 //   D u,  D = e^-s [[1 - s, s], [-s, 1 + s]] = e^(s M),  M = [[-2, 1], [-1, 0]],
-// the second, upwards, D^T u. At the lower side of layer i the first is reflected: it comes back as r u, at its top as
-// q u, q = D^T r D, both symmetric. With rho = (mu_i - mu_j) / (mu_i + mu_j), j the layer below, whose q is q_j,
+// the second, upwards, D^T u. At the lower side of layer i the first is reflected: it comes back as
+// r u, at its top as q u, q = D^T r D, both symmetric. With rho = (mu_i - mu_j) / (mu_i + mu_j), j
+// the layer below, whose q is q_j,
 //   r = (q_j + rho) (1 + rho q_j)^-1;
-// what lies lowest reflects nothing, q_j = 0. A half-space gives way by 1 / mu, the top by (1 + q) (1 - q)^-1 of that.
+// what lies lowest reflects nothing, q_j = 0. A half-space gives way by 1 / mu, the top by (1 + q)
+// (1 - q)^-1 of that.
 
 /// Waves that are worked on together: the loops over them become vector instructions.
 constexpr std::size_t kLanes = 8;
@@ -55,8 +58,8 @@ struct Waves {
   Lanes weight;  // [-] of each in the integral
 };
 
-/// The sum over some waves of how much further the stack gives way than its top layer alone, as a share of that, and its
-/// derivatives by the thickness of each layer and by each rho.
+/// The sum over some waves of how much further the stack gives way than its top layer alone, as a
+/// share of that, and its derivatives by the thickness of each layer and by each rho.
 struct Sum {
   double excess = 0.0;
   std::array<double, kMostStackLayers> by_thickness{};
@@ -172,10 +175,11 @@ void add(std::span<const StackLayer> layers, std::span<const double> rho, const 
   }
 }
 
-// The rule for the integral of (sin x / x)^2 f(x) from 0 on, f like what layers do to waves, x = k * radius: nodes that
-// grow by one factor, and weights that fit best, of all f = (c x)^n e^(-c x), n = 0, 1, 2 and c from 0.02 to 250, in the
-// least squares, and exactly for f = 1. So the sine's swing is in the weights, and no thickness moves a node: what is felt
-// has no step anywhere, and its derivatives are those of the sum. Next to the integral it is off by 3e-3 at most.
+// The rule for the integral of (sin x / x)^2 f(x) from 0 on, f like what layers do to waves, x = k
+// * radius: nodes that grow by one factor, and weights that fit best, of all f = (c x)^n e^(-c x),
+// n = 0, 1, 2 and c from 0.02 to 250, in the least squares, and exactly for f = 1. So the sine's
+// swing is in the weights, and no thickness moves a node: what is felt has no step anywhere, and
+// its derivatives are those of the sum. Next to the integral it is off by 3e-3 at most.
 constexpr std::size_t kNodeCount = 2 * kLanes;
 constexpr std::array<double, kNodeCount> kNodes = {
     0.003363120349, 0.01386292296, 0.03261273394, 0.06609483117,

@@ -47,7 +47,8 @@ class Search {
     return left(i, step) < -slack_;
   }
 
-  /// The best step on plane `i` that respects the planes before it. Returns how many planes hold it.
+  /// The best step on plane `i` that respects the planes before it. Returns how many planes hold
+  /// it.
   int onPlane(int i, Vec3& step, std::array<int, 3>& set) noexcept {
     step = wish_ - left(i, wish_) * at(i).normal;
     step -= left(i, step) * at(i).normal;
@@ -104,8 +105,8 @@ class Search {
     return 3;
   }
 
-  /// Of the planes that the step lies on, those that push it there. The set that the search ended with is
-  /// tried first; where more than three planes meet, another one may be it.
+  /// Of the planes that the step lies on, those that push it there. The set that the search ended
+  /// with is tried first; where more than three planes meet, another one may be it.
   [[nodiscard]] PlaneSolution withMultipliers(const Vec3& step, const std::array<int, 3>& set,
                                               int count) noexcept {
     PlaneSolution out;
@@ -137,7 +138,8 @@ class Search {
     return out;
   }
 
-  /// Whether `push` is a sum of the set's normals with weights of no less than zero; keeps the best so far.
+  /// Whether `push` is a sum of the set's normals with weights of no less than zero; keeps the best
+  /// so far.
   bool fits(const Vec3& push, const std::array<int, 3>& set, int count, double length,
             PlaneSolution& best) noexcept {
     std::array<double, 3> m{};

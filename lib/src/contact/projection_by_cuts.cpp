@@ -12,7 +12,8 @@ constexpr int kMostCuts = 64;
 /// Of the way to the target, and of the coordinates: so near to a wall is on it.
 constexpr double kSettled = 1e-13;
 constexpr double kRounding = 1e-15;
-/// Of the way to the target: a tangent plane that cuts off the start by more is of a wall that bulges.
+/// Of the way to the target: a tangent plane that cuts off the start by more is of a wall that
+/// bulges.
 constexpr double kBulges = 1e-9;
 
 struct Cuts {

@@ -11,11 +11,13 @@ constexpr int kMostSteps = 32;
 constexpr double kSettled = 1e-12;
 /// Of it: what is left where rounding of the walls' own points ends the steps.
 constexpr double kSettledAtLast = 1e-7;
-/// Over the stop's stiffness: what is added to the derivative, one after the other, until a step leads on.
+/// Over the stop's stiffness: what is added to the derivative, one after the other, until a step
+/// leads on.
 constexpr double kAdded[] = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, 256.0};
 /// Of the energy: what of it is rounding.
 constexpr double kEnergyRounding = 1e-13;
-/// The way from the proxy to the hand, over that to the first place: the stop is not much stiffer than the stiffest wall.
+/// The way from the proxy to the hand, over that to the first place: the stop is not much stiffer
+/// than the stiffest wall.
 constexpr double kFirst = 0.05;
 /// Of the coordinates: a shorter way to a wall has no direction.
 constexpr double kRounding = 1e-15;
@@ -69,7 +71,8 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
   std::array<LocalProjection, SoftKinds::kMost> from;
   for (LocalProjection& each : from) each.at = proxy;
   SeriesForce out;
-  // From beside the walls, where their bends count little: from the hand on the steps may lead anywhere.
+  // From beside the walls, where their bends count little: from the hand on the steps may lead
+  // anywhere.
   out.place = glm::mix(proxy, hand, kFirst);
   const double farthest = glm::length(hand - proxy);
   Look here = lookFrom(out.place, hand, stop, kinds, {from.data(), count});

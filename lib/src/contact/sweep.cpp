@@ -22,9 +22,10 @@ struct Motion {
   }
 };
 
-/// Narrows a change of side down to the tolerance. Secant steps aim at half of the tolerance, on the near
-/// side, so that one good step ends the search; the value of an end that stays twice is halved (the
-/// Illinois rule), and every fourth step halves the bracket, so that no shape of S stalls it. Returns the near end.
+/// Narrows a change of side down to the tolerance. Secant steps aim at half of the tolerance, on
+/// the near side, so that one good step ends the search; the value of an end that stays twice is
+/// halved (the Illinois rule), and every fourth step halves the bracket, so that no shape of S
+/// stalls it. Returns the near end.
 double narrow(Motion& motion, double near, double near_value, double far,
               double far_value) noexcept {
   const double tolerance = motion.surface.tolerance;

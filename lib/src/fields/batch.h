@@ -1,6 +1,6 @@
 #pragma once
-/// How fields answer for a whole batch: loops without branches, which the compiler turns into vector
-/// code, and what these leave out once more, one by one. Private to fields.
+/// How fields answer for a whole batch: loops without branches, which the compiler turns into
+/// vector code, and what these leave out once more, one by one. Private to fields.
 
 #include <cmath>
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace palpate::fields {
 /// (isPlainSquare()); the others are left to the caller.
 struct alignas(64) Squares : std::array<double, PointBatch::kCount> {};
 
-/// Whether all are plain, and not close to leaving the range of double together. Two at a time, which
-/// compilers do not see by themselves.
+/// Whether all are plain, and not close to leaving the range of double together. Two at a time,
+/// which compilers do not see by themselves.
 [[nodiscard]] inline bool arePlain(const Squares& squares) noexcept {
   using Two [[gnu::vector_size(16)]] = double;
   Two least{1.0, 1.0};

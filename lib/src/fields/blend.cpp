@@ -15,7 +15,8 @@ struct Sides {
   double result = 1.0;
 };
 
-/// From the first operand on, result * smin(first * so far, second * next) with the cubic smooth minimum
+/// From the first operand on, result * smin(first * so far, second * next) with the cubic smooth
+/// minimum
 ///   smin(A, B) = min(A, B) - h^3 k / 6,  h = max(0, 1 - |A - B| / k),
 /// whose partial derivatives are never negative and add up to 1.
 class Blend final : public Field, public fields::LevelBounded {

@@ -67,7 +67,8 @@ class Box final : public Field {
     const Vec3 q = glm::abs(p - center_) - half_;
     const double distance = fields::length(glm::max(q, Vec3(0.0)));
     if (isInside(q) || !(distance > 1e-100)) return out;
-    // Beyond a face nothing bends; beyond an edge or corner the distance grows from a line or point.
+    // Beyond a face nothing bends; beyond an edge or corner the distance grows from a line or
+    // point.
     const double curvature = 1.0 / distance;
     out.hessian = outer(here.gradient, here.gradient) * -curvature;
     for (int axis = 0; axis < 3; ++axis) {

@@ -29,8 +29,8 @@ void checkLengths(std::string_view shape, std::string_view parameter, const Vec3
 /// Throws if there are fewer than `fewest`, or one is null.
 void checkOperands(std::string_view shape, const std::vector<FieldPtr>& operands,
                    std::size_t fewest);
-/// Throws if `field` has a band (a grid) that ends nearer than `reach` [m] to its surface: what is out
-/// of band must not be taken for a distance.
+/// Throws if `field` has a band (a grid) that ends nearer than `reach` [m] to its surface: a value
+/// outside the band must not be taken for a distance.
 void checkBand(std::string_view shape, const Field& field, double reach);
 
 }  // namespace palpate::fields

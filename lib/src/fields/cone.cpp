@@ -8,8 +8,8 @@
 namespace palpate {
 namespace {
 
-/// A right triangle: the base on h = 0 from the axis to the rim at `radius`, the tip at (0, height).
-/// Without a base it goes on downward for ever.
+/// A right triangle: the base on h = 0 from the axis to the rim at `radius`, the tip at (0,
+/// height). Without a base it goes on downward for ever.
 struct ConeProfile {
   double radius = 0.0;
   double height = 0.0;

@@ -13,8 +13,8 @@ namespace {
 /// The closest point x of an ellipsoid to a point y satisfies y_i = x_i + tau x_i / e_i^2 for one
 /// multiplier tau (Eberly 2013, section 2). With e_2 the smallest semi-axis and tau = s e_2^2:
 ///   w_i = y_i / (s + r_i),  x_i = r_i w_i,  y_i - x_i = s w_i,   where r_i = (e_i / e_2)^2,
-/// so that w points along the outward normal and the signed distance is s |w|. The root is sought in
-/// t = s + 1 >= 0, which keeps its digits near the medial disc, where s tends to -1.
+/// so that w points along the outward normal and the signed distance is s |w|. The root is sought
+/// in t = s + 1 >= 0, which keeps its digits near the medial disc, where s tends to -1.
 struct Closest {
   double multiplier = 0.0;  ///< s [-]
   Vec3 w{0.0, 0.0, 0.0};    ///< [m] in sorted axes, all components >= 0
@@ -156,8 +156,9 @@ class Ellipsoid final : public Field {
   Vec3 inverse_ratio_{0.0};            ///< 1 / r [-], as given
 };
 
-/// least (|p / radii| - 1), least the smallest semi-axis: the surface of the ellipsoid as a field that costs
-/// a tenth of the distance and is smooth but for the center. Its slope is at most 1 everywhere.
+/// least (|p / radii| - 1), least the smallest semi-axis: the surface of the ellipsoid as a field
+/// that costs a tenth of the distance and is smooth but for the center. Its slope is at most 1
+/// everywhere.
 class EllipsoidFace final : public Field {
  public:
   EllipsoidFace(const Vec3& center, const Vec3& radii, double feature)

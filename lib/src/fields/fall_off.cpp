@@ -8,15 +8,16 @@
 namespace palpate::fields {
 namespace {
 
-/// The worst of boxes that are halved, the worst one first, until it is tight to a twentieth or enough work was done.
+/// The worst of boxes that are halved, the worst one first, until it is tight to a twentieth or
+/// enough work was done.
 class SteepestSum {
  public:
   SteepestSum(const std::vector<Metaball>& balls, FallOff fall_off)
       : balls_(balls), fall_off_(fall_off) {}
 
   double find() {
-    // Farther than a radius from every ball all slopes go down with distance, so the worst point lies
-    // in the box around the balls.
+    // Farther than a radius from every ball all slopes go down with distance, so the worst point
+    // lies in the box around the balls.
     Part start;
     for (std::uint32_t i = 0; i < balls_.size(); ++i) {
       const Vec3 half(balls_[i].radius);

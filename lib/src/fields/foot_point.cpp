@@ -50,7 +50,7 @@ FootPoint describe(const Vec3& p, const Vec3& foot, const FieldJet& jet) noexcep
 
 /// Moving from the foot along the normal scales the surface's two directions by 1 + curvature *
 /// distance; at p both are still positive.
-bool isBeforeTheCentre(const FootPoint& foot) noexcept {
+bool isBeforeTheCenter(const FootPoint& foot) noexcept {
   const double sum = foot.curvature_sum * foot.distance;
   const double product = foot.curvature_product * foot.distance * foot.distance;
   return 1.0 + sum + product > 0.0 && 2.0 + sum > 0.0;
@@ -91,7 +91,7 @@ std::optional<FootPoint> footPoint(const Field& field, const Vec3& p) noexcept {
     lambda += share * change;
     if (length > enough) continue;
     const FootPoint foot = describe(p, x, field.jet(x));
-    if (!isBeforeTheCentre(foot) || isNearerElsewhere(field, p, foot.distance)) return std::nullopt;
+    if (!isBeforeTheCenter(foot) || isNearerElsewhere(field, p, foot.distance)) return std::nullopt;
     return foot;
   }
   return std::nullopt;

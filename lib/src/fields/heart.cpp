@@ -7,11 +7,11 @@
 namespace palpate {
 namespace {
 
-/// Taubin's heart u^3 = w z^3, with u = x^2 + 9/4 y^2 + z^2 - 1 and w = x^2 + 9/80 y^2, has the zero
-/// set of f = u - z cbrt(w). The slope of cbrt(w) is without bound on the axis w = 0, where the
-/// surface has its two cusps; w / (w + e)^(2/3) equals it but for a share 2 e / (3 w), and is smooth.
-/// f grows like a square, so the field is sqrt(2) (sqrt(2 + f) - sqrt(2)), which grows like a
-/// distance and has the gradient of f / 2 on the surface. f is never below -1.01.
+/// Taubin's heart u^3 = w z^3, with u = x^2 + 9/4 y^2 + z^2 - 1 and w = x^2 + 9/80 y^2, has the
+/// zero set of f = u - z cbrt(w). The slope of cbrt(w) is without bound on the axis w = 0, where
+/// the surface has its two cusps; w / (w + e)^(2/3) equals it but for a share 2 e / (3 w), and is
+/// smooth. f grows like a square, so the field is sqrt(2) (sqrt(2 + f) - sqrt(2)), which grows like
+/// a distance and has the gradient of f / 2 on the surface. f is never below -1.01.
 constexpr double kRounding = 1e-4;  // e: the cusps are round within 0.01
 constexpr double kHalfWidth = 1.13901;
 constexpr double kSteepest = 3.16;    // searched: 3.135

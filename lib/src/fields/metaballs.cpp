@@ -14,8 +14,8 @@
 namespace palpate {
 namespace {
 
-/// How far from its center [radii] a ball still counts. A Gaussian ends where all of them together are below
-/// half a unit in the last place of `iso`; the inverse square never does.
+/// How far from its center [radii] a ball still counts. A Gaussian ends where all of them together
+/// are below half a unit in the last place of `iso`; the inverse square never does.
 double reachOfInfluence(const std::vector<Metaball>& balls, FallOff fall_off, double iso) {
   if (fall_off == FallOff::kWyvill) return 1.0;
   if (fall_off == FallOff::kInverseSquare) return kInfinity;
@@ -24,8 +24,8 @@ double reachOfInfluence(const std::vector<Metaball>& balls, FallOff fall_off, do
   return std::sqrt(std::log(std::max(total / iso, 1.0) * 1e17));
 }
 
-/// Finds the balls that count at a point. The order in which it visits them is always the same one, and the
-/// balls are kept in it, so that sums do not depend on what was left out.
+/// Finds the balls that count at a point. The order in which it visits them is always the same one,
+/// and the balls are kept in it, so that sums do not depend on what was left out.
 class BallTree {
  public:
   /// Puts `balls` into the order of the tree; keeps none of them.
@@ -63,9 +63,9 @@ class BallTree {
   std::vector<std::uint32_t> place_;  ///< of an item of the tree among the balls
 };
 
-/// What is added at a distance from the bounds, so that the field has a gradient everywhere: almost nothing next
-/// to them, as the surface may touch them, and far away as steep as the distance. Twice differentiable
-/// across the bounds, monotonous, and never steeper than 1: d - w atan(d / w).
+/// What is added at a distance from the bounds, so that the field has a gradient everywhere: almost
+/// nothing next to them, as the surface may touch them, and far away as steep as the distance.
+/// Twice differentiable across the bounds, monotonous, and never steeper than 1: d - w atan(d / w).
 class Rise {
  public:
   explicit Rise(double width) : width_(width) {}

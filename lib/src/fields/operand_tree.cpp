@@ -9,14 +9,14 @@ using Kind = FieldStructure::Kind;
 
 /// So few operands are asked as fast as a tree is searched.
 constexpr std::size_t kFewest = 12;
-/// Boxes are grown by this share of their coordinates: far above the rounding of values and distances, so
-/// that rounding never leaves out the operand that decides.
+/// Boxes are grown by this share of their coordinates: far above the rounding of values and
+/// distances, so that rounding never leaves out the operand that decides.
 constexpr double kMargin = 1e-12;
 
 double diagonalOf(const Box3& box) { return box.isBounded() ? glm::length(box.size()) : kInfinity; }
 
-/// A box that the field is at least as far above zero as `p` is out of it; of minus the field if `negated`.
-/// Everything if no such box is known.
+/// A box that the field is at least as far above zero as `p` is out of it; of minus the field if
+/// `negated`. Everything if no such box is known.
 Box3 distanceBox(const Field& field, bool negated) {
   const FieldStructure structure = field.structure();
   switch (structure.kind) {

@@ -1,5 +1,6 @@
 #pragma once
-/// Which of many operands decides a minimum or maximum at a point, without asking all. Private to fields.
+/// Which of many operands decides a minimum or maximum at a point, without asking all. Private to
+/// fields.
 
 #include <span>
 #include <vector>
@@ -9,9 +10,10 @@
 
 namespace palpate::fields {
 
-/// The operands of a minimum (union) or maximum (intersection) by what is known of their values from afar:
-/// an exact field is at least as large as the distance to its bounds, a complement of one at most minus
-/// that. What nothing is known of is always asked. Immutable; find() is real-time safe.
+/// The operands of a minimum (union) or maximum (intersection) by what is known of their values
+/// from afar: an exact field is at least as large as the distance to its bounds, a complement of
+/// one at most minus that. What nothing is known of is always asked. Immutable; find() is real-time
+/// safe.
 class OperandTree {
  public:
   struct Found {

@@ -52,7 +52,8 @@ class Quadric final : public Field {
   double feature_;
 };
 
-/// Eigenvalues of a symmetric matrix by Jacobi rotations; the columns of `axes` are its eigenvectors.
+/// Eigenvalues of a symmetric matrix by Jacobi rotations; the columns of `axes` are its
+/// eigenvectors.
 Vec3 eigenvalues(Mat3 m, Mat3& axes) {
   axes = Mat3(1.0);
   for (int sweep = 0; sweep < 30; ++sweep) {

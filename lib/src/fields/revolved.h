@@ -1,6 +1,6 @@
 #pragma once
-/// Solids of revolution from a profile in the half-plane (rho, h): rho >= 0 is the distance from the
-/// axis, h the height along it. Private to fields.
+/// Solids of revolution from a profile in the half-plane (rho, h): rho >= 0 is the distance from
+/// the axis, h the height along it. Private to fields.
 
 #include <algorithm>
 #include <concepts>
@@ -67,8 +67,8 @@ concept Profile = requires(const T profile, double rho, double height) {
   { profile.featureSize() } -> std::same_as<double>;
 };
 
-/// The part across the axis of a difference `d` from a point on it that is `height` along it is d less
-/// the axis, unless that is mostly rounding.
+/// The part across the axis of a difference `d` from a point on it that is `height` along it is d
+/// less the axis, unless that is mostly rounding.
 [[nodiscard]] inline bool isClearOfAxis(double size, double height) noexcept {
   return size > 1e-3 * std::fabs(height);
 }
@@ -147,8 +147,9 @@ class Revolved final : public Field {
   [[nodiscard]] double featureSize() const noexcept override { return profile_.featureSize(); }
 
  private:
-  /// The part of `d` across the axis. Close to the axis the first difference is partly rounding, and
-  /// not square to it: take the rest of the axis out once more. Closer still it is nothing else.
+  /// The part of `d` across the axis. Close to the axis the first difference is partly rounding,
+  /// and not square to it: take the rest of the axis out once more. Closer still it is nothing
+  /// else.
   [[nodiscard]] Vec3 acrossAxis(const Vec3& d, double height) const noexcept {
     const Vec3 radial = d - axis_ * height;
     const double size = std::max({std::fabs(radial.x), std::fabs(radial.y), std::fabs(radial.z)});

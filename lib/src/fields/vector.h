@@ -1,5 +1,6 @@
 #pragma once
-/// Lengths and directions that neither overflow nor underflow for finite vectors. Private to fields.
+/// Lengths and directions that neither overflow nor underflow for finite vectors. Private to
+/// fields.
 
 #include "palpate/core/math.h"
 

@@ -112,7 +112,8 @@ std::span<const NearCell> NearCells::find(RegionId region, const Signs& signs,
   } else {
     evaluate(partition_.layerSides(region, true), signs, near, cells_);
   }
-  // A later layer takes its own part of the region. A layer without a near leaf does not reach this place.
+  // A later layer takes its own part of the region. A layer without a near leaf does not reach this
+  // place.
   later_.clear();
   for (const NearSide& side : near) {
     for (const RegionId other : partition_.regionsOf(side.leaf)) {
@@ -130,7 +131,8 @@ std::span<const NearCell> NearCells::find(RegionId region, const Signs& signs,
     evaluate(partition_.layerSides(other, false), signs, near, other_);
     keep(other_);
   }
-  // A sheet is passed beside it only: on the side of its solid where the point is, or beyond its edge.
+  // A sheet is passed beside it only: on the side of its solid where the point is, or beyond its
+  // edge.
   for (const Sheet& sheet : passages_.sheets()) {
     const bool is_near = std::any_of(sheet.leaves.begin(), sheet.leaves.end(),
                                      [&](LeafId leaf) { return index_[leaf] >= 0; });

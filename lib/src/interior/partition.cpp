@@ -19,7 +19,8 @@ bool isIdentity(const Pose& pose) {
   return pose.rotation == Mat3(1.0) && pose.translation == Vec3(0.0);
 }
 
-/// True if f(word, mask) is for any of the words that hold `count` bits from `first` on, which are those of `mask`.
+/// True if f(word, mask) is for any of the words that hold `count` bits from `first` on, which are
+/// those of `mask`.
 template <typename F>
 bool anyWord(std::span<const std::uint64_t> words, std::size_t first, std::size_t count,
              const F& f) noexcept {
@@ -153,7 +154,8 @@ struct Partition::Builder {
     return id;
   }
 
-  /// Planes that are not the face of a solid take the scale of the scene, so that a scene in micrometers is the same scene.
+  /// Planes that are not the face of a solid take the scale of the scene, so that a scene in
+  /// micrometers is the same scene.
   void sizePlanes() {
     double largest = 0.0;
     for (const Leaf& leaf : partition.leaves_) {

@@ -134,7 +134,8 @@ bool Passages::consider(const Partition& partition, PortId id, Turn turn, const 
   const Hole* hole = holes == nullptr ? nullptr : holes->holeAt(id, at);
   const bool in_hole = hole != nullptr && hole->reopens_at < force;
   if (in_hole) force = hole->reopens_at;
-  // A place where a map is 0 is not a border of any cell: a port that has one is a wall until it is touched.
+  // A place where a map is 0 is not a border of any cell: a port that has one is a wall until it is
+  // touched.
   if (force <= 0.0 && (in_hole || given.isConstant())) {
     facet.kind = Facet::Kind::kOpen;
     facet.port = id;

@@ -22,7 +22,8 @@ std::optional<std::size_t> placeOf(std::span<const Named> all, std::string_view 
   return static_cast<std::size_t>(at - all.begin());
 }
 
-/// The port in `to` with the name that port `id` has in `from`; `lost` lists the ones that `to` does not have.
+/// The port in `to` with the name that port `id` has in `from`; `lost` lists the ones that `to`
+/// does not have.
 std::optional<PortId> portThere(PortId id, const Scene& from, const Scene& to,
                                 std::vector<std::string>& lost) {
   const std::string& name = from.ports()[id].name;
@@ -72,8 +73,9 @@ Punctures carried(const Punctures& punctures, const Scene& from, const Scene& to
   return out;
 }
 
-/// The leaf of `to` that is what `leaf` is in `from`, as far as it can be seen from `p` [m]; -1: there is none. Leaves have no
-/// names, but one that was not edited has the same value and slope there, and the same box.
+/// The leaf of `to` that is what `leaf` is in `from`, as far as it can be seen from `p` [m]; -1:
+/// there is none. Leaves have no names, but one that was not edited has the same value and slope
+/// there, and the same box.
 int leafThere(LeafId leaf, const Vec3& p, const Scene& from, const Scene& to) {
   const Leaf& old = from.partition().leaves()[leaf];
   const FieldSample was = old.field->sample(p);

@@ -28,7 +28,8 @@ void CellWalker::gather(LeafId leaf) noexcept {
     }
     const Vec3 theirs =
         side(other) * unitOr(leaves_[other].field->sample(here_.point).gradient, Vec3(0.0));
-    // The walker goes against `normal`: it changes side of the other leaf too if that faces the same way.
+    // The walker goes against `normal`: it changes side of the other leaf too if that faces the
+    // same way.
     if (glm::dot(normal, theirs) > 1.0 - limits::kParallel) crossing_[crossing_count_++] = other;
   }
 }
@@ -57,7 +58,8 @@ Facet CellWalker::facetAt(LeafId leaf) noexcept {
                               beyond_, std::span(crossing_.data(), crossing_count_), here_.passed,
                               here_.point, in_hole ? &here_.punctures : nullptr);
   if (leaves_[leaf].is_between && facet.beyond == kOutside && here_.region != kOutside) {
-    // Where the walls between three labels meet, rounding sees a cell that is none of theirs. There is none.
+    // Where the walls between three labels meet, rounding sees a cell that is none of theirs. There
+    // is none.
     facet.kind = Facet::Kind::kClosed;
     facet.material = std::max(facet.material, 0);
     facet.opens = false;

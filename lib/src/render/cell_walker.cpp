@@ -82,8 +82,8 @@ void CellWalker::beginTick() noexcept {
     travel_ = 0.0;
     cold_due_ = 0.0;
   }
-  // One leaf a tick is looked at whether it can have been met or not: a field whose bound is false may
-  // have let the point through, and a hand at rest would leave it there.
+  // One leaf a tick is looked at whether it can have been met or not: a field whose bound is false
+  // may have let the point through, and a hand at rest would leave it there.
   if (hot_count_ == 0) return;
   const LeafId leaf = hot_[here_.audited++ % hot_count_];
   if (due_[leaf] > travel_) (void)measure(leaf);
@@ -91,8 +91,8 @@ void CellWalker::beginTick() noexcept {
 
 double CellWalker::measure(LeafId leaf) noexcept {
   const double value = valueHere(leaf);
-  // Beyond a surface that was never crossed (a field that lies about its bound) nothing is out of reach:
-  // the point is to be brought back.
+  // Beyond a surface that was never crossed (a field that lies about its bound) nothing is out of
+  // reach: the point is to be brought back.
   due_[leaf] = travel_ + reachOf(leaf, std::max(0.0, side(leaf) * value));
   return value;
 }
@@ -141,8 +141,8 @@ CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noe
     bool unsure = false;
     bool is_second = false;
     LeafId hit_leaf = 0;
-    // A sweep lets go of a short passage in and out again. Where another leaf stops the motion amid one,
-    // it is a hit after all: so long as there was a hit, all look at where it stops once more.
+    // A sweep lets go of a short passage in and out again. Where another leaf stops the motion amid
+    // one, it is a hit after all: so long as there was a hit, all look at where it stops once more.
     for (bool again = true; again;) {
       again = false;
       for (std::size_t k = 0; k < hot_count_; ++k) {

@@ -1,7 +1,7 @@
 #pragma once
-/// CellWalker: moves a point through sign cells and never past a closed facet. Where the point is, on which side of
-/// every leaf, in which region and by which ports, is a PlaceState that the walker works on; all else here only saves
-/// evaluations.
+/// CellWalker: moves a point through sign cells and never past a closed facet. Where the point is,
+/// on which side of every leaf, in which region and by which ports, is a PlaceState that the walker
+/// works on; all else here only saves evaluations.
 
 #include <array>
 #include <cstdint>
@@ -62,10 +62,10 @@ class CellWalker {
 
   /// Straight to `target` [m], through what is open; stops after a crossing if it is asked to.
   Stop move(const Vec3& target, bool stop_at_crossing) noexcept;
-  /// To `target` [m], along the walls `held`: the solver found that the way keeps to the sides `cell` of
-  /// `near` leaves. Other leaves change side on the way, in order; where that opens one of the walls the
-  /// walker stays, on the far side of that leaf already, and says which this was and at about which share of
-  /// the way; else it arrives.
+  /// To `target` [m], along the walls `held`: the solver found that the way keeps to the sides
+  /// `cell` of `near` leaves. Other leaves change side on the way, in order; where that opens one
+  /// of the walls the walker stays, on the far side of that leaf already, and says which this was
+  /// and at about which share of the way; else it arrives.
   struct Slid {
     bool arrived = true;
     LeafId leaf = 0;
@@ -85,8 +85,8 @@ class CellWalker {
   void know(LeafId leaf, const FieldJet& jet) noexcept { jets_[leaf] = {jet, stay_}; }
   [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }
 
-  /// Calls f(leaf) for each leaf whose surface may come within `radius` [m] of the point, a few of its
-  /// tolerances more, or lies beyond the point.
+  /// Calls f(leaf) for each leaf whose surface may come within `radius` [m] of the point, a few of
+  /// its tolerances more, or lies beyond the point.
   template <typename F>
   void forWithin(double radius, F&& f) noexcept {
     refresh(radius);
@@ -98,23 +98,25 @@ class CellWalker {
       if (due_[leaf] <= reach) f(leaf);
     }
   }
-  /// A leaf that a way of `length` [m] to `target` may meet, or end less than `rest` [m] away from; -1 if there is none but
-  /// those of `leaves`.
+  /// A leaf that a way of `length` [m] to `target` may meet, or end less than `rest` [m] away from;
+  /// -1 if there is none but those of `leaves`.
   [[nodiscard]] int metOnWay(std::span<const LeafId> leaves, const Vec3& target, double length,
                              double rest) noexcept;
   [[nodiscard]] const Signs& signs() const noexcept { return here_.sides; }
 
   /// What the facet of `leaf` at the point is, seen from here.
   [[nodiscard]] Facet facetAt(LeafId leaf) noexcept;
-  /// True if across both `a` and `b` at once, two leaves that meet at the point, is the point's own region again.
+  /// True if across both `a` and `b` at once, two leaves that meet at the point, is the point's own
+  /// region again.
   [[nodiscard]] bool isSameAcross(LeafId a, LeafId b) noexcept;
-  /// What the facet of the leaves `surface`, which coincide, is at a place [m] near the point that lies on the other side
-  /// of the leaves `turned`: as seen from what is there, if that is the point's own region or one that it leads to
-  /// freely; else one that is not closed. A hole that gave way once is not looked for.
+  /// What the facet of the leaves `surface`, which coincide, is at a place [m] near the point that
+  /// lies on the other side of the leaves `turned`: as seen from what is there, if that is the
+  /// point's own region or one that it leads to freely; else one that is not closed. A hole that
+  /// gave way once is not looked for.
   [[nodiscard]] Facet facetAside(std::span<const LeafId> turned, std::span<const LeafId> surface,
                                  const Vec3& place) noexcept;
-  /// Goes through the facet of `leaf` where the point stands, whatever it is; a port is recorded, and the
-  /// hole if the facet gave way to a `force` [N].
+  /// Goes through the facet of `leaf` where the point stands, whatever it is; a port is recorded,
+  /// and the hole if the facet gave way to a `force` [N].
   void cross(LeafId leaf, const Facet& facet, double force = 0.0) noexcept;
   [[nodiscard]] const Punctures& punctures() const noexcept { return here_.punctures; }
 
@@ -165,13 +167,15 @@ class CellWalker {
   }
   /// Sees to it that every leaf that a motion of `length` could reach is in the hot list.
   void refresh(double length) noexcept;
-  /// The region that the cell beyond_ lies in; only layers that use a crossed leaf are looked at again.
+  /// The region that the cell beyond_ lies in; only layers that use a crossed leaf are looked at
+  /// again.
   [[nodiscard]] RegionId regionBeyond() const noexcept;
   void updateHolding() noexcept;
   /// The leaves that change side together with `leaf` where they coincide at the point.
   void gather(LeafId leaf) noexcept;
   [[nodiscard]] SweepSurface surfaceOf(LeafId leaf) const noexcept;
-  /// [m] the surface of `leaf`, to whose free side the point lies by `value` >= 0, is at least that far away.
+  /// [m] the surface of `leaf`, to whose free side the point lies by `value` >= 0, is at least that
+  /// far away.
   [[nodiscard]] double reachOf(LeafId leaf, double value) const noexcept;
   /// sweep(), with regard to where the Lipschitz bound of the leaf holds.
   [[nodiscard]] SweepResult sweepLeaf(LeafId leaf, SweepSurface surface, const Vec3& a,
@@ -202,9 +206,9 @@ class CellWalker {
   int crossings_left_ = 0;
   int evaluations_left_ = 0;
 
-  // A leaf whose |S| was measured cannot be met before the point has traveled |S| / L: `due_` is the
-  // odometer reading at which it could. Hot are the leaves whose boxes came near the point when the
-  // list was made; all others are further away than the point can go before cold_due_.
+  // A leaf whose |S| was measured cannot be met before the point has traveled |S| / L: `due_` is
+  // the odometer reading at which it could. Hot are the leaves whose boxes came near the point when
+  // the list was made; all others are further away than the point can go before cold_due_.
   double travel_ = 0.0;
   std::vector<double> due_;
   std::vector<LeafId> hot_;
@@ -224,8 +228,8 @@ class CellWalker {
   std::vector<Jet> jets_;                           ///< by leaf
   std::uint64_t stay_ = 1 + limits::kStaysOfSlide;  ///< counts the places where the point was
 
-  /// A facet looked up in the present state, valid while nothing was crossed; one that varies from place to
-  /// place, as long as the point stays where it was.
+  /// A facet looked up in the present state, valid while nothing was crossed; one that varies from
+  /// place to place, as long as the point stays where it was.
   struct Known {
     Facet facet;
     std::uint32_t state = 0;

@@ -10,10 +10,12 @@ namespace palpate {
 
 namespace {
 
-/// Of the hand's way: where the proxy goes farther in a tick, it does not follow the hand but leaves the place that held it.
+/// Of the hand's way: where the proxy goes farther in a tick, it does not follow the hand but
+/// leaves the place that held it.
 constexpr double kLeap = 4.0;
-/// Where the proxy is about to leave a bulge it runs ahead of the hand, and the planes of its walls turn with it. By that
-/// they push the hand by at most this share [-] of what they push anyway. What is left out of it is counted as a source.
+/// Where the proxy is about to leave a bulge it runs ahead of the hand, and the planes of its walls
+/// turn with it. By that they push the hand by at most this share [-] of what they push anyway.
+/// What is left out of it is counted as a source.
 constexpr double kMostTurn = 0.5;
 
 /// What relaxes alike is handed on from wall to wall: the tissue goes on behind them.
@@ -43,8 +45,8 @@ void Feel::relax(const ContactSet& c, const HipState& hip) noexcept {
       branch.region == walker_.region() && branch.material >= 0 &&
       relaxAlike(scene_.materials()[static_cast<std::size_t>(branch.material)].maxwell,
                  wall.maxwell);
-  // Pressed from free space it is stretched by all of the depth. A wall that the proxy was handed on to was not
-  // pressed by the hand's motion of this tick: it is taken as relaxed.
+  // Pressed from free space it is stretched by all of the depth. A wall that the proxy was handed
+  // on to was not pressed by the hand's motion of this tick: it is taken as relaxed.
   const double before = goes_on || branch.material < 0 ? branch.depth : depth;
   if (!goes_on) branch.branch.reset();
   branch.material = facet.material;
@@ -57,7 +59,8 @@ void Feel::relax(const ContactSet& c, const HipState& hip) noexcept {
   if (stiffness > 0.0) branch.branch.keepAbove(-springOf(c.wall[most]).force(depth) / stiffness);
 }
 
-/// Walls of one kind: the whole way from the hand to the proxy stretches one spring, by whatever walls that is held.
+/// Walls of one kind: the whole way from the hand to the proxy stretches one spring, by whatever
+/// walls that is held.
 Feel::SpringForce Feel::evenForce(const ContactSet& c, const Vec3& apart) noexcept {
   SpringForce out;
   Vec3 by_press(0.0);
@@ -88,14 +91,15 @@ Feel::SpringForce Feel::evenForce(const ContactSet& c, const Vec3& apart) noexce
     total += each.held.multiplier;
   }
   out.stiffness /= total;
-  // What the walls do not hold of the displacement: by friction, or because the proxy is not there yet.
+  // What the walls do not hold of the displacement: by friction, or because the proxy is not there
+  // yet.
   out.held = out.stiffness * c.left - by_press;
   return out;
 }
 
-/// Walls of several kinds. Where friction holds the proxy, the walls are pressed as if the whole displacement were
-/// towards them; what of the force was along them is its share along the walls. So what is stored depends on the
-/// displacement alone, as long as the proxy stays where it is.
+/// Walls of several kinds. Where friction holds the proxy, the walls are pressed as if the whole
+/// displacement were towards them; what of the force was along them is its share along the walls.
+/// So what is stored depends on the displacement alone, as long as the proxy stays where it is.
 Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
                                    const Vec3& outward) noexcept {
   const Vec3 x = walker_.position() + c.snug;
@@ -138,8 +142,9 @@ double Feel::stored(const ContactSet& c, const Vec3& hip) noexcept {
   return walls_.shared(c.wall[0], walker_.position()).energy(c.load());
 }
 
-/// A wall behind a softer one is felt from where they meet on: where the proxy comes to their edge, at once, as deep as
-/// the hand is in it by then. What it stores more does not come from the hand. True if there was such a wall.
+/// A wall behind a softer one is felt from where they meet on: where the proxy comes to their edge,
+/// at once, as deep as the hand is in it by then. What it stores more does not come from the hand.
+/// True if there was such a wall.
 bool Feel::countSudden(const ContactSet& c, const Vec3& hip) noexcept {
   SourceState& source = state_.source;
   const FeltLeaves now = walls_.leaves();
@@ -159,10 +164,11 @@ bool Feel::countSudden(const ContactSet& c, const Vec3& hip) noexcept {
   return true;
 }
 
-/// Where friction lets go, or the place that held the proxy is one no longer, the proxy leaps: maybe to stiffer walls, in
-/// which the hand is as deep as it is by then. What these store beyond what was stored, and what the hand did in this tick,
-/// does not come from the hand, and is counted but for the `counted` [J] of it that already is. Between walls of one
-/// stiffness a leap only loses, since it brings the proxy closer.
+/// Where friction lets go, or the place that held the proxy is one no longer, the proxy leaps:
+/// maybe to stiffer walls, in which the hand is as deep as it is by then. What these store beyond
+/// what was stored, and what the hand did in this tick, does not come from the hand, and is counted
+/// but for the `counted` [J] of it that already is. Between walls of one stiffness a leap only
+/// loses, since it brings the proxy closer.
 void Feel::countLeap(const ContactSet& c, const HipState& hip, const Elastic& elastic,
                      double counted) noexcept {
   StoredState& last = state_.source.stored;
@@ -193,8 +199,8 @@ void Feel::countLeap(const ContactSet& c, const HipState& hip, const Elastic& el
   last = now;
 }
 
-/// What the walls push with: the springs between the proxy and the hand. Whatever the walls were found to
-/// be, for one stiffness it is that times the way from the hand to the proxy.
+/// What the walls push with: the springs between the proxy and the hand. Whatever the walls were
+/// found to be, for one stiffness it is that times the way from the hand to the proxy.
 Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   relax(c, hip);
   const Vec3& x = walker_.position();
@@ -236,8 +242,8 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   damping /= total;
   Vec3 elastic = springs.force - springs.held;
   Vec3 relaxing(0.0);
-  // What parameters that vary add: the energy of the springs as they are, by the place of the proxy, is handed
-  // on to the hand.
+  // What parameters that vary add: the energy of the springs as they are, by the place of the
+  // proxy, is handed on to the hand.
   Vec3 rise = springs.rise;  // [N]
   bool varies = springs.varies;
   if (state_.relaxation.branch.stretch() != 0.0) {

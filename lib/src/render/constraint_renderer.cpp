@@ -37,7 +37,8 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   out.contact = state_.pressed >= 0;
   out.force += contentForce(hip);
   if (has_given_way_) {
-    // A wall that lets go throws the tip on: against stiffer walls, and into tissue that sticks to the shaft.
+    // A wall that lets go throws the tip on: against stiffer walls, and into tissue that sticks to
+    // the shaft.
     state_.source.work += std::max(0.0, in_walls + state_.needle.stored() - in_tissue - released_);
   }
   return out;
@@ -84,7 +85,8 @@ Vec3 ConstraintRenderer::needleForce(const HipState& hip) noexcept {
   const Insertion::Force force =
       state_.needle.step(contents_, {walker_.position(), hip.position, hip.velocity,
                                      walker_.region(), walker_.entries(), hard.walls()});
-  // What is stored sideways is by the place of the tip, which on a wall goes along with the hand beside it only.
+  // What is stored sideways is by the place of the tip, which on a wall goes along with the hand
+  // beside it only.
   return force.tip + (held.count > 0 ? gradientByHand(force.lateral, held.walls()) : force.lateral);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// The `constraint` renderer: a solver brings the proxy to where |x - P|^2 is smallest in its region, along a
-/// connected path; a feel makes of that the force on the hand.
+/// The `constraint` renderer: a solver brings the proxy to where |x - P|^2 is smallest in its
+/// region, along a connected path; a feel makes of that the force on the hand.
 
 #include "cell_walker.h"
 #include "feel.h"

@@ -12,8 +12,9 @@ class ContentFade {
  public:
   explicit ContentFade(const Scene& scene);
 
-  /// [m] Behind the surface of `mouth` in `region`: a share of how thick the region is, or of the surface's own feature
-  /// size where the region has no end. So a scene in micrometers is the same scene, and a film is felt as well as a bowl.
+  /// [m] Behind the surface of `mouth` in `region`: a share of how thick the region is, or of the
+  /// surface's own feature size where the region has no end. So a scene in micrometers is the same
+  /// scene, and a film is felt as well as a bowl.
   [[nodiscard]] double length(RegionId region, LeafId mouth) const noexcept;
 
  private:

@@ -93,7 +93,7 @@ std::vector<Contrast> contrastsOf(const Scene& scene) {
   std::vector<Contrast> out;
   Box3 box = scene.bounds();
   if (!box.isBounded()) {
-    const Vec3 half(kUnits * scene.metresPerUnit());
+    const Vec3 half(kUnits * scene.metersPerUnit());
     box = {-half, half};
   }
   for (std::size_t i = 0; i < scene.materials().size(); ++i) {

@@ -6,8 +6,9 @@
 
 namespace palpate {
 
-/// Whether `field` bends outward wherever it was looked at: at some hundred places in `around`, which are the same for each
-/// call. True of balls, cylinders and cones; not of a torus, a saddle or a scan. For set-up.
+/// Whether `field` bends outward wherever it was looked at: at some hundred places in `around`,
+/// which are the same for each call. True of balls, cylinders and cones; not of a torus, a saddle
+/// or a scan. For set-up.
 [[nodiscard]] bool isConvex(const Field& field, const Box3& around);
 
 }  // namespace palpate

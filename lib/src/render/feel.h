@@ -9,7 +9,8 @@
 
 namespace palpate {
 
-/// Belongs to one renderer, whose state and walker outlive it. Real-time safe but for the constructor.
+/// Belongs to one renderer, whose state and walker outlive it. Real-time safe but for the
+/// constructor.
 class Feel {
  public:
   Feel(const Scene& scene, CellWalker& walker, TickState& state)

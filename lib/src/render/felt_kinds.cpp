@@ -83,8 +83,8 @@ bool FeltWalls::mayDiffer(RegionId region) const {
   return out;
 }
 
-/// A wall that two regions share, with a way between the two beside it, may have one material seen from the one and another
-/// one seen from the other: what is before a seam changes as well.
+/// A wall that two regions share, with a way between the two beside it, may have one material seen
+/// from the one and another one seen from the other: what is before a seam changes as well.
 void FeltWalls::sortSeams() {
   const std::size_t regions = scene_.regions().size();
   const Passages& passages = scene_.passages();

@@ -63,7 +63,8 @@ SharedWall FeltWalls::felt(LeafId leaf, const Facet& facet, const HeldWall& held
   return out;
 }
 
-/// What rises by `rise` a meter over a wall, a meter of the proxy's: the proxy's foot goes with it, but stays on the wall.
+/// What rises by `rise` a meter over a wall, a meter of the proxy's: the proxy's foot goes with it,
+/// but stays on the wall.
 Vec3 FeltWalls::byProxy(const HeldWall& held, const Vec3& rise) const noexcept {
   if (rise == Vec3(0.0)) return rise;
   const Vec3 along = rise - glm::dot(rise, held.normal) * held.normal;

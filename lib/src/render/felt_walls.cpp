@@ -13,12 +13,14 @@ namespace {
 /// Of how deep the press is: walls that meet no nearer than this are felt one at a time.
 constexpr double kFarthestMeeting = 30.0;
 constexpr int kMeetingSteps = 12;
-/// Of the farthest: so near to both walls is where they meet. And the least square of the sine of their angle.
+/// Of the farthest: so near to both walls is where they meet. And the least square of the sine of
+/// their angle.
 constexpr double kMet = 1e-6;
 constexpr double kFlattest = 1e-3;
 /// Of a way to a wall, and of coordinates: what of it is rounding.
 constexpr double kNearest = 1e-12;
-/// How deep a press is, over a wall's feature size: up to here the wall is felt as it bends, and from there on as a plane.
+/// How deep a press is, over a wall's feature size: up to here the wall is felt as it bends, and
+/// from there on as a plane.
 constexpr double kBentBelow = 0.25;
 constexpr double kFlatAbove = 1.0;
 /// Of the leaves between the proxy and where two walls meet, those that are looked through.
@@ -30,8 +32,8 @@ bool holds(const ContactSet& contact, LeafId leaf) noexcept {
                      [&](const WallContact& each) { return each.leaf == leaf; });
 }
 
-/// Where two walls meet within `farthest` [m] of `x`: a wall that lies behind another one, as a bone does
-/// under skin, does not bound where the proxy may be. Newton's steps towards both.
+/// Where two walls meet within `farthest` [m] of `x`: a wall that lies behind another one, as a
+/// bone does under skin, does not bound where the proxy may be. Newton's steps towards both.
 std::optional<Vec3> meetingOf(const Vec3& x, const HeldWall& a, const HeldWall& b,
                               double farthest) noexcept {
   FieldSample at_a{a.jet.value, a.jet.gradient, a.jet.in_band};
@@ -57,8 +59,8 @@ std::optional<Vec3> meetingOf(const Vec3& x, const HeldWall& a, const HeldWall& 
   return std::nullopt;
 }
 
-/// At a tip any normal may be found, the one to `place` [m] too: then the point is not the nearest one. Within a wall whose
-/// field is the distance the field says so.
+/// At a tip any normal may be found, the one to `place` [m] too: then the point is not the nearest
+/// one. Within a wall whose field is the distance the field says so.
 bool isNearest(const LocalProjection& on, const Vec3& place) noexcept {
   if (on.count != 1) return true;
   const HeldWall& held = on.held[0];
@@ -70,8 +72,8 @@ bool isNearest(const LocalProjection& on, const Vec3& place) noexcept {
 
 }  // namespace
 
-/// Whether the proxy's region may end at this facet. Whether it does, only the place tells: what the scene knows of regions
-/// that touch was found by looking here and there.
+/// Whether the proxy's region may end at this facet. Whether it does, only the place tells: what
+/// the scene knows of regions that touch was found by looking here and there.
 bool FeltWalls::isWall(const Facet& facet) noexcept {
   return facet.isClosed() && facet.material >= 0;
 }
@@ -142,8 +144,9 @@ bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
   return true;
 }
 
-/// Whether a wall bounds the region, or one that it leads to freely, at the place where it meets that of the leaf `beside`.
-/// It does not where a third layer covers both, as skin covers a bone and a ridge that crosses it.
+/// Whether a wall bounds the region, or one that it leads to freely, at the place where it meets
+/// that of the leaf `beside`. It does not where a third layer covers both, as skin covers a bone
+/// and a ridge that crosses it.
 bool FeltWalls::isWallAt(const Near& wall, LeafId beside, const Vec3& place) noexcept {
   std::array<LeafId, kMostTurned> turned{};
   std::size_t count = 0;
@@ -172,7 +175,8 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
     if (!holds(contact, id)) is_alone = false;
   });
   if (!is_alone || contact.count > 1) {
-    // One kind of walls alone would let the hand come no farther from the proxy than it is: so far a seam may matter.
+    // One kind of walls alone would let the hand come no farther from the proxy than it is: so far
+    // a seam may matter.
     walker_.forWithin(2.0 * reach, [&](LeafId id) { seams_.add(id); });
   }
   for (const WallContact& each : contact.walls()) add({each.leaf, each.facet, each.held});
@@ -221,8 +225,9 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
   }
 }
 
-/// Deep beside its radius, a bulge would draw the hand's point round it to its other side, and let go of it there. Within a
-/// ball or a cone each place has one nearest point, and at a cone's tip there is no plane to lie in.
+/// Deep beside its radius, a bulge would draw the hand's point round it to its other side, and let
+/// go of it there. Within a ball or a cone each place has one nearest point, and at a cone's tip
+/// there is no plane to lie in.
 void FeltWalls::flatten(Group& group) const noexcept {
   const double length = glm::length(press_);
   for (std::size_t i = 0; i < group.count; ++i) {

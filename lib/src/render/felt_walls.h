@@ -1,5 +1,6 @@
 #pragma once
-/// What the walls near the proxy push with at one place, and whether walls of several kinds are felt at once.
+/// What the walls near the proxy push with at one place, and whether walls of several kinds are
+/// felt at once.
 
 #include <array>
 #include <vector>
@@ -26,7 +27,8 @@ class FeltWalls final : public SoftKinds {
   /// What that wall pushes with there.
   [[nodiscard]] SharedWall felt(LeafId leaf, const Facet& facet, const HeldWall& held,
                                 const Vec3& x, SmoothedField& smoothed) noexcept;
-  /// What that wall and those beside it on the same surface push with there; press() and differ() come first.
+  /// What that wall and those beside it on the same surface push with there; press() and differ()
+  /// come first.
   [[nodiscard]] SharedWalls shared(LeafId leaf, const Facet& facet, const HeldWall& held,
                                    const Vec3& x, SmoothedField& smoothed) noexcept;
   [[nodiscard]] SharedWalls shared(const WallContact& contact, const Vec3& x) noexcept {
@@ -40,17 +42,18 @@ class FeltWalls final : public SoftKinds {
     return is_plain_[static_cast<std::size_t>(facet.material)];
   }
 
-  /// Finds the walls within `reach` [m] of the proxy, which `contact` holds; true if they are of several kinds that meet
-  /// at an angle. Then
-  /// seriesForce() may be asked, until the walker moves.
+  /// Finds the walls within `reach` [m] of the proxy, which `contact` holds; true if they are of
+  /// several kinds that meet at an angle. Then seriesForce() may be asked, until the walker moves.
   [[nodiscard]] bool differ(const ContactSet& contact, double reach) noexcept;
-  /// Whether walls of the present region, or of those that it leads to freely, may push by different laws.
+  /// Whether walls of the present region, or of those that it leads to freely, may push by
+  /// different laws.
   [[nodiscard]] bool mayDiffer() const noexcept { return may_differ_[walker_.region()]; }
   /// The leaves of the walls that differ() found, those of the contact among them.
   [[nodiscard]] FeltLeaves leaves() const noexcept;
   /// Until it is called with null, differ() finds no walls beside the contact's but `known`.
   void findOnly(const FeltLeaves* known) noexcept { known_ = known; }
-  /// The way from the hand to the proxy [m]: how wide a patch is pressed. Call it first in each tick.
+  /// The way from the hand to the proxy [m]: how wide a patch is pressed. Call it first in each
+  /// tick.
   void press(const Vec3& way) noexcept { press_ = way; }
   /// [N/m] Stiffer than any wall of the scene, at any depth that its shapes have room for.
   [[nodiscard]] double stop() const noexcept { return stop_; }

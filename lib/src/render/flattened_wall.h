@@ -5,13 +5,15 @@
 
 namespace palpate {
 
-/// (1 - share) S(p) + share (S(x) + grad S(x) . (p - x)), x the proxy. A ball becomes a body of revolution about the normal
-/// at the proxy, its section a conic with the ball's center as focus: an ellipse, with a share above one half a hyperbola,
-/// round which nothing leads. Real-time safe, all of it.
+/// (1 - share) S(p) + share (S(x) + grad S(x) . (p - x)), x the proxy. A ball becomes a body of
+/// revolution about the normal at the proxy, its section a conic with the ball's center as focus:
+/// an ellipse, with a share above one half a hyperbola, round which nothing leads. Real-time safe,
+/// all of it.
 class FlattenedWall final : public Field {
  public:
   FlattenedWall() = default;
-  /// `jet` is that of `wall` at `proxy` [m]; `by_press` [1/m] is the gradient of the share by the press.
+  /// `jet` is that of `wall` at `proxy` [m]; `by_press` [1/m] is the gradient of the share by the
+  /// press.
   FlattenedWall(const Field& wall, const FieldJet& jet, const Vec3& proxy, double share,
                 const Vec3& by_press) noexcept
       : wall_(&wall), jet_(jet), proxy_(proxy), share_(share), by_press_(by_press) {}

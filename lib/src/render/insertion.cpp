@@ -59,7 +59,8 @@ Insertion::Force Insertion::step(const Contents& contents, const Tick& tick) noe
   }
 
   if (count_ == 0 && !is_lost_ && contents.holdsNeedle(region_)) {
-    // It began in there, or the content holds needles since it was changed: as if it had just come in.
+    // It began in there, or the content holds needles since it was changed: as if it had just come
+    // in.
     push({.from = region_, .to = region_, .point = tick.tip}, contents.sameWay());
   }
 
@@ -90,12 +91,13 @@ Insertion::Force Insertion::step(const Contents& contents, const Tick& tick) noe
   return {felt_ - shaft.damping * shaft.axis, shaft.lateral};
 }
 
-/// What the hand feels of a `force` [N] on the tip. While the tip stays behind, by `beyond`, a change of the force by df
-/// gives the hand -beyond df over the way back.
+/// What the hand feels of a `force` [N] on the tip. While the tip stays behind, by `beyond`, a
+/// change of the force by df gives the hand -beyond df over the way back.
 Vec3 Insertion::feltBeyond(const Vec3& force, const Tick& tick) noexcept {
   const Vec3 beyond = tick.hand - tick.tip;
   const Vec3 before = std::exchange(beyond_, beyond);
-  // What changed while the tip went along with the hand, from wall to wall or through them, was felt as it did.
+  // What changed while the tip went along with the hand, from wall to wall or through them, was
+  // felt as it did.
   if (glm::dot(before, beyond) <= 0.0 || !tick.entries.empty()) return force;
   const double taken = glm::dot(beyond, force - felt_);
   if (taken >= 0.0) return force;
@@ -202,7 +204,8 @@ void Insertion::letGo(double same_way) noexcept {
   while (count_ > 0) pop(same_way);
 }
 
-/// The remembered cut of `region` that begins nearest to `p` [m], within `radius` [m]; null if none.
+/// The remembered cut of `region` that begins nearest to `p` [m], within `radius` [m]; null if
+/// none.
 Insertion::Remembered* Insertion::cutNear(RegionId region, const Vec3& p, double radius) noexcept {
   Remembered* best = nullptr;
   for (std::size_t i = 0; i < cut_count_; ++i) {

@@ -14,7 +14,8 @@ constexpr double kFade = 0.25;
 constexpr double kParallel = 1.0 - 1e-12;
 /// Facets that one ray crosses, sheets and openings included.
 constexpr int kMostCrossings = 12;
-/// Cosine of the ray and an interface's normal below which the interface's depth has no slope: the ray grazes it.
+/// Cosine of the ray and an interface's normal below which the interface's depth has no slope: the
+/// ray grazes it.
 constexpr double kGrazing = 1e-3;
 
 /// The part of `v` along a wall.
@@ -28,8 +29,8 @@ Vec3 turnOf(const Vec3& v, const HeldWall& held) noexcept {
   return held.side / glm::length(held.jet.gradient) * (held.jet.hessian * along);
 }
 
-/// A gradient at depth `s` along the ray, as one by the place on the wall where the ray begins: it turns with
-/// the wall's normal.
+/// A gradient at depth `s` along the ray, as one by the place on the wall where the ray begins: it
+/// turns with the wall's normal.
 Vec3 fromWall(const Vec3& gradient, double s, const HeldWall& held) noexcept {
   return alongWall(gradient - s * turnOf(gradient, held), held.normal);
 }
@@ -101,8 +102,8 @@ void LayersBeneath::look(const Vec3& x, const HeldWall& held, RegionId beyond,
   }
 }
 
-/// Whether the leaf that the probe has just crossed goes on where the wall does: what lies behind it beside the wall is not
-/// seen through the wall.
+/// Whether the leaf that the probe has just crossed goes on where the wall does: what lies behind
+/// it beside the wall is not seen through the wall.
 bool LayersBeneath::isFlush(LeafId leaf, const Vec3& x, const HeldWall& held,
                             double depth) noexcept {
   if (std::fabs(glm::dot(x - probe_.position(), held.normal)) > kAtWall * depth) return false;
@@ -110,8 +111,8 @@ bool LayersBeneath::isFlush(LeafId leaf, const Vec3& x, const HeldWall& held,
   return std::fabs(glm::dot(gradient, held.normal)) >= kParallel * glm::length(gradient);
 }
 
-/// The layer that the probe has just come to out of the region `from`, through a facet of `leaf`. One that covers the wall
-/// begins where the wall is.
+/// The layer that the probe has just come to out of the region `from`, through a facet of `leaf`.
+/// One that covers the wall begins where the wall is.
 void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWall& held,
                         double depth) noexcept {
   const RegionId region = probe_.region();
@@ -136,8 +137,8 @@ void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWal
   Vec3 share_rise = -6.0 * left * (1.0 - left) / (kFade * depth) * slope;
   const double cosine = steepness > 0.0 ? std::fabs(slant) / steepness : 1.0;
   if (region > from && cosine < 1.0) {
-    // A chord through a layer's rim begins with an endless slope. So what is entered counts the less the flatter it is
-    // met: by the quintic step of the cosine.
+    // A chord through a layer's rim begins with an endless slope. So what is entered counts the
+    // less the flatter it is met: by the quintic step of the cosine.
     const Vec3 normal = jet.gradient / (slant < 0.0 ? -steepness : steepness);
     const Vec3 row =
         jet.hessian * (held.normal - cosine * normal) / (slant < 0.0 ? -steepness : steepness);

@@ -16,20 +16,23 @@ class LayersBeneath {
   LayersBeneath(const LayersBeneath&) = delete;  // the probe works on this one's place
   LayersBeneath& operator=(const LayersBeneath&) = delete;
 
-  /// The stiffness [N/m] of the layers behind the wall `held` of `leaf` at `x` [m], as `material`'s composite
-  /// asks, and its gradient along the wall. The last answer is kept for the next question about the same
-  /// place. Real-time safe: at most kMostStackLayers layers, and a tick's budget of evaluations.
+  /// The stiffness [N/m] of the layers behind the wall `held` of `leaf` at `x` [m], as `material`'s
+  /// composite asks, and its gradient along the wall. The last answer is kept for the next question
+  /// about the same place. Real-time safe: at most kMostStackLayers layers, and a tick's budget of
+  /// evaluations.
   ///
-  /// A layer is as stiff as its region's own wall; one without a wall, and what is outside, are not looked
-  /// into: there the layer before goes on. Towards the end of the depth what differs fades out over its last
-  /// quarter, and a layer counts the less the flatter the normal meets it, so that nothing appears at once. A layer that
-  /// covers the wall at `x`, as beside a crease, is felt as one that begins right behind it.
+  /// A layer is as stiff as its region's own wall; one without a wall, and what is outside, are not
+  /// looked into: there the layer before goes on. Towards the end of the depth what differs fades
+  /// out over its last quarter, and a layer counts the less the flatter the normal meets it, so
+  /// that nothing appears at once. A layer that covers the wall at `x`, as beside a crease, is felt
+  /// as one that begins right behind it.
   [[nodiscard]] MaterialMap::Sample stiffness(LeafId leaf, const Vec3& x, const HeldWall& held,
                                               const Facet& facet,
                                               const Material& material) noexcept;
 
  private:
-  /// The stack found, with how each of its layers changes as the place pressed moves along the wall.
+  /// The stack found, with how each of its layers changes as the place pressed moves along the
+  /// wall.
   struct Found {
     std::array<StackLayer, kMostStackLayers> layers{};
     std::array<Vec3, kMostStackLayers> rise{};   // [N/m^2] of the stiffness

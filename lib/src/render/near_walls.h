@@ -1,6 +1,6 @@
 #pragma once
-/// NearWalls: the leaves near the proxy, what they are like there, and the cells that its region consists of
-/// around it. Scratch: made anew for each place.
+/// NearWalls: the leaves near the proxy, what they are like there, and the cells that its region
+/// consists of around it. Scratch: made anew for each place.
 
 #include <array>
 #include <cmath>
@@ -39,9 +39,9 @@ class NearWalls {
   NearWalls(const Scene& scene, CellWalker& walker)
       : walker_(walker), cells_(scene.partition(), scene.passages()) {}
 
-  /// Looks for leaves whose surface may come within `radius` [m] of the walker's point; false if there are
-  /// more than kMax (then nothing is known). With `trust_sides`, a leaf that the point is beyond of
-  /// counts as where the walker has it: the way back from where the point must not be.
+  /// Looks for leaves whose surface may come within `radius` [m] of the walker's point; false if
+  /// there are more than kMax (then nothing is known). With `trust_sides`, a leaf that the point is
+  /// beyond of counts as where the walker has it: the way back from where the point must not be.
   [[nodiscard]] bool look(double radius, bool trust_sides) noexcept;
 
   [[nodiscard]] std::span<const NearWall> walls() const noexcept { return {wall_.data(), count_}; }
@@ -50,8 +50,8 @@ class NearWalls {
   }
 
  private:
-  /// True if the cell's walls at the point leave no room between them: faces of neighbors that touch, or the line
-  /// where the walls between three labels meet.
+  /// True if the cell's walls at the point leave no room between them: faces of neighbors that
+  /// touch, or the line where the walls between three labels meet.
   [[nodiscard]] bool isSliver(const NearCell& cell) const noexcept;
 
   CellWalker& walker_;
@@ -62,9 +62,10 @@ class NearWalls {
   std::size_t cell_count_ = 0;
 };
 
-/// Where `leaf`'s distance bends more than its feature size lets it, its differences straddle a fold. Then its
-/// bend is asked for a little way further beyond the surface, seen from `side`, where only the wall with
-/// `normal` (outward) is felt; a cone near its tip, which does bend like that, keeps `bend`.
+/// Where `leaf`'s distance bends more than its feature size lets it, its differences straddle a
+/// fold. Then its bend is asked for a little way further beyond the surface, seen from `side`,
+/// where only the wall with `normal` (outward) is felt; a cone near its tip, which does bend like
+/// that, keeps `bend`.
 void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal,
                 Mat3& bend) noexcept;
 
@@ -81,7 +82,8 @@ void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal
   WallThere out;
   out.leaf = id;
   out.slope = s.in_band ? glm::length(s.gradient) : 0.0;
-  // A slope beyond the bound, which is false then, would make the tolerance longer than it is meant.
+  // A slope beyond the bound, which is false then, would make the tolerance longer than it is
+  // meant.
   const double least = limits::kFlattest * leaf.lipschitz;
   const double length = 1.0 / std::max(out.slope, least);
   out.tolerance = limits::kOnSurface * leaf.feature;

@@ -1,6 +1,6 @@
 #pragma once
-/// The faces of one layer, as the paper's table of states sees them: A, the faces that are walls now, and B,
-/// those that are open ports now.
+/// The faces of one layer, as the paper's table of states sees them: A, the faces that are walls
+/// now, and B, those that are open ports now.
 
 #include <vector>
 
@@ -17,8 +17,8 @@ struct PaperFace {
   std::vector<PortId> ports;   ///< on all of this face, and everywhere on it
 };
 
-/// What of a layer are walls: the largest of the closed faces. Its faces are chosen between two ticks; while
-/// they stay it is a field like any other.
+/// What of a layer are walls: the largest of the closed faces. Its faces are chosen between two
+/// ticks; while they stay it is a field like any other.
 class PaperWall final : public Field {
  public:
   /// Takes the intersections of `whole` apart.
@@ -30,7 +30,8 @@ class PaperWall final : public Field {
   /// Makes a face a wall, or an opening. Real-time safe.
   void setOpen(std::size_t face, bool is_open) noexcept;
   [[nodiscard]] bool hasWalls() const noexcept { return open_count_ < faces_.size(); }
-  /// Whether `p` [m] is on the layer's side of all openings; on one is not, as for the cells of ports.
+  /// Whether `p` [m] is on the layer's side of all openings; on one is not, as for the cells of
+  /// ports.
   [[nodiscard]] bool isWithinOpenings(const Vec3& p) const noexcept;
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override;

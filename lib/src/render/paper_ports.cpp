@@ -13,8 +13,8 @@ constexpr int kHalvings = 40;  // of a tick's way, to where a face is crossed
 
 }  // namespace
 
-/// The ports of the present state are tried, and when one is passed those of the next: so the paper's
-/// conditions "can be tested iteratively".
+/// The ports of the present state are tried, and when one is passed those of the next: so the
+/// paper's conditions "can be tested iteratively".
 void PaperRenderer::advance(const Vec3& hip, TickResult& out) noexcept {
   const Partition& partition = scene_->partition();
   partition.signsAt(hip, now_);
@@ -44,8 +44,8 @@ bool PaperRenderer::turn(std::span<const LeafId> leaves) noexcept {
   return is_changed;
 }
 
-/// The faces of the region `to`, or of the one that is left for it, whichever lies further in. Where a face of the other
-/// lies at the same place, a tick comes through both at once.
+/// The faces of the region `to`, or of the one that is left for it, whichever lies further in.
+/// Where a face of the other lies at the same place, a tick comes through both at once.
 bool PaperRenderer::turnTo(RegionId to, const Vec3& hip) noexcept {
   const Partition& partition = scene_->partition();
   const RegionId inner = std::max(state_.place.region, to);
@@ -134,7 +134,8 @@ void PaperRenderer::enter(const RegionEntry& entry) noexcept {
   openFaces();
 }
 
-/// A face is open where a port on it lets through from the present state: out of the layer, or into it.
+/// A face is open where a port on it lets through from the present state: out of the layer, or into
+/// it.
 void PaperRenderer::openFaces() noexcept {
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const auto self = static_cast<RegionId>(i + 1);

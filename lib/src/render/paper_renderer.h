@@ -1,18 +1,19 @@
 #pragma once
-/// The `paper` renderer: the source paper's states and ports, driven by the HIP, with Algorithms I and II. Its
-/// Table I, for a container of a sphere A with an opening in a half-space B, is generalized to layers and
-/// ports thus (tools/docs/paper.md says why). Of every layer, A are the faces that are walls for a probe in
-/// the present state, and B those that a port leaves open for it.
+/// The `paper` renderer: the source paper's states and ports, driven by the HIP, with Algorithms I
+/// and II. Its Table I, for a container of a sphere A with an opening in a half-space B, is
+/// generalized to layers and ports thus (tools/docs/paper.md says why). Of every layer, A are the
+/// faces that are walls for a probe in the present state, and B those that a port leaves open for
+/// it.
 ///
-/// | the state | A   | B   | action                                                                   |
-/// | a layer   | in  | in  | its content                                                              |
-/// | a layer   | in  | out | nothing: the way out was missed                                          |
-/// | a layer   | out | in  | A from within, reversed, and its content                                 |
-/// | a layer   | out | out | nothing, and the state is kept: the leak of the table                    |
-/// | another   | in  | in  | A of the layer from outside, where a later layer was not entered         |
+/// | the state | A   | B   | action | | a layer   | in  | in  | its content | | a layer   | in  |
+/// out | nothing: the way out was missed                                          | | a layer   |
+/// out | in  | A from within, reversed, and its content                                 | | a layer
+/// | out | out | nothing, and the state is kept: the leak of the table                    | |
+/// another   | in  | in  | A of the layer from outside, where a later layer was not entered |
 ///
-/// A tick that takes the HIP from one side of a port's face to the other, on the layer's side of its other
-/// faces before and after, passes the port, if the state is the region before it and the port lets through.
+/// A tick that takes the HIP from one side of a port's face to the other, on the layer's side of
+/// its other faces before and after, passes the port, if the state is the region before it and the
+/// port lets through.
 
 #include <array>
 #include <vector>
@@ -25,7 +26,8 @@ namespace palpate {
 
 class PaperRenderer final : public RendererBase {
  public:
-  /// @throws Error (kInput) for ports with an opening force and for sheets, which the paper does not have.
+  /// @throws Error (kInput) for ports with an opening force and for sheets, which the paper does
+  /// not have.
   PaperRenderer(ScenePtr scene, const RendererSettings& settings);
 
  private:
@@ -50,7 +52,8 @@ class PaperRenderer final : public RendererBase {
   void advance(const Vec3& hip, TickResult& out) noexcept;
   [[nodiscard]] bool tryPort(PortId id, const Vec3& hip, TickResult& out) noexcept;
   [[nodiscard]] bool tryAbsentWalls(const Vec3& hip) noexcept;
-  /// Gives the leaves that changed since cell_ their present signs there, into turned_. False if none did.
+  /// Gives the leaves that changed since cell_ their present signs there, into turned_. False if
+  /// none did.
   [[nodiscard]] bool turn(std::span<const LeafId> leaves) noexcept;
   /// The same for the faces between the present region and `to`. False if they do not lead there.
   [[nodiscard]] bool turnTo(RegionId to, const Vec3& hip) noexcept;

@@ -4,7 +4,8 @@
 #include "proxy_solver.h"
 #include "step_checks.h"
 
-// A usual tick: the proxy glides along the crease where two smooth walls meet, pressed against both.
+// A usual tick: the proxy glides along the crease where two smooth walls meet, pressed against
+// both.
 
 namespace palpate {
 namespace {
@@ -54,9 +55,9 @@ struct Corner {
 
 }  // namespace
 
-/// Finds by Newton where the proxy rests in the crease of the leaves `a` and `b`, the only ones near; it is on one of them
-/// at least. False, and nothing is changed, if that is not sure; other_ is the one of the two that does not hold it, if
-/// that is so from the start.
+/// Finds by Newton where the proxy rests in the crease of the leaves `a` and `b`, the only ones
+/// near; it is on one of them at least. False, and nothing is changed, if that is not sure; other_
+/// is the one of the two that does not hold it, if that is so from the start.
 bool ProxySolver::glideBetween(LeafId a, LeafId b, const Vec3& hip,
                                FrictionState& friction) noexcept {
   other_ = -1;

@@ -5,8 +5,8 @@
 #include "proxy_solver.h"
 #include "step_checks.h"
 
-// The usual ticks: the proxy flies with the hand, or glides on one smooth wall with nothing else near. Between two:
-// proxy_crease.cpp.
+// The usual ticks: the proxy flies with the hand, or glides on one smooth wall with nothing else
+// near. Between two: proxy_crease.cpp.
 
 namespace palpate {
 namespace {
@@ -23,9 +23,10 @@ struct Found {
   }
 };
 
-/// A wall that bends alike in all directions along it is a ball's, or a plane: the step to its point closest to a hand
-/// that is `pull` [m] away along it and `beyond` [m] behind it. `normal` is the wall's on the hand's free side, `side` times
-/// that outward. False where the wall bends otherwise, or where that point is not a minimum by more than kFirm.
+/// A wall that bends alike in all directions along it is a ball's, or a plane: the step to its
+/// point closest to a hand that is `pull` [m] away along it and `beyond` [m] behind it. `normal` is
+/// the wall's on the hand's free side, `side` times that outward. False where the wall bends
+/// otherwise, or where that point is not a minimum by more than kFirm.
 bool ballStep(const Vec3& normal, double side, const Vec3& pull, double beyond, const Mat3& bend,
               double bend_square, Vec3& step) noexcept {
   const Vec3 by_normal = bend * normal;
@@ -46,8 +47,9 @@ bool ballStep(const Vec3& normal, double side, const Vec3& pull, double beyond, 
   return true;
 }
 
-/// Newton's step along the plane with `normal`, for a hand whose part along it is `pull` [m] away: solves
-/// (I - bend) s = pull there. False where the place that it leads to is not a minimum by more than kFirm.
+/// Newton's step along the plane with `normal`, for a hand whose part along it is `pull` [m] away:
+/// solves (I - bend) s = pull there. False where the place that it leads to is not a minimum by
+/// more than kFirm.
 bool newtonAlong(const Vec3& normal, const Vec3& pull, const Mat3& bend, Vec3& step) noexcept {
   Vec3 t1(0.0);
   Vec3 t2(0.0);
@@ -68,8 +70,9 @@ bool newtonAlong(const Vec3& normal, const Vec3& pull, const Mat3& bend, Vec3& s
 
 }  // namespace
 
-/// The shorter way to the place of rest that the general way finds, where it is sure: free, on one smooth wall, or between
-/// two. False if it is not; the general way goes on from where the proxy is then.
+/// The shorter way to the place of rest that the general way finds, where it is sure: free, on one
+/// smooth wall, or between two. False if it is not; the general way goes on from where the proxy is
+/// then.
 bool ProxySolver::goQuickly(const Vec3& hip, FrictionState& friction) noexcept {
   if (walker_.isSealed()) return false;
   const Vec3 x = walker_.position();
@@ -90,8 +93,9 @@ bool ProxySolver::goQuickly(const Vec3& hip, FrictionState& friction) noexcept {
          glide(other_ == found.last ? found.before : found.last, other_, hip, friction);
 }
 
-/// Finds by Newton where the proxy rests on `id`, the only leaf near but for `free`, one that does not hold it (-1: none).
-/// False, and nothing is changed, if that is not sure; other_ is the leaf that it meets on the way, if there is one.
+/// Finds by Newton where the proxy rests on `id`, the only leaf near but for `free`, one that does
+/// not hold it (-1: none). False, and nothing is changed, if that is not sure; other_ is the leaf
+/// that it meets on the way, if there is one.
 bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& friction) noexcept {
   other_ = -1;
   const Vec3 x = walker_.position();
@@ -120,7 +124,8 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
     const double left = gap - limits::kRest * wall.tolerance;
     const double within = (limits::kOnWall - limits::kRest) * wall.tolerance;
     if (round == 0 && std::fabs(left) > within) return false;
-    // Behind its surface, by rounding, it is brought back before it: nothing else would, however long it glides.
+    // Behind its surface, by rounding, it is brought back before it: nothing else would, however
+    // long it glides.
     const bool is_on = gap >= 0.0 && left <= within;
     const Mat3 bend = jet.hessian * (1.0 / wall.slope);
     const double bend_square = squareOf(bend);
@@ -145,7 +150,8 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
       lag = lagOf(ratios, pull, rest, -gap - along, round == 0, after);
       pull -= lag;
     }
-    // The place is a minimum where the wall's curvature, times how far the hand is beyond it, stays below 1.
+    // The place is a minimum where the wall's curvature, times how far the hand is beyond it, stays
+    // below 1.
     const bool is_rest = is_on && glm::dot(pull, pull) <= rest_ * rest_;
     if (is_rest && multiplier * bend_size < 1.0 - limits::kFirm) break;
     Vec3 step(0.0);
@@ -199,7 +205,8 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
   return true;
 }
 
-/// Whether the way of `length` [m] to `y` keeps to the free side of `id`, near which it is, and ends off it.
+/// Whether the way of `length` [m] to `y` keeps to the free side of `id`, near which it is, and
+/// ends off it.
 bool ProxySolver::isPassed(LeafId id, const Vec3& y, double length) noexcept {
   const Leaf& leaf = walker_.leaf(id);
   const double side = walker_.side(id);
@@ -214,7 +221,8 @@ bool ProxySolver::isPassed(LeafId id, const Vec3& y, double length) noexcept {
          keepsOnChord(*leaf.field, walker_.position(), y, scale, bend, here.tolerance);
 }
 
-/// The contact with one wall that holds the proxy at rest. How hard it is pressed is measured from its surface.
+/// The contact with one wall that holds the proxy at rest. How hard it is pressed is measured from
+/// its surface.
 void ProxySolver::takeOnly(LeafId id, const Facet& facet, const WallThere& wall,
                            const FieldJet& jet, const Vec3& wish) noexcept {
   const double side = walker_.side(id);

@@ -22,8 +22,9 @@ bool ProxySolver::hasLandedFree(const CellProblem& problem) const noexcept {
   return true;
 }
 
-/// What brings a tangent step back onto the walls that hold it, as far as their curvature here tells. At a fold of one
-/// field only this tells how far off the wall it is that the field does not show there.
+/// What brings a tangent step back onto the walls that hold it, as far as their curvature here
+/// tells. At a fold of one field only this tells how far off the wall it is that the field does not
+/// show there.
 Vec3 ProxySolver::bentBack(const CellProblem& problem, const Vec3& step) const noexcept {
   std::array<Plane, 6> planes{};
   std::size_t count = 0;
@@ -46,11 +47,12 @@ Vec3 ProxySolver::bentBack(const CellProblem& problem, const Vec3& step) const n
   return glm::dot(back, back) <= most * most ? back : Vec3(0.0);
 }
 
-/// Brings `y` [m] onto the walls that hold the solution and to the free side of all others of the cell, by the
-/// shortest way. False if that takes more than a share of `length` [m].
+/// Brings `y` [m] onto the walls that hold the solution and to the free side of all others of the
+/// cell, by the shortest way. False if that takes more than a share of `length` [m].
 bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) noexcept {
   double moved = 0.0;
-  // Where a wall folds its field tells one of the planes that meet there at a time: those seen are kept.
+  // Where a wall folds its field tells one of the planes that meet there at a time: those seen are
+  // kept.
   std::array<Plane, kMaxSeen> seen{};  // gap at the world's origin
   std::size_t seen_count = 0;
   for (int round = 0; round < limits::kRestorations && batches_left_ > 0; ++round) {

@@ -70,7 +70,8 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
           if (stop == CellWalker::Stop::kArrived) return true;
           const double flown = glm::length(walker_.position() - x_);
           if (stop == CellWalker::Stop::kSpent && flown <= rest_) return false;
-          // Stopped at once by a wall that it leads along: from here in steps that keep to the walls.
+          // Stopped at once by a wall that it leads along: from here in steps that keep to the
+          // walls.
           may_fly = flown > rest_;
           wander_ = {.from = walker_.position()};
           continue;
@@ -93,8 +94,9 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
       may_fly = true;
       continue;
     }
-    // Only at rest does the spring of the wall have the length that is felt: a tangent plane that one tick's
-    // motion left behind may be pressed harder, and must not open what was never pressed so.
+    // Only at rest does the spring of the wall have the length that is felt: a tangent plane that
+    // one tick's motion left behind may be pressed harder, and must not open what was never pressed
+    // so.
     if (opener.open(contact_)) continue;
     if (outcome == Try::kRefused) return goesNowhere();
     if (friction.sticks || !kick()) return true;
@@ -131,7 +133,8 @@ void ProxySolver::takeLastContact(const Vec3& hip) noexcept {
   contact_.lag = lag;
 }
 
-/// Looks at what touches the proxy: whether it is free to go, rests, stands at an opening, or has to slide.
+/// Looks at what touches the proxy: whether it is free to go, rests, stands at an opening, or has
+/// to slide.
 ProxySolver::Look ProxySolver::lookAround(FrictionState& friction, bool is_first) noexcept {
   --batches_left_;
   rest_ = restLength(x_, wish_);
@@ -168,9 +171,10 @@ ProxySolver::Look ProxySolver::lookAround(FrictionState& friction, bool is_first
   return Look::kRests;
 }
 
-/// Whether the proxy goes on into `beyond`, which is open. At an edge where two regions that lead freely into each other
-/// both end at walls, the hand may draw it into each from the other. Back where it was at this place it does not go, unless
-/// a step leads on from there and none does from here; then it does not come again.
+/// Whether the proxy goes on into `beyond`, which is open. At an edge where two regions that lead
+/// freely into each other both end at walls, the hand may draw it into each from the other. Back
+/// where it was at this place it does not go, unless a step leads on from there and none does from
+/// here; then it does not come again.
 bool ProxySolver::goesOnInto(RegionId beyond, const CellProblem& problem) noexcept {
   if (crossed_.place != x_) crossed_ = {.place = x_};
   const bool leads_on = glm::length(problem.solution.step) > rest_;
@@ -186,8 +190,8 @@ bool ProxySolver::goesOnInto(RegionId beyond, const CellProblem& problem) noexce
   return true;
 }
 
-/// Near walls and cells within `radius` [m]. Where no cell holds the proxy (a field that lies about its bound
-/// let it through), the walker's sides say where it belongs. False if they do not say.
+/// Near walls and cells within `radius` [m]. Where no cell holds the proxy (a field that lies about
+/// its bound let it through), the walker's sides say where it belongs. False if they do not say.
 bool ProxySolver::lookWithin(double radius) noexcept {
   trusts_sides_ = false;
   if (!near_.look(radius, false)) return false;

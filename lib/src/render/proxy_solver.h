@@ -1,8 +1,8 @@
 #pragma once
-/// ProxySolver: where the proxy goes. It minimizes |x - P|^2 over the proxy's region along a connected path:
-/// at each place the region is a union of cells, each a conjunction of sides of smooth leaves, and x rests if
-/// and only if it rests in every cell that holds it. So edges, corners of any number of walls, apexes and
-/// the rims of unions need no rule of their own.
+/// ProxySolver: where the proxy goes. It minimizes |x - P|^2 over the proxy's region along a
+/// connected path: at each place the region is a union of cells, each a conjunction of sides of
+/// smooth leaves, and x rests if and only if it rests in every cell that holds it. So edges,
+/// corners of any number of walls, apexes and the rims of unions need no rule of their own.
 
 #include <algorithm>
 #include <array>
@@ -63,8 +63,8 @@ class ProxySolver {
   ProxySolver(const Scene& scene, CellWalker& walker)
       : scene_(scene), walker_(walker), near_(scene, walker) {}
 
-  /// Brings the proxy to where |x - P| is smallest in its region, as far as one tick's budget goes; never
-  /// further from P than it was, but for what friction holds. True if it came to rest there.
+  /// Brings the proxy to where |x - P| is smallest in its region, as far as one tick's budget goes;
+  /// never further from P than it was, but for what friction holds. True if it came to rest there.
   bool track(const Vec3& hip, FrictionState& friction, WallOpener& opener) noexcept;
 
   /// As of the last track(): what holds the proxy; empty where it is at P.
@@ -76,7 +76,8 @@ class ProxySolver {
   static constexpr std::size_t kMaxSeen =
       6;  ///< planes of folds that a way back onto the walls keeps
 
-  /// A plane of a cell's problem: the side of a near wall, or a tangent plane met further on (a cut).
+  /// A plane of a cell's problem: the side of a near wall, or a tangent plane met further on (a
+  /// cut).
   struct Source {
     std::uint8_t near = 0;  ///< index of the near wall
     bool inside = false;    ///< the side of it that the cell is on
@@ -130,7 +131,8 @@ class ProxySolver {
 
   enum class Look { kFree, kRests, kCrossed, kMoves, kNowhere };
   enum class Try { kMoved, kRests, kRefused };
-  /// What a step has to do: end on the walls and gain a share of what it promised; gain at all; or it may end in free space.
+  /// What a step has to do: end on the walls and gain a share of what it promised; gain at all; or
+  /// it may end in free space.
   enum class StepRule { kUsual, kMustGain, kMayFly };
 
   /// [m] A step from `x` as short as this is none for a hand that is `wish` away.

@@ -4,8 +4,9 @@
 #include "proxy_solver.h"
 #include "step_checks.h"
 
-// One step of the proxy: to the best point of a cell that a tangent, curved and restored step gets to. How it is brought back
-// onto the walls: proxy_restore.cpp; what is learned from a step that was refused: proxy_cuts.cpp.
+// One step of the proxy: to the best point of a cell that a tangent, curved and restored step gets
+// to. How it is brought back onto the walls: proxy_restore.cpp; what is learned from a step that
+// was refused: proxy_cuts.cpp.
 
 namespace palpate {
 
@@ -24,7 +25,8 @@ Mat3 ProxySolver::bendOf(const CellProblem& problem) const noexcept {
   return sum;
 }
 
-/// [m] How far the walls that hold the solution let the proxy go before their normals have turned as much as one step may.
+/// [m] How far the walls that hold the solution let the proxy go before their normals have turned
+/// as much as one step may.
 double ProxySolver::turningLength(const CellProblem& problem) const noexcept {
   double bend = 0.0;
   double feature = kInfinity;
@@ -69,8 +71,9 @@ bool ProxySolver::areHeldAlike(const CellProblem& a, const CellProblem& b) noexc
   return true;
 }
 
-/// Of the cells whose solutions the same walls hold as that of the first one, that with most room: so no order of walls
-/// chooses the way, as that of the faces of a box, which is another where the scene is turned.
+/// Of the cells whose solutions the same walls hold as that of the first one, that with most room:
+/// so no order of walls chooses the way, as that of the faces of a box, which is another where the
+/// scene is turned.
 std::size_t ProxySolver::roomiest() const noexcept {
   std::size_t best = 0;
   for (std::size_t i = 1; i < problems_; ++i) {
@@ -93,8 +96,8 @@ ProxySolver::Try ProxySolver::moveOn() noexcept {
     longest = std::max({longest, glm::length(problem.solution.step), glm::length(curved.step)});
     if (curved.lowest < limits::kSaddle) longest = std::max(longest, turningLength(problem));
   }
-  // No better point is further away than twice the distance to the aim. The way back onto the walls is as long as their
-  // noise, however short the step.
+  // No better point is further away than twice the distance to the aim. The way back onto the walls
+  // is as long as their noise, however short the step.
   const double whole =
       std::max(std::min(limits::kBallOverStep * longest, 2.0 * glm::length(aim_)), noise);
   double ball = whole;
@@ -124,7 +127,8 @@ ProxySolver::Try ProxySolver::moveOn() noexcept {
   return flyOff(whole) ? Try::kMoved : Try::kRefused;
 }
 
-/// Just before a sharp edge of one leaf no step along its wall ends on a wall again: over the edge, into free space.
+/// Just before a sharp edge of one leaf no step along its wall ends on a wall again: over the edge,
+/// into free space.
 bool ProxySolver::flyOff(double ball) noexcept {
   if (!lookWithin(limits::kReachOverStep * ball)) return false;
   poseAll(aim_);
@@ -144,7 +148,8 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
   bool is_refined = false;
   bool ends_free = false;
   for (int round = 0; round < limits::kCutRounds && batches_left_ > 0; ++round) {
-    // What was met far off is known only so well: asked for again close by before a short step or rest.
+    // What was met far off is known only so well: asked for again close by before a short step or
+    // rest.
     if (!is_refined && lookCloser(problem, first)) {
       is_refined = true;
       pose(problem.cell, problem);
@@ -157,7 +162,8 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
         curvedStep(aim_, problem.given(), problem.solution, bend, limits::kLeastEigenvalue);
     step = curved.step;
     if (curved.lowest < limits::kSaddle) {
-      // Down from a saddle every step gains, and the farther the better: as far as the normal may turn.
+      // Down from a saddle every step gains, and the farther the better: as far as the normal may
+      // turn.
       const double far = std::min(turningLength(problem), ball);
       const double length = glm::length(step);
       if (far > limits::kFarther * length && length > 0.0 &&
@@ -204,7 +210,8 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
     // What stays nearer than a wall is cannot land on its other side.
     const double safe = std::fabs(wall.distance) * std::min(1.0, wall.slope / leaf.lipschitz);
     if (!leaf.is_flat) {
-      // A longer step is looked at in strides, as many as there are, where the wall turns little over it.
+      // A longer step is looked at in strides, as many as there are, where the wall turns little
+      // over it.
       const double turned = limits::kLargestTurn / std::max(wall.bend_size, 1.0 / ball);
       const double seen = std::min(turned, limits::kMostStrides * limits::kStride * leaf.feature);
       most = std::min(most, std::max({limits::kShareOfFeature * leaf.feature, safe, seen}));
@@ -248,7 +255,8 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   }
   const Vec3 moved = y - x_;
   if (glm::length(moved) > limits::kReachOverStep * ball) return false;
-  // How far the proxy is from its aim before and after, and by how much the step promised to change that.
+  // How far the proxy is from its aim before and after, and by how much the step promised to change
+  // that.
   const Vec3 after = aim_ - moved;
   const Vec3 promised = aim_ - by;
   const double before = glm::dot(aim_, aim_);
@@ -283,7 +291,8 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   return true;
 }
 
-/// Whether the chord to `y` [m] keeps to the cell, but for what the walls' own curvature makes it dip.
+/// Whether the chord to `y` [m] keeps to the cell, but for what the walls' own curvature makes it
+/// dip.
 bool ProxySolver::keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept {
   const double length = glm::length(y - x_);
   for (std::size_t i = 0; i < problem.planes; ++i) {
@@ -324,7 +333,8 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
   const std::span<const LeafId> leaves(near.data(), walls.size());
   const CellWalker::Slid slid = walker_.slideTo(y, problem.cell, leaves, {held.data(), count});
   if (slid.arrived) return true;
-  // To where the opening begins: on the walls that hold the proxy, and on the leaf that was passed there.
+  // To where the opening begins: on the walls that hold the proxy, and on the leaf that was passed
+  // there.
   Vec3 rim = x_ + slid.share * (y - x_);
   const double length = std::max(glm::length(y - x_), rest_);
   rim_ = static_cast<int>(slid.leaf);

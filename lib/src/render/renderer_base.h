@@ -1,6 +1,6 @@
 #pragma once
-/// What both renderers have in common: the state that they own, contents that were changed, the limits of the force, and
-/// the count of sources.
+/// What both renderers have in common: the state that they own, contents that were changed, the
+/// limits of the force, and the count of sources.
 
 #include <span>
 #include <utility>
@@ -42,11 +42,12 @@ class RendererBase : public HapticRenderer {
     state_.last.region = scene_->startRegion();  // reported until the first good tick
   }
 
-  /// Drag of the content of `region` at the tip `p` [m], of which `share` is felt by a hand that moves at
-  /// `velocity` [m/s]. Counts what the flow does.
+  /// Drag of the content of `region` at the tip `p` [m], of which `share` is felt by a hand that
+  /// moves at `velocity` [m/s]. Counts what the flow does.
   [[nodiscard]] Vec3 dragForce(RegionId region, const Vec3& p, const Vec3& velocity,
                                double share) noexcept;
-  /// The lattice's force of `region` at the tip `p` [m]; once a tick. Counts its potential where it jumps.
+  /// The lattice's force of `region` at the tip `p` [m]; once a tick. Counts its potential where it
+  /// jumps.
   [[nodiscard]] Vec3 latticeForce(RegionId region, const Vec3& p) noexcept;
 
   ScenePtr scene_;
@@ -54,7 +55,8 @@ class RendererBase : public HapticRenderer {
   Contents contents_;
 
  private:
-  /// The algorithm's own tick: `hip` is finite, the force is not limited yet. state_.hip is that of the tick before.
+  /// The algorithm's own tick: `hip` is finite, the force is not limited yet. state_.hip is that of
+  /// the tick before.
   [[nodiscard]] virtual TickResult step(const HipState& hip) noexcept = 0;
   /// state_ was replaced: what is derived from it is to be made anew.
   virtual void resume() noexcept = 0;

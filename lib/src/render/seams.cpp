@@ -17,7 +17,8 @@ constexpr double kRounding = 1e-15;
 constexpr double kFlattest = 1e-3;
 /// Nearer to its center of curvature than that (an eigenvalue) no point of a seam is the nearest.
 constexpr double kFirm = 0.02;
-/// Of the radius: a seam so near has its direction by the leaf alone, since the way to it is rounding.
+/// Of the radius: a seam so near has its direction by the leaf alone, since the way to it is
+/// rounding.
 constexpr double kOnSeam = 1e-7;
 
 }  // namespace

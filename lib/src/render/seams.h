@@ -1,6 +1,6 @@
 #pragma once
-/// Seams: lines on one surface where its wall changes from one material to another, and which share of a press near
-/// one each wall bears.
+/// Seams: lines on one surface where its wall changes from one material to another, and which share
+/// of a press near one each wall bears.
 
 #include <array>
 #include <span>
@@ -10,9 +10,10 @@
 
 namespace palpate {
 
-/// The share of a press `distance` [m] on this side of a straight seam that this side bears, where the patch has the
-/// radius `radius` [m], more than 0: that of the pressure under a ball (Hertz: sqrt(1 - r^2) over the patch), which
-/// along any line is spread like 1 - u^2. All of it from one radius on, half on the seam.
+/// The share of a press `distance` [m] on this side of a straight seam that this side bears, where
+/// the patch has the radius `radius` [m], more than 0: that of the pressure under a ball (Hertz:
+/// sqrt(1 - r^2) over the patch), which along any line is spread like 1 - u^2. All of it from one
+/// radius on, half on the seam.
 struct SeamShare {
   double value = 1.0;
   double by_distance = 0.0;  ///< [1/m]
@@ -20,8 +21,9 @@ struct SeamShare {
 };
 [[nodiscard]] SeamShare seamShare(double distance, double radius) noexcept;
 
-/// The point nearest to `place` [m], which is on the surface of `wall`, where the surface of `other` crosses that one:
-/// Newton's steps. Not found where the two run along each other, or no such point is within `farthest` [m].
+/// The point nearest to `place` [m], which is on the surface of `wall`, where the surface of
+/// `other` crosses that one: Newton's steps. Not found where the two run along each other, or no
+/// such point is within `farthest` [m].
 struct SeamPoint {
   Vec3 at{0.0, 0.0, 0.0};  ///< [m]
   bool found = false;
@@ -32,8 +34,9 @@ struct SeamPoint {
 /// Scratch of one renderer: nothing in it is left for the next tick.
 class Seams {
  public:
-  /// Leaves near the patch that are looked at, and seams that count: the nearest ones. Where there are more, the patch is
-  /// taken to end at the nearest of those that do not count, so that none comes or goes at once.
+  /// Leaves near the patch that are looked at, and seams that count: the nearest ones. Where there
+  /// are more, the patch is taken to end at the nearest of those that do not count, so that none
+  /// comes or goes at once.
   static constexpr std::size_t kMostLeaves = 64;
   static constexpr std::size_t kMostSeams = 10;
   static constexpr std::size_t kMostParts = std::size_t{1} << kMostSeams;
@@ -50,7 +53,8 @@ class Seams {
     gather(leaf, held);
     return surface_count_ == 1;
   }
-  /// The facet at `place` [m], on the other side of the leaves `turned`, of all leaves that coincide there.
+  /// The facet at `place` [m], on the other side of the leaves `turned`, of all leaves that
+  /// coincide there.
   [[nodiscard]] Facet facetOf(LeafId leaf, const HeldWall& held, const Vec3& place,
                               std::span<const LeafId> turned = {}) noexcept {
     gather(leaf, held);
@@ -59,7 +63,8 @@ class Seams {
   /// True if `leaf` is on the surface that was asked for last, or coincides with it.
   [[nodiscard]] bool isOnSurface(LeafId leaf) const noexcept;
 
-  /// A piece of the surface around a place, and the share of the press that it bears: all shares are 1.
+  /// A piece of the surface around a place, and the share of the press that it bears: all shares
+  /// are 1.
   struct Part {
     Facet facet;
     double share = 1.0;
@@ -68,8 +73,8 @@ class Seams {
         0.0};  ///< [1/m] its gradient where the place moves and the press stays as it is, ...
     Vec3 by_press{0.0, 0.0, 0.0};  ///< [1/m] ... and the other way round
   };
-  /// The pieces around `place` [m] on the wall `held`, a facet of `leaf`, that a press from the hand to the proxy by
-  /// `press` [m] bears on. None: it bears on that facet alone. Real-time safe.
+  /// The pieces around `place` [m] on the wall `held`, a facet of `leaf`, that a press from the
+  /// hand to the proxy by `press` [m] bears on. None: it bears on that facet alone. Real-time safe.
   [[nodiscard]] std::span<const Part> at(LeafId leaf, const HeldWall& held, const Vec3& place,
                                          const Vec3& press) noexcept;
 
@@ -88,7 +93,8 @@ class Seams {
   void findSeams(const HeldWall& held, const Vec3& place, double radius) noexcept;
   void addSeam(const Seam& seam) noexcept;
   void leaveOut(const Seam& seam) noexcept;
-  /// The wall behind the surface, on the far side of the seams whose bits are set; not closed where there is none.
+  /// The wall behind the surface, on the far side of the seams whose bits are set; not closed where
+  /// there is none.
   [[nodiscard]] Facet facetAcross(unsigned across, const Vec3& place) noexcept;
 
   const Scene& scene_;

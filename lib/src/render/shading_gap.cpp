@@ -8,7 +8,8 @@
 namespace palpate {
 namespace {
 
-/// Of the radius: nodes of the smoothed field that count lie no further from the surface (contact/felt_height.h).
+/// Of the radius: nodes of the smoothed field that count lie no further from the surface
+/// (contact/felt_height.h).
 constexpr double kLooks = 1.5;
 constexpr int kLines = 48;
 constexpr int kSteps = 128;  // of a line
@@ -36,7 +37,8 @@ int shadedMaterial(const Scene& scene, RegionId region) {
   return out;
 }
 
-/// [m] How far from the surface at `p` the field answers, on the side where that is less; at most `needed`.
+/// [m] How far from the surface at `p` the field answers, on the side where that is less; at most
+/// `needed`.
 double knownAt(const Field& field, const Vec3& p, double needed) {
   const Vec3 n = unitOr(field.sample(p).gradient, Vec3(0.0));
   const auto answers = [&](double away) {

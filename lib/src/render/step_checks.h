@@ -1,6 +1,6 @@
 #pragma once
-/// What the ways along walls (proxy_step.cpp, proxy_glide.cpp, proxy_crease.cpp) ask of a wall before they trust a step
-/// on it.
+/// What the ways along walls (proxy_step.cpp, proxy_glide.cpp, proxy_crease.cpp) ask of a wall
+/// before they trust a step on it.
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,8 @@
 
 namespace palpate {
 
-/// Whether the facet belongs to a wall of one leaf that holds the proxy here. It may open once the proxy rests.
+/// Whether the facet belongs to a wall of one leaf that holds the proxy here. It may open once the
+/// proxy rests.
 [[nodiscard]] inline bool isWallHere(const Leaf& leaf, const Facet& facet) noexcept {
   return !leaf.is_between && facet.isClosed() && facet.kind != Facet::Kind::kInternal;
 }
@@ -20,8 +21,9 @@ namespace palpate {
   return isWallHere(leaf, facet) && !facet.opens && !facet.varies;
 }
 
-/// Whether the step to `there` landed on the wall that `here` and its bend of norm `bend` [1/m] promise, `off` [m] beside
-/// where it was to land. A wall that is another one has a crease on the way.
+/// Whether the step to `there` landed on the wall that `here` and its bend of norm `bend` [1/m]
+/// promise, `off` [m] beside where it was to land. A wall that is another one has a crease on the
+/// way.
 [[nodiscard]] inline bool landedAsPromised(const WallThere& here, const WallThere& there,
                                            double bend, double length, double off) noexcept {
   const Vec3 turned = there.normal - here.normal;
@@ -31,8 +33,8 @@ namespace palpate {
          std::fabs(off) <= bent * length + limits::kNoise * here.tolerance;
 }
 
-/// Whether a way of `length` [m] over which the normal turns by no more than `turn` [rad] is short enough for a wall
-/// that bends by `bend` [1/m].
+/// Whether a way of `length` [m] over which the normal turns by no more than `turn` [rad] is short
+/// enough for a wall that bends by `bend` [1/m].
 [[nodiscard]] inline bool isShortFor(const Leaf& leaf, double bend, double length,
                                      double turn = limits::kTurnsMore) noexcept {
   return bend * length <= turn &&
@@ -44,8 +46,8 @@ namespace palpate {
   return std::min(limits::kDipByBend * bend * length, limits::kDipByLength) * length;
 }
 
-/// Whether the chord from `x` to `y` [m] keeps to the free side of `field`, but for what a wall bent by `bend` [1/m] makes
-/// it dip. A distance towards that side is S times `scale`.
+/// Whether the chord from `x` to `y` [m] keeps to the free side of `field`, but for what a wall
+/// bent by `bend` [1/m] makes it dip. A distance towards that side is S times `scale`.
 [[nodiscard]] inline bool keepsOnChord(const Field& field, const Vec3& x, const Vec3& y,
                                        double scale, double bend, double tolerance) noexcept {
   const double length = glm::length(y - x);

@@ -23,8 +23,8 @@ std::string inCsv(const std::string& text) {
   return out + '"';
 }
 
-/// A few numbers, each with a comma behind it, printed on the stack and appended at once: the text is
-/// written once, and not first filled with zeros. The longest shortest double has 24 characters
+/// A few numbers, each with a comma behind it, printed on the stack and appended at once: the text
+/// is written once, and not first filled with zeros. The longest shortest double has 24 characters
 /// (-2.2250738585072014e-308), an int64 has 20.
 template <std::size_t kCount>
 class Numbers {

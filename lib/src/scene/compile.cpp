@@ -74,7 +74,7 @@ ScenePtr SceneCompiler::build() {
   scene_->renderer_ = description_.renderer;
   scene_->device_ = description_.device;
   scene_->length_unit_ = description_.length_unit;
-  scene_->metres_per_unit_ = description_.metres_per_unit;
+  scene_->meters_per_unit_ = description_.meters_per_unit;
   for (const NamedField& field : description_.fields) {
     if (field.source->isMade()) scene_->fields_.push_back(field);
   }

@@ -89,7 +89,8 @@ std::vector<Port> SceneCompiler::makePorts() {
     port.hole_radius = given.hole_radius;
     port.reopens_at = given.reopens_at;
     port.rearm = given.rearm;
-    // A port into what was left out leads nowhere; it keeps its place, for those that come after it.
+    // A port into what was left out leads nowhere; it keeps its place, for those that come after
+    // it.
     const auto leave_out = [&](std::vector<RegionId>& regions) {
       std::erase_if(regions, [&](RegionId region) { return isLeftOut(region); });
     };

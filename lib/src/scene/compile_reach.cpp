@@ -75,7 +75,8 @@ RegionId SceneCompiler::start() {
   throw unknownRegion(description_.start_region, description_.start_place);
 }
 
-/// The regions that the sheet was seen to lie in, within `part` if that is given: shoots through where it may be.
+/// The regions that the sheet was seen to lie in, within `part` if that is given: shoots through
+/// where it may be.
 std::vector<bool> SceneCompiler::regionsOfSheet(std::size_t sheet,
                                                 const FieldSourcePtr& part) const {
   std::vector<bool> in(count(), false);

@@ -59,7 +59,8 @@ std::shared_ptr<const Document> readDocument(const std::string& path) {
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw fail("cannot be opened", "may you read it?");
-  // One byte more than is allowed shows that there is more, even where a size is not known (a pipe).
+  // One byte more than is allowed shows that there is more, even where a size is not known (a
+  // pipe).
   std::string text(kLargestDocument + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad()) throw fail("cannot be read");

@@ -13,8 +13,8 @@
 namespace palpate {
 namespace {
 
-/// Whether an operation asks its operands only where it is asked itself. Those of the others are made whole: so a field
-/// that is used twice is asked for one box, and is one leaf.
+/// Whether an operation asks its operands only where it is asked itself. Those of the others are
+/// made whole: so a field that is used twice is asked for one box, and is one leaf.
 enum class Asks { kThere, kElsewhere };
 
 // `make` over operands: done at once if they are all there, else when the result is asked for.

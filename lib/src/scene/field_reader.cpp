@@ -114,8 +114,8 @@ FieldReader::Built FieldReader::build(const Node& node) {
         node.mark, "scene.depth",
         "this field has fields in fields, more than " + std::to_string(kDeepestNesting) + " deep");
   };
-  // On the way in, so that a long chain of names cannot exhaust the stack; on the way out, because a
-  // chain in the other order comes here without depth.
+  // On the way in, so that a long chain of names cannot exhaust the stack; on the way out, because
+  // a chain in the other order comes here without depth.
   if (depth_ >= kDeepestNesting) throw too_deep();
   if (node.kind == Node::Kind::kMap) {
     if (node.entries.empty()) {

@@ -12,8 +12,8 @@
 
 namespace palpate {
 
-/// Makes field sources of nodes. A named field is made once, so that all its users share one object:
-/// ports find their facet by identity.
+/// Makes field sources of nodes. A named field is made once, so that all its users share one
+/// object: ports find their facet by identity.
 class FieldReader {
  public:
   FieldReader(const SceneLoader& loader, const SceneRegistry& registry)
@@ -35,7 +35,8 @@ class FieldReader {
   [[nodiscard]] std::vector<NamedField> all() const;
 
  private:
-  /// Fields are numbered with LeafId; names that stand for each other twice over reach this in 16 lines.
+  /// Fields are numbered with LeafId; names that stand for each other twice over reach this in 16
+  /// lines.
   static constexpr std::size_t kMostLeaves = std::numeric_limits<LeafId>::max();
 
   struct Built {

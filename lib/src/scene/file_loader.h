@@ -18,7 +18,7 @@ class FileLoader final : public SceneLoader {
 
   [[nodiscard]] const Document& document() const noexcept override { return document_; }
   [[nodiscard]] const Vocabulary& vocabulary() const override { return *registry_.vocabulary; }
-  [[nodiscard]] double metresPerUnit() const noexcept override { return metres_per_unit_; }
+  [[nodiscard]] double metersPerUnit() const noexcept override { return meters_per_unit_; }
   [[nodiscard]] std::string lengthUnit() const override { return length_unit_; }
   [[nodiscard]] std::string resolvePath(const std::string& path) const override;
   [[nodiscard]] FieldSourcePtr field(const Node& node) const override { return fields_.read(node); }
@@ -37,7 +37,7 @@ class FileLoader final : public SceneLoader {
   mutable FieldReader fields_;  // remembers what it made
   std::map<std::string, std::shared_ptr<void>, std::less<>> images_ = {};
   std::string length_unit_ = "m";
-  double metres_per_unit_ = 1.0;
+  double meters_per_unit_ = 1.0;
 };
 
 }  // namespace palpate

@@ -5,7 +5,8 @@
 
 namespace palpate {
 
-/// Puts what the registry chooses in the place of the layers' fields. Layers, ports and sheets are known already.
+/// Puts what the registry chooses in the place of the layers' fields. Layers, ports and sheets are
+/// known already.
 /// @throws Error (kInput) at the offending place.
 void readGrids(const MapReader& reader, const SceneRegistry& registry, SceneDescription& scene);
 

@@ -12,9 +12,10 @@ namespace {
 /// Share of the feature size from which on two positive labels keep the wall between them away.
 constexpr double kApart = 0.25;
 
-/// The wall between two labels where both would be: (f_a - f_b) / 2, negative where `a` has the point. Only
-/// where both are negative does it mean anything. Elsewhere it is kept from being zero: far from
-/// both labels two grids may hold the same plateau, and a wall there would be met everywhere.
+/// The wall between two labels where both would be: (f_a - f_b) / 2, negative where `a` has the
+/// point. Only where both are negative does it mean anything. Elsewhere it is kept from being zero:
+/// far from both labels two grids may hold the same plateau, and a wall there would be met
+/// everywhere.
 class LabelWall final : public Field {
  public:
   LabelWall(FieldPtr a, FieldPtr b, const Box3& box)
@@ -105,7 +106,8 @@ class LabelShare final : public Field {
     const FieldSample own = own_->sample(p);
     FieldSample out = own;
     for (const FieldPtr& other : others_) {
-      // Away from the other label its field is positive, and half the difference is below own.value.
+      // Away from the other label its field is positive, and half the difference is below
+      // own.value.
       if (other->value(p) >= -own.value) continue;
       const FieldSample theirs = other->sample(p);
       const double half = 0.5 * (own.value - theirs.value);
@@ -165,8 +167,8 @@ SharedLabels shareLabels(const std::vector<LabelField>& layers) {
       const Box3 box =
           fields[i]->bounds().grownBy(reach).intersectedWith(fields[j]->bounds().grownBy(reach));
       if (box.isEmpty()) continue;
-      // One leaf for both: where both are negative its sign tells whose the point is. Elsewhere it says
-      // nothing, so that the skin of either is closed on both sides of where the two meet.
+      // One leaf for both: where both are negative its sign tells whose the point is. Elsewhere it
+      // says nothing, so that the skin of either is closed on both sides of where the two meet.
       const auto wall = std::make_shared<LabelWall>(fields[i], fields[j], box);
       out.walls.push_back({wall, fields[i], fields[j]});
       others[i].push_back(fields[j]);

@@ -18,8 +18,8 @@ struct LabelField {
 struct SharedLabels {
   /// For every field f_i of one image: max(f_i, max over j of (f_i - f_j) / 2), j being the layers
   /// that limit it. Negative where f_i is
-  /// negative and smallest; two neighbors' results are exact negatives of each other at their wall. Its
-  /// structure tells f_i and one smooth wall to each neighbor, which both share.
+  /// negative and smallest; two neighbors' results are exact negatives of each other at their wall.
+  /// Its structure tells f_i and one smooth wall to each neighbor, which both share.
   std::vector<FieldPtr> fields;
   std::vector<LeafBetween> walls;
 };

@@ -160,9 +160,9 @@ Vec3 MapReader::requirePoint(std::string_view key) {
   return readVector(*loader_, require(key), point);
 }
 
-double MapReader::lengthOr(std::string_view key, double fallback_metres) {
+double MapReader::lengthOr(std::string_view key, double fallback_meters) {
   const Node* node = optional(key);
-  return node == nullptr ? fallback_metres : readLength(*loader_, *node, inQuotes(key));
+  return node == nullptr ? fallback_meters : readLength(*loader_, *node, inQuotes(key));
 }
 
 }  // namespace palpate

@@ -13,7 +13,8 @@ namespace {
 
 /// Boxes are grown by this share of their size, so that what touches overlaps.
 constexpr double kMargin = 1e-3;
-/// A hand at the border of its workspace still feels what lies this share of the workspace beyond it.
+/// A hand at the border of its workspace still feels what lies this share of the workspace beyond
+/// it.
 constexpr double kBeyond = 0.05;
 /// Looks at a field, at most, to prove that it holds a box.
 constexpr int kMostLooks = 200'000;
@@ -80,8 +81,8 @@ class Needs {
   }
 
  private:
-  /// [m] Around a layer, a little larger than it; none where only making it would tell. Measured once, as that may
-  /// mean to read a file.
+  /// [m] Around a layer, a little larger than it; none where only making it would tell. Measured
+  /// once, as that may mean to read a file.
   const std::optional<Box3>& boxOf(std::size_t region) {
     Measured& known = boxes_[region];
     if (!known.is_measured) {

@@ -8,8 +8,9 @@
 
 namespace palpate {
 
-/// The parameter at a declared key, within the key's bounds everywhere; not given: the declared default, or 0. A
-/// map of keys is read by the registry. @throws Error (kInput) at the offending place.
+/// The parameter at a declared key, within the key's bounds everywhere; not given: the declared
+/// default, or 0. A map of keys is read by the registry. @throws Error (kInput) at the offending
+/// place.
 [[nodiscard]] Parameter readParameter(const MapReader& reader, std::string_view key);
 /// The same; not given: `fallback`.
 [[nodiscard]] Parameter readParameter(const MapReader& reader, std::string_view key,

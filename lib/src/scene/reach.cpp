@@ -81,9 +81,9 @@ class Search {
     return found;
   }
 
-  /// State by state. With `saturated` a count stops at the most that is asked for, and what is taken back from there
-  /// may or may not go below: more is found than there is. Else counts are exact, and those that grow too
-  /// large are not followed: less may be found.
+  /// State by state. With `saturated` a count stops at the most that is asked for, and what is
+  /// taken back from there may or may not go below: more is found than there is. Else counts are
+  /// exact, and those that grow too large are not followed: less may be found.
   [[nodiscard]] Found states(bool with_doubtful, bool saturated) const {
     Found found = nothing();
     std::unordered_set<std::string> seen;
@@ -188,8 +188,8 @@ class Search {
     }
   }
 
-  /// With a memory that keeps all: goes around as long as there is a way back, until nothing new is passed.
-  /// All states that differ only by such rounds become one.
+  /// With a memory that keeps all: goes around as long as there is a way back, until nothing new is
+  /// passed. All states that differ only by such rounds become one.
   void settle(State& state, bool with_doubtful, Found& found) const {
     for (bool is_changed = true; is_changed;) {
       is_changed = false;
@@ -210,7 +210,8 @@ class Search {
     }
   }
 
-  /// The regions that ways which are open now lead to from the state's, or from which they lead to it.
+  /// The regions that ways which are open now lead to from the state's, or from which they lead to
+  /// it.
   [[nodiscard]] std::vector<bool> spread(const State& state, bool with_doubtful, bool forth) const {
     std::vector<bool> met(table_.regions, false);
     met[state.region] = true;

@@ -1,6 +1,6 @@
 #pragma once
-/// Which regions a probe can ever get into, and which ports it can ever pass: a search of the table of
-/// states and transitions. A state is a region and what of the ports was passed.
+/// Which regions a probe can ever get into, and which ports it can ever pass: a search of the table
+/// of states and transitions. A state is a region and what of the ports was passed.
 
 #include <utility>
 #include <vector>
@@ -33,8 +33,9 @@ struct Reached {
   std::vector<Reach> ports;
 };
 
-/// kYes only with a sequence of transitions that leads there; kNo only where none does, whatever its length;
-/// kUndecided where neither was found: the states are more than are looked at, or a doubtful way is needed.
+/// kYes only with a sequence of transitions that leads there; kNo only where none does, whatever
+/// its length; kUndecided where neither was found: the states are more than are looked at, or a
+/// doubtful way is needed.
 [[nodiscard]] Reached reach(const ReachTable& table);
 
 }  // namespace palpate

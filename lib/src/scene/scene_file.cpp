@@ -104,9 +104,9 @@ SceneDescription FileLoader::read() {
 
   const MapReader top(*this, document_.root, "a scene", "scene");
   length_unit_ = top.text("length");
-  metres_per_unit_ = *metresPer(length_unit_);
+  meters_per_unit_ = *metersPer(length_unit_);
   scene.length_unit = length_unit_;
-  scene.metres_per_unit = metres_per_unit_;
+  scene.meters_per_unit = meters_per_unit_;
   scene.renderer = top.choice("renderer") == 0 ? RendererKind::kConstraint : RendererKind::kPaper;
   scene.keep_memory = top.choice("memory") == 1;
   if (const Node* images = top.find("images")) readImages(*images);

@@ -63,11 +63,12 @@ Make capsuleOf(Reader r) {
   return later(capsule, from, to, r.value("radius"));
 }
 
-// The file's polynomial takes its x, y, z as numbers in the file's length unit, the library's in meters.
+// The file's polynomial takes its x, y, z as numbers in the file's length unit, the library's in
+// meters.
 Make quadricOf(Reader r) {
   using Q = QuadricCoefficients;
   Q q;
-  const double per_metre = 1.0 / r.loader().metresPerUnit();
+  const double per_meter = 1.0 / r.loader().metersPerUnit();
   bool is_flat = true;
   const auto read = [&](std::string_view key, double& coefficient, double scale) {
     const double number = r.value(key);
@@ -84,10 +85,10 @@ Make quadricOf(Reader r) {
                                     {"xy", &Q::xy},
                                     {"xz", &Q::xz},
                                     {"yz", &Q::yz}}) {
-    read(key, q.*member, per_metre * per_metre);
+    read(key, q.*member, per_meter * per_meter);
   }
   for (const auto& [key, member] : {std::pair{"x", &Q::x}, {"y", &Q::y}, {"z", &Q::z}}) {
-    read(key, q.*member, per_metre);
+    read(key, q.*member, per_meter);
   }
   q.constant = r.value("constant");
   if (is_flat) {
@@ -159,8 +160,8 @@ std::function<FieldPtr()> readShape(std::string_view kind, const MapReader& read
   return shape == shapes().end() ? nullptr : shape->second(reader);
 }
 
-std::string inUnitOf(const SceneLoader& loader, double metres) {
-  return shortNumber(metres / loader.metresPerUnit(), 6) + " " + loader.lengthUnit();
+std::string inUnitOf(const SceneLoader& loader, double meters) {
+  return shortNumber(meters / loader.metersPerUnit(), 6) + " " + loader.lengthUnit();
 }
 
 }  // namespace palpate

@@ -32,8 +32,9 @@ bool crosses(const Box3& box, const Vec3& from, const Vec3& to) {
   return enter <= leave;
 }
 
-/// The regions along one straight line. Leaves whose bounds it does not cross are outside all along; of the others
-/// each is asked again only where its Lipschitz bound allows that its sign has changed.
+/// The regions along one straight line. Leaves whose bounds it does not cross are outside all
+/// along; of the others each is asked again only where its Lipschitz bound allows that its sign has
+/// changed.
 class Line {
  public:
   explicit Line(const Partition& partition)
@@ -107,7 +108,8 @@ class Line {
   bool ask(Candidate& candidate, const Vec3& p, double place) {
     const double value = candidate.field->value(p);
     const bool inside = value < 0.0 && candidate.bounds.contains(p);
-    // Less a share of the line for the rounding of places along it; nothing where the value is not a number.
+    // Less a share of the line for the rounding of places along it; nothing where the value is not
+    // a number.
     const double fixed = std::fabs(value) * candidate.per_slope - 1e-9 * length_;
     candidate.fixed_from = fixed > 0.0 ? place - fixed : kInfinity;
     candidate.fixed_to = fixed > 0.0 ? place + fixed : -kInfinity;

@@ -17,9 +17,9 @@ struct Survey {
   [[nodiscard]] bool touches(RegionId a, RegionId b) const { return touch[a * regions + b]; }
 };
 
-/// Walks lines along the axes and at random (fixed seed) through `boxes`, one for each layer, and halves
-/// every step over which the region changes down to the wall itself. What is smaller than about a
-/// hundredth of every box may be missed.
+/// Walks lines along the axes and at random (fixed seed) through `boxes`, one for each layer, and
+/// halves every step over which the region changes down to the wall itself. What is smaller than
+/// about a hundredth of every box may be missed.
 [[nodiscard]] Survey survey(const Partition& partition, std::span<const Box3> boxes,
                             std::size_t lines_per_box);
 

@@ -11,7 +11,8 @@ namespace palpate {
 /// `static` and `kinetic`, which is no more, and `static` if it is not given.
 [[nodiscard]] std::pair<Parameter, Parameter> readFriction(const MapReader& reader);
 
-/// Reads `curve`, `maxwell`, `lattice`, `cutting` and `shaft` of a material whose stiffness is known.
+/// Reads `curve`, `maxwell`, `lattice`, `cutting` and `shaft` of a material whose stiffness is
+/// known.
 /// @throws Error (kInput) at the offending value.
 void readTissue(const MapReader& reader, Material& material);
 

@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// `value` in units of `factor`, in SI. Divides where the factor is one over a whole number: 1/1000 is
-/// no binary fraction, but 35/1000 rounds once, to what 0.035 written in SI is.
+/// `value` in units of `factor`, in SI. Divides where the factor is one over a whole number: 1/1000
+/// is not a binary fraction, but 35/1000 rounds once, to what 0.035 written in SI is.
 [[nodiscard]] double scaledTo(double value, double factor) noexcept;
 
 /// Every spelling of a unit of `dimension`, the SI unit first.

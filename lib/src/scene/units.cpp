@@ -68,7 +68,8 @@ std::size_t numberLength(std::string_view text) noexcept {
   return at;
 }
 
-// True for what goes on behind its first digits as other readers' numbers do: "1_000", "1,5", "0x1F".
+// True for what goes on behind its first digits as other readers' numbers do: "1_000", "1,5",
+// "0x1F".
 bool continuesNumber(std::string_view text, std::size_t length) noexcept {
   if (length >= text.size()) return false;
   const char next = text[length];
@@ -130,7 +131,7 @@ std::string_view dimensionName(Dimension dimension) noexcept {
   return "a quantity";
 }
 
-std::optional<double> metresPer(std::string_view unit) noexcept {
+std::optional<double> metersPer(std::string_view unit) noexcept {
   for (const Unit& known : kUnits) {
     if (known.dimension == Dimension::kLength && known.name == unit) return known.si;
   }

@@ -153,7 +153,7 @@ double readLength(const SceneLoader& loader, const Node& node, const std::string
   const Document& document = loader.document();
   if (node.kind != Node::Kind::kScalar) throw wrongKind(document, node, what, "a length");
   const std::optional<double> number = parseNumber(node.text);
-  if (number && !node.quoted) return scaledTo(*number, loader.metresPerUnit());
+  if (number && !node.quoted) return scaledTo(*number, loader.metersPerUnit());
   const Quantity quantity = parseQuantity(node.text, Dimension::kLength);
   if (quantity.status == Quantity::Status::kOk) return quantity.si;
   if (number) {
@@ -259,7 +259,7 @@ void checkBounds(const Document& document, const Node& node, const KeyWords& key
 /// `units: parsec`
 void checkUnit(const Document& document, const Node& node, const std::string& what) {
   const std::string unit = readText(document, node, what);
-  if (metresPer(unit)) return;
+  if (metersPer(unit)) return;
   throw document.error(node.mark, "scene.unit", inQuotes(unit) + " is not a length unit",
                        "units: " + std::string(unitHelp(Dimension::kLength)));
 }
@@ -360,7 +360,8 @@ void checkValue(const SceneLoader& loader, const Node& node, const KeyWords& key
       if (!is_map_of_places(node)) checkOne(loader, node, key, what);
       return;
     case KeyWords::Count::kList:
-      // How many maps a list has is checked when they are opened: what stands before them is read first.
+      // How many maps a list has is checked when they are opened: what stands before them is read
+      // first.
       for (const Node& item :
            readList(document, node, what, key.form == KeyWords::Form::kMap ? 0 : key.at_least,
                     key.form == KeyWords::Form::kMap ? 0 : key.at_most)) {

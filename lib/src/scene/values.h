@@ -35,8 +35,8 @@ namespace palpate {
 /// Index of the choice that is written.
 [[nodiscard]] std::size_t readChoice(const Document& document, const Node& node,
                                      const KeyWords& key);
-/// @throws Error unless what is written at `node` is of the type of `key` and within its bounds. What stands
-/// in fields, maps and lists of these is for their own readers.
+/// @throws Error unless what is written at `node` is of the type of `key` and within its bounds.
+/// What stands in fields, maps and lists of these is for their own readers.
 void checkValue(const SceneLoader& loader, const Node& node, const KeyWords& key);
 
 /// The items of a list of at least `least` and, unless 0, at most `most` items, none of them empty.

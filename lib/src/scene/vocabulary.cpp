@@ -69,7 +69,8 @@ std::vector<std::string> words(const Document& document, const Node& list) {
   return all;
 }
 
-/// True if the default is a value of the key's type, which is then what is read where the key is not given.
+/// True if the default is a value of the key's type, which is then what is read where the key is
+/// not given.
 bool isValue(const KeyWords& key, const Node& node) {
   if (node.quoted || key.count != Count::kOne) return false;
   switch (key.form) {

@@ -1,5 +1,5 @@
-// The one file that sees yaml-cpp. Its events show what its tree hides: anchors, tags, marks of keys,
-// keys given twice.
+// The one file that sees yaml-cpp. Its events show what its tree hides: anchors, tags, marks of
+// keys, keys given twice.
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
@@ -126,8 +126,8 @@ class TreeBuilder final : public YAML::EventHandler {
         !mark.is_null() && mark.pos >= 0 && static_cast<std::size_t>(mark.pos) < text_.size();
     return inside ? text_[static_cast<std::size_t>(mark.pos)] : '\0';
   }
-  // Where nothing is written yaml-cpp marks what comes next, perhaps lines below: go back to the last
-  // thing before it, the '-' or ',' or '[' that asked for a value.
+  // Where nothing is written yaml-cpp marks what comes next, perhaps lines below: go back to the
+  // last thing before it, the '-' or ',' or '[' that asked for a value.
   [[nodiscard]] Mark markOfNull(const YAML::Mark& mark) const {
     const char c = characterAt(mark);
     if (c == '~' || c == 'n' || c == 'N') return markOf(mark);
@@ -170,8 +170,8 @@ class TreeBuilder final : public YAML::EventHandler {
                           "quote the text, or leave the tag out");
   }
 
-  // yaml-cpp lets a quotation end with the file. One that runs on takes what follows for text, so it
-  // must end on its line, as in JSON.
+  // yaml-cpp lets a quotation end with the file. One that runs on takes what follows for text, so
+  // it must end on its line, as in JSON.
   void refuseOpenQuote(const YAML::Mark& mark) const {
     const char quote = characterAt(mark);
     if (quote != '"' && quote != '\'') return;

@@ -1,4 +1,5 @@
-// The mean of a map over the patch of a press: its slopes against differences, its spread against the moment of a disk.
+// The mean of a map over the patch of a press: its slopes against differences, its spread against
+// the moment of a disk.
 
 #include "palpate/contact/contact_patch.h"
 
@@ -43,7 +44,8 @@ Vec3 slope(const std::function<double(const Vec3&)>& f, const Vec3& at, double s
 TEST(OverPatch, ItsSlopesAreThoseOfItsValue) {
   const Parameter map = waves();
   Random random(3);
-  // Off by (step / length)^2 of the slope, 1.5e5 N/m^2 and more, and by the rounding of 1e-13 of the value over the step.
+  // Off by (step / length)^2 of the slope, 1.5e5 N/m^2 and more, and by the rounding of 1e-13 of
+  // the value over the step.
   constexpr double kStep = 1e-8;
   constexpr double kTolerance = 0.05;
   // A point, few places, few and many blended (16 to 32 times the contrast), and many.
@@ -81,7 +83,8 @@ TEST(OverPatch, LiesAcrossThePressAndIsAsWideAsThePatch) {
         return overPatch(map, middle, depth * u, contrast).value;
       };
       EXPECT_NEAR(mean_square(u), 0.0, 1e-12 * radius * radius);
-      // Evenly along any line: a third of the radius squared. 24 places are that even to some percent.
+      // Evenly along any line: a third of the radius squared. 24 places are that even to some
+      // percent.
       EXPECT_NEAR(mean_square(along), radius * radius / 3.0, 0.05 * radius * radius / 3.0);
     }
   }

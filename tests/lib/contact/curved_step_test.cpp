@@ -1,4 +1,5 @@
-// The step in the metric of the walls' curvature, against the best of all sets of planes that may hold it.
+// The step in the metric of the walls' curvature, against the best of all sets of planes that may
+// hold it.
 
 #include <gtest/gtest.h>
 
@@ -133,7 +134,8 @@ TEST(CurvedStep, OnOneWallIsTheBestThatTheOthersAllow) {
 }
 
 TEST(CurvedStep, GoesDownhillWhereTheWallBendsTooMuch) {
-  // A hand beyond the center of curvature in one direction: along that the eigenvalue counts by its magnitude.
+  // A hand beyond the center of curvature in one direction: along that the eigenvalue counts by its
+  // magnitude.
   Random random(22);
   for (int trial = 0; trial < 500; ++trial) {
     const Vec3 n = random.direction();
@@ -174,7 +176,8 @@ TEST(CurvedStep, BetweenTwoWallsGoesAlongTheirCrease) {
     const Vec3 t = glm::normalize(glm::cross(a, b));
     const double eigenvalue = 1.0 - glm::dot(t, bend * t);
     EXPECT_NEAR(step.lowest, eigenvalue, 1e-12);
-    // From the crease's point nearest to the wish as far as the curvature wants, or up to the first plane.
+    // From the crease's point nearest to the wish as far as the curvature wants, or up to the first
+    // plane.
     const Vec3 base = first.step - glm::dot(t, first.step) * t;
     double lo = -kInfinity;
     double hi = kInfinity;

@@ -1,4 +1,5 @@
-// The lattice's force against its formula and as the slope of its energy, also where its amplitude varies.
+// The lattice's force against its formula and as the slope of its energy, also where its amplitude
+// varies.
 
 #include "palpate/contact/lattice_force.h"
 

@@ -36,9 +36,10 @@ TEST(StackStiffness, ThickLayersHideAndThinOnesVanish) {
   EXPECT_NEAR(felt({{400.0, 0.01}, {5000.0, 1e-7}, {900.0, 0.0}}), without, 1e-3 * without);
 }
 
-/// Far below, a layer is under what a point force does, and the force it keeps from sinking is known: on an
-/// incompressible layer of thickness h that sticks to a rigid ground a patch is stiffer than on a half-space
-/// by 1 / (1 - c a / h). c is found twice, at two thicknesses, and must be the same.
+/// Far below, a layer is under what a point force does, and the force it keeps from sinking is
+/// known: on an incompressible layer of thickness h that sticks to a rigid ground a patch is
+/// stiffer than on a half-space by 1 / (1 - c a / h). c is found twice, at two thicknesses, and
+/// must be the same.
 TEST(StackStiffness, ADeepGroundShowsAsTheRadiusToTheDepth) {
   const auto c = [](double h) {
     const double rise = felt({{400.0, h}, {4e9, 0.0}}) / 400.0;
@@ -95,9 +96,9 @@ Mat inverse(const Mat& x) {
   return {f * x.d, -f * x.b, -f * x.c, f * x.a};
 }
 
-/// How much further the stack gives way than its top layer alone, as a share of that, at wave number k. Another way than
-/// by reflections: what lies below a plane resists a displacement u there by 2 k Y u, and a layer makes Y of its lower side
-/// into that of its upper one.
+/// How much further the stack gives way than its top layer alone, as a share of that, at wave
+/// number k. Another way than by reflections: what lies below a plane resists a displacement u
+/// there by 2 k Y u, and a layer makes Y of its lower side into that of its upper one.
 double excess(const std::vector<StackLayer>& layers, double k) {
   const double last = layers.back().stiffness;
   Mat y{last, 0.0, 0.0, last};

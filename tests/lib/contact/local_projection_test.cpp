@@ -1,5 +1,5 @@
-// The point of some walls nearest to a hand settles wherever the steps begin: also when they are cut short by the walls'
-// curvature, or go from one face of a wall to the other.
+// The point of some walls nearest to a hand settles wherever the steps begin: also when they are
+// cut short by the walls' curvature, or go from one face of a wall to the other.
 
 #include "palpate/contact/local_projection.h"
 
@@ -29,7 +29,8 @@ void expectHeld(const LocalProjection& out, const Vec3& hand, int trial) {
     EXPECT_GE(out.held[k].multiplier, 0.0);
     rest += out.held[k].multiplier * out.held[k].normal;
   }
-  // Settled means that a step is below 1e-12 of the way; where two walls are almost one, what is left of it is more.
+  // Settled means that a step is below 1e-12 of the way; where two walls are almost one, what is
+  // left of it is more.
   EXPECT_LT(glm::length(rest), 1e-9 * glm::length(hand - out.at) + 1e-15) << trial;
 }
 
@@ -119,7 +120,8 @@ TEST(LocalProjection, LeavesWhatIsAllowedAlone) {
 }
 
 TEST(LocalProjection, SettlesFarFromTheOriginDownToRounding) {
-  // At a thousand times the way to the target, what rounding leaves of a step is longer than 1e-12 of that way.
+  // At a thousand times the way to the target, what rounding leaves of a step is longer than 1e-12
+  // of that way.
   const Vec3 center(3.0, -2.0, 1.0);
   const FieldPtr ball = sphere(center, 0.01);
   const std::vector<HeldWall> walls{outsideOf(ball)};
@@ -134,8 +136,8 @@ TEST(LocalProjection, SettlesFarFromTheOriginDownToRounding) {
   }
 }
 
-/// Within a cone that stands on its tip: the nearest place is the tip from all that is in the cone of its normals, else the
-/// foot on the side.
+/// Within a cone that stands on its tip: the nearest place is the tip from all that is in the cone
+/// of its normals, else the foot on the side.
 TEST(LocalProjection, ByCutsFindsTheTipAndTheSideOfAHollowCone) {
   const double height = 4e-3;
   const FieldPtr field = cone(Vec3(0.0, 0.0, height), Vec3(0.0, 0.0, -1.0), height, height);

@@ -1,4 +1,5 @@
-// The Maxwell branch against the closed forms of a ramp and of relaxation, at any tick rate, and its energy.
+// The Maxwell branch against the closed forms of a ramp and of relaxation, at any tick rate, and
+// its energy.
 
 #include "palpate/contact/maxwell_branch.h"
 
@@ -41,8 +42,8 @@ TEST(MaxwellBranch, AJumpIsASpringAndNoTimeIsNone) {
   EXPECT_NEAR(branch.stretch(), 0.0, 1e-12);
 }
 
-// Work by the trapezoid of what each tick's ends push with: the branch is a spring behind a dashpot, so from
-// rest the hand can only lose.
+// Work by the trapezoid of what each tick's ends push with: the branch is a spring behind a
+// dashpot, so from rest the hand can only lose.
 TEST(MaxwellBranch, GivesBackNoMoreThanItWasGiven) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> step(-1e-4, 1e-4);
@@ -52,8 +53,8 @@ TEST(MaxwellBranch, GivesBackNoMoreThanItWasGiven) {
     const double by = step(random);
     const double before = branch.stretch();
     branch.step(by, 1e-3, kTime);
-    // In a tick the push is that of stretch(s), s from 0 to dt; its mean times `by` is the work. Integrated
-    // numerically from the closed form, in steps far finer than the tick.
+    // In a tick the push is that of stretch(s), s from 0 to dt; its mean times `by` is the work.
+    // Integrated numerically from the closed form, in steps far finer than the tick.
     double mean = 0.0;
     constexpr int kParts = 8;
     for (int k = 0; k < kParts; ++k) {

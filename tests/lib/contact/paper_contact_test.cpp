@@ -1,5 +1,5 @@
-// Algorithms I and II against a transcription of their text made for this test alone, and the drift that
-// they are known for.
+// Algorithms I and II against a transcription of their text made for this test alone, and the drift
+// that they are known for.
 
 #include "palpate/contact/paper_contact.h"
 
@@ -140,7 +140,8 @@ TEST(PaperContact, IsTheTextStepByStep) {
 }
 
 TEST(PaperContact, ReacquiresOnPiOrOnPAsTheTextSays) {
-  // Single ticks with long motions over a flat ellipsoid: its normal lines miss it when Po slid off the rim.
+  // Single ticks with long motions over a flat ellipsoid: its normal lines miss it when Po slid off
+  // the rim.
   const Quadric flat(Vec3(0.05, 0.05, 0.004));
   Random random(6);
   int on_pi = 0;
@@ -225,8 +226,8 @@ double lagAfter(double turns, double share, double side) {
 }
 
 TEST(PaperContact, DriftsOnABall) {
-  // Po walks rho per turn on a circle of R, so it falls behind by 2 pi d/R at first, and the more it is
-  // behind the less of the motion is along its tangent: 7.2 degrees at least for d/R = 0.02.
+  // Po walks rho per turn on a circle of R, so it falls behind by 2 pi d/R at first, and the more
+  // it is behind the less of the motion is along its tangent: 7.2 degrees at least for d/R = 0.02.
   const double one = lagAfter(1.0, 0.02, 1.0);
   EXPECT_GT(one, 7.2);
   EXPECT_LT(one, 9.5);

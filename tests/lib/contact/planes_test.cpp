@@ -1,5 +1,6 @@
-// The local problem against an independent solver: Dykstra's cyclic projections, which converge to the
-// projection onto an intersection of half-spaces whatever the planes are, and the conditions of the minimum.
+// The local problem against an independent solver: Dykstra's cyclic projections, which converge to
+// the projection onto an intersection of half-spaces whatever the planes are, and the conditions of
+// the minimum.
 
 #include "palpate/contact/planes.h"
 
@@ -58,7 +59,8 @@ TEST(ClosestStep, RandomPlanesAgainstDykstra) {
     const Vec3 wish = 2.0 * random.uniform(0.0, 1.0) * random.direction();
     const PlaneSolution s = closestStep(wish, planes);
     ++by_count[s.count];
-    // Multipliers grow like 1 / sin of the planes' angle: the tolerance covers 1e-16 at 1e-3 rad squared.
+    // Multipliers grow like 1 / sin of the planes' angle: the tolerance covers 1e-16 at 1e-3 rad
+    // squared.
     expectOptimal(wish, planes, s, 1e-9);
     const Vec3 other = dykstra(wish, planes, 400);
     double unfinished = 0.0;

@@ -1,4 +1,5 @@
-// Walls of several kinds in series with one stop: the force is minus the slope of the energy, whatever the shapes.
+// Walls of several kinds in series with one stop: the force is minus the slope of the energy,
+// whatever the shapes.
 
 #include "palpate/contact/series.h"
 

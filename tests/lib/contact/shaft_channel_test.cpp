@@ -1,4 +1,5 @@
-// How a tissue holds a shaft sideways: the closed form, the channel point by point, and its energy on any way.
+// How a tissue holds a shaft sideways: the closed form, the channel point by point, and its energy
+// on any way.
 
 #include "palpate/contact/shaft_channel.h"
 
@@ -37,7 +38,8 @@ TEST(ShaftChannel, APartOfTheShaftPushesByWhereItIs) {
   EXPECT_NEAR(glm::length(moment), kStiffness * 26e-6 / 3.0 * std::sin(0.1), 1e-12);
 }
 
-// Against a channel kept point by point: a spring for each bit of length, which comes in where the needle lies.
+// Against a channel kept point by point: a spring for each bit of length, which comes in where the
+// needle lies.
 TEST(ShaftChannel, IsTheChannelPointByPointWhileTheNeedleGoesIn) {
   Random random(3);
   struct Bit {

@@ -83,8 +83,8 @@ TEST(ShaftSlip, LengthThatComesInIsUnstretched) {
   EXPECT_EQ(slip.step(law, 0.0, 0.0, 1.0), 0.0);
 }
 
-// Any way in and out, from nothing to nothing: the hand never gains. Force k acts over step k + 1, as a
-// device holds it; the trapezoid takes that out, so that what is left is the model's own.
+// Any way in and out, from nothing to nothing: the hand never gains. Force k acts over step k + 1,
+// as a device holds it; the trapezoid takes that out, so that what is left is the model's own.
 TEST(ShaftSlip, NeverGivesEnergy) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> change(-2e-5, 2e-5);

@@ -1,4 +1,5 @@
-// Walls that share one press: force, tangent and gradients are those of the energy that they store together.
+// Walls that share one press: force, tangent and gradients are those of the energy that they store
+// together.
 
 #include "palpate/contact/shared_walls.h"
 

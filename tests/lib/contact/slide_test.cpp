@@ -1,5 +1,5 @@
-// How a proxy at rest follows the hand, against differences of closed forms: on a ball, in a ball, on a cylinder and on a
-// circular crease.
+// How a proxy at rest follows the hand, against differences of closed forms: on a ball, in a ball,
+// on a cylinder and on a circular crease.
 
 #include "palpate/contact/slide.h"
 
@@ -37,7 +37,8 @@ Vec3 differences(const std::function<Vec3(const Vec3&)>& proxy, const Vec3& hand
   return out;
 }
 
-// Central differences of a smooth map at this size are wrong by about (step / R)^2, and by 1e-16 R / step.
+// Central differences of a smooth map at this size are wrong by about (step / R)^2, and by 1e-16 R
+// / step.
 constexpr double kTolerance = 1e-8;
 
 TEST(GradientByHand, OnABallAndWithinIt) {
@@ -104,7 +105,8 @@ TEST(GradientByHand, IsNoneInACornerAndHeldNearAFocalPoint) {
 }
 
 TEST(GradientByHand, BeyondAFocalPointEigenvaluesCountByTheirMagnitude) {
-  // |M| = sqrt(M M), and the root of a matrix of two rows in closed form: no eigenvector is looked for.
+  // |M| = sqrt(M M), and the root of a matrix of two rows in closed form: no eigenvector is looked
+  // for.
   Random random(12);
   const FieldPtr any = sphere(Vec3(0.0), kR);
   for (int i = 0; i < 400; ++i) {
@@ -112,7 +114,8 @@ TEST(GradientByHand, BeyondAFocalPointEigenvaluesCountByTheirMagnitude) {
     const Vec3 n = wall.normal;
     const Vec3 d = glm::normalize(glm::cross(n, random.direction()));
     const Vec3 e = glm::cross(n, d);
-    // M = 1 - multiplier * side * Hessian / slope, in the frame (d, e), with eigenvalues of both signs.
+    // M = 1 - multiplier * side * Hessian / slope, in the frame (d, e), with eigenvalues of both
+    // signs.
     const double m11 = random.uniform(-2.0, 2.0);
     const double m12 = random.uniform(-2.0, 2.0);
     const double m22 = random.uniform(-2.0, 2.0);

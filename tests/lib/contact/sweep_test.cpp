@@ -56,7 +56,8 @@ std::vector<Shape> shapes() {
       {"plate of 0.1 mm", box(Vec3(0.0), Vec3(0.06, 0.06, 1e-4)), true},
       {"cylinder", cylinder(Vec3(0.0), Vec3(1, 1, 0), 0.02, 0.05), true},
       {"torus", std::make_shared<FromFunction>(torus, 1.0, 0.01)},
-      // Slopes from 0.2 to 40: only a bound of the slope is known, and it is far off nearly everywhere.
+      // Slopes from 0.2 to 40: only a bound of the slope is known, and it is far off nearly
+      // everywhere.
       {"uneven", std::make_shared<FromFunction>(
                      [](const Vec3& p) {
                        const double d = glm::length(p) - 0.03;
@@ -97,8 +98,8 @@ TEST(Sweep, AgainstDenseSamplingFromBothSides) {
       const SweepResult out = sweep(s, a, b, std::fabs(value), 4096);
       ASSERT_GE(out.at, 0.0);
       ASSERT_LE(out.at, 1.0);
-      // On its own side as far as it says, but for grazes shorter than `graze`: a chord of that length
-      // dips by graze^2 / (8 R) = 5e-5 R into a curved wall, and by graze / 2 into an edge.
+      // On its own side as far as it says, but for grazes shorter than `graze`: a chord of that
+      // length dips by graze^2 / (8 R) = 5e-5 R into a curved wall, and by graze / 2 into an edge.
       const double dip =
           (shape.has_edges ? 1e-2 : 1e-4) * shape.field->featureSize() * shape.field->lipschitz();
       ASSERT_GE(deepest(s, a, b, out.at, 500), -dip) << shape.name << " trial " << trial;
@@ -216,7 +217,8 @@ TEST(Sweep, BudgetsAreKeptAndWhatIsSaidIsTrue) {
   EXPECT_EQ(sweep(s, Vec3(0.0, 0, 1), Vec3(0.0, 0, 1), 1.0, 8).kind, Kind::kFree) << "no motion";
 }
 
-/// Falls from z = 1 to z = 0, through zero at `at`: as a line, or bent to either side. Counts how often it was asked.
+/// Falls from z = 1 to z = 0, through zero at `at`: as a line, or bent to either side. Counts how
+/// often it was asked.
 struct Falling final : Field {
   enum class Bend : std::uint8_t { kLine, kHollow, kBulging };
   Falling(double zero, Bend how) : at(zero), bend(how) {}
@@ -251,8 +253,8 @@ TEST(Sweep, NarrowsDownInFewLooks) {
       // On the near side of the surface, nearer to it than the tolerance.
       EXPECT_LE(out.at, 1.0 - at);
       EXPECT_GT(out.at, 1.0 - at - 1e-9);
-      // The end, and where the value is straight one secant. Where it bends an end would stay for good if its weight
-      // were not halved: that takes 14 looks and more.
+      // The end, and where the value is straight one secant. Where it bends an end would stay for
+      // good if its weight were not halved: that takes 14 looks and more.
       EXPECT_LE(field.looks, bend == Bend::kLine ? 2 : 12) << at;
     }
   }

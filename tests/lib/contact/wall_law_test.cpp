@@ -1,4 +1,5 @@
-// A wall's law, with a height and any curve: its slopes against differences, and behind a stop against its own definition.
+// A wall's law, with a height and any curve: its slopes against differences, and behind a stop
+// against its own definition.
 
 #include "palpate/contact/wall_law.h"
 
@@ -29,7 +30,8 @@ std::vector<WallLaw> laws() {
 TEST(WallLaw, ForceIsTheSlopeOfTheEnergyAndTangentThatOfTheForce) {
   constexpr double kStep = 1e-8;
   for (const WallLaw& law : laws()) {
-    // Neither where the height is held (0.4 and 0.3 mm) nor where it begins and ends to fade (2 and 4 mm): kinks.
+    // Neither where the height is held (0.4 and 0.3 mm) nor where it begins and ends to fade (2 and
+    // 4 mm): kinks.
     for (const double depth : {0.05e-3, 0.2e-3, 0.6e-3, 1.5e-3, 2.7e-3, 4.5e-3}) {
       const double force = (law.energy(depth + kStep) - law.energy(depth - kStep)) / (2.0 * kStep);
       const double tangent = (law.force(depth + kStep) - law.force(depth - kStep)) / (2.0 * kStep);

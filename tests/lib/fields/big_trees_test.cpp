@@ -18,8 +18,8 @@ namespace {
 
 const Box3 kRoom{Vec3(-0.2), Vec3(0.2)};
 
-/// Shapes of every kind of knowledge: exact ones, some placed or put together, now and then one of which only
-/// the sign is known.
+/// Shapes of every kind of knowledge: exact ones, some placed or put together, now and then one of
+/// which only the sign is known.
 FieldPtr anyShape(Random& random, std::size_t number, double size) {
   const Vec3 c = random.in(kRoom);
   const double r = size * random.uniform(0.5, 1.5);

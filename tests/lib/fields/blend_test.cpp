@@ -145,7 +145,8 @@ class BandedBall final : public Field {
   double band_;
 };
 
-// Outside the band a value is not a distance: a blend or offset of it would put surfaces where none are.
+// Outside the band a value is not a distance: a blend or offset of it would put surfaces where none
+// are.
 TEST(Bands, MustReachAsFarAsWhatIsMadeOfThem) {
   const FieldPtr grid = place(std::make_shared<BandedBall>(0.004), {Mat3(1.0), Vec3(0.1, 0, 0)});
   EXPECT_NO_THROW((void)smoothUnite({grid, body()}, 0.003));

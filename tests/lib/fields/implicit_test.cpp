@@ -258,7 +258,8 @@ TEST(Metaballs, AreSmoothWhereTheSurfaceTouchesTheBounds) {
     const Box3 bounds = field->bounds();
     Random random(3);
     for (int i = 0; i < 600; ++i) {
-      // Across a face: at the place that is touched, near it, or anywhere on it; and across an edge's planes.
+      // Across a face: at the place that is touched, near it, or anywhere on it; and across an
+      // edge's planes.
       const int axis = i % 3;
       Vec3 p = i < 200   ? kCenter
                : i < 400 ? kCenter + random.in({Vec3(-1e-3), Vec3(1e-3)})

@@ -1,5 +1,5 @@
-// The cells of a region near a point, against the region itself: whatever sides of the near leaves a point is on, it is in
-// a cell if the region has it there and no sheet is in between.
+// The cells of a region near a point, against the region itself: whatever sides of the near leaves
+// a point is on, it is in a cell if the region has it there and no sheet is in between.
 
 #include "palpate/interior/near_cells.h"
 

@@ -1,5 +1,5 @@
-// CSG taken apart into leaves and put together again as regions: what the loop believes of a point must be
-// what the fields' own values say there.
+// CSG taken apart into leaves and put together again as regions: what the loop believes of a point
+// must be what the fields' own values say there.
 
 #include "palpate/interior/partition.h"
 
@@ -200,7 +200,8 @@ TEST(Partition, WideTreesAreNoProblemAndDeepOnesAreRefusedOrRight) {
   EXPECT_EQ(regionAt(Partition(wide), Vec3(0.3, 0, 0)), 1);
   EXPECT_EQ(regionAt(Partition(wide), Vec3(0.32, 0, 0)), 0);
 
-  // Nested in the last operand the stack grows with every level; the point is in the deepest one only.
+  // Nested in the last operand the stack grows with every level; the point is in the deepest one
+  // only.
   const auto nested = [](int levels) {
     FieldPtr field = ball(1.0, 0.01);
     for (int i = 0; i < levels; ++i) field = unite({ball(0.0, 0.01), field});

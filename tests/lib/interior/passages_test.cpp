@@ -22,8 +22,8 @@ Port portOf(Ids from, Ids to) {
   return out;
 }
 
-/// Chambers 1, 2, 3 in a ring behind a door from outside: port 0 is the door, 1, 2, 3 lead on (1 to 2, 2 to 3,
-/// 3 to 1), 4 leads back from 2 to 1. All are counted.
+/// Chambers 1, 2, 3 in a ring behind a door from outside: port 0 is the door, 1, 2, 3 lead on (1 to
+/// 2, 2 to 3, 3 to 1), 4 leads back from 2 to 1. All are counted.
 class Ring : public ::testing::Test {
  protected:
   Ring() {

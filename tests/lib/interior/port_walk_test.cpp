@@ -1,5 +1,5 @@
-// Random walks through random mazes of chambers, rings, valves, sheets and holes, at the level of the port machine,
-// against a machine written from the rules of the scene file's page alone.
+// Random walks through random mazes of chambers, rings, valves, sheets and holes, at the level of
+// the port machine, against a machine written from the rules of the scene file's page alone.
 
 #include <gtest/gtest.h>
 
@@ -36,8 +36,8 @@ struct Told {
 
 /// What the wall in front of the probe is.
 struct Verdict {
-  char what =
-      'w';  ///< w: wall, n: nothing there, a: absent, o: open port, f: wall that gives way to a force
+  char what = 'w';  ///< w: wall, n: nothing there, a: absent, o: open port, f: wall that gives way
+                    ///< to a force
   int port = -1;
   bool inward = false;
   double force = 0.0;

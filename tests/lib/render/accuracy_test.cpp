@@ -1,5 +1,5 @@
-// The constraint renderer against closed forms: where the closest point of the wall is known, the force is
-// K (closest - P), to 1e-6 degree and better.
+// The constraint renderer against closed forms: where the closest point of the wall is known, the
+// force is K (closest - P), to 1e-6 degree and better.
 
 #include <gtest/gtest.h>
 
@@ -46,8 +46,8 @@ TEST(Accuracy, BallConvexAndHollowOfEverySize) {
     for (const bool hollow : {false, true}) {
       // Up to 0.9 R deep on the outside; in the hollow to 20 R.
       for (const double share : {0.02, 0.5, hollow ? 20.0 : 0.9}) {
-        // A tick turns the hand by no more than 0.3 rad seen from the center: beyond that the way round is
-        // not unique.
+        // A tick turns the hand by no more than 0.3 rad seen from the center: beyond that the way
+        // round is not unique.
         const double rho = radius * (hollow ? 1.0 + share : 1.0 - share);
         const double speed = std::min(0.2, 0.3 * rho / Drive::kTick);
         Drive drive(sceneOf(oneLayer(

@@ -1,4 +1,5 @@
-// Apexes from within, and countersinks: not only is the proxy at the tip, the force is the one that it makes.
+// Apexes from within, and countersinks: not only is the proxy at the tip, the force is the one that
+// it makes.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +13,8 @@
 namespace palpate::test {
 namespace {
 
-/// Where a hand stands, beyond the tip, for the tip to be nearest: within the cone of the tip's normals, whose
-/// half angle is 90 degrees minus the cone's own.
+/// Where a hand stands, beyond the tip, for the tip to be nearest: within the cone of the tip's
+/// normals, whose half angle is 90 degrees minus the cone's own.
 Vec3 beyondTip(Random& random, double height, double half_angle, double depth) {
   const double most = 0.95 * (0.5 * std::numbers::pi - half_angle);
   const double lean = random.uniform(0.0, most);

@@ -1,5 +1,5 @@
-// A tick that runs out of its budget: the proxy stays where it may be, never farther from the hand than the tick
-// before left it.
+// A tick that runs out of its budget: the proxy stays where it may be, never farther from the hand
+// than the tick before left it.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,8 @@ struct Tally {
   long left_region = 0;
 };
 
-/// A hand that leaps about the scene and rests in between; what a tick cannot do, the next ones must.
+/// A hand that leaps about the scene and rests in between; what a tick cannot do, the next ones
+/// must.
 void leap(std::uint64_t number, Tally& tally) {
   const RandomScene scene = randomScene(number);
   const ScenePtr compiled = scene.compiled();

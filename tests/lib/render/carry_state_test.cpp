@@ -51,7 +51,8 @@ std::vector<Vec3> thereAndBack() {
 
 TEST(CarriedState, GoesOnAsIfTheEditedSceneHadBeenThereFromTheStart) {
   const ScenePtr before = sceneOf(ballsText("", ""));
-  // What is new comes first, so that every number of a region, leaf, port and material is another one.
+  // What is new comes first, so that every number of a region, leaf, port and material is another
+  // one.
   std::string text = ballsText(
       "  - {name: wart, inside: {box: {center: [-60, 0, 0], size: [4, 4, 4]}}, wall: horn}\n",
       "  - {name: pore, between: [outside, wart]}\n");
@@ -80,7 +81,8 @@ TEST(CarriedState, GoesOnAsIfTheEditedSceneHadBeenThereFromTheStart) {
       const TickResult now = edited.renderer().update({path[i], velocity});
       const TickResult then = wanted.to(path[i]);
       ASSERT_EQ(now.region, then.region) << "edited at " << edit << ", tick " << i;
-      // As states go on but for rounding: 1.5 kN/m of what two ways of meeting a wall may differ by.
+      // As states go on but for rounding: 1.5 kN/m of what two ways of meeting a wall may differ
+      // by.
       ASSERT_TRUE(isNear(now.force, then.force, 1e-8)) << "edited at " << edit << ", tick " << i;
       ASSERT_EQ(now.event_count, then.event_count) << "edited at " << edit << ", tick " << i;
       passed += now.event_count;

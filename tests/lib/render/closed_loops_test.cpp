@@ -99,8 +99,8 @@ TEST(ClosedLoops, OverRandomSolidsGiveNoEnergy) {
     ++loops;
     Lap fine = lapOf(compiled, *start, loop, 2000);
     double given = kInfinity;
-    // The trapezoid's own error falls to a quarter with half the step where the force is smooth; where it has kinks the step is
-    // halved further.
+    // The trapezoid's own error falls to a quarter with half the step where the force is smooth;
+    // where it has kinks the step is halved further.
     for (int steps = 4000; steps <= 16'000 && std::min(given, fine.given) > 1e-9; steps *= 2) {
       const Lap coarse = std::exchange(fine, lapOf(compiled, *start, loop, steps));
       given = (4.0 * fine.given - coarse.given) / 3.0;

@@ -51,7 +51,8 @@ TEST(Composite, IsOffUnlessAsked) {
 
 TEST(Composite, LooksNoFurtherThanItsDepthAndFadesBefore) {
   double last = 1e9;
-  // The plate's top is 8 mm down: of a depth of 8 mm nothing of it is left, and it comes in without a step.
+  // The plate's top is 8 mm down: of a depth of 8 mm nothing of it is left, and it comes in without
+  // a step.
   for (double depth = 60.0; depth > 7.5; depth -= 0.05) {
     const std::string layers = R"(layers:
   - {name: tissue, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: skin}
@@ -87,8 +88,8 @@ struct Loop {
   double stored = 0.0;  ///< [J]
 };
 
-/// Over the lump's middle and its rim, round and round at changing depth. The wall is a ball of `radius` [m] or, 0,
-/// a plane.
+/// Over the lump's middle and its rim, round and round at changing depth. The wall is a ball of
+/// `radius` [m] or, 0, a plane.
 Loop goRound(const ScenePtr& scene, double radius, int ticks) {
   Drive hand(scene);
   Loop loop;
@@ -140,8 +141,8 @@ TEST(Composite, AClosedWayOverTheLumpCostsAndGivesNothing) {
 }
 
 TEST(Composite, AcrossTheRimOfALumpLittleIsLeft) {
-  // Over the rim of a ball the ray grazes it, and the depths of its interfaces have no slope there: nothing
-  // makes up for that part. This test counts it.
+  // Over the rim of a ball the ray grazes it, and the depths of its interfaces have no slope there:
+  // nothing makes up for that part. This test counts it.
   const std::string layers = R"(layers:
   - {name: tissue, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: skin}
   - {name: lump, inside: {sphere: {center: [0, 0, -13], radius: 5}}, wall: knot}
@@ -168,8 +169,8 @@ TEST(Composite, TheRimOfALumpIsNoEdge) {
     step = std::max(step, glm::length(force - last));
     last = force;
   }
-  // The stiffness rises by 270 N/m over 5 mm, at most by 2e5 N/m^2, times half the square of the depth. A sharp rim
-  // would have no bound.
+  // The stiffness rises by 270 N/m over 5 mm, at most by 2e5 N/m^2, times half the square of the
+  // depth. A sharp rim would have no bound.
   EXPECT_LT(sideways, 0.1);
   // 10 um on, less than can be felt (0.04 N).
   EXPECT_LT(step, 0.02);

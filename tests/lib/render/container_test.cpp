@@ -146,7 +146,8 @@ TEST(ContainerRim, TheProxySlidesOverItFromInside) {
     const Vec3 velocity = (0.041 * u - drive.hip()) / Drive::kTick;
     const TickResult& out = drive.to(0.041 * u);
     if (angle < rim - 1e-9) {
-      // The drag fades out with the distance to the mouth, so its size is known only away from there.
+      // The drag fades out with the distance to the mouth, so its size is known only away from
+      // there.
       const double drag = angle < rim - 0.02 ? kBv : 0.0;
       const double slack = angle < rim - 0.02 ? 1e-9 : kBv * glm::length(velocity) + 1e-9;
       ASSERT_TRUE(isNear(out.force, -kK * 1e-3 * u - drag * velocity, slack)) << angle;

@@ -1,4 +1,5 @@
-// How far behind an opening a content fades in: a share of what the scene is made of, never a length of its own.
+// How far behind an opening a content fades in: a share of what the scene is made of, never a
+// length of its own.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +8,8 @@
 namespace palpate::test {
 namespace {
 
-/// [-] Share of the drag that is felt, moving along, `depth` units below the brim of a bowl of 40 units.
+/// [-] Share of the drag that is felt, moving along, `depth` units below the brim of a bowl of 40
+/// units.
 double shareInABowl(const std::string& unit, double meters, double depth) {
   std::string text = containerText();
   text.replace(text.find("mm"), 2, unit);
@@ -30,7 +32,8 @@ TEST(ContentFade, IsTheSameInEveryUnit) {
 }
 
 TEST(ContentFade, AFilmIsFeltInFull) {
-  // A tenth of a millimeter thick, between two balls of 40 mm, open towards the outside: in its middle the drag is full.
+  // A tenth of a millimeter thick, between two balls of 40 mm, open towards the outside: in its
+  // middle the drag is full.
   Drive hand(sceneOf(R"(
 palpate: 1
 length: mm

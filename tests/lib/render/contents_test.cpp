@@ -1,5 +1,5 @@
-// Contents: the lattice of data/scenes against its formula, contents changed while running, and the energy of
-// what is a source of it.
+// Contents: the lattice of data/scenes against its formula, contents changed while running, and the
+// energy of what is a source of it.
 
 #include "palpate/render/contents.h"
 
@@ -97,8 +97,8 @@ TEST(Contents, ALatticeIsConservativeInsideAndCountedWhereItIsNot) {
     v -= 0.25e-6 * p + 0.001 * v;
     p += v;
     const TickResult r = hand.to(p);
-    // Held for a tick, a force that changes is off by half of its change on the mean; where it jumps, within the
-    // tick that crosses the mouth, by up to all of it.
+    // Held for a tick, a force that changes is off by half of its change on the mean; where it
+    // jumps, within the tick that crosses the mouth, by up to all of it.
     const double change = glm::length(r.force - last_force);
     leak += (r.event_count > 0 ? 1.0 : 0.6) * change * glm::length(v);
     crossings += r.event_count;
@@ -124,7 +124,8 @@ layers: [{name: river, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]
 ports: [{name: bank, between: [outside, river]}]
 )"));
   EnergyMeter meter;
-  // With the flow, slower than it, in the river; back in the air. Each round it pushes the hand along.
+  // With the flow, slower than it, in the river; back in the air. Each round it pushes the hand
+  // along.
   for (int round = 0; round < 5; ++round) {
     for (int i = 0; i <= 1000; ++i) {
       const Vec3 p = mm(-20 + 0.04 * i, 0, -5);
@@ -138,7 +139,8 @@ ports: [{name: bank, between: [outside, river]}]
   EXPECT_GT(meter.work(), 0.02);
   const double source = hand.renderer().sourceWork();
   EXPECT_GT(source, meter.work());
-  // In full: 4 N s/m * 0.1 m/s = 0.4 N along 40 mm, five times; of it the first quarter millimeter fades.
+  // In full: 4 N s/m * 0.1 m/s = 0.4 N along 40 mm, five times; of it the first quarter millimeter
+  // fades.
   EXPECT_NEAR(source, 5 * 0.4 * 0.04, 5 * 0.4 * 0.5e-3);
   hand.renderer().reset();
   EXPECT_EQ(hand.renderer().sourceWork(), 0.0);
@@ -212,7 +214,8 @@ ports: [{name: top, between: [outside, jelly]}]
     const double depth = -1e-3 * z;
     const double force = hand.to(mm(0, 0, z)).force.z;
     if (depth < 2e-3) continue;  // pressed, and not sliding yet
-    // The force to cut at the tip, and the friction of each slice of the shaft: 5 N/m + 400 N/m^2 s.
+    // The force to cut at the tip, and the friction of each slice of the shaft: 5 N/m + 400 N/m^2
+    // s.
     EXPECT_NEAR(force, 0.2 + 10.0 * depth + 5.0 * depth + 200.0 * depth * depth, 1e-9);
   }
 }

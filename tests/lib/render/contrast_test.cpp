@@ -1,4 +1,5 @@
-// Stiffness that changes within a short way: felt over a patch that grows with the depth, and told at set-up.
+// Stiffness that changes within a short way: felt over a patch that grows with the depth, and told
+// at set-up.
 
 #include "palpate/render/contrast.h"
 
@@ -40,14 +41,14 @@ ScenePtr sceneWith(const FieldPtr& field, const Parameter& stiffness) {
   layer.inside = std::make_shared<FieldSource>(field);
   layer.wall.material = "wall";
   description.layers = {layer};
-  description.metres_per_unit = 1e-3;
+  description.meters_per_unit = 1e-3;
   return compile(description);
 }
 
 const FieldPtr kFloor = halfSpace(Vec3(0.0), Vec3(0, 0, 1));
 
-// Ten times as stiff from one voxel to the next: the term for the slope alone pushed sideways with 60 N where the wall
-// pushed back with 15 N.
+// Ten times as stiff from one voxel to the next: the term for the slope alone pushed sideways with
+// 60 N where the wall pushed back with 15 N.
 TEST(Contrasts, NeverPushSidewaysAsHardAsTheWallPushesBack) {
   for (const double width : {0.5e-3, 1e-3, 2e-3}) {
     Drive hand(sceneWith(kFloor, step(width)));
@@ -66,7 +67,8 @@ TEST(Contrasts, NeverPushSidewaysAsHardAsTheWallPushesBack) {
       std::printf(
           "  over %.2f mm, %4.1f mm deep: sideways over back %.3f, largest step in 1 um %.3g N\n",
           1e3 * width, 1e3 * depth, most, jump);
-      // Deeper than fourteen times what a contrast is wide, the hand feels single places of the patch; the set-up reports that (below).
+      // Deeper than fourteen times what a contrast is wide, the hand feels single places of the
+      // patch; the set-up reports that (below).
       if (depth <= 14.01 * width) {
         EXPECT_LT(most, 1.0) << width << " " << depth;
       }
@@ -128,14 +130,16 @@ TEST(Contrasts, TheForceIsWhatTheEnergyOverThePatchFallsBy) {
     const Vec3 expected =
         fallOf([&](const Vec3& p) { return energyAt(stiffness, p, contrast); }, hip, kStep);
     for (int axis = 0; axis < 3; ++axis) {
-      // Of the energy, a millijoule, 1e-13 is rounding: over the step 1e-8 N. The wall is met a billionth of a meter off.
+      // Of the energy, a millijoule, 1e-13 is rounding: over the step 1e-8 N. The wall is met a
+      // billionth of a meter off.
       EXPECT_NEAR(force[axis], expected[axis], 1e-5) << axis << " " << hip.z;
     }
   }
 }
 
 TEST(Contrasts, ASharpStepIsFoundBesideALargerGentleOne) {
-  // Within a ball of 50 mm the logarithm rises evenly by 9, and by 0.1 more within 0.2 mm: there it is steepest.
+  // Within a ball of 50 mm the logarithm rises evenly by 9, and by 0.1 more within 0.2 mm: there it
+  // is steepest.
   constexpr double kHalf = 0.05;
   constexpr double kGentle = 9.0 / (2.0 * kHalf);  // [1/m]
   constexpr double kWidth = 0.2e-3;
@@ -155,7 +159,8 @@ TEST(Contrasts, ASharpStepIsFoundBesideALargerGentleOne) {
       contrastsOf(*sceneWith(sphere(Vec3(0.0), kHalf), MaterialMapPtr(map)));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].at.x, kAt, kWidth);
-  // In the step's middle; a secant is nowhere steeper, and over half of the step not less than half as steep.
+  // In the step's middle; a secant is nowhere steeper, and over half of the step not less than half
+  // as steep.
   const double steepest = kGentle + 0.1 * 1.5 / kWidth;
   EXPECT_GE(found[0].length, (1.0 - 1e-6) / steepest);
   EXPECT_LE(found[0].length, 2.0 / steepest);

@@ -1,4 +1,5 @@
-// Which leaves bend outward all over: all principal minors of the Hessian are asked, not the determinant alone.
+// Which leaves bend outward all over: all principal minors of the Hessian are asked, not the
+// determinant alone.
 
 #include "render/convex_leaf.h"
 

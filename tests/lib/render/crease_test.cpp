@@ -1,5 +1,6 @@
-// Creases inside one leaf that tells its contact one gradient at a time: a black box, a mesh, a baked edge.
-// The proxy must rest where it would if the leaves were shown, and the force be the same.
+// Creases inside one leaf that tells its contact one gradient at a time: a black box, a mesh, a
+// baked edge. The proxy must rest where it would if the leaves were shown, and the force be the
+// same.
 
 #include <gtest/gtest.h>
 
@@ -127,7 +128,8 @@ std::vector<Case> cases() {
 TEST(Crease, ABlackBoxIsFeltAsIfItsLeavesWereShown) {
   for (const Case& each : cases()) {
     SCOPED_TRACE(each.name);
-    // Along a circle's crease the hidden wall is known by its bend at one place: 3.3e-4 was measured, 0.02 degree.
+    // Along a circle's crease the hidden wall is known by its bend at one place: 3.3e-4 was
+    // measured, 0.02 degree.
     const double most = each.name == std::string_view("ball and plane") ? 5e-4 : kCrease;
     Drive drive(sceneOfLeaf(each.field, each.feature));
     (void)drive.to(each.from);

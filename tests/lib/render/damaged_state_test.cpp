@@ -22,7 +22,8 @@ RendererState damaged(const RendererState& state, std::mt19937& random) {
   std::memcpy(bytes.data(), &state, sizeof state);
   const unsigned count = 1 + random() % 4;
   for (unsigned i = 0; i < count; ++i) {
-    // Most of what stands for a part of the scene is at the front, and in the last part behind the needle's.
+    // Most of what stands for a part of the scene is at the front, and in the last part behind the
+    // needle's.
     const std::size_t at = random() % (random() % 2 == 0 ? 600 : bytes.size());
     unsigned char& byte = bytes[at];
     const unsigned how = random() % 4;

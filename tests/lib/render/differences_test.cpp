@@ -1,5 +1,5 @@
-// Where the paper's renderer and the constraint renderer differ on the container, and why: a list, kept
-// by tests, not hidden.
+// Where the paper's renderer and the constraint renderer differ on the container, and why: a list,
+// kept by tests, not hidden.
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 namespace palpate::test {
 namespace {
 
-/// What a tick felt like: region (o, l), then 0 for nothing, + pushed away from the ball's center, - towards
-/// it, ~ anything else (drag). Runs of the same are written once.
+/// What a tick felt like: region (o, l), then 0 for nothing, + pushed away from the ball's center,
+/// - towards it, ~ anything else (drag). Runs of the same are written once.
 std::string classesOf(RendererKind kind, const std::vector<Vec3>& path, const std::string& scene) {
   Drive drive(sceneOf(scene), kind);
   std::string all;
@@ -87,7 +87,8 @@ TEST(Differences, TickClassesOnTheContainer) {
 }
 
 TEST(Differences, AJumpOverRow2MissesThePaperPort) {
-  // From (out, out) to (in, in) in one tick: Table I saw no row 2, the proxy went through the mouth.
+  // From (out, out) to (in, in) in one tick: Table I saw no row 2, the proxy went through the
+  // mouth.
   Drive paper(sceneOf(containerText()), RendererKind::kPaper);
   Drive constraint(sceneOf(containerText()));
   for (Drive* drive : {&paper, &constraint}) {

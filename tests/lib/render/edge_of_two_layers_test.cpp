@@ -1,5 +1,5 @@
-// Where two regions that lead freely into each other end at walls: at an edge that is made of two layers the hand draws
-// the proxy into each region from the other. It crosses once, and goes on.
+// Where two regions that lead freely into each other end at walls: at an edge that is made of two
+// layers the hand draws the proxy into each region from the other. It crosses once, and goes on.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 namespace palpate::test {
 namespace {
 
-/// A solid wedge with its edge along y: below z = 0 and below a plane that falls by `angle` [rad] beyond the edge, where
-/// `pit` begins. Between pit and outside there is `opening`.
+/// A solid wedge with its edge along y: below z = 0 and below a plane that falls by `angle` [rad]
+/// beyond the edge, where `pit` begins. Between pit and outside there is `opening`.
 ScenePtr wedge(double angle, const std::string& opening) {
   const std::string normal =
       "[" + std::to_string(-std::sin(angle)) + ", 0, " + std::to_string(-std::cos(angle)) + "]";
@@ -73,7 +73,8 @@ TEST(EdgeOfTwoLayers, IsPassedThroughAnOpenPortOnce) {
   }
 }
 
-// It begins outside its region, at a corner of boxes, a cone and a half space; felt nothing there, for good.
+// It begins outside its region, at a corner of boxes, a cone and a half space; felt nothing there,
+// for good.
 TEST(EdgeOfTwoLayers, AStartAtACornerFindsItsPlace) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1

@@ -1,5 +1,5 @@
-// Every key of a wall's and a content's material: over closed ways of the hand, at random and looked for, it gives
-// nothing beyond counted sources.
+// Every key of a wall's and a content's material: over closed ways of the hand, at random and
+// looked for, it gives nothing beyond counted sources.
 
 #include <gtest/gtest.h>
 
@@ -121,7 +121,8 @@ TEST_P(EnergyGates, TheKeyGivesNoEnergyThere) {
     EnergyLoop loop = randomLoop(random, place.center, 0.05e-3, 0.7e-3);
     loop = worstLoop(scene, place.start, loop, 0.3e-3, tries, random);
     EnergyGiven given = energyGiven(scene, place.start, loop);
-    // Two numbers of steps may be off by the same, and friction may not have found its loop by the second lap.
+    // Two numbers of steps may be off by the same, and friction may not have found its loop by the
+    // second lap.
     if (given.work > 1e-9 + given.change) given = energyGivenAtLast(scene, place.start, loop);
     if (given.work - given.change > most) worst = given;
     most = std::max(most, given.work - given.change);
@@ -139,8 +140,8 @@ std::string nameOf(const ::testing::TestParamInfo<std::tuple<std::size_t, std::s
   return out;
 }
 
-/// A layer that dips below a wall under any angle, or a ball in it: as far as the crease with it, and beyond, the wall is as
-/// stiff as both.
+/// A layer that dips below a wall under any angle, or a ball in it: as far as the crease with it,
+/// and beyond, the wall is as stiff as both.
 TEST(EnergyGatesOfComposite, WallsAtACreaseWithWhatLiesBehindThemGiveNoEnergy) {
   const int scenes = std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 300 : kSanitized ? 2 : 12;
   for (int i = 0; i < scenes; ++i) {

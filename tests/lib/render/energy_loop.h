@@ -43,17 +43,19 @@ class LoopHand {
     }
   }
 
-  /// Once round; steps in which the force changes by more than kStepped are halved up to `halvings` times, so that where
-  /// in the step it does counts for nothing.
+  /// Once round; steps in which the force changes by more than kStepped are halved up to `halvings`
+  /// times, so that where in the step it does counts for nothing.
   void lap(int halvings = 0) {
     for (int i = 1; i <= steps_; ++i) {
       goTo(loop_.at(i == steps_ ? 0.0 : static_cast<double>(i) / steps_), dt_, halvings);
     }
   }
 
-  /// [J] done on the hand since it was at `start`, by the trapezium rule, beyond counted sources ...
+  /// [J] done on the hand since it was at `start`, by the trapezium rule, beyond counted sources
+  /// ...
   [[nodiscard]] double work() const { return work_ - renderer_->sourceWork(); }
-  /// [J] ... and what tissue about a needle holds, which the hand gave to it: it gives that back over many laps.
+  /// [J] ... and what tissue about a needle holds, which the hand gave to it: it gives that back
+  /// over many laps.
   [[nodiscard]] double inTissue() const {
     return TickState::of(renderer_->state()).needle.stored();
   }
@@ -88,7 +90,8 @@ class LoopHand {
 /// Where a force steps within a step of the hand: so short are the last ones about it.
 inline constexpr int kHalvings = 20;
 
-/// [J] Done on the hand in the lap after `before` others, beyond counted sources. A lap takes `lap` [s].
+/// [J] Done on the hand in the lap after `before` others, beyond counted sources. A lap takes `lap`
+/// [s].
 inline double workOfLap(const ScenePtr& scene, const Vec3& start, const EnergyLoop& loop, int steps,
                         double lap = 1.0, int before = 1) {
   LoopHand hand(scene, start, loop, steps, lap);
@@ -116,8 +119,9 @@ struct EnergyGiven {
   double moved = 0.0;   // [J] of half the absolute work of the lap: what went to and fro
 };
 
-/// The same, with the step halved until that changes it by less than 1e-10 J, or the steps are as many as `most`. Two laps of
-/// coarse steps may agree by chance: what seems to be given is looked at to the end.
+/// The same, with the step halved until that changes it by less than 1e-10 J, or the steps are as
+/// many as `most`. Two laps of coarse steps may agree by chance: what seems to be given is looked
+/// at to the end.
 inline EnergyGiven energyGiven(const ScenePtr& scene, const Vec3& start, const EnergyLoop& loop,
                                int most = 64'000, double lap = 1.0) {
   EnergyGiven out;
@@ -132,10 +136,11 @@ inline EnergyGiven energyGiven(const ScenePtr& scene, const Vec3& start, const E
   return out;
 }
 
-/// The same of the eighth lap, in short steps, and where the force steps in the shortest: by then friction holds the proxy
-/// at the same places in every lap, so that what it has stored at a lap's end is what it had stored at its begin. Tissue
-/// about a needle is cut or slips a little in every lap and gives back less and less of what the hand gave to it on its way
-/// in: what it holds less at the lap's end is the hand's own.
+/// The same of the eighth lap, in short steps, and where the force steps in the shortest: by then
+/// friction holds the proxy at the same places in every lap, so that what it has stored at a lap's
+/// end is what it had stored at its begin. Tissue about a needle is cut or slips a little in every
+/// lap and gives back less and less of what the hand gave to it on its way in: what it holds less
+/// at the lap's end is the hand's own.
 inline EnergyGiven energyGivenAtLast(const ScenePtr& scene, const Vec3& start,
                                      const EnergyLoop& loop) {
   const auto work = [&](int steps) {

@@ -14,7 +14,8 @@ struct Thing {
   double x, y;  ///< [mm] where it is pressed from above
 };
 
-// [m] Height at which `layer` begins, below (x, y) from above; on a line that meets it from outside.
+// [m] Height at which `layer` begins, below (x, y) from above; on a line that meets it from
+// outside.
 double topOf(const Scene& scene, const Thing& thing) {
   const RegionId region = scene.regionNamed(thing.layer);
   double z = 70.0;
@@ -58,8 +59,8 @@ TEST(ExampleScenes, EveryThingOnTheTableIsFelt) {
   }
 }
 
-// The gyroid parts the block into two mazes: the proxy goes deep into one, and never into foam or, as
-// long as it stays in the block, into the other.
+// The gyroid parts the block into two mazes: the proxy goes deep into one, and never into foam or,
+// as long as it stays in the block, into the other.
 TEST(ExampleScenes, TheSpongesMazesAreApart) {
   const ScenePtr scene = sceneNamed("sponge");
   const FieldPtr foam = scene->regions()[scene->regionNamed("sponge")].field;

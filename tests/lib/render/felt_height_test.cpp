@@ -86,7 +86,8 @@ TEST(SmoothedField, GradientIsThatOfTheValueAndHasNoStep) {
         const double slope =
             (smoothed.at(*box, radius, p + by).value - smoothed.at(*box, radius, p - by).value) /
             2e-8;
-        // Over 0.02 um the slope of an edge of 90 degrees changes by 2e-5 of what the radius turns it by.
+        // Over 0.02 um the slope of an edge of 90 degrees changes by 2e-5 of what the radius turns
+        // it by.
         ASSERT_NEAR(here.gradient[axis], slope, 2e-5) << i;
       }
     }
@@ -120,7 +121,8 @@ void expectNothingGiven(const char* what, const ScenePtr& scene, const Vec3& sta
                         const EnergyLoop& loop, double most = 1e-9) {
   const EnergyGiven given = energyGiven(scene, start, loop);
   std::printf("  %-34s %10.3g J (last halving %.2g J)\n", what, given.work, given.change);
-  // Where the proxy comes to a crease what varies along the walls has a corner: the sum converges with the step there.
+  // Where the proxy comes to a crease what varies along the walls has a corner: the sum converges
+  // with the step there.
   EXPECT_LE(given.work, most + given.change) << what;
 }
 
@@ -181,7 +183,8 @@ TEST(TexturedWalls, GiveNoEnergy) {
 }
 
 TEST(TexturedWalls, PushAlongTheWallAsTheBumpsSlope) {
-  // 2 mm deep, at x = 0 of sin(2 pi x / 4 mm): the bump rises by A k / 3 and is felt over 2 mm of depth.
+  // 2 mm deep, at x = 0 of sin(2 pi x / 4 mm): the bump rises by A k / 3 and is felt over 2 mm of
+  // depth.
   Drive hand(sceneOf(solid("stiffness: 1000 N/m, texture: {amplitude: 0.1 mm, wavelength: 4}",
                            "{half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}")));
   (void)hand.to(mm(0, 1, 1));

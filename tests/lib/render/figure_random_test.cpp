@@ -1,5 +1,6 @@
-// Random ticks in the scenes of the source paper's figures: whatever the hand does, the renderer makes the
-// crossings of its way in their order, none that the table of ports does not have, and goes through no wall.
+// Random ticks in the scenes of the source paper's figures: whatever the hand does, the renderer
+// makes the crossings of its way in their order, none that the table of ports does not have, and
+// goes through no wall.
 
 #include <gtest/gtest.h>
 
@@ -16,10 +17,12 @@ namespace {
 class RandomFigure : public testing::TestWithParam<Figure> {};
 INSTANTIATE_TEST_SUITE_P(Figures, RandomFigure, testing::ValuesIn(figures()), figureName);
 
-/// Within 2e-5 mm of p [mm] there is a place of this region: a proxy at a wall is on the side it is on.
+/// Within 2e-5 mm of p [mm] there is a place of this region: a proxy at a wall is on the side it is
+/// on.
 bool isAtRegion(const Figure& figure, int region, const Vec3& p) {
   if (figure.region(p) == region) return true;
-  // The felt heart and the polynomial differ by up to a hundredth of the half width at tip and dimple.
+  // The felt heart and the polynomial differ by up to a hundredth of the half width at tip and
+  // dimple.
   const double reach = figure.name == "heart" ? 0.3 : 2e-5;
   for (int i = 0; i < 27; ++i) {
     const Vec3 u(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
@@ -28,8 +31,8 @@ bool isAtRegion(const Figure& figure, int region, const Vec3& p) {
   return false;
 }
 
-/// Places just behind the crossings told, where these lie on the straight way from a to b [mm]: a way that cuts a corner
-/// by micrometers is seen there, and nowhere else. (0 at a, 1 at b)
+/// Places just behind the crossings told, where these lie on the straight way from a to b [mm]: a
+/// way that cuts a corner by micrometers is seen there, and nowhere else. (0 at a, 1 at b)
 std::vector<double> behind(std::span<const PortCrossing> told, const Vec3& a, const Vec3& b) {
   std::vector<double> places;
   const Vec3 way = b - a;
@@ -112,9 +115,10 @@ TEST_P(RandomFigure, CrossesAsItsTableSaysInPathOrderAndThroughNoWall) {
   }
 }
 
-/// A hand that trembles by 0.1 mm about `point` [mm], after it came there from `free` by way of `through`:
-/// changes of region beyond those that its own straight ways explain, or its ways through z = `level` [mm], where a
-/// hand that presses on the glass moves the proxy through the liquid's surface.
+/// A hand that trembles by 0.1 mm about `point` [mm], after it came there from `free` by way of
+/// `through`: changes of region beyond those that its own straight ways explain, or its ways
+/// through z = `level` [mm], where a hand that presses on the glass moves the proxy through the
+/// liquid's surface.
 int chatter(const Figure& figure, const ScenePtr& scene, const std::vector<Vec3>& through,
             const Vec3& point, double level, std::uint64_t seed) {
   Drive drive(scene);
@@ -164,7 +168,8 @@ TEST(FigureRims, NothingChattersAtThem) {
       }
     }
   };
-  // The mouths of the tubes, and where the liquid's surface meets the glass, and the glass's own rim.
+  // The mouths of the tubes, and where the liquid's surface meets the glass, and the glass's own
+  // rim.
   try_all(figures()[1], {{-60, 0, 0}, {-35, 0, 0}}, {{-40, 0, 25}}, -45, 15, false);
   try_all(figures()[2], {{-60, 0, 0}, {-30, 0, 0}}, {{-35, 0, 25}}, -40, 12, false);
   try_all(figures()[3], {{0, 0, 60}, {0, 0, 25}}, {{0, 0, 60}, {0, 0, 22}}, 20, 29, true, 20);

@@ -1,5 +1,5 @@
-// The scenes of the source paper's figures against closed forms: force and sequence of states, from every
-// side and in every wrong order.
+// The scenes of the source paper's figures against closed forms: force and sequence of states, from
+// every side and in every wrong order.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,8 @@ Vec3 directionOf(int i, int count) {
   return {r * std::cos(around), r * std::sin(around), z};
 }
 
-/// Nowhere near the proxy, in its region, is it closer to the hand: the proxy minimizes the distance.
+/// Nowhere near the proxy, in its region, is it closer to the hand: the proxy minimizes the
+/// distance.
 void expectNoCloserPlace(const Figure& figure, const Drive& drive, Random& random) {
   const Vec3 proxy = 1e3 * drive.last().proxy;
   const Vec3 hip = 1e3 * drive.hip();
@@ -40,8 +41,9 @@ void expectNoCloserPlace(const Figure& figure, const Drive& drive, Random& rando
   }
 }
 
-// Straight in and through from all directions, onto several targets: free ways are free, with the ports in the
-// order of the path, and where a wall is in the way the force is its spring's and the proxy the closest point.
+// Straight in and through from all directions, onto several targets: free ways are free, with the
+// ports in the order of the path, and where a wall is in the way the force is its spring's and the
+// proxy the closest point.
 TEST_P(EveryFigure, FromEverySideTheTraceIsTheClosedForms) {
   const Figure& figure = GetParam();
   const ScenePtr scene = figure.springs();

@@ -1,6 +1,7 @@
 #pragma once
-// The scenes of the source paper's figures, told a second time: their regions by formulas of their own, their
-// ports by a machine of its own, to judge the renderer's trace by. Lengths in mm, as in the scene files.
+// The scenes of the source paper's figures, told a second time: their regions by formulas of their
+// own, their ports by a machine of its own, to judge the renderer's trace by. Lengths in mm, as in
+// the scene files.
 
 #include <algorithm>
 #include <cmath>
@@ -37,12 +38,13 @@ struct Figure {
   std::string name;
   /// Region at a point [mm], 0 is outside.
   int (*region)(const Vec3& p);
-  /// Name of the port that lets from region a to b at a point of the wall [mm]; "" where no wall is; nothing
-  /// where it is closed.
+  /// Name of the port that lets from region a to b at a point of the wall [mm]; "" where no wall
+  /// is; nothing where it is closed.
   std::optional<std::string> (*way)(int a, int b, const Vec3& p, const PassedNames& passed);
 
   [[nodiscard]] ScenePtr scene() const { return sceneNamed(name); }
-  /// The same without friction, damping and contents, and all walls of 1000 N/m: forces are springs.
+  /// The same without friction, damping and contents, and all walls of 1000 N/m: forces are
+  /// springs.
   [[nodiscard]] ScenePtr springs() const {
     SceneDescription description =
         readScene(test::sourceFolder() + "/data/scenes/" + name + ".yaml");
@@ -197,7 +199,8 @@ inline std::vector<Crossing> crossingsOf(const Figure& figure, const Vec3& a, co
   return all;
 }
 
-/// What a free straight way comes to: the ports passed and the last region, or nothing if a wall is in it.
+/// What a free straight way comes to: the ports passed and the last region, or nothing if a wall is
+/// in it.
 struct Passage {
   std::string events;
   int region = 0;

@@ -1,5 +1,5 @@
-// Curved walls against the oracle: the proxy is where |x - P| is smallest, to 1e-6 of the depth, outside and
-// in hollows, whatever the metric of the field.
+// Curved walls against the oracle: the proxy is where |x - P| is smallest, to 1e-6 of the depth,
+// outside and in hollows, whatever the metric of the field.
 
 #include <gtest/gtest.h>
 
@@ -90,8 +90,8 @@ TEST(HardCurved, Capsule) {
 }
 
 TEST(HardCurved, RoundedBoxWithinByClosedForm) {
-  // Beyond a rounded room the nearest point is unique: from the core box outward by the rounding. Its
-  // curvature jumps where faces, edges and corners meet.
+  // Beyond a rounded room the nearest point is unique: from the core box outward by the rounding.
+  // Its curvature jumps where faces, edges and corners meet.
   const double r = 0.005;
   const Vec3 core = mm(25, 15, 5);
   Drive drive(sceneOfSolid(roundedBox(Vec3(0.0), mm(60, 40, 20), r), true));

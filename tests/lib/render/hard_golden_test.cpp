@@ -1,4 +1,5 @@
-// Whatever the scene: two runs of a long mixed trajectory agree bit for bit, and no tick allocates, locks or throws.
+// Whatever the scene: two runs of a long mixed trajectory agree bit for bit, and no tick allocates,
+// locks or throws.
 
 #include <gtest/gtest.h>
 

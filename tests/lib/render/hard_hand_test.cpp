@@ -1,5 +1,5 @@
-// A hand in the loop: no limit cycle that a perfect renderer would not have, and the slide off a ball that
-// even a perfect renderer has.
+// A hand in the loop: no limit cycle that a perfect renderer would not have, and the slide off a
+// ball that even a perfect renderer has.
 
 #include <gtest/gtest.h>
 
@@ -141,7 +141,8 @@ TEST(HardHand, NoLimitCycleThatAPerfectRendererHasNot) {
 }
 
 TEST(HardHand, InDeepHollowsThePaperSwingsAndTheConstraintRendererRests) {
-  // A light hand pressed `share` R beyond the wall of a hollow of 5 mm, a millimeter aside of its middle.
+  // A light hand pressed `share` R beyond the wall of a hollow of 5 mm, a millimeter aside of its
+  // middle.
   const double radius = 0.005;
   SimulatedHand hand;
   hand.mass = 0.02;
@@ -177,8 +178,8 @@ TEST(HardHand, InDeepHollowsThePaperSwingsAndTheConstraintRendererRests) {
 }
 
 TEST(HardHand, SlidesOffABallBelowTheLateralStiffnessOfTheContact) {
-  // Pressed d deep with F = K d, a ball of R pushes sideways by F / (R - d) a meter: a hand softer than that
-  // slides off, whatever the renderer, and a stiffer one stays.
+  // Pressed d deep with F = K d, a ball of R pushes sideways by F / (R - d) a meter: a hand softer
+  // than that slides off, whatever the renderer, and a stiffer one stays.
   const double radius = 0.02;
   const double depth = 2e-3;
   const double force = kDefaultK * depth;
@@ -206,7 +207,8 @@ TEST(HardHand, SlidesOffABallBelowTheLateralStiffnessOfTheContact) {
       EXPECT_LT(off, 1e-4) << "stays";
       EXPECT_NEAR(felt.end.z, radius - depth, 1e-5);
     } else {
-      // The commanded point has passed the center: the probe comes to rest on the far side, still touching.
+      // The commanded point has passed the center: the probe comes to rest on the far side, still
+      // touching.
       EXPECT_LT(felt.end.z, -0.5 * radius) << "slides off";
       EXPECT_TRUE(drive.last().contact);
     }

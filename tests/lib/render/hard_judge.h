@@ -1,5 +1,6 @@
 #pragma once
-// What the hard cases share: scenes of one solid, and a judge that compares a drive with the oracle.
+// What the hard cases share: scenes of one solid, and a judge that compares a drive with the
+// oracle.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,8 @@ namespace palpate::test {
 constexpr double kDegree = std::numbers::pi / 180.0;  // [rad]
 constexpr double kDefaultK = 1000.0;                  // [N/m] of a wall whose layer names none
 
-/// One layer, `solid`, made of `field`, with the default wall; the hand is held outside or within it.
+/// One layer, `solid`, made of `field`, with the default wall; the hand is held outside or within
+/// it.
 inline ScenePtr sceneOfSolid(FieldPtr field, bool from_within = false, Material wall = {}) {
   SceneDescription description;
   LayerDescription layer;
@@ -36,7 +38,8 @@ inline oracle::FeasibleSet heldBy(const FieldPtr& field, bool from_within) {
   return from_within ? oracle::FeasibleSet::inside(field) : oracle::FeasibleSet::outside(field);
 }
 
-/// Drives a renderer and runs the oracle beside it, from the renderer's own proxy of the tick before.
+/// Drives a renderer and runs the oracle beside it, from the renderer's own proxy of the tick
+/// before.
 class Judge {
  public:
   Judge(ScenePtr scene, oracle::FeasibleSet set, double stiffness = kDefaultK)
@@ -50,10 +53,11 @@ class Judge {
   /// The oracle's step h [m]; near an edge h and h / 10 must be shorter than the way to it.
   void stepOracleBy(double step) { oracle_.step = step; }
 
-  /// Only there is the proxy compared with the oracle's: near a medial axis, beyond 0.9 of the reach, the
-  /// minimum is too flat for 1e-6. Finite and allowed it must be everywhere.
+  /// Only there is the proxy compared with the oracle's: near a medial axis, beyond 0.9 of the
+  /// reach, the minimum is too flat for 1e-6. Finite and allowed it must be everywhere.
   void onlyWhere(std::function<bool(const Vec3&)> judged) { judged_ = std::move(judged); }
-  /// Grants `times` as much distance to the walls: in a sharp groove a corner is that much further off.
+  /// Grants `times` as much distance to the walls: in a sharp groove a corner is that much further
+  /// off.
   void grant(double times) { wall_slack_ *= times; }
 
   /// To where the hand begins; not judged.
@@ -62,8 +66,9 @@ class Judge {
     (void)drive_.to(hip);
   }
 
-  /// One tick, judged: |F / K - (z - P)| and |x - z| at most `tolerance` of |z - P|, and x allowed. Being on
-  /// a surface means within a billionth of the feature size of its leaf, so that much is granted to x.
+  /// One tick, judged: |F / K - (z - P)| and |x - z| at most `tolerance` of |z - P|, and x allowed.
+  /// Being on a surface means within a billionth of the feature size of its leaf, so that much is
+  /// granted to x.
   void to(const Vec3& hip, double tolerance) {
     const Vec3 previous = drive_.last().proxy;
     oracle::OracleResult oracle = oracle::solveOracle(set_, previous, hip, oracle_);

@@ -1,5 +1,5 @@
-// Deep pushes, jumps across the object, broken positions: the force is finite and capped, the proxy goes where
-// the oracle's goes, and contact is as before afterwards.
+// Deep pushes, jumps across the object, broken positions: the force is finite and capped, the proxy
+// goes where the oracle's goes, and contact is as before afterwards.
 
 #include <gtest/gtest.h>
 
@@ -77,7 +77,8 @@ TEST(HardJumps, AcrossTheObjectAsTheOracleJumps) {
       const Vec3 hip = random.in(around);
       const auto oracle =
           oracle::solveOracle(heldBy(solid.field, false), judge.drive().last().proxy, hip);
-      // The first tick after the gap, and a few at rest: what one tick's budget leaves, the next ones do.
+      // The first tick after the gap, and a few at rest: what one tick's budget leaves, the next
+      // ones do.
       const Vec3 first = judge.drive().to(hip).proxy;
       ASSERT_GE(solid.field->value(first), -1e-9) << i;
       for (int k = 0; k < 5; ++k) (void)judge.drive().to(hip);
@@ -116,7 +117,8 @@ TEST(HardJumps, ForceIsCappedWhateverComes) {
 }
 
 TEST(HardJumps, ContactIsAsBeforeAfterABadDevice) {
-  // NaN, infinity and jumps far away in the middle of a press; then the same press again, from free space.
+  // NaN, infinity and jumps far away in the middle of a press; then the same press again, from free
+  // space.
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Vec3> bad{Vec3(nan),     Vec3(kInfinity, 0, 0), Vec3(0, -kInfinity, 0),
                               Vec3(1e308),   Vec3(9e3, -9e3, 9e3),  Vec3(0.0),
@@ -140,7 +142,8 @@ TEST(HardJumps, ContactIsAsBeforeAfterABadDevice) {
         const TickResult out = drive.renderer().update({p, velocity});
         ASSERT_TRUE(isFinite(out.force) && isFinite(out.proxy));
       }
-      // A jump may have led to a flat face on the far side, which holds the hand there: it comes back beside it.
+      // A jump may have led to a flat face on the far side, which holds the hand there: it comes
+      // back beside it.
       for (const Vec3& stop : {mm(300, 0, -300), mm(300, 0, 300), solid.free}) {
         for (int i = 0; i < 3; ++i) (void)drive.to(stop);
         EXPECT_EQ(drive.last().force, Vec3(0.0)) << Judge::text(p);

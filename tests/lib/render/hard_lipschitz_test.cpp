@@ -1,5 +1,5 @@
-// A field that lies about its Lipschitz bound: the contract suite says so, and a renderer that was led through
-// its wall by the lie finds back.
+// A field that lies about its Lipschitz bound: the contract suite says so, and a renderer that was
+// led through its wall by the lie finds back.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// What the source paper's algorithm does wrong where the constraint renderer does not: it drifts, swings in
-// hollows; and what it does right: the crossing point of its figure 2.1.
+// What the source paper's algorithm does wrong where the constraint renderer does not: it drifts,
+// swings in hollows; and what it does right: the crossing point of its figure 2.1.
 
 #include <gtest/gtest.h>
 
@@ -37,8 +37,8 @@ TEST(HardPaper, DriftsOnABallTheMoreTheDeeper) {
   }
 }
 
-/// Largest and smallest magnitude of the force over a stroke at constant depth around a hollow of 5 mm,
-/// K = 3000 N/m, `share` R deep.
+/// Largest and smallest magnitude of the force over a stroke at constant depth around a hollow of 5
+/// mm, K = 3000 N/m, `share` R deep.
 std::pair<double, double> forcesInHollow(RendererKind kind, double share) {
   const double radius = 0.005;
   const double rho = radius * (1.0 + share);
@@ -70,8 +70,8 @@ TEST(HardPaper, InAHollowItsForceVanishesAlongAStroke) {
 }
 
 TEST(HardPaper, Figure21TheCrossingPointNotTheClosest) {
-  // A convex surface met far off its normal: the hand goes along x through a ball, 30 mm above its center.
-  // The closest point lies ahead of the hand (60 degrees up); the path came in at the side.
+  // A convex surface met far off its normal: the hand goes along x through a ball, 30 mm above its
+  // center. The closest point lies ahead of the hand (60 degrees up); the path came in at the side.
   const double radius = 0.05;
   const Vec3 from = mm(-60, 30, 0);
   const Vec3 to = mm(-12, 30, 0);
@@ -82,16 +82,18 @@ TEST(HardPaper, Figure21TheCrossingPointNotTheClosest) {
   Drive paper(sceneOfSolid(sphere(Vec3(0.0), radius)), RendererKind::kPaper);
   (void)paper.to(from);
   EXPECT_TRUE(isNear(paper.to(to).proxy, crossing, 2e-6));
-  // ... and so does a rule that forgets the path not: the constraint renderer goes through it, on the side
-  // where the hand came in, and slides on from there to the one nearest point of this convex surface.
+  // ... and so does a rule that forgets the path not: the constraint renderer goes through it, on
+  // the side where the hand came in, and slides on from there to the one nearest point of this
+  // convex surface.
   Drive constraint(sceneOfSolid(sphere(Vec3(0.0), radius)));
   (void)constraint.to(from);
   EXPECT_TRUE(isNear(constraint.to(to).proxy, closest, 1e-9));
 }
 
 TEST(HardPaper, Figure21WhereTheClosestPointIsWrong) {
-  // The case the figure warns of: a flat body entered through its wide face, so deep that the far face is
-  // the closest. The path decides for both renderers; the closest point would push the hand out behind.
+  // The case the figure warns of: a flat body entered through its wide face, so deep that the far
+  // face is the closest. The path decides for both renderers; the closest point would push the hand
+  // out behind.
   const FieldPtr plate = box(Vec3(0.0), mm(200, 200, 20));
   const Vec3 from = mm(0, 0, 15);
   const Vec3 to = mm(4, 0, -6);

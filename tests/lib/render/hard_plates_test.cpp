@@ -1,4 +1,5 @@
-// Nothing is passed through at any speed: thin plates and sheets, obliquely, at every phase of the tick.
+// Nothing is passed through at any speed: thin plates and sheets, obliquely, at every phase of the
+// tick.
 
 #include <gtest/gtest.h>
 
@@ -22,8 +23,8 @@ ScenePtr sheetScene() {
   return compile(description);
 }
 
-/// Counts the runs in which the proxy came out on the other side of z = 0 in the frame `pose`. The hand comes
-/// from above (or below), `slant` degrees off the normal, and goes on to 60 mm beyond.
+/// Counts the runs in which the proxy came out on the other side of z = 0 in the frame `pose`. The
+/// hand comes from above (or below), `slant` degrees off the normal, and goes on to 60 mm beyond.
 int tunnelled(const ScenePtr& scene, const Pose& pose, double half, double speed, double slant,
               bool from_below) {
   int passed = 0;

@@ -1,4 +1,5 @@
-// The container: whatever the hand does it never goes through the glass, and at the rim nothing chatters.
+// The container: whatever the hand does it never goes through the glass, and at the rim nothing
+// chatters.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,8 @@ bool crossesMouth(const Vec3& a, const Vec3& b) {
 }
 
 TEST(HardRim, FreeTicksChangeRegionOnlyThroughTheMouth) {
-  // Where the proxy is free before and after a tick, it went straight: an independent account of crossings.
+  // Where the proxy is free before and after a tick, it went straight: an independent account of
+  // crossings.
   const ScenePtr scene = sceneOf(containerText());
   Drive drive(scene);
   Hand hand(79, scene->bounds().grownBy(0.02));
@@ -63,8 +65,8 @@ TEST(HardRim, FreeTicksChangeRegionOnlyThroughTheMouth) {
   EXPECT_GT(judged, 100);
 }
 
-/// Events of a hand that trembles by up to 0.1 mm about a point near the rim, and true crossings: ticks in which
-/// the hand itself goes through the mouth, or over the sphere below the brim.
+/// Events of a hand that trembles by up to 0.1 mm about a point near the rim, and true crossings:
+/// ticks in which the hand itself goes through the mouth, or over the sphere below the brim.
 struct Chatter {
   int events = 0;
   int true_crossings = 0;
@@ -113,7 +115,8 @@ TEST(HardRim, PressingAtItFromBothSidesDoesNotChatter) {
 }
 
 TEST(HardRim, SlidingAlongItFromBothSidesDoesNotChatter) {
-  // Around the rim, weaving across it: one event at most for every time the hand's way leads over the edge.
+  // Around the rim, weaving across it: one event at most for every time the hand's way leads over
+  // the edge.
   const double rim = std::asin(kBrim / kRadius);
   for (const bool inside : {false, true}) {
     for (const double depth : {0.3e-3, 1e-3, 4e-3}) {
@@ -135,7 +138,8 @@ TEST(HardRim, SlidingAlongItFromBothSidesDoesNotChatter) {
                                   std::cos(rim + off) * std::sin(around), std::sin(rim + off)) +
                        random.uniform(0.0, 20e-6) * random.direction();
         events += drive.to(p).event_count;
-        // Over the edge: by the angle at which the rim stands, and through the mouth where the hand is in it.
+        // Over the edge: by the angle at which the rim stands, and through the mouth where the hand
+        // is in it.
         if (off * was < 0.0) ++over;
         if (i > 0 && crossesMouth(last, p)) ++over;
         was = off;

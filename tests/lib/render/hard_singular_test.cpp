@@ -1,5 +1,5 @@
-// Where a surface has no normal or the field no scale: apexes, cusps, saddles, gradients that vary a
-// hundredfold.
+// Where a surface has no normal or the field no scale: apexes, cusps, saddles, gradients that vary
+// a hundredfold.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,8 @@ TEST(HardSingular, GradientMagnitudeVariesAHundredTimes) {
 }
 
 TEST(HardSingular, ConeApexFromOutside) {
-  // Pressed on the tip, 40 mm high on a disc of 15 mm: held by the slant on the side where it slid down.
+  // Pressed on the tip, 40 mm high on a disc of 15 mm: held by the slant on the side where it slid
+  // down.
   const FieldPtr field = cone(Vec3(0.0), Vec3(0, 0, 1), 0.015, 0.04);
   Judge judge(field, false);
   judge.stepOracleBy(100e-6);
@@ -66,7 +67,8 @@ TEST(HardSingular, ConeApexFromOutside) {
 }
 
 TEST(HardSingular, ConeApexStraightOn) {
-  // Exactly on the axis: any side is right; the force is finite, does not pull, and the proxy stays outside.
+  // Exactly on the axis: any side is right; the force is finite, does not pull, and the proxy stays
+  // outside.
   const FieldPtr field = cone(Vec3(0.0), Vec3(0, 0, 1), 0.015, 0.04);
   Drive drive(sceneOfSolid(field));
   (void)drive.walk(mm(0, 0, 60));
@@ -85,7 +87,8 @@ TEST(HardSingular, ConeApexStraightOn) {
 }
 
 TEST(HardSingular, StraightThroughABallsCenterTheNearSideIsFelt) {
-  // Beyond the center the place where the hand went in is stationary, but the farthest of all: 35 N.
+  // Beyond the center the place where the hand went in is stationary, but the farthest of all: 35
+  // N.
   for (const Vec3& way : {Vec3(0, 0, 1), Vec3(1, 0, 0), glm::normalize(Vec3(1, 2, 3))}) {
     Drive drive(sceneOfSolid(sphere(Vec3(0.0), 0.02)));
     (void)drive.to(0.03 * way);
@@ -97,7 +100,8 @@ TEST(HardSingular, StraightThroughABallsCenterTheNearSideIsFelt) {
 }
 
 TEST(HardSingular, HollowConeApex) {
-  // From within: beyond the tip the tip itself is nearest, as long as P lies in the cone of normals.
+  // From within: beyond the tip the tip itself is nearest, as long as P lies in the cone of
+  // normals.
   const FieldPtr field = cone(Vec3(0.0), Vec3(0, 0, 1), 0.015, 0.04);
   Drive drive(sceneOfSolid(field, true));
   (void)drive.walk(mm(0, 0, 10));

@@ -1,4 +1,5 @@
-// The stroke by which renderers are compared: a ball of 50 mm, 1 mm deep, 0.2 m/s, 1 kHz, ten revolutions.
+// The stroke by which renderers are compared: a ball of 50 mm, 1 mm deep, 0.2 m/s, 1 kHz, ten
+// revolutions.
 
 #include <gtest/gtest.h>
 
@@ -61,7 +62,8 @@ TEST(HardStroke, TenRevolutionsByTheConstraintRendererAreExact) {
 }
 
 TEST(HardStroke, OneRevolutionByThePaperIsNot) {
-  // Its contact point falls behind by 2 pi d/R a turn and more: 7.2 degrees at least, 8.4 as measured.
+  // Its contact point falls behind by 2 pi d/R a turn and more: 7.2 degrees at least, 8.4 as
+  // measured.
   const Errors worst = strokeAround(RendererKind::kPaper, 1.0);
   EXPECT_GT(worst.direction, 7.2);
   EXPECT_LT(worst.direction, 9.5);

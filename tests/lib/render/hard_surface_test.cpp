@@ -25,8 +25,8 @@ Drive onFloor(const Material& wall) {
 }
 
 TEST(HardFriction, HysteresisLoopByClosedForm) {
-  // Pressed 2 mm deep and pulled to and fro by 10 mm. Stuck, the proxy lags by at most 0.4 x 2 mm; sliding, by
-  // 0.3 x 2 mm; turned around it sticks until the lag is 0.8 mm the other way.
+  // Pressed 2 mm deep and pulled to and fro by 10 mm. Stuck, the proxy lags by at most 0.4 x 2 mm;
+  // sliding, by 0.3 x 2 mm; turned around it sticks until the lag is 0.8 mm the other way.
   Material wall = wallOf(1000.0);
   wall.friction = {0.4, 0.3};
   Drive drive = onFloor(wall);
@@ -74,7 +74,8 @@ TEST(HardFriction, AStuckProxyDoesNotCreep) {
 }
 
 TEST(HardFriction, SlidesAtTheKineticConeOnABall) {
-  // Along a meridian at constant depth: the force leans back from the normal at the proxy by atan(mu_k).
+  // Along a meridian at constant depth: the force leans back from the normal at the proxy by
+  // atan(mu_k).
   Material wall = wallOf(1000.0);
   wall.friction = {0.3, 0.2};
   const double radius = 0.05;
@@ -170,9 +171,10 @@ double largestTurn(double shading) {
 
 TEST(HardShading, FacetsFeelRound) {
   EXPECT_NEAR(largestTurn(0.0), 15.0, 0.1) << "without it every edge is felt";
-  // With it what is left is how far the smoothed surface turns while the proxy goes over an edge, from 0.13 mm before
-  // it to 0.13 mm behind it: 0.4 degree of the 15 over 10 mm, up to twice that for how it bends, and half a degree
-  // because the bevel lies lower than the faces; and the hand's own 0.11 degree.
+  // With it what is left is how far the smoothed surface turns while the proxy goes over an edge,
+  // from 0.13 mm before it to 0.13 mm behind it: 0.4 degree of the 15 over 10 mm, up to twice that
+  // for how it bends, and half a degree because the bevel lies lower than the faces; and the hand's
+  // own 0.11 degree.
   EXPECT_LE(largestTurn(5e-3), 2.0);
 }
 
@@ -188,8 +190,8 @@ TEST(HardShading, LeavesSmoothWallsAlone) {
     const Vec3 p = 0.049 * Vec3(std::cos(t) * std::cos(0.7 * t), std::sin(t) * std::cos(0.7 * t),
                                 std::sin(0.7 * t));
     const Vec3 force = drive.to(p).force;
-    // The smoothed ball is smaller by a ninth of radius^2 / (2 R) for each of the two ways in which it bends; as the
-    // smoothing's lattice lies in it, its surface waves by a hundredth of that.
+    // The smoothed ball is smaller by a ninth of radius^2 / (2 R) for each of the two ways in which
+    // it bends; as the smoothing's lattice lies in it, its surface waves by a hundredth of that.
     const double lower = 1e-3 * 1e-3 / 9.0 / 0.05;
     ASSERT_TRUE(
         isNear(force, kDefaultK * (0.001 - lower) * glm::normalize(p), 0.1 * kDefaultK * lower))

@@ -1,5 +1,5 @@
-// Needle insertion: the slab of data/scenes against its stated model, tick by tick; what a needle's contents do
-// on ways that are not straight; and their energy.
+// Needle insertion: the slab of data/scenes against its stated model, tick by tick; what a needle's
+// contents do on ways that are not straight; and their energy.
 
 #include "palpate/render/insertion.h"
 
@@ -179,8 +179,8 @@ TEST(Insertion, ThereAndBackTakesEnergyAndGivesNone) {
   SlabRun run;
   const std::vector<double> way = thereAndBack(-0.005, 0.045, kStep, 50);
   for (const double depth : way) run.to(depth);
-  // A force held for a tick leaks up to half a tick's way times its change: of 150 N/m to 300 N/m springs and
-  // a way of 50 um, some 1e-9 J a tick; while it is pressed, 1e-6 J in all.
+  // A force held for a tick leaks up to half a tick's way times its change: of 150 N/m to 300 N/m
+  // springs and a way of 50 um, some 1e-9 J a tick; while it is pressed, 1e-6 J in all.
   EXPECT_LT(run.meter.gained(), 1e-6);
   EXPECT_LT(run.meter.work(), -0.02);
 }
@@ -259,7 +259,8 @@ TEST(Insertion, AnotherPlaceIsNotCutYet) {
   EXPECT_NEAR(highest, 0.0, 1e-12);
 }
 
-// Begun inside, or held since the content was changed: where the shaft came in is not known, and it comes out.
+// Begun inside, or held since the content was changed: where the shaft came in is not known, and it
+// comes out.
 TEST(Insertion, BegunInsideItComesOutFree) {
   Drive hand(sceneOf(jelly(kNeedled) + "start: {region: jelly}\n"));
   (void)hand.to(mm(0, 0, -5));
@@ -317,8 +318,9 @@ TEST(Insertion, WalkingRoundTheFarSideLetsGo) {
   EXPECT_EQ(hand.region(), "outside");
 }
 
-// What a file of states holds may be anything. Each of its words is set beyond what any count or region is: that of the
-// layers, those of the cuts and of the next one, and the region's, which alone tell whether it is of the scene.
+// What a file of states holds may be anything. Each of its words is set beyond what any count or
+// region is: that of the layers, those of the cuts and of the next one, and the region's, which
+// alone tell whether it is of the scene.
 TEST(Insertion, AStateIsRefusedForEachCountThatIsBeyondItsRoom) {
   static_assert(std::is_trivially_copyable_v<Insertion>);
   constexpr std::uint64_t kMuch = 0x0101010101010101;

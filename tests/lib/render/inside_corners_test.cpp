@@ -71,7 +71,8 @@ TEST(InsideCorners, CylinderRims) {
 }
 
 TEST(InsideCorners, ConcaveCreaseOfTwoBallsFromOutside) {
-  // The ring where two balls meet holds a hand that presses between them: x = 0, and the radius of the ring.
+  // The ring where two balls meet holds a hand that presses between them: x = 0, and the radius of
+  // the ring.
   Drive drive(
       sceneOf(room("complement: {union: [{sphere: {center: [-15, 0, 0], radius: 25}}, "
                    "{sphere: {center: [15, 0, 0], radius: 25}}]}")));
@@ -109,8 +110,8 @@ TEST(InsideCorners, VGroovesOfEveryAngle) {
   }
 }
 
-/// Two solid quadrants that meet at their edge, and two of air. Held by both walls of one of them, the proxy is at a place
-/// of the other one as well, where the hand is.
+/// Two solid quadrants that meet at their edge, and two of air. Held by both walls of one of them,
+/// the proxy is at a place of the other one as well, where the hand is.
 TEST(InsideCorners, QuadrantsOfAirThatMeetAtTheirEdgeAreOneRegion) {
   Drive drive(sceneOf(R"(
 palpate: 1

@@ -1,4 +1,5 @@
-// Touching labels of one image, felt: the crease where the wall between them meets the skin of both.
+// Touching labels of one image, felt: the crease where the wall between them meets the skin of
+// both.
 
 #include <gtest/gtest.h>
 
@@ -78,7 +79,8 @@ TEST(LabelGroupFelt, RandomTicks) {
     out.opens_at = force;
     description.ports.push_back(out);
   };
-  // Hard enough that the hand, which wanders through all of the scene, is held for a tenth of the time.
+  // Hard enough that the hand, which wanders through all of the scene, is held for a tenth of the
+  // time.
   port("skin", "outside", "?", 12.0);
   port("ab", "a", "b", 0.0);
   port("bc", "b", "c", 2.0);

@@ -1,4 +1,5 @@
-// A hand in the plane of an adjacent face, or a rounding beside it: the proxy follows it along the edge.
+// A hand in the plane of an adjacent face, or a rounding beside it: the proxy follows it along the
+// edge.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,8 @@ struct Behind {
   int ticks = 0;      ///< in which that was more than allowed
 };
 
-/// Inside a box of 60 x 40 x 20 mm, 3 mm beyond x = 30 mm and `aside` beyond z = 10 mm, along y by 20 mm.
+/// Inside a box of 60 x 40 x 20 mm, 3 mm beyond x = 30 mm and `aside` beyond z = 10 mm, along y by
+/// 20 mm.
 Behind alongEdge(double aside, const Material& wall, double allowed, double rest_from_y) {
   Drive drive(sceneOfSolid(box(Vec3(0.0), mm(60, 40, 20)), true, wall));
   (void)drive.to(Vec3(0.0));
@@ -96,7 +98,8 @@ TEST(LeftBehindInACorner, NotWhereTwoPlanesAreMet) {
 }
 
 TEST(LeftBehindAtARim, NotJustBeforeASharpEdgeWhoseFieldIsNotADistance) {
-  // A cone taken in by 1 mm, as one leaf: beyond its rim of 60 degrees the field is that of the side alone.
+  // A cone taken in by 1 mm, as one leaf: beyond its rim of 60 degrees the field is that of the
+  // side alone.
   const double slope = std::sqrt(3.0);
   const FieldPtr solid = offset(cone(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 0.010, 0.010 * slope), -0.001);
   const double rim = 0.010 - 3.0 * 0.001 / slope;

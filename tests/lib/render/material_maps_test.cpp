@@ -1,4 +1,5 @@
-// Parameters that differ from place to place: what the hand feels is what the map says at the proxy.
+// Parameters that differ from place to place: what the hand feels is what the map says at the
+// proxy.
 
 #include <cmath>
 #include <numbers>
@@ -218,7 +219,8 @@ TEST(MaterialMaps, AHoleReopensAtTheForceOfThePlaceWhereItWasMade) {
     Drive hand(scene);
     (void)hand.to({x, 0, 0.001});
     EXPECT_NEAR(gives_way(hand, x), 3.0, 2e-3) << x;
-    // Out again, and in a second time beside the middle of the hole: it keeps the force of where it was made.
+    // Out again, and in a second time beside the middle of the hole: it keeps the force of where it
+    // was made.
     (void)hand.walk({x, 0, 8e-3});
     ASSERT_EQ(hand.region(), "outside");
     EXPECT_NEAR(gives_way(hand, x + 1e-3), std::clamp(1.0 + 50.0 * x, 0.0, 4.0), 2e-3) << x;

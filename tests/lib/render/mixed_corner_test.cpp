@@ -1,4 +1,5 @@
-// Two walls of different kinds at a right angle: each pushes by its own law, as if the other were not there.
+// Two walls of different kinds at a right angle: each pushes by its own law, as if the other were
+// not there.
 
 #include <gtest/gtest.h>
 
@@ -91,8 +92,9 @@ layers:
 )");
 }
 
-// A lid 15 um behind the proxy leaves so little room that the scene's own look at itself finds no place where cone and
-// cylinder meet. They are felt together all the same, as if the lid were far away.
+// A lid 15 um behind the proxy leaves so little room that the scene's own look at itself finds no
+// place where cone and cylinder meet. They are felt together all the same, as if the lid were far
+// away.
 TEST(MixedCorner, WallsThatMeetInALittleGapAreFeltTogether) {
   const auto lid = makeRenderer(
       valley("{half_space: {point: [-2.989895, -4.624097, -4.937474], normal: [0.782617, "

@@ -1,5 +1,6 @@
-// Where walls of different stiffness are pressed about as deep as they are large, by brute force: the least of what their
-// springs and the stop can store, over all places of the point between them.
+// Where walls of different stiffness are pressed about as deep as they are large, by brute force:
+// the least of what their springs and the stop can store, over all places of the point between
+// them.
 
 #include <gtest/gtest.h>
 
@@ -37,8 +38,9 @@ layers:
 )");
 }
 
-/// A bar along y as it is felt with the proxy at `proxy`, the hand `deep` [m] from there: by a share it lies in its plane there. So
-/// its section is a conic about its center, R / ((1 - share) + share cos(angle to the normal)) away.
+/// A bar along y as it is felt with the proxy at `proxy`, the hand `deep` [m] from there: by a
+/// share it lies in its plane there. So its section is a conic about its center, R / ((1 - share) +
+/// share cos(angle to the normal)) away.
 class FeltBar {
  public:
   FeltBar(const Bar& bar, const Vec3& proxy, double deep)
@@ -96,7 +98,8 @@ struct Rest {
   double energy;  // [J]
 };
 
-/// All places about `proxy` where what is stored is least around, found by going downhill from 25 of them.
+/// All places about `proxy` where what is stored is least around, found by going downhill from 25
+/// of them.
 std::vector<Rest> restsOf(const Vec3& proxy, const Vec3& hand) {
   const double deep = glm::length(hand - proxy);
   const std::array<FeltBar, 2> felt{FeltBar(kBars[0], proxy, deep), FeltBar(kBars[1], proxy, deep)};
@@ -156,8 +159,8 @@ TEST(MixedOracle, WhatIsStoredIsTheLeastThatCanBeHoweverDeepThePressIs) {
   EXPECT_GT(deep, 3);
 }
 
-/// Along the soft bar the planes turn with the proxy, and at the crease it stops: deep in a bar neither the force nor what is
-/// stored steps there.
+/// Along the soft bar the planes turn with the proxy, and at the crease it stops: deep in a bar
+/// neither the force nor what is stored steps there.
 TEST(MixedOracle, WhereACreaseIsReachedDeepNothingStepsAndNothingIsGiven) {
   Drive drive(bars());
   (void)drive.walk(mm(-1.4, 0, 4), 1e-3);

@@ -9,7 +9,8 @@
 namespace palpate::test {
 namespace {
 
-/// A groove that opens upwards, `degrees` wide, its left wall of one material and its right one of another.
+/// A groove that opens upwards, `degrees` wide, its left wall of one material and its right one of
+/// another.
 std::string grooveText(double degrees, const std::string& left, const std::string& right) {
   const double half = 0.5 * degrees * std::numbers::pi / 180.0;
   const std::string x = std::to_string(std::cos(half));
@@ -110,8 +111,8 @@ TEST(MixedWalls, TheOutsideIsBeyondAWallLikeAnyLayer) {
                      mm(-6, 0, 0), circle(mm(-0.3, 0, 8.0), 1.2e-3));
 }
 
-/// What a wall pushes with differs from place to place. While the other wall alone holds the proxy, this one is felt at
-/// its foot there, which goes along it as the proxy goes.
+/// What a wall pushes with differs from place to place. While the other wall alone holds the proxy,
+/// this one is felt at its foot there, which goes along it as the proxy goes.
 TEST(MixedWalls, AValleyOfWallsThatVaryGivesNoEnergy) {
   const EnergyLoop loop = circle(mm(0.4, 0, 7.5), 1.2e-3);
   const Vec3 start = mm(0, 0, 20);
@@ -155,7 +156,8 @@ Lap lapAlong(const ScenePtr& scene, const std::vector<Vec3>& corners, int steps)
   return lap;
 }
 
-/// Pressed 1 mm into a soft pad, over its edge, and up: there the hand is 0.8 mm deep in hard ground at once.
+/// Pressed 1 mm into a soft pad, over its edge, and up: there the hand is 0.8 mm deep in hard
+/// ground at once.
 TEST(MixedWalls, WhatALeapFromSoftToHardStoresIsCounted) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -195,8 +197,8 @@ walls:
   EXPECT_LE(lap.work - lap.sources, 1e-8);
 }
 
-/// Friction holds the proxy a few micrometers beside a crease, until the hand is far within the other wall. A loop that a
-/// search found: 69 uJ a lap, not counted.
+/// Friction holds the proxy a few micrometers beside a crease, until the hand is far within the
+/// other wall. A loop that a search found: 69 uJ a lap, not counted.
 TEST(MixedWalls, WhatFrictionLetsGoOntoAnotherWallIsCounted) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -215,7 +217,8 @@ layers:
   EXPECT_LE(workOfLap(scene, mm(0, 0, 10), loop, 16'000), 1e-9);
 }
 
-/// Side and floor of a hollow cylinder are one leaf, which folds at its rim; the third wall is stiffer.
+/// Side and floor of a hollow cylinder are one leaf, which folds at its rim; the third wall is
+/// stiffer.
 TEST(MixedWalls, TheRimOfOneSolidBesideAnotherWallGivesNoEnergy) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -226,7 +229,8 @@ layers:
   - {name: block, inside: {half_space: {point: [-3, 4, 0], normal: [0.8, -0.6, 0]}}, wall: hard}
 start: {region: can}
 )");
-  // Where the block's face, n x = -4.8 mm, comes to the rim: 10 mm along the axis and 10 mm away from it.
+  // Where the block's face, n x = -4.8 mm, comes to the rim: 10 mm along the axis and 10 mm away
+  // from it.
   const Vec3 axis(0.48, 0.36, 0.8);
   const Vec3 face(0.8, -0.6, 0.0);
   const double lean = glm::dot(face, axis);
@@ -240,7 +244,8 @@ start: {region: can}
   expectNothingGiven("rim and block", scene, Vec3(0.0), loop);
 }
 
-/// A ridge runs through a bone's plane where skin covers both: no wall of the bone bounds the outside.
+/// A ridge runs through a bone's plane where skin covers both: no wall of the bone bounds the
+/// outside.
 TEST(MixedWalls, AWallThatAnotherLayerCoversWhereItMeetsAThirdIsNotFelt) {
   const auto scene_of = [](const std::string& bone) {
     return sceneOf(R"(
@@ -283,7 +288,8 @@ TEST(MixedWalls, OneWallFarFromTheOthersFollowsItsOwnLaw) {
 }
 
 TEST(MixedWalls, AreNowhereStifferThanTheStop) {
-  // 1.05 times the stiffer wall: and the force has no step, however the hand goes through the groove.
+  // 1.05 times the stiffer wall: and the force has no step, however the hand goes through the
+  // groove.
   Drive hand(sceneOf(grooveText(60, "stiffness: 1000 N/m", "stiffness: 3000 N/m")));
   (void)hand.to(mm(0, 0, 10));
   double most = 0.0;
@@ -355,7 +361,8 @@ TEST(MixedWalls, ATickDependsOnTheStateAlone) {
     ASSERT_TRUE(other->setState(one->state()));
     const TickResult a = one->update({p, Vec3(0.0)});
     const TickResult b = other->update({p, Vec3(0.0)});
-    // Within what a renderer that goes on may differ by from one that was set: rounding of where the proxy rests.
+    // Within what a renderer that goes on may differ by from one that was set: rounding of where
+    // the proxy rests.
     ASSERT_TRUE(isNear(a.force, b.force, 1e-6)) << i;
   }
 }

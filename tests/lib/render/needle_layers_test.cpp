@@ -1,6 +1,7 @@
-// Random stacks of layers under a needle whose hand is anywhere, also far ahead, against a machine in one dimension
-// that is written from the page of the scene file alone: which wall gives way to what force at what depth, in one tick
-// or in many, what stops the tip, and what each tissue does to tip and shaft.
+// Random stacks of layers under a needle whose hand is anywhere, also far ahead, against a machine
+// in one dimension that is written from the page of the scene file alone: which wall gives way to
+// what force at what depth, in one tick or in many, what stops the tip, and what each tissue does
+// to tip and shaft.
 
 #include <gtest/gtest.h>
 
@@ -314,7 +315,8 @@ TEST(NeedleLayers, OneAfterTheOtherWithinATickAsTheMachineSays) {
   EXPECT_GT(many, runs * 5);
 }
 
-// In fine steps, in and out as it comes: what the hand got back, beyond what is counted, it had given.
+// In fine steps, in and out as it comes: what the hand got back, beyond what is counted, it had
+// given.
 TEST(NeedleLayers, NoWayInAndOutGivesEnergyBeyondCountedSources) {
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   const int runs = slow ? 400 : 25;
@@ -377,7 +379,8 @@ struct AxisHand {
   }
 };
 
-// A stiff wall 10 mm behind a soft one that gives way at 30 mm: what it gives the hand on its way back is counted.
+// A stiff wall 10 mm behind a soft one that gives way at 30 mm: what it gives the hand on its way
+// back is counted.
 TEST(NeedleLayers, AStiffWallMetBehindASoftOneIsACountedSource) {
   std::vector<Tissue> tissues(2);
   tissues[0].stiffness = 100.0;
@@ -394,8 +397,9 @@ TEST(NeedleLayers, AStiffWallMetBehindASoftOneIsACountedSource) {
   EXPECT_LE(hand.work, renderer->sourceWork() + 2e-4);
 }
 
-// 10 mm of a shaft in tissue that sticks to it, held back by a skin which lets go at 0.05 N: as the tip comes on by
-// 0.625 mm, the tissue is drawn along. What it gives the hand on its way back is counted.
+// 10 mm of a shaft in tissue that sticks to it, held back by a skin which lets go at 0.05 N: as the
+// tip comes on by 0.625 mm, the tissue is drawn along. What it gives the hand on its way back is
+// counted.
 TEST(NeedleLayers, AShaftThatASkinLetsGoOfStretchesItsTissueAsACountedSource) {
   std::vector<Tissue> tissues(2);
   tissues[0].kind = Kind::kOpen;

@@ -1,4 +1,5 @@
-// A needle's shaft pushed sideways, felt at the tip; what a tip cuts that rests on bone; and the energy of both.
+// A needle's shaft pushed sideways, felt at the tip; what a tip cuts that rests on bone; and the
+// energy of both.
 
 #include <gtest/gtest.h>
 
@@ -57,7 +58,8 @@ TEST(NeedleShaft, SidewaysItPushesBackByItsClosedForm) {
   EXPECT_LT(glm::length(hand.last().force), 1e-9);
 }
 
-// Straight sideways at the same depth 0.18 mm of shaft come in on the way, where the needle lies then.
+// Straight sideways at the same depth 0.18 mm of shaft come in on the way, where the needle lies
+// then.
 TEST(NeedleShaft, StraightSidewaysItIsWithinTwoPercentOfTheClosedForm) {
   for (const bool cuts : {false, true}) {
     Drive hand(stack({tissue("{stiffness: 3.6e4 N/m^2}", cuts ? ", cutting: 0.4 N" : "")}));
@@ -111,7 +113,8 @@ TEST(NeedleShaft, ItTearsAtItsStrengthAndIsBounded) {
     (void)hand.to(0.025 * Vec3(std::sin(angle), 0.0, -std::cos(angle)));
     most = std::max(most, glm::length(hand.last().force));
   }
-  // The mean load is at the middle of the shaft, and it acts at two thirds of the length: 2/3 strength L.
+  // The mean load is at the middle of the shaft, and it acts at two thirds of the length: 2/3
+  // strength L.
   EXPECT_NEAR(most, 2.0 / 3.0 * 40.0 * 0.025, 0.005);
   EXPECT_NEAR(glm::length(hand.last().force), most, 0.005);
 }
@@ -128,8 +131,8 @@ TEST(NeedleShaft, DrawnOutAndInAgainTheChannelIsNew) {
   EXPECT_LT(glm::length(hand.last().force), 1e-9);
 }
 
-// The tip on a wall that closes the tissue: what is stored sideways is by the place of the tip, which the hand moves
-// along the wall only. Round about in any way, nothing is gained.
+// The tip on a wall that closes the tissue: what is stored sideways is by the place of the tip,
+// which the hand moves along the wall only. Round about in any way, nothing is gained.
 TEST(NeedleShaft, NoLoopGivesEnergyFreeOrOnAWall) {
   const ScenePtr scene =
       sceneOf("palpate: 1\nlength: mm\nmaterials: {m: " + tissue("{stiffness: 3.6e4 N/m^2}") +

@@ -1,4 +1,5 @@
-// A needle whose tip is held by a wall while the hand goes on: friction along the shaft must not give energy there.
+// A needle whose tip is held by a wall while the hand goes on: friction along the shaft must not
+// give energy there.
 
 #include <gtest/gtest.h>
 
@@ -8,8 +9,8 @@
 namespace palpate::test {
 namespace {
 
-// Along a slanting wall the shaft is drawn in or out a little, with the hand near the wall or far beyond it: friction
-// that turned round out there would be given back over the way to the wall.
+// Along a slanting wall the shaft is drawn in or out a little, with the hand near the wall or far
+// beyond it: friction that turned round out there would be given back over the way to the wall.
 TEST(NeedleOnWall, FrictionThatTurnsRoundBeyondAWallGivesNoEnergy) {
   for (const double damping : {0.0, 100.0}) {
     Drive hand(sceneOf(
@@ -51,8 +52,8 @@ TEST(NeedleOnWall, FrictionThatTurnsRoundBeyondAWallGivesNoEnergy) {
   }
 }
 
-// Tissue that is drawn along in every lap, and cut a little, gives back what it was given on the way in: lap after lap the
-// hand gets a little, and never more than it gave.
+// Tissue that is drawn along in every lap, and cut a little, gives back what it was given on the
+// way in: lap after lap the hand gets a little, and never more than it gave.
 TEST(NeedleOnWall, TissueGivesBackOverManyLapsWhatItWasGivenOnTheWayIn) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1

@@ -1,5 +1,5 @@
-// Solids that are one leaf but have several sheets: meshes, grids and implicit shapes look like this to
-// contact. The wall that holds the proxy is also the wall that stands in its way.
+// Solids that are one leaf but have several sheets: meshes, grids and implicit shapes look like
+// this to contact. The wall that holds the proxy is also the wall that stands in its way.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
-// The paper's renderer on the paper's figures, against tables of states and Algorithms I and II written from the paper
-// and its page (tools/docs/paper.md) alone: the same state, ports and force in every tick of a wandering hand.
+// The paper's renderer on the paper's figures, against tables of states and Algorithms I and II
+// written from the paper and its page (tools/docs/paper.md) alone: the same state, ports and force
+// in every tick of a wandering hand.
 
 #include <gtest/gtest.h>
 
@@ -148,7 +149,8 @@ class Tank : public Container {
   }
 };
 
-/// Figure 2.7: faces are the tube (0) and what is right of -45, -15, 15 mm (1, 2, 3) and left of 45 mm (4).
+/// Figure 2.7: faces are the tube (0) and what is right of -45, -15, 15 mm (1, 2, 3) and left of 45
+/// mm (4).
 class Tube : public Figured {
  public:
   Tube() {
@@ -164,7 +166,8 @@ class Tube : public Figured {
   }
   std::string ports(const Vec3& last, const Vec3& now) override {
     if (!in(0, last) || !in(0, now)) return {};
-    // The places along the tube: 0 before it, 1 to 3 its fillings, 4 behind it. Port k leads from k - 1 to k.
+    // The places along the tube: 0 before it, 1 to 3 its fillings, 4 behind it. Port k leads from k
+    // - 1 to k.
     const auto place = [&](const Vec3& p) {
       return in(3, p) ? (in(4, p) ? 3 : 4) : in(2, p) ? 2 : in(1, p) ? 1 : 0;
     };
@@ -199,7 +202,8 @@ class Tube : public Figured {
   std::vector<int> passed_ = std::vector<int>(5, 0);
 };
 
-/// Flow in one direction: faces are the bore (0), right of -40 (1), right of 0 (2), left of 40 mm (3).
+/// Flow in one direction: faces are the bore (0), right of -40 (1), right of 0 (2), left of 40 mm
+/// (3).
 class Valve : public Figured {
  public:
   Valve() {
@@ -235,7 +239,8 @@ class Valve : public Figured {
   [[nodiscard]] Vec3 flow() const override { return {0.02, 0, 0}; }
 };
 
-/// Figure 1.1: a cup, glass and liquid; the liquid's surface is not a wall. Faces: outer, hollow, level.
+/// Figure 1.1: a cup, glass and liquid; the liquid's surface is not a wall. Faces: outer, hollow,
+/// level.
 class Cup : public Figured {
  public:
   Cup() {
@@ -256,8 +261,8 @@ class Cup : public Figured {
   }
   [[nodiscard]] bool isOpen(int, int) const override { return false; }
   [[nodiscard]] bool hasNoWall(int layer) const override { return layer == 1; }
-  /// Of the liquid's surface, felt from within, only that towards the glass is one: where glass lies just beyond the
-  /// contact point, or, on the rim between both, where the probe is in it.
+  /// Of the liquid's surface, felt from within, only that towards the glass is one: where glass
+  /// lies just beyond the contact point, or, on the rim between both, where the probe is in it.
   [[nodiscard]] bool isWallAt(const Display& d, const Vec3& po, const Vec3& now) const override {
     if (d.surface != 1) return true;
     return place(po + 4e-6 * glm::normalize(surfaceOf(1)(po).gradient)) == 1 || place(now) == 1;
@@ -395,7 +400,8 @@ TEST_P(PaperFigures, EveryTickIsAsTheTableAndTheAlgorithmsSay) {
       last_side = expected.is_reversed;
       last_open = open;
       ++touched;
-      // Both do the same sums in another order; where those differ, a search may end a halving apart.
+      // Both do the same sums in another order; where those differ, a search may end a halving
+      // apart.
       ASSERT_TRUE(isNear(out.proxy, contact.po, 4e-6));
       ASSERT_TRUE(isNear(out.force, force, 8e-6 * figure->stiffness + 1e-9));
       contact.po = out.proxy;  // or they would drift apart with the contact point

@@ -10,7 +10,8 @@
 namespace palpate::test {
 namespace {
 
-// A union is one face of the layer: the paper's table of states has intersections alone. The port is on the left ball.
+// A union is one face of the layer: the paper's table of states has intersections alone. The port
+// is on the left ball.
 const char* const kTwoBalls = R"(
 palpate: 1
 length: mm

@@ -1,6 +1,7 @@
 #pragma once
-// The source paper told a second time, from its text alone: Algorithms I and II, and the rule by which its tables
-// of states display surfaces. Figures add their own tables of ports. Lengths in mm for tables, in m for surfaces.
+// The source paper told a second time, from its text alone: Algorithms I and II, and the rule by
+// which its tables of states display surfaces. Figures add their own tables of ports. Lengths in mm
+// for tables, in m for surfaces.
 
 #include <cmath>
 #include <functional>
@@ -84,7 +85,8 @@ class PaperText {
     po = po + (v - normal * (glm::dot(normal, v) / glm::dot(normal, normal))) - nudge(at, n);
     project(s(po).gradient, probe);
     if (s(po).value <= n.epsilon) return;
-    // "Too far outside": "recalculated as the surface crossing point on the line segment from Po to Pi".
+    // "Too far outside": "recalculated as the surface crossing point on the line segment from Po to
+    // Pi".
     const Vec3 end = s(pi).value <= 0.0 ? pi : probe;
     Vec3 outside = po;
     Vec3 inside = end;

@@ -1,5 +1,5 @@
-// A part that decides nothing where the hand is has no part in what it feels: the planes of its faces end where
-// it does.
+// A part that decides nothing where the hand is has no part in what it feels: the planes of its
+// faces end where it does.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@ namespace {
 /// 1e-6 of 2 mm, and two walls' billionth of their feature sizes.
 constexpr double kClose = 2.5e-9;  // [m]
 
-/// A hand within a ball of radius `ball` [m], pressed 2 mm into the wall of a bore of 6 mm, around it and along it.
+/// A hand within a ball of radius `ball` [m], pressed 2 mm into the wall of a bore of 6 mm, around
+/// it and along it.
 void circleOneBore(const FieldPtr& far_part, double ball, double radius, int steps_around) {
   SCOPED_TRACE(::testing::Message() << "bore of radius " << radius << ", " << steps_around);
   const FieldPtr bore = cylinder(Vec3(0.0), Vec3(0, 0, 1), radius, 0.060);

@@ -1,5 +1,5 @@
-// Every key of a port: over closed ways of the hand, at random and looked for, through walls that give way and holes that are
-// found again, nothing is given beyond counted sources.
+// Every key of a port: over closed ways of the hand, at random and looked for, through walls that
+// give way and holes that are found again, nothing is given beyond counted sources.
 
 #include <gtest/gtest.h>
 
@@ -99,7 +99,8 @@ ScenePtr sceneOf(const char* ports, const Place& place) {
       ports + "]\n");
 }
 
-/// A hand that goes round. What it was given, less counted sources, and what the walls hold may never rise in sum.
+/// A hand that goes round. What it was given, less counted sources, and what the walls hold may
+/// never rise in sum.
 class Laps {
  public:
   Laps(const ScenePtr& scene, const EnergyLoop& loop, int steps) : renderer_(makeRenderer(scene)) {

@@ -1,5 +1,6 @@
-// Random walks through mazes of nine chambers, felt by both renderers, against a machine written from the rules of
-// the scene file's page alone: where a wall lets through, to which region, and by which port.
+// Random walks through mazes of nine chambers, felt by both renderers, against a machine written
+// from the rules of the scene file's page alone: where a wall lets through, to which region, and by
+// which port.
 
 #include <gtest/gtest.h>
 

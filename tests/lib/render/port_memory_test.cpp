@@ -1,5 +1,5 @@
-// What the renderers remember of ports: many laps of a ring, ports that lead back, numbers of passings, absent
-// walls that clear, and ports in sheets.
+// What the renderers remember of ports: many laps of a ring, ports that lead back, numbers of
+// passings, absent walls that clear, and ports in sheets.
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,9 @@ INSTANTIATE_TEST_SUITE_P(Renderers, PortMemory,
                          testing::Values(RendererKind::kPaper, RendererKind::kConstraint),
                          kindName);
 
-/// Three chambers around the z axis, walls between them at y = 0 (x > 0) and at x = 0: a is where x > 0, y > 0,
-/// b where x < 0, c where x > 0, y < 0. From outside one comes into a from above; `vault` is below a.
+/// Three chambers around the z axis, walls between them at y = 0 (x > 0) and at x = 0: a is where x
+/// > 0, y > 0, b where x < 0, c where x > 0, y < 0. From outside one comes into a from above;
+/// `vault` is below a.
 std::string ring(const std::string& ports) {
   return R"(
 palpate: 1
@@ -109,7 +110,8 @@ TEST_P(PortMemory, AtLeastSoManyTimes) {
 }
 
 TEST_P(PortMemory, AnAbsentWallToOutsideClearsWhatWasPassed) {
-  // Into a by its port, out where b has no wall: what comes after the port is shut then, from outside too.
+  // Into a by its port, out where b has no wall: what comes after the port is shut then, from
+  // outside too.
   for (const bool keep : {false, true}) {
     Drive drive(sceneOf(ring(R"(
   - {name: ab, between: [a, b]}

@@ -130,7 +130,8 @@ TEST(Memory, KeptPortsOpenWindowsFromOutside) {
 }
 
 TEST(Memory, ARoomsDoorsOpenInOrderOnly) {
-  // A ball with three rooms' doors around it, all from outside: every order of visits, against the rule.
+  // A ball with three rooms' doors around it, all from outside: every order of visits, against the
+  // rule.
   std::string text = "palpate: 1\nlength: mm\nmemory: keep\nlayers:\n";
   for (int i = 0; i < 3; ++i) {
     text += "  - {name: room" + std::to_string(i) + ", inside: {sphere: {center: [" +
@@ -206,7 +207,8 @@ layers: [{name: body, inside: {sphere: {center: [0, 0, 0], radius: 40}}, wall: s
 ports: [{name: cut, between: [outside, body], opens_at: 2 N, back: 0.5 N}]
 )";
 
-/// Into a box through the absent wall at x = 0 and out through a port at x = 10 mm, in steps that end beside both.
+/// Into a box through the absent wall at x = 0 and out through a port at x = 10 mm, in steps that
+/// end beside both.
 TEST_P(BothRenderers, APassingHasItsPlaceOnTheWallAndNotAtTheHand) {
   Drive drive(sceneOf(R"(
 palpate: 1
@@ -268,8 +270,8 @@ TEST(OpeningForce, DampingAndFrictionDoNotOpen) {
 }
 
 TEST(OpeningForce, AFastStrokeAlongTheSkinDoesNotOpenWhatItNeverPresses) {
-  // 1.5 mm deep all the way: 1.5 N, whatever the speed. Only a tangent plane left behind by one tick's motion
-  // would be pressed harder.
+  // 1.5 mm deep all the way: 1.5 N, whatever the speed. Only a tangent plane left behind by one
+  // tick's motion would be pressed harder.
   for (const double step : {0.02, 0.1, 0.3}) {
     Drive drive(sceneOf(kSkin));
     (void)drive.walk(mm(50, 0, 0));
@@ -306,7 +308,8 @@ TEST(Start, AHipElsewhereGetsANearPointOfTheRegion) {
     Drive drive(sceneOf(containerText("start: {region: liquid}\n")));
     const TickResult& out = drive.to(hip);
     EXPECT_TRUE(isFinite(out.force));
-    // At once or after a few ticks at rest: the closest point of the liquid, through the mouth if that is open.
+    // At once or after a few ticks at rest: the closest point of the liquid, through the mouth if
+    // that is open.
     for (int i = 0; i < 20; ++i) (void)drive.to(hip);
     if (hip.z > 0.015 && glm::length(hip) < 0.05) {
       EXPECT_EQ(drive.region(), "outside");
@@ -334,7 +337,8 @@ TEST(Start, ResetIsAFreshStart) {
 }
 
 TEST(Sheets, NestedFacesThatCoincideAreCrossedInOneStepIntoTheRightRegion) {
-  // An inner box that shares its top, a right face and an edge with the outer one; both have a port on top.
+  // An inner box that shares its top, a right face and an edge with the outer one; both have a port
+  // on top.
   Drive drive(sceneOf(R"(
 palpate: 1
 length: mm

@@ -1,4 +1,5 @@
-// Walls that give way to a force: when they do, what they leave behind, and what the result says of it.
+// Walls that give way to a force: when they do, what they leave behind, and what the result says of
+// it.
 
 #include <gtest/gtest.h>
 
@@ -78,7 +79,8 @@ TEST(Puncture, InAHoleTheReopeningForceCountsBesideItTheWalls) {
     ASSERT_TRUE(crossing);
     EXPECT_EQ(crossing->how, How::kPuncture);
     (void)drive.walk(mm(0, 0, -5));
-    // Back by the hole, and in and out of it again off its middle, to the left and right of its rim.
+    // Back by the hole, and in and out of it again off its middle, to the left and right of its
+    // rim.
     crossing = pressTo(drive, mm(0, 0, 5));
     ASSERT_TRUE(crossing);
     EXPECT_EQ(crossing->how, How::kHole);
@@ -120,7 +122,8 @@ TEST(Puncture, AnOpenHoleIsAnOpeningFromEverySideAndSpeed) {
     const bool was_free = drive.last().proxy == from;
     const TickResult out = drive.to(hip);
     if (!was_free || from.z * hip.z > 0.0) continue;
-    // It went straight: through the hole, or against the wall beside it (and along that to the hole).
+    // It went straight: through the hole, or against the wall beside it (and along that to the
+    // hole).
     const Vec3 p = from - from.z / (hip.z - from.z) * (hip - from);
     const double off = std::hypot(p.x, p.y);
     if (off < 3e-3 - 1e-8) {
@@ -201,7 +204,8 @@ TEST(Puncture, ARestEndsFarAwayOrUnderAHandFarBeyondTheWall) {
 }
 
 TEST(Puncture, OnlyTheElasticNormalForceOfThisTickCounts) {
-  // Friction, damping and the motion along the wall make the whole force several times larger than 2 N.
+  // Friction, damping and the motion along the wall make the whole force several times larger than
+  // 2 N.
   Drive drive(sceneOf(skin("opens_at: 2 N", ", damping: 10 N.s/m, friction: {static: 1.5}")));
   (void)drive.to(mm(0, 0, 1));
   (void)drive.walk(mm(0, 0, -1.9));
@@ -213,7 +217,8 @@ TEST(Puncture, OnlyTheElasticNormalForceOfThisTickCounts) {
     ASSERT_EQ(out.event_count, 0) << i;
   }
   EXPECT_GT(most, 20.0);
-  // Nor does the tick before count: let go and press less, then enough, which opens it in that tick.
+  // Nor does the tick before count: let go and press less, then enough, which opens it in that
+  // tick.
   (void)drive.to(mm(0, 0, 1));
   EXPECT_EQ(drive.to(mm(0, 0, -1.99)).event_count, 0);
   EXPECT_EQ(drive.to(mm(0, 0, 0.1)).event_count, 0);

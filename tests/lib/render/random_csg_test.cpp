@@ -1,8 +1,9 @@
-// Random constructive solid geometry: at every tick the proxy is where an oracle comes to rest that starts from the
-// proxy of the tick before.
+// Random constructive solid geometry: at every tick the proxy is where an oracle comes to rest that
+// starts from the proxy of the tick before.
 //
-// One scene by its number: PALPATE_CSG_FIRST=14 PALPATE_CSG_SCENES=1; more ticks: PALPATE_CSG_CONTACTS=300000.
-// PALPATE_CSG_KEEP=FOLDER keeps scene and path of what fails, for `palpate touch SCENE --path PATH`.
+// One scene by its number: PALPATE_CSG_FIRST=14 PALPATE_CSG_SCENES=1; more ticks:
+// PALPATE_CSG_CONTACTS=300000. PALPATE_CSG_KEEP=FOLDER keeps scene and path of what fails, for
+// `palpate touch SCENE --path PATH`.
 
 #include <gtest/gtest.h>
 
@@ -40,14 +41,16 @@ void expectRight(const CsgCounts& counts, long wanted) {
   }
   // 99.99 % of the ticks are at the minimum within 1e-6 of the depth; the list above has the rest.
   EXPECT_LE(counts.of(Fault::kPlace), 1 + counts.contacts / 10'000);
-  // What passes unseen stays rare: two ends within the oracle's own noise, and kinks that it cannot tell.
+  // What passes unseen stays rare: two ends within the oracle's own noise, and kinks that it cannot
+  // tell.
   EXPECT_LE(counts.ambiguous, 5 + counts.contacts / 1'000);
   EXPECT_LE(counts.unjudged, 5 + counts.contacts / 1'000);
   EXPECT_LE(counts.given_up, 1 + counts.scenes / 50);
   EXPECT_LE(counts.empty, 1 + counts.scenes / 10);
 }
 
-/// Parts of the sweep, so that none takes more than some minutes where there are ten million ticks to judge.
+/// Parts of the sweep, so that none takes more than some minutes where there are ten million ticks
+/// to judge.
 class RandomCsg : public ::testing::TestWithParam<int> {};
 
 constexpr int kParts = 4;

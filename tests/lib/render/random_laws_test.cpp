@@ -1,6 +1,7 @@
-// Random scenes of a few parts, some of them flush with others, each with a stiffness of its own: where one wall alone is
-// pressed the force is its law at the proxy, reckoned here from the regions' fields; turned, mirrored, scaled and moved,
-// the scene feels the same; and closed ways give nothing.
+// Random scenes of a few parts, some of them flush with others, each with a stiffness of its own:
+// where one wall alone is pressed the force is its law at the proxy, reckoned here from the
+// regions' fields; turned, mirrored, scaled and moved, the scene feels the same; and closed ways
+// give nothing.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,8 @@
 namespace palpate::test {
 namespace {
 
-/// Of the scenes by number those that are asked for: PALPATE_PARTS_FIRST=100 PALPATE_PARTS_SCENES=1; else `usual` of them.
+/// Of the scenes by number those that are asked for: PALPATE_PARTS_FIRST=100
+/// PALPATE_PARTS_SCENES=1; else `usual` of them.
 struct Numbers {
   std::uint64_t first = 0;
   std::uint64_t count;
@@ -146,8 +148,9 @@ TEST(RandomParts, EachWallAlonePushesByItsOwnLaw) {
       const TickResult r = renderer->update({p, Vec3(0.0), 1e-3});
       const Vec3 press = r.proxy - p;
       const double depth = glm::length(press);
-      // Whatever walls there are: no more than the stop, 1.05 times the stiffest, and square to that 3/8 of a difference across
-      // a seam, times R / (R - depth) where the wall bulges: the proxy goes that much farther than the hand. R is 6 mm or more.
+      // Whatever walls there are: no more than the stop, 1.05 times the stiffest, and square to
+      // that 3/8 of a difference across a seam, times R / (R - depth) where the wall bulges: the
+      // proxy goes that much farther than the hand. R is 6 mm or more.
       if (depth < 2e-3) {
         ASSERT_LE(glm::length(r.force), 1.2 * stiffest * depth + 1e-9);
       }
@@ -214,7 +217,8 @@ void expectTheSameAtEveryPose(const Numbers& scenes) {
         const double size = 1e-6 + glm::length(a.force);
         const double error =
             glm::length(b.force - pose.scale * (pose.turn * a.force)) / (pose.scale * size);
-        // The proxy rests within 1e-9 of the feature size of where it should: 1e-11 m, of a press of 0.1 mm 1e-7.
+        // The proxy rests within 1e-9 of the feature size of where it should: 1e-11 m, of a press
+        // of 0.1 mm 1e-7.
         if (error > 1e-7 && off++ == 0)
           std::printf("  %s: first off in scene %d\n", name, static_cast<int>(number));
         worst = std::max(worst, error);
@@ -231,8 +235,8 @@ TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
   expectTheSameAtEveryPose(Numbers(slow ? 300 : 15));
 }
 
-// Two faces of the box lead on equally well when the hand breaks through, 12 mm deep: their order chose, another one in the
-// scene that is turned, and the proxy ended 10 mm apart.
+// Two faces of the box lead on equally well when the hand breaks through, 12 mm deep: their order
+// chose, another one in the scene that is turned, and the proxy ended 10 mm apart.
 TEST(RandomParts, TheOrderOfABoxsFacesChoosesNoWay) {
   Numbers scene(1);
   scene.first = 94;

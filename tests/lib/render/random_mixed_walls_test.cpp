@@ -1,5 +1,6 @@
-// Walls of different stiffness at random, pressed about as deep as the shapes are large: the hand is held as long as the
-// proxy is elsewhere, no step of the force goes beyond what the walls' stiffness explains, and closed ways give no energy.
+// Walls of different stiffness at random, pressed about as deep as the shapes are large: the hand
+// is held as long as the proxy is elsewhere, no step of the force goes beyond what the walls'
+// stiffness explains, and closed ways give no energy.
 
 #include <gtest/gtest.h>
 
@@ -43,8 +44,8 @@ class Maker {
     }
   }
 
-  /// A tilted ground and one or two solids in it, each with a stiffness of its own; or a room, from within, that two
-  /// solids reach into.
+  /// A tilted ground and one or two solids in it, each with a stiffness of its own; or a room, from
+  /// within, that two solids reach into.
   MixedScene scene(bool from_within = false) {
     MixedScene out;
     std::string materials;
@@ -122,8 +123,9 @@ class Maker {
 };
 
 constexpr double kStep = 20e-6;  // [m] a tick
-/// What the walls explain: the rigid stop in series is 1.05 of the stiffest wall; where a press as deep as a bulge is large
-/// takes it for flat, that adds as much again and some more. A hand let go of changes by a hundred times that in a tick.
+/// What the walls explain: the rigid stop in series is 1.05 of the stiffest wall; where a press as
+/// deep as a bulge is large takes it for flat, that adds as much again and some more. A hand let go
+/// of changes by a hundred times that in a tick.
 constexpr double kExplained = 4.0;
 
 /// A tick's way, gone in short parts.
@@ -202,9 +204,9 @@ void wander(const ScenePtr& scene, const MixedScene& made, unsigned seed, double
   }
 }
 
-/// Where the proxy rests, the force may be steep, but it has no step: where the springs store about the same over a wide
-/// range of places, a little way of the hand moves the place far. Nothing is won by that: what they store falls by the
-/// work that is done.
+/// Where the proxy rests, the force may be steep, but it has no step: where the springs store about
+/// the same over a wide range of places, a little way of the hand moves the place far. Nothing is
+/// won by that: what they store falls by the work that is done.
 void expectHeldWithoutSteps(const MixedScene& made, unsigned seed, double deep, int ticks) {
   const ScenePtr scene = sceneOf(made.text);
   wander(scene, made, seed, deep, ticks, [&](const Tick& tick) {
@@ -239,8 +241,8 @@ TEST(RandomMixedWalls, FromWithinARoomTheyNeverKickEither) {
   }
 }
 
-/// At the tip of a hollow cone, 2.6 mm deep in a softer wall and a box: 107 steps of up to 2.5 N, and 6 mJ from nowhere,
-/// where the tip's plane was any.
+/// At the tip of a hollow cone, 2.6 mm deep in a softer wall and a box: 107 steps of up to 2.5 N,
+/// and 6 mJ from nowhere, where the tip's plane was any.
 TEST(RandomMixedWalls, AtTheTipOfAHollowConeTheyNeverKick) {
   MixedScene made;
   made.most = 3000.0;
@@ -266,8 +268,9 @@ start: {region: l0}
   EXPECT_LE(given.work, 1e-9 + given.change);
 }
 
-/// Deep in a wall that bends, the proxy comes to where another stiffness holds it too, and stops. What is stored has a fold
-/// there, by the hand: the force steps, 0.17 of 1.2 N, and what is stored does not.
+/// Deep in a wall that bends, the proxy comes to where another stiffness holds it too, and stops.
+/// What is stored has a fold there, by the hand: the force steps, 0.17 of 1.2 N, and what is stored
+/// does not.
 TEST(RandomMixedWalls, WhereAnEdgeStopsTheProxyTheForceStepsAndNothingIsGiven) {
   constexpr unsigned kSeed = 9;
   const MixedScene made = Maker(kSeed).scene();
@@ -310,8 +313,8 @@ TEST(RandomMixedWalls, GiveNoEnergy) {
   std::printf("  at most %.3g J beyond what the last halving changed\n", worst);
 }
 
-/// A bar of bone on soft ground. The hand goes on beneath it, past its middle and out on the other side, while the proxy
-/// stays where ground and bar meet: it is held back all the way.
+/// A bar of bone on soft ground. The hand goes on beneath it, past its middle and out on the other
+/// side, while the proxy stays where ground and bar meet: it is held back all the way.
 TEST(RandomMixedWalls, ABarOnSoftGroundHoldsAHandThatIsPastIt) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1

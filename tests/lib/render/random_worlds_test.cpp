@@ -1,8 +1,9 @@
-// Random scenes of nested layers whose walls and contents have any of the keys there are: friction, damping,
-// relaxation, curves, maps, composites, shading, textures, lattices, flows, needles; with absent walls, ports, valves,
-// holes and memory. Whatever comes together, in both renderers: every tick is finite and allocates nothing, regions
-// follow one another by ports that lead there and walls that are absent, and where all walls are one plain spring the
-// force is that spring; the constraint renderer gives no energy beyond counted sources.
+// Random scenes of nested layers whose walls and contents have any of the keys there are: friction,
+// damping, relaxation, curves, maps, composites, shading, textures, lattices, flows, needles; with
+// absent walls, ports, valves, holes and memory. Whatever comes together, in both renderers: every
+// tick is finite and allocates nothing, regions follow one another by ports that lead there and
+// walls that are absent, and where all walls are one plain spring the force is that spring; the
+// constraint renderer gives no energy beyond counted sources.
 
 #include <gtest/gtest.h>
 
@@ -227,8 +228,9 @@ TEST(RandomWorlds, AnyKeysTogetherKeepToTheRules) {
         const double done = 0.5 * glm::dot(force + r.force, way);
         work += done;
         moved += std::fabs(done);
-        // Where the force steps within a tick, as a wall gives way or a content begins or ends, the trapezium is off
-        // by up to that. World 81 goes from 20 mN of a lattice to none: 28 nJ at 1 kHz, -16 nJ at 8 kHz.
+        // Where the force steps within a tick, as a wall gives way or a content begins or ends, the
+        // trapezium is off by up to that. World 81 goes from 20 mN of a lattice to none: 28 nJ at 1
+        // kHz, -16 nJ at 8 kHz.
         const double change = glm::length(r.force - force);
         const bool steps = change > 1e4 * glm::length(way) || !renderer->entries().empty();
         if (steps) slack += 0.5 * change * glm::length(way);

@@ -1,4 +1,5 @@
-// All that a tick leaves for the next is one value: given to another renderer of the scene, it goes on the same.
+// All that a tick leaves for the next is one value: given to another renderer of the scene, it goes
+// on the same.
 
 #include <gtest/gtest.h>
 
@@ -76,7 +77,8 @@ TEST_P(RendererStates, GivenToAnotherRendererGoOnTheSame) {
     }
     for (std::size_t i = at; i < std::min(at + 300, path.size()); ++i) {
       const TickResult again = second->update(path[i]);
-      // Rounding of coordinates of 0.1 m is 1e-17 m; a corner of 1 degree makes 60 times that of it, 1 kN/m 1e-12 N.
+      // Rounding of coordinates of 0.1 m is 1e-17 m; a corner of 1 degree makes 60 times that of
+      // it, 1 kN/m 1e-12 N.
       ASSERT_LE(glm::length(again.force - felt[i].force), 1e-11)
           << "from tick " << at << ", at " << i;
       ASSERT_LE(glm::length(again.proxy - felt[i].proxy), 1e-14)

@@ -1,5 +1,5 @@
-// What a device may do to a renderer: broken numbers, jumps; and what the loop asks of it: no allocation,
-// and the same again.
+// What a device may do to a renderer: broken numbers, jumps; and what the loop asks of it: no
+// allocation, and the same again.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,8 @@ const std::vector<HipState> kBroken = {
     {Vec3(0, 0, -1e300), Vec3(0.0)}};
 
 TEST_P(Robust, BrokenTicksGiveNoForceAndChangeNothing) {
-  // Two drives side by side; one hears broken ticks in between, and must not differ in the good ones.
+  // Two drives side by side; one hears broken ticks in between, and must not differ in the good
+  // ones.
   const ScenePtr scene = sceneOf(containerText());
   Drive clean(scene, GetParam());
   Drive disturbed(scene, GetParam());

@@ -19,7 +19,8 @@ ports: [{name: cut, between: [outside, flesh], opens_at: 2 N, back: 1 N, hole: {
          rate + "}]\n";
 }
 
-/// [N] at which the wall gives way to a hand that goes along z at `speed` [m/s], from `from` to `to` [m].
+/// [N] at which the wall gives way to a hand that goes along z at `speed` [m/s], from `from` to
+/// `to` [m].
 double ruptureOf(HapticRenderer& renderer, double x, double from, double to, double speed) {
   const double dt = 1e-6 / speed;  // a micrometer a tick: the force is off by 1 mN at most
   const double way = to > from ? 1.0 : -1.0;
@@ -61,7 +62,8 @@ TEST(RuptureRate, FollowsItsCurveBothWays) {
   }
 }
 
-// What counts is the speed into the wall, now: a fast hand beside it, or one that stopped, tears nothing.
+// What counts is the speed into the wall, now: a fast hand beside it, or one that stopped, tears
+// nothing.
 TEST(RuptureRate, IsOfTheSpeedIntoTheWall) {
   const auto renderer = makeRenderer(sceneOf(skin(", rate: {ratio: 0.4, speed: 20 mm/s}")));
   const auto press = [&](const Vec3& velocity) {

@@ -1,5 +1,6 @@
-// Walls of different materials beside each other on one surface: the press is shared over a patch as wide as it is deep,
-// so that what is felt has a potential, and each wall alone keeps its own law.
+// Walls of different materials beside each other on one surface: the press is shared over a patch
+// as wide as it is deep, so that what is felt has a potential, and each wall alone keeps its own
+// law.
 
 #include <gtest/gtest.h>
 
@@ -178,7 +179,8 @@ TEST(Seams, AreCrossedUnderAPressWithoutGainOrStep) {
     }
   }
   std::printf("  %.3g J, at most %.0f N/m\n", work, steepest);
-  // The kinks where a wall is met and left: half a step's change of force times a step, 3000 N/m (0.3 um)^2 / 2 each.
+  // The kinks where a wall is met and left: half a step's change of force times a step, 3000 N/m
+  // (0.3 um)^2 / 2 each.
   EXPECT_NEAR(work, 0.0, 1e-9);
   // No stiffer than the stiffer wall: the shares add at most 3/4 of the difference along the wall.
   EXPECT_LE(steepest, 3000.0 * (1.0 + 1e-6));
@@ -240,7 +242,8 @@ TEST(Seams, FrictionOnlyTakesThere) {
 }
 
 TEST(Seams, AWallThatGivesWayBesideOneGivesBackNoMoreThanWasStored) {
-  // In by the soft half, which opens at 1 N, out elsewhere; the whole way gives at most what is counted as a source.
+  // In by the soft half, which opens at 1 N, out elsewhere; the whole way gives at most what is
+  // counted as a source.
   const ScenePtr scene = test::sceneOf(R"(
 palpate: 1
 length: mm
@@ -279,7 +282,8 @@ ports:
   }
 }
 
-// Neither a circle within a union nor the line where one more seam comes within the patch is a wall.
+// Neither a circle within a union nor the line where one more seam comes within the patch is a
+// wall.
 TEST(Seams, AcrossALineWithinAUnionNothingSteps) {
   const ScenePtr scene = palpate::test::sceneOf(R"(
 palpate: 1

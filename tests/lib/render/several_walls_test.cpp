@@ -1,4 +1,5 @@
-// What of friction, damping and relaxing is felt where several walls hold the proxy, or one hands it on to the next.
+// What of friction, damping and relaxing is felt where several walls hold the proxy, or one hands
+// it on to the next.
 
 #include <gtest/gtest.h>
 

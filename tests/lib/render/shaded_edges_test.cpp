@@ -34,8 +34,9 @@ std::string halfSpaceText(const Vec3& normal) {
   return out;
 }
 
-/// Two boxes that cross, each shaded by its own shape: where the edge between their tops ends at a face of the one, what the
-/// other one's top stores comes into play at once. Counted as a leap of springs alone it gave up to 0.24 mJ a lap.
+/// Two boxes that cross, each shaded by its own shape: where the edge between their tops ends at a
+/// face of the one, what the other one's top stores comes into play at once. Counted as a leap of
+/// springs alone it gave up to 0.24 mJ a lap.
 TEST(ShadedWalls, WhatComesIntoPlayWhereTheirEdgeEndsIsCounted) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -94,8 +95,8 @@ TEST(ShadedWalls, WhereTwoBoxesCrossGiveNoEnergy) {
   }
 }
 
-/// In a hollow edge the proxy stands still, while beside it the smoothed surface slopes: what is stored has a fold where the
-/// proxy comes into the edge, and the force steps there.
+/// In a hollow edge the proxy stands still, while beside it the smoothed surface slopes: what is
+/// stored has a fold where the proxy comes into the edge, and the force steps there.
 TEST(ShadedWalls, AHollowEdgeHasAFoldOfWhatTheSmoothedSurfaceSlopesBesideIt) {
   constexpr double kStiffness = 1000.0;  // [N/m]
   constexpr double kHeld = 0.9;          // of the depth: more of a height is not felt
@@ -123,7 +124,8 @@ TEST(ShadedWalls, AHollowEdgeHasAFoldOfWhatTheSmoothedSurfaceSlopesBesideIt) {
       const double due = kStiffness * (deep - std::fabs(there.value) / kHeld) * slope;
       EXPECT_NEAR(glm::length(beside - within), due, 1e-4 * due) << tilt << " degrees";
       EXPECT_LE(glm::length(beside - within), slope * glm::length(within)) << tilt << " degrees";
-      // From the edge it pushes along the wall, uphill, and from within the edge square to the wall.
+      // From the edge it pushes along the wall, uphill, and from within the edge square to the
+      // wall.
       EXPECT_NEAR(glm::dot(beside - within, uphill), due, 1e-4 * due) << tilt << " degrees";
     }
   }

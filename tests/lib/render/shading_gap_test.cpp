@@ -1,4 +1,5 @@
-// The set-up of a scene reports shading that looks further than its surface is known; the hand feels it all the same.
+// The set-up of a scene reports shading that looks further than its surface is known; the hand
+// feels it all the same.
 
 #include "palpate/render/shading_gap.h"
 
@@ -47,7 +48,7 @@ SceneDescription bandedDescription(double band, double shading) {
   layer.inside = std::make_shared<FieldSource>(std::make_shared<BandedBall>(0.02, band));
   layer.wall.material = "wall";
   description.layers = {layer};
-  description.metres_per_unit = 1e-3;
+  description.meters_per_unit = 1e-3;
   return description;
 }
 
@@ -79,7 +80,8 @@ TEST(ShadingGaps, NameTheMaterialAmongOthersThatAreNotShaded) {
 }
 
 TEST(ShadingGaps, ShadingIsFeltAllTheSame) {
-  // A ball seen smoothed is smaller: with a band that is too narrow by a little less or more, never as if it were off.
+  // A ball seen smoothed is smaller: with a band that is too narrow by a little less or more, never
+  // as if it were off.
   for (const double band : {2e-3, 20e-3}) {
     Drive hand(bandedScene(band, 3e-3));
     (void)hand.to(mm(0, 0, 22));

@@ -45,7 +45,8 @@ class Hand {
   int kind_ = 3;
 };
 
-/// True if a point within `reach` of p belongs to `region`: at a wall the side is remembered, not measured.
+/// True if a point within `reach` of p belongs to `region`: at a wall the side is remembered, not
+/// measured.
 inline bool isAt(const Scene& scene, RegionId region, const Vec3& p, double reach) {
   if (scene.regionAt(p) == region) return true;
   for (int i = 0; i < 27; ++i) {

@@ -1,6 +1,7 @@
 #pragma once
-// A needle on the straight way down into data/scenes/slab.yaml, in one dimension and by closed forms: what
-// the constraint renderer is held against. Depths in [m] below the skin; nothing here is of the library.
+// A needle on the straight way down into data/scenes/slab.yaml, in one dimension and by closed
+// forms: what the constraint renderer is held against. Depths in [m] below the skin; nothing here
+// is of the library.
 
 #include <algorithm>
 #include <array>
@@ -26,7 +27,8 @@ struct SlabWall {
   bool open = false;
 };
 
-/// Where the tip is, which walls were pierced, how far was cut, and how each tissue holds the shaft.
+/// Where the tip is, which walls were pierced, how far was cut, and how each tissue holds the
+/// shaft.
 class SlabModel {
  public:
   std::array<SlabTissue, 3> tissues{{
@@ -154,7 +156,8 @@ class SlabModel {
   std::array<double, 3> end_{};
 };
 
-/// Depths of the hand, tick by tick: down from `from` to `to`, and back, at rest for a while at both.
+/// Depths of the hand, tick by tick: down from `from` to `to`, and back, at rest for a while at
+/// both.
 inline std::vector<double> thereAndBack(double from, double to, double step, int rest) {
   std::vector<double> out;
   const int n = static_cast<int>(std::lround((to - from) / step));

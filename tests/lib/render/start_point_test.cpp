@@ -1,4 +1,5 @@
-// Where the proxy begins when no leaf's field leads to its region, as a grid's does not out of its band.
+// Where the proxy begins when no leaf's field leads to its region, as a grid's does not out of its
+// band.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,8 @@
 namespace palpate::test {
 namespace {
 
-/// Right in its sign everywhere, and in its value and gradient within `band` [m] of its surface alone.
+/// Right in its sign everywhere, and in its value and gradient within `band` [m] of its surface
+/// alone.
 class NarrowBand final : public Field {
  public:
   NarrowBand(FieldPtr whole, double band) : whole_(std::move(whole)), band_(band) {}
@@ -38,7 +40,8 @@ Vec3 begunAt(const FieldPtr& solid, const Vec3& hip) {
 }
 
 TEST(StartPoint, ARegionWithoutBoundsIsFoundAMeterOff) {
-  // Nine tenths of a meter away, to whatever side: 48 directions leave nothing wider than 25 degrees between them.
+  // Nine tenths of a meter away, to whatever side: 48 directions leave nothing wider than 25
+  // degrees between them.
   for (const Vec3& side : {Vec3(1, -1, 0), Vec3(-1, 1, 0), Vec3(1, 1, 1), Vec3(-1, 1, 1),
                            Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, -1, 0)}) {
     const Vec3 u = glm::normalize(side);

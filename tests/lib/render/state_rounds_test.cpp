@@ -1,4 +1,5 @@
-// The state of every example scene that needs neither scans nor grids, saved and given back at random ticks, to the last bit.
+// The state of every example scene that needs neither scans nor grids, saved and given back at
+// random ticks, to the last bit.
 
 #include "support/state_rounds.h"
 

@@ -53,8 +53,8 @@ ports: [{name: mouth, between: [outside, liquid], where: gate}]
 }
 
 TEST(Events, NoneOfManyCrossingsIsLost) {
-  // Forty shells in one another, a port between each two: where a tick's list or work is full the proxy
-  // waits for the next.
+  // Forty shells in one another, a port between each two: where a tick's list or work is full the
+  // proxy waits for the next.
   std::string text = "palpate: 1\nlength: mm\nlayers:\n";
   std::string ports = "ports: [{name: p0, between: [outside, s0]}";
   for (int i = 0; i < 40; ++i) {

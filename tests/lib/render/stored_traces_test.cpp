@@ -1,5 +1,6 @@
-// The example scenes feel as they did when their traces were stored. A change of numbers is to be explained, then
-// stored: PALPATE_REWRITE_TRACES=1 palpate_lib_tests --gtest_filter='*StoredTraces*'.
+// The example scenes feel as they did when their traces were stored. A change of numbers is to be
+// explained, then stored: PALPATE_REWRITE_TRACES=1 palpate_lib_tests
+// --gtest_filter='*StoredTraces*'.
 
 #include <gtest/gtest.h>
 

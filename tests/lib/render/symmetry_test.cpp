@@ -76,8 +76,9 @@ struct Difference {
   double worst = 0.0;  ///< of the bound, where not forked
 };
 
-/// Both runs may be off the minimum by 1e-6 of the depth; walls are met to a billionth of their features, and to
-/// rounding of the coordinates, of which a value of a field takes about ten; in a wedge both grow by 1 / sine.
+/// Both runs may be off the minimum by 1e-6 of the depth; walls are met to a billionth of their
+/// features, and to rounding of the coordinates, of which a value of a field takes about ten; in a
+/// wedge both grow by 1 / sine.
 double boundOf(double on_surface, const Elsewhere& other, double depth, double blunt) {
   const double rounding = 16.0 * kEps * glm::length(other.shift) / other.scale + 16.0 * kEps * 0.05;
   return 2e-6 * depth + (8.0 * on_surface + rounding) / std::max(blunt, 1e-3);
@@ -112,8 +113,8 @@ Difference compare(const Elsewhere& other) {
         out.worst = std::max(out.worst, off / boundOf(on_surface, other, depth, 1.0));
         continue;
       }
-      // Deep in a wedge, or one of several ends that rounding chose between: then both go on from different places,
-      // and the rest of the trace is not compared.
+      // Deep in a wedge, or one of several ends that rounding chose between: then both go on from
+      // different places, and the rest of the trace is not compared.
       const testing::Rest rest = oracle.solve(trace.ticks[i - 1].proxy, trace.path[i]);
       const double bound = boundOf(on_surface, other, depth, rest.blunt);
       if (off <= bound) continue;

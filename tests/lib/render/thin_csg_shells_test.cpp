@@ -26,7 +26,8 @@ constexpr double kOnSide = 1e-9;
 /// [m] Where the proxy is: positive outside of the solid, negative in its hollow.
 using Side = std::function<double(const Vec3&)>;
 
-/// Flies about the solid at `speed` [m/s], at rest now and then; true if the proxy came to the other side.
+/// Flies about the solid at `speed` [m/s], at rest now and then; true if the proxy came to the
+/// other side.
 bool crosses(const ScenePtr& scene, const Side& side, const Vec3& start, double speed,
              double thickness, std::uint64_t seed, int ticks, long& contacts) {
   Random random(seed);

@@ -1,4 +1,5 @@
-// Three curved walls at a point: the hand pressed into their corner is held there by one steady force.
+// Three curved walls at a point: the hand pressed into their corner is held there by one steady
+// force.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,8 @@ namespace {
 
 constexpr double kTick = 0.05e-3;  // [m] that the hand goes in a tick
 
-/// What is seen of a hand that is pressed to `goal` and held there, where `corner` is the point that holds it.
+/// What is seen of a hand that is pressed to `goal` and held there, where `corner` is the point
+/// that holds it.
 struct Held {
   double worst_proxy = 0.0;  ///< [m] off the corner, at rest
   double worst_force = 0.0;  ///< [N] off K (corner - P), at rest
@@ -66,8 +68,8 @@ struct Tally {
   }
 };
 
-/// The hand goes straight to `goal` and stays. It may have come to rest elsewhere than meant; wherever that is, it
-/// rests, which an oracle tells.
+/// The hand goes straight to `goal` and stays. It may have come to rest elsewhere than meant;
+/// wherever that is, it rests, which an oracle tells.
 void pressAndJudge(const ScenePtr& scene, const testing::RegionTree& tree, const Vec3& from,
                    const Vec3& goal, Tally& tally) {
   const testing::RestOracle oracle(tree);
@@ -117,8 +119,8 @@ layers:
   - {name: third, inside: {sphere: {center: [10, 18, 0], radius: 12}}, wall: wall}
 start: {region: first}
 )");
-  // Straight from the first ball's middle, so that the other two walls hold with no force of their own; and
-  // leaning to each of them.
+  // Straight from the first ball's middle, so that the other two walls hold with no force of their
+  // own; and leaning to each of them.
   for (const Vec3& weights :
        {Vec3(1, 0, 0), Vec3(1, 0.02, 0.02), Vec3(1, 0.3, 0.1), Vec3(1, 0.1, 0.3), Vec3(1, 1, 1)}) {
     SCOPED_TRACE(::testing::Message() << "weights " << Judge::text(weights));
@@ -133,7 +135,8 @@ start: {region: first}
 }
 
 TEST(ThreeWalls, ThreeBallsAreMetFromAllSides) {
-  // Not straight into the corner: along one wall or two of them, so that the proxy slides to where the third is.
+  // Not straight into the corner: along one wall or two of them, so that the proxy slides to where
+  // the third is.
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
 length: mm
@@ -168,7 +171,8 @@ TEST(ThreeWalls, ABallMinusTwoBallsWithTheHandDeadStill) {
   EXPECT_NEAR(glm::length(drive.last().force), 3.0, 3e-6);
 }
 
-/// Three balls through the origin, each felt from within (its center is on the allowed side) or from outside.
+/// Three balls through the origin, each felt from within (its center is on the allowed side) or
+/// from outside.
 struct Corner {
   FieldPtr solid;               ///< what the hand is within
   std::array<Vec3, 3> normals;  ///< [-] to where it is allowed

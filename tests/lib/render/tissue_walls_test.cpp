@@ -1,4 +1,5 @@
-// Walls whose springs are curved or relax, and friction that is what its name says, at every tick rate.
+// Walls whose springs are curved or relax, and friction that is what its name says, at every tick
+// rate.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +56,8 @@ layers: [{name: ball, inside: {sphere: {center: [0, 0, 0], radius: 30}}, wall: m
   go(26, 28, 0.0, 1.0);
   go(28, 32, 1.0, 1.0);
   EXPECT_LT(lowest, -2e-3);
-  // A force held for a tick: half of its change times the way, on 6 mm in 4000 ticks of some 1000 N/m.
+  // A force held for a tick: half of its change times the way, on 6 mm in 4000 ticks of some 1000
+  // N/m.
   EXPECT_NEAR(meter.work(), 0.0, 2e-5);
 }
 
@@ -82,7 +84,8 @@ TEST(TissueWalls, AMaxwellBranchIsARampAndARelaxation) {
   }
 }
 
-// Lifted fast, the branch slackens where it would pull as hard as the wall's own spring pushes: it takes up from there.
+// Lifted fast, the branch slackens where it would pull as hard as the wall's own spring pushes: it
+// takes up from there.
 TEST(TissueWalls, AMaxwellBranchSlackensRatherThanPull) {
   constexpr double kOwn = 500.0;      // [N/m]
   constexpr double kBranch = 2000.0;  // [N/m]
@@ -141,7 +144,8 @@ TEST(TissueWalls, AFrictionRatioIsTheRatioAtEveryRate) {
   }
 }
 
-// The same motion asks for the same force, however often a second it is asked for: nothing in it is an impulse.
+// The same motion asks for the same force, however often a second it is asked for: nothing in it is
+// an impulse.
 TEST(TissueWalls, TheForceOfAMotionDoesNotDependOnTheTick) {
   const ScenePtr scene = sceneNamed("slab");
   const auto run = [&](double dt) {

@@ -135,8 +135,8 @@ TEST(VaryingStiffness, AClosedWayCostsAndGivesNothing) {
     // Without the term the way gives or takes energy, and a finer trace changes nothing of it.
     EXPECT_GT(std::fabs(fine.plain), 0.02 * fine.stored);
     EXPECT_NEAR(coarse.plain, fine.plain, 0.02 * std::fabs(fine.plain));
-    // With it only what the sum over ticks leaves: less than 1e-5 of what was stored, and 4 x 4 times less
-    // for steps 4 times shorter where nothing but the rule's error is left.
+    // With it only what the sum over ticks leaves: less than 1e-5 of what was stored, and 4 x 4
+    // times less for steps 4 times shorter where nothing but the rule's error is left.
     EXPECT_LT(std::fabs(fine.corrected), 1e-5 * fine.stored);
     EXPECT_LT(std::fabs(fine.corrected), 1e-3 * std::fabs(fine.plain));
   }
@@ -152,7 +152,8 @@ TEST(VaryingStiffness, FrictionOnlyTakes) {
 }
 
 TEST(VaryingStiffness, StickingAndSlidingPassIntoEachOtherWithoutAStep) {
-  // A plane, 2 mm deep: 5e4 N/m per m lean with 0.1 N. To and fro, it sticks at every turn and slides between.
+  // A plane, 2 mm deep: 5e4 N/m per m lean with 0.1 N. To and fro, it sticks at every turn and
+  // slides between.
   const MaterialMapPtr map = testing::linearMap(1000.0, {5e4, 0, 0}, {100.0, 1900.0});
   Drive hand(sceneOf(shapes()[0], map, {0.1, 0.1}));
   (void)hand.to({0.0, 0.0, 0.001});
@@ -177,8 +178,8 @@ TEST(VaryingStiffness, StickingAndSlidingPassIntoEachOtherWithoutAStep) {
 }
 
 TEST(VaryingStiffness, WithFrictionTheLeanIsFeltThroughTheLag) {
-  // Drawn up and down the slope of the stiffness, the friction that is felt is the cone's about the lean: its mean over
-  // both ways is that of a wall without friction.
+  // Drawn up and down the slope of the stiffness, the friction that is felt is the cone's about the
+  // lean: its mean over both ways is that of a wall without friction.
   const double depth = 2e-3;
   const double slope = 2e4;
   const MaterialMapPtr map = testing::linearMap(1000.0, {slope, 0, 0}, {100.0, 1900.0});
@@ -206,8 +207,8 @@ TEST(VaryingStiffness, TheTermIsHalfTheSquareOfTheDepthTimesTheSlope) {
 }
 
 TEST(VaryingStiffness, GradientByHandFollowsTheClosestPoint) {
-  // Of f = v . x, x the closest point of a ball of radius R to the hand at R - d from its middle, along the
-  // surface: v R / (R - d) outside it, R / (R + d) from within.
+  // Of f = v . x, x the closest point of a ball of radius R to the hand at R - d from its middle,
+  // along the surface: v R / (R - d) outside it, R / (R + d) from within.
   const FieldPtr ball = sphere(Vec3(0.0), 0.02);
   const Vec3 x(0.02, 0, 0);
   const Vec3 v(3.0, 1.0, -2.0);

@@ -79,8 +79,8 @@ TEST(PotentialField, WhereTwoSolidsOverlapTheStiffnessDoubles) {
 }
 
 TEST(TangentTracking, LagsOnASphereAsDerived) {
-  // The contact point keeps an angle a behind the probe with a' = a (1 - 1 / (1 - kd)) + v T / (R - d) at rest:
-  // a = (v T / (R - d)) kd / (1 - kd), k = 1 / R; and behind by the sign of the step.
+  // The contact point keeps an angle a behind the probe with a' = a (1 - 1 / (1 - kd)) + v T / (R -
+  // d) at rest: a = (v T / (R - d)) kd / (1 - kd), k = 1 / R; and behind by the sign of the step.
   constexpr double kRadius = 0.05;
   const ScenePtr scene = sceneOf(ball(50.0));
   for (const auto& [depth, degrees] : {std::pair(1e-3, 0.0048), {25e-3, 0.458}}) {
@@ -100,8 +100,8 @@ TEST(TangentTracking, LagsOnASphereAsDerived) {
 }
 
 TEST(TangentTracking, BuzzesInAHollowThatIsPressedDeeperThanItsRadius) {
-  // From within a ball, d beyond its wall: a -> a - atan((1 + kd) sin a), so above kd = 1 it swings between +a and -a with
-  // 2 cos a / cos 2a = 1 + kd.
+  // From within a ball, d beyond its wall: a -> a - atan((1 + kd) sin a), so above kd = 1 it swings
+  // between +a and -a with 2 cos a / cos 2a = 1 + kd.
   constexpr double kRadius = 0.02;
   const ScenePtr scene =
       compile(parseScene("palpate: 1\nlength: mm\nmaterials:\n  wall: {stiffness: 1000 "
@@ -137,8 +137,9 @@ TriangleMesh foldOf(double fold) {
 }
 
 TEST(GodObject, AConvexFoldCostsEnergyAndJumps) {
-  // Face A lets go at the edge, face B at d tan(phi) before it: between them the force is that of the face come from. Directions
-  // differ by phi, lengths are K d and, at the edge, K d cos(phi); a loop loses K d^2 (sin^2 + tan^2)(phi) / 2.
+  // Face A lets go at the edge, face B at d tan(phi) before it: between them the force is that of
+  // the face come from. Directions differ by phi, lengths are K d and, at the edge, K d cos(phi); a
+  // loop loses K d^2 (sin^2 + tan^2)(phi) / 2.
   constexpr double kFold = 15.0 * kDegree;
   constexpr double kDepth = 1e-3;
   const auto renderer = godObject(sceneOf(ball(5.0)), foldOf(kFold));
@@ -191,9 +192,10 @@ TEST(GodObject, ThreeFacetsHoldItInACorner) {
 }
 
 TEST(ForceShading, AStrokeAcrossAFacetGivesEnergyAndTheWayBackTakesIt) {
-  // The interpolated normal of a facet leans by x / R at x. At rest the proxy q is where the plane through it with that normal has
-  // the hand's foot: q - h = d tan(q / R). In at h = 0, a stroke, and out: the force along it, K d tan(q / R), has
-  // W = K d R ln(1 / cos a) - K d^2 tan^2(a) / 2 between a = 0 and a = q / R.
+  // The interpolated normal of a facet leans by x / R at x. At rest the proxy q is where the plane
+  // through it with that normal has the hand's foot: q - h = d tan(q / R). In at h = 0, a stroke,
+  // and out: the force along it, K d tan(q / R), has W = K d R ln(1 / cos a) - K d^2 tan^2(a) / 2
+  // between a = 0 and a = q / R.
   constexpr double kRadius = 0.05;
   constexpr double kLength = 0.01;
   constexpr double kDepth = 2e-3;
@@ -225,14 +227,15 @@ TEST(ForceShading, AStrokeAcrossAFacetGivesEnergyAndTheWayBackTakesIt) {
     go(begin, begin + down);
     go(begin + down, end + down);
     go(end + down, end);
-    // The normal is interpolated along a chord, not along the arc: 0.3 %; and forces are held for a tick.
+    // The normal is interpolated along a chord, not along the arc: 0.3 %; and forces are held for a
+    // tick.
     EXPECT_NEAR(meter.work(), forward ? expected : -expected, 0.01 * expected) << forward;
   }
 }
 
 TEST(SlowPlane, StepsByTheAngleThatTheHandWentInAPeriod) {
-  // On a ball at depth d, phi = v T_s / (R - d) from plane to plane: from d' = R - (R - d) cos(phi') deep in the old one, a tick before
-  // the new one comes, to d in the new one.
+  // On a ball at depth d, phi = v T_s / (R - d) from plane to plane: from d' = R - (R - d)
+  // cos(phi') deep in the old one, a tick before the new one comes, to d in the new one.
   constexpr double kRadius = 0.02;
   constexpr double kDepth = 1e-3;
   const ScenePtr scene = sceneOf(ball(20.0));
@@ -287,7 +290,8 @@ TEST(Rivals, AllHoldOnASphereAndAreFreeBesideIt) {
       force = tick(*renderer, Vec3(0.0, 0.0, 0.021 - 3e-6 * k)).force;
     }
     EXPECT_EQ(guard.violations(), 0) << name;
-    // Facets of 1 mm on 20 mm lie up to 1 mm^2 / (4 R) inside; voxels say their depth to a few hundredths of one.
+    // Facets of 1 mm on 20 mm lie up to 1 mm^2 / (4 R) inside; voxels say their depth to a few
+    // hundredths of one.
     EXPECT_NEAR(force.z, 2.0, 0.06) << name;
     EXPECT_LT(angleBetween(force, Vec3(0.0, 0.0, 1.0)), 0.06) << name;
     renderer->reset();

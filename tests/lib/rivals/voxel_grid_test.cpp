@@ -22,7 +22,8 @@ double angleOf(const Vec3& g, const Vec3& n) {
   return std::atan2(glm::length(glm::cross(g, n)), glm::dot(g, n)) * 180.0 / std::numbers::pi;
 }
 
-/// Angles between the gradient and the normal of flat surfaces of random directions, at random places on them.
+/// Angles between the gradient and the normal of flat surfaces of random directions, at random
+/// places on them.
 Spread anglesOf(double ramp, Voxels::Gradient gradient) {
   std::mt19937 random(5);
   std::normal_distribution<double> any(0.0, 1.0);
@@ -50,8 +51,8 @@ Spread anglesOf(double ramp, Voxels::Gradient gradient) {
   return out;
 }
 
-/// [degree] rms of central differences, without a grid: with the nearest voxel r from a point of the plane (even in a unit cube), axis
-/// i has a step if |n . r| < |n_i|.
+/// [degree] rms of central differences, without a grid: with the nearest voxel r from a point of
+/// the plane (even in a unit cube), axis i has a step if |n . r| < |n_i|.
 double centralByFormula() {
   std::mt19937 random(6);
   std::normal_distribution<double> any(0.0, 1.0);
@@ -80,7 +81,8 @@ TEST(VoxelGrid, DirectionsAreOffAsMuchAsTheGradientSees) {
   const Spread wide = anglesOf(4.0, Voxels::Gradient::kCentral);
   // 2000 random directions: the rms of angles that spread by some 10 degrees is sure to 0.3 or so.
   EXPECT_NEAR(central.rms, centralByFormula(), 0.5);
-  // The others as a simulation that was written apart from this one has them: 13 to 14, 8.5 and 2.3.
+  // The others as a simulation that was written apart from this one has them: 13 to 14, 8.5
+  // and 2.3.
   EXPECT_NEAR(interpolated.rms, 14.0, 1.0);
   EXPECT_NEAR(sobel.rms, 8.3, 0.5);
   EXPECT_NEAR(ramp.rms, 2.3, 0.2);

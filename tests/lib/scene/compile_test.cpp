@@ -262,7 +262,7 @@ TEST(Compile, APortMayLeadInFromSeveralRegions) {
   EXPECT_EQ(errorOf([&] { (void)compile(s); }).problem().code, "scene.unknown_layer");
 }
 
-TEST(Compile, SmallAndThinNeighboursAreStillFound) {
+TEST(Compile, SmallAndThinNeighborsAreStillFound) {
   // A pea in a barrel, and a shell of 20 um.
   SceneDescription s;
   s.layers = {layer("barrel", ball(0, 0.5)), layer("pea", ball(0.3, 0.004)),
@@ -322,7 +322,8 @@ TEST(Compile, ManyThinSlabsAreLookedThroughWithoutAskingEveryFaceEverywhere) {
     for (RegionId b = 2; b < a; ++b) EXPECT_FALSE(scene->touches(a, b));
   }
   EXPECT_TRUE(scene->touches(kOutside, 1));
-  // Some 8000 lines of 128 steps; all 80 faces at each would be 80 million, and as many at the halvings.
+  // Some 8000 lines of 128 steps; all 80 faces at each would be 80 million, and as many at the
+  // halvings.
   EXPECT_LT(asked, 16'000'000U);
 }
 
@@ -399,7 +400,8 @@ TEST(LabelGroup, ThatIsOneOrApartIsLeftAlone) {
 }
 
 TEST(LabelGroup, LayersWithALabelInCommonDoNotLimitEachOther) {
-  // A part within the whole it belongs to: it is later and has its points, though the whole is deeper there.
+  // A part within the whole it belongs to: it is later and has its points, though the whole is
+  // deeper there.
   SceneDescription s;
   s.layers = {layer("whole", ball(0, 0.03)), layer("part", ball(0.005, 0.01)),
               layer("next", ball(0.05, 0.025))};

@@ -156,7 +156,7 @@ class FieldKeys : public ::testing::TestWithParam<KindCase> {};
 TEST_P(FieldKeys, MakeTheLibrarysField) {
   for (const std::string unit : {"mm", "cm", "m"}) {
     SCOPED_TRACE(unit);
-    const double u = *metresPer(unit);
+    const double u = *metersPer(unit);
     expectSameField(*fieldIn(unit, GetParam().text), *GetParam().expected(u), u);
   }
 }
@@ -164,15 +164,15 @@ TEST_P(FieldKeys, MakeTheLibrarysField) {
 INSTANTIATE_TEST_SUITE_P(Kinds, FieldKeys, ::testing::ValuesIn(kindCases()),
                          [](const auto& made) { return std::string(made.param.name); });
 
-// Coefficients belong to positions in the scene's unit; the zero set is what must agree, and the field
-// to rounding, since the library divides by its slope anyway.
+// Coefficients belong to positions in the scene's unit; the zero set is what must agree, and the
+// field to rounding, since the library divides by its slope anyway.
 TEST(FieldKeysQuadric, CountsInTheScenesUnit) {
   const std::string text =
       "{quadric: {center: [1, 2, 3], xx: 1, yy: 2, zz: -0.5, xy: 0.1, xz: 0.2, yz: 0.3, x: 4, "
       "y: 5, z: 6, constant: -100, reach: 70}}";
   for (const std::string unit : {"mm", "cm", "m", "in"}) {
     SCOPED_TRACE(unit);
-    const double u = *metresPer(unit);
+    const double u = *metersPer(unit);
     const FieldPtr field = fieldIn(unit, text);
     const FieldPtr expected = quadric(in(u, 1, 2, 3),
                                       {.xx = 1 / u / u,
@@ -210,7 +210,7 @@ TEST(FieldKeysQuadric, CountsInTheScenesUnit) {
   EXPECT_LT(waist->value(Vec3(0.0029, 0.004, 0.0)), 0.0);
 }
 
-TEST(FieldKeysQuadric, ReachesHalfAMetreIfNotTold) {
+TEST(FieldKeysQuadric, ReachesHalfAMeterIfNotTold) {
   const FieldPtr plane = fieldIn("mm", "{quadric: {center: [0, 0, 0], z: 1}}");
   EXPECT_EQ(plane->lipschitzDomain().hi.x, 0.5);
   // The slope is made a trillionth less than 1, to be sure of the bound.

@@ -1,4 +1,5 @@
-// Labels of one image share its points: what the shared fields promise, on planes whose values are not distances.
+// Labels of one image share its points: what the shared fields promise, on planes whose values are
+// not distances.
 
 #include "scene/label_share.h"
 

@@ -1,4 +1,5 @@
-// The reader of a map learns which parameter it is for, in which unit, and whether values below 0 have a meaning.
+// The reader of a map learns which parameter it is for, in which unit, and whether values below 0
+// have a meaning.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// What a scene does not need is not made: beyond the device's workspace, and where no probe ever comes.
+// What a scene does not need is not made: beyond the device's workspace, and where no probe ever
+// comes.
 
 #include "scene/need.h"
 
@@ -16,7 +17,8 @@
 namespace palpate {
 namespace {
 
-/// A registry whose `costly: {center, radius}` is a ball that takes work, and counts how often it is made.
+/// A registry whose `costly: {center, radius}` is a ball that takes work, and counts how often it
+/// is made.
 class Need : public ::testing::Test {
  protected:
   Need() {
@@ -199,7 +201,8 @@ TEST_F(Need, WhatIsFeltThroughAClosedWallIsMade) {
   EXPECT_EQ(leftOut(*compile(read(body(35.0) + device))), "");
 }
 
-/// A registry whose `parts: {center, radius}` is a ball that can be made in part, and tells of which box.
+/// A registry whose `parts: {center, radius}` is a ball that can be made in part, and tells of
+/// which box.
 class NeedInPart : public ::testing::Test {
  protected:
   NeedInPart() {
@@ -250,8 +253,8 @@ TEST_F(NeedInPart, OnlyWhatTheDeviceReachesIsAskedFor) {
   EXPECT_FALSE(asked_[0].isBounded());
 }
 
-// In the workspace the force is the same, bit for bit; on its border too, for a hand that presses no deeper than is kept
-// beyond it: 4.4 mm here.
+// In the workspace the force is the same, bit for bit; on its border too, for a hand that presses
+// no deeper than is kept beyond it: 4.4 mm here.
 TEST_F(NeedInPart, TheTraceIsThatOfTheWhole) {
   const ScenePtr felt = compile(read(kHalfInReach));
   const ScenePtr all = compile(read(kHalfInReach), {}, Purpose::kShow);

@@ -1,5 +1,5 @@
-// Which regions can ever be entered: the search of states and transitions, against a long random walk and
-// against cases whose answer is known.
+// Which regions can ever be entered: the search of states and transitions, against a long random
+// walk and against cases whose answer is known.
 
 #include "scene/reach.h"
 
@@ -77,7 +77,8 @@ TEST(Reach, OutsideClearsWhatWasPassed) {
 }
 
 TEST(Reach, AnAbsentWallBackTakesAPassingBack) {
-  // a to b by a port, back where there is no wall: the room that asks for the port opens from a only.
+  // a to b by a port, back where there is no wall: the room that asks for the port opens from a
+  // only.
   ReachTable table = rooms();
   table.ways = {{0, 1, 0, true}, {1, 2, 1, true}, {2, 1, -1, false}, {1, 3, 3, true}};
   table.after[3] = {1};

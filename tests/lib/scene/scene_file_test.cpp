@@ -57,7 +57,7 @@ TEST(SceneFile, ContainerOfTheDesign) {
   const SceneDescription scene = parseScene(kContainer, "container.yaml");
   EXPECT_EQ(scene.file, "container.yaml");
   EXPECT_EQ(scene.length_unit, "mm");
-  EXPECT_EQ(scene.metres_per_unit, 0.001);
+  EXPECT_EQ(scene.meters_per_unit, 0.001);
   EXPECT_EQ(scene.start_region, "outside");
   EXPECT_EQ(scene.renderer, RendererKind::kConstraint);
   EXPECT_FALSE(scene.keep_memory);
@@ -134,7 +134,7 @@ TEST(SceneFile, TheSameSceneAsJson) {
 }
 
 TEST(SceneFile, LengthsAreInTheUnitNamed) {
-  for (const auto& [unit, metres] :
+  for (const auto& [unit, meters] :
        {std::pair{"m", 1.0}, std::pair{"cm", 0.01}, std::pair{"mm", 0.001}, std::pair{"um", 1e-6},
         std::pair{"in", 0.0254}}) {
     const SceneDescription scene =
@@ -142,7 +142,7 @@ TEST(SceneFile, LengthsAreInTheUnitNamed) {
                        "\nfields: {f: {sphere: {center: [0, 0, 0], radius: 3}}}\n",
                    "test.yaml");
     EXPECT_EQ(scene.length_unit, unit);
-    EXPECT_NEAR(scene.fields[0].source->get()->value(Vec3(0.0)), -3.0 * metres, 1e-15) << unit;
+    EXPECT_NEAR(scene.fields[0].source->get()->value(Vec3(0.0)), -3.0 * meters, 1e-15) << unit;
   }
   // A length with a unit of its own does not care.
   EXPECT_NEAR(fieldOf("{sphere: {center: [0, 0, 0], radius: 3 cm}}")->value(Vec3(0.0)), -0.03,
@@ -167,7 +167,8 @@ TEST(SceneFile, EveryKindOfField) {
   EXPECT_NEAR(value("{intersection: [" + a + ", " + b + "]}"), 0.006, 1e-15);
   EXPECT_NEAR(value("{difference: [" + b + ", " + a + "]}"), 0.003, 1e-15);
   EXPECT_NEAR(value("{complement: " + a + "}"), -0.006, 1e-15);
-  // Turned about the origin first, then shifted: (0, 10, 0) turns to (-10, 0, 0), shifts to (4, 0, 0).
+  // Turned about the origin first, then shifted: (0, 10, 0) turns to (-10, 0, 0), shifts to (4, 0,
+  // 0).
   const std::string away = "{sphere: {center: [0, 10, 0], radius: 4}}";
   EXPECT_NEAR(value("{transform: {field: " + away +
                     ", rotate: {axis: [0, 0, 3], degrees: 90}, translate: [14, 0, 0]}}"),
@@ -348,7 +349,8 @@ TEST(SceneFile, ReadsTheFileItIsGiven) {
   EXPECT_EQ(problem.file, folder.path("other.yaml"));
 }
 
-// The analytic scenes of the project hold together: every port joins neighbors, every region is reached.
+// The analytic scenes of the project hold together: every port joins neighbors, every region is
+// reached.
 TEST(SceneFile, TheProjectsScenesCompile) {
   for (const std::string name : {"container", "csg_part", "valve_tube", "sponge", "flag"}) {
     const ScenePtr scene =

@@ -1,6 +1,6 @@
 #pragma once
-/// Readers in place of those of palpate::vdb, which lib's tests do not link: they read the same keys
-/// and give spheres.
+/// Readers in place of those of palpate::vdb, which lib's tests do not link: they read the same
+/// keys and give spheres.
 
 #include <memory>
 #include <string>

@@ -95,13 +95,13 @@ TEST(Quantities, EveryUnitInSi) {
   }
 }
 
-TEST(Quantities, WholeMillimetresAreTheDoubleNearestToTheMetres) {
+TEST(Quantities, WholeMillimetersAreTheDoubleNearestToTheMeters) {
   // 35 * 0.001 is not 0.035: a third of the whole numbers would be off in the last place.
   for (int i = 0; i < 20000; ++i) {
-    std::array<char, 32> metres{};
-    std::snprintf(metres.data(), metres.size(), "%d.%03d", i / 1000, i % 1000);
-    const std::string millimetres = std::to_string(i) + " mm";
-    EXPECT_EQ(parseQuantity(millimetres, Dimension::kLength).si, *parseNumber(metres.data()));
+    std::array<char, 32> meters{};
+    std::snprintf(meters.data(), meters.size(), "%d.%03d", i / 1000, i % 1000);
+    const std::string millimeters = std::to_string(i) + " mm";
+    EXPECT_EQ(parseQuantity(millimeters, Dimension::kLength).si, *parseNumber(meters.data()));
   }
 }
 
@@ -137,14 +137,14 @@ TEST(Quantities, WhatIsWrongIsTold) {
 }
 
 TEST(Units, LengthsAndHelp) {
-  EXPECT_EQ(metresPer("mm"), 1e-3);
-  EXPECT_EQ(metresPer("cm"), 1e-2);
-  EXPECT_EQ(metresPer("m"), 1.0);
-  EXPECT_EQ(metresPer("um"), 1e-6);
-  EXPECT_EQ(metresPer("in"), 0.0254);
-  EXPECT_EQ(metresPer("N"), std::nullopt);
-  EXPECT_EQ(metresPer("MM"), std::nullopt);
-  EXPECT_EQ(metresPer(""), std::nullopt);
+  EXPECT_EQ(metersPer("mm"), 1e-3);
+  EXPECT_EQ(metersPer("cm"), 1e-2);
+  EXPECT_EQ(metersPer("m"), 1.0);
+  EXPECT_EQ(metersPer("um"), 1e-6);
+  EXPECT_EQ(metersPer("in"), 0.0254);
+  EXPECT_EQ(metersPer("N"), std::nullopt);
+  EXPECT_EQ(metersPer("MM"), std::nullopt);
+  EXPECT_EQ(metersPer(""), std::nullopt);
   EXPECT_EQ(unitHelp(Dimension::kStiffness), "N/m (also N/mm, N/cm, kN/m)");
   EXPECT_EQ(unitHelp(Dimension::kLength), "m (also mm, cm, um, in)");
 }

@@ -1,5 +1,6 @@
-// The reader, the schema and the reference page know the same words. What palpate::vdb adds is checked
-// against the schema by its own tests; here readers that stand in for it read the same keys.
+// The reader, the schema and the reference page know the same words. What palpate::vdb adds is
+// checked against the schema by its own tests; here readers that stand in for it read the same
+// keys.
 
 #include <gtest/gtest.h>
 #include <regex.h>

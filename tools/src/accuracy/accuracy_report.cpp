@@ -77,14 +77,14 @@ void addSpread(std::vector<std::string>& row, const Spread& spread, double unit,
 std::vector<std::string> errorCells(const Errors& errors, double voxel, const LengthUnit& unit) {
   const bool any = errors.points > 0;
   std::vector<std::string> row = {std::to_string(errors.points)};
-  addSpread(row, errors.value, unit.metres, any);
+  addSpread(row, errors.value, unit.meters, any);
   if (voxel > 0.0) {
     addSpread(row, errors.value, voxel, any);
   } else {
     row.insert(row.end(), {"-", "-"});
   }
   addSpread(row, errors.normal, 1.0, any);
-  addSpread(row, errors.curvature, 1.0 / unit.metres, any);
+  addSpread(row, errors.curvature, 1.0 / unit.meters, any);
   return row;
 }
 
@@ -116,7 +116,7 @@ std::string errorTable(const FieldResult& result, const LengthUnit& unit) {
   table.add(itself);
   for (const Rung& rung : result.rungs) {
     for (const SamplerResult& s : rung.samplers) {
-      std::vector<std::string> row = {brief(rung.voxel / unit.metres), samplerName(s.sampler)};
+      std::vector<std::string> row = {brief(rung.voxel / unit.meters), samplerName(s.sampler)};
       join(row, errorCells(s.smooth, rung.voxel, unit));
       const bool any = s.jitter.points > 0;
       join(row, {any ? brief(s.jitter.field.most) : "-", any ? brief(s.jitter.truth.most) : "-"});
@@ -131,7 +131,7 @@ std::string edgeTable(const FieldResult& result, const LengthUnit& unit) {
   for (const Rung& rung : result.rungs) {
     if (rung.near_edges == 0) continue;
     for (const SamplerResult& s : rung.samplers) {
-      std::vector<std::string> row = {brief(rung.voxel / unit.metres), samplerName(s.sampler)};
+      std::vector<std::string> row = {brief(rung.voxel / unit.meters), samplerName(s.sampler)};
       join(row, errorCells(s.near_edges, rung.voxel, unit));
       table.add(row);
     }
@@ -154,7 +154,7 @@ std::string costTable(const FieldResult& result, const LengthUnit& unit) {
   table.add(itself);
   for (const Rung& rung : result.rungs) {
     for (const SamplerResult& s : rung.samplers) {
-      std::vector<std::string> row = {brief(rung.voxel / unit.metres), samplerName(s.sampler)};
+      std::vector<std::string> row = {brief(rung.voxel / unit.meters), samplerName(s.sampler)};
       join(row, times(s.times));
       join(row, {formatBytes(s.memory), formatCount(rung.active_voxels),
                  formatSeconds(rung.bake_seconds), formatSeconds(s.make_seconds)});
@@ -180,7 +180,7 @@ std::string ordersText(const FieldResult& result) {
 std::string leftOutText(const FieldResult& result, const LengthUnit& unit) {
   std::string text;
   for (const Rung& rung : result.rungs) {
-    const std::string size = "  " + brief(rung.voxel / unit.metres) + " " + unit.name + ": ";
+    const std::string size = "  " + brief(rung.voxel / unit.meters) + " " + unit.name + ": ";
     if (!rung.why.empty()) text += size + "not done: " + rung.why + "\n";
     if (rung.without_truth > 0) {
       text += size + std::to_string(rung.without_truth) +

@@ -28,8 +28,8 @@ enum class ValueIs {
 [[nodiscard]] Errors errorsAt(const Field& field, std::span<const JudgedPoint> points, bool smooth,
                               ValueIs value_is = ValueIs::kDistance);
 
-/// |n[i+1] - 2 n[i] + n[i-1]| of unit normals along strokes: the jump of the force's change from tick
-/// to tick, in N for each N of contact force.
+/// |n[i+1] - 2 n[i] + n[i-1]| of unit normals along strokes: the jump of the force's change from
+/// tick to tick, in N for each N of contact force.
 struct Jitter {
   std::size_t points = 0;  ///< where all three normals were known, away from edges
   Spread field;            ///< [-]
@@ -38,8 +38,8 @@ struct Jitter {
 
 [[nodiscard]] Jitter jitterOf(const Field& field, std::span<const Stroke> strokes);
 
-/// Slope of log error over log h, by least squares: p, if the error goes with h^p. Nothing for fewer
-/// than two sizes, or if an error is 0.
+/// Slope of log error over log h, by least squares: p, if the error goes with h^p. Nothing for
+/// fewer than two sizes, or if an error is 0.
 [[nodiscard]] std::optional<double> fittedOrder(std::span<const double> h,
                                                 std::span<const double> error);
 

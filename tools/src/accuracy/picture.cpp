@@ -63,7 +63,7 @@ std::string curve(const FieldResult& result, std::size_t field, vdb::Sampler sam
       way += (way.empty() ? "" : " ") + svgNumber(x.at(cost)) + "," + svgNumber(y.at(error));
       marks += mark(x.at(cost), y.at(error), field, colorOf(sampler));
       marks += svgText(x.at(cost) + 10.0, y.at(error) + 4.0, "font-size='11' fill='#555'",
-                       formatNumber(rung.voxel / unit.metres, 3));
+                       formatNumber(rung.voxel / unit.meters, 3));
     }
   }
   return "<polyline points='" + way + "' fill='none' stroke='" + colorOf(sampler) + "'/>\n" + marks;
@@ -127,7 +127,7 @@ std::string accuracySvg(const std::vector<FieldResult>& results, const LengthUni
   const Scale normal = {[](const Rung&, const SamplerResult& s) { return s.smooth.normal.rms; },
                         "error of the normal, RMS [degree]"};
   const Scale value = {
-      [&](const Rung&, const SamplerResult& s) { return s.smooth.value.rms / unit.metres; },
+      [&](const Rung&, const SamplerResult& s) { return s.smooth.value.rms / unit.meters; },
       "error of the distance, RMS [" + unit.name + "]"};
 
   std::string out = svgPage(kWidth, kHeight);

@@ -21,8 +21,8 @@ struct PointSet {
 };
 
 /// `count` points, evenly distributed over the space whose true distance to the surface is at most
-/// `band` [m]; the same for the same arguments, on every machine with the same rounding. `voxel` [m]
-/// is for JudgedPoint::smooth. The field must be bounded.
+/// `band` [m]; the same for the same arguments, on every machine with the same rounding. `voxel`
+/// [m] is for JudgedPoint::smooth. The field must be bounded.
 /// @throws Error: kInput if it has no surface, kCancelled.
 [[nodiscard]] PointSet pointsNear(const Truth& truth, double band, std::size_t count, double voxel,
                                   const Progress& progress = {});

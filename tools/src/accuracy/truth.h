@@ -15,8 +15,9 @@ struct TruePoint {
   double curvature = 0.0;
 };
 
-/// Of a field with a distance (exact, or a bound of one) the field's own value, gradient and Hessian;
-/// of an implicit field the exact distance, by projection onto its zero set. Keeps the field alive.
+/// Of a field with a distance (exact, or a bound of one) the field's own value, gradient and
+/// Hessian; of an implicit field the exact distance, by projection onto its zero set. Keeps the
+/// field alive.
 class Truth {
  public:
   explicit Truth(FieldPtr field)
@@ -39,16 +40,16 @@ class Truth {
 /// [1/m] of the surface of equal values through the point.
 [[nodiscard]] double meanCurvature(const FieldJet& jet) noexcept;
 
-/// [voxels] how far a sampler's stencil, with what its coefficients were made from, reaches along an
-/// axis.
+/// [voxels] how far a sampler's stencil, with what its coefficients were made from, reaches along
+/// an axis.
 inline constexpr double kStencilReach = 4.0;
 /// [voxels] Bends tighter than this are as good as edges: no grid of that voxel size can hold them.
 inline constexpr double kTightestBend = 1.5;
 
-/// False if the field has an edge, a medial axis or a tight bend in reach of the stencil: if its gradient
-/// turns by more than a degree, and by more than it would on a bend of kTightestBend, over a part of
-/// at most half a voxel of the ways from `p` to the 26 corners, edge middles and face middles of a cube
-/// that reaches kStencilReach voxels of size `voxel` [m] to each side.
+/// False if the field has an edge, a medial axis or a tight bend in reach of the stencil: if its
+/// gradient turns by more than a degree, and by more than it would on a bend of kTightestBend, over
+/// a part of at most half a voxel of the ways from `p` to the 26 corners, edge middles and face
+/// middles of a cube that reaches kStencilReach voxels of size `voxel` [m] to each side.
 [[nodiscard]] bool isSmoothAround(const Field& field, const Vec3& p, double voxel) noexcept;
 
 }  // namespace palpate::tools

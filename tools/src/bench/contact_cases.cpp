@@ -22,8 +22,8 @@ constexpr double kDepth = 1e-3;  // [m]
 const Vec3 kOrigin(0.0);
 const Vec3 kUp(0.0, 0.0, 1.0);
 
-/// Ten rounds `depth` below (in a hollow: behind) the surface of a ball about the origin, the angle of
-/// the great circle growing by `speed` / distance from the center.
+/// Ten rounds `depth` below (in a hollow: behind) the surface of a ball about the origin, the angle
+/// of the great circle growing by `speed` / distance from the center.
 ContactCase ball(FieldPtr field, double radius, double depth, double speed, Held held,
                  double rounds = 10.0) {
   const bool hollow = held == Held::kInside;
@@ -179,7 +179,8 @@ ContactCase saddle() {
                judgeByOracle(oracle::FeasibleSet::outside(field), 16));
 }
 
-/// Adds balls with an opening each, in rows well away from the container, until the scene has `count` ports.
+/// Adds balls with an opening each, in rows well away from the container, until the scene has
+/// `count` ports.
 void addPortsElsewhere(SceneDescription& scene, std::size_t count) {
   const auto source = [](FieldPtr field) {
     return std::make_shared<FieldSource>(std::move(field));
@@ -201,8 +202,8 @@ void addPortsElsewhere(SceneDescription& scene, std::size_t count) {
   }
 }
 
-/// Into the paper's container by its mouth, round its wall from within, out again, and round it from outside; in a
-/// scene of so many ports.
+/// Into the paper's container by its mouth, round its wall from within, out again, and round it
+/// from outside; in a scene of so many ports.
 ContactCase container(std::size_t ports) {
   const double radius = 0.04;
   PathMaker maker(Vec3(0.0, 0.0, 0.03));

@@ -30,7 +30,8 @@ struct Ball {
 const std::array<Ball, 3> kBalls = {
     {{Vec3(0.0), 0.020}, {Vec3(0.020, 0.0, 0.0), 0.015}, {Vec3(0.010, 0.018, 0.0), 0.012}}};
 
-/// The point above the xy plane that the three have in common: their spheres' differences are planes.
+/// The point above the xy plane that the three have in common: their spheres' differences are
+/// planes.
 Vec3 ballsCorner() {
   const auto power = [](const Ball& ball) {
     return glm::dot(ball.center, ball.center) - ball.radius * ball.radius;
@@ -57,7 +58,8 @@ ContactCase threeBalls(bool hollow) {
   for (const Ball& ball : kBalls) balls.push_back(sphere(ball.center, ball.radius));
   const FieldPtr solid = hollow ? intersect(balls) : subtract(balls);
   const Vec3 corner = ballsCorner();
-  // From a place that is free: straight above the two balls that are cut out, or in the middle of all.
+  // From a place that is free: straight above the two balls that are cut out, or in the middle of
+  // all.
   const Vec3 free = hollow ? Vec3(0.010, 0.008, 0.0) : Vec3(-0.010, -0.005, 0.005);
   return along(solidScene(solid, StartIn::kSolid), free, wander(corner, 0.004), 0.0, 20.0 * kTurn,
                kStroke, judgeByOracle(oracle::FeasibleSet::inside(solid), kStride));

@@ -3,8 +3,8 @@
 
 namespace palpate::tools {
 
-/// [ns] A tick of a virtual coupling and a passivity controller with its bound, pressed on a wall: the shortest of some runs,
-/// over all ticks.
+/// [ns] A tick of a virtual coupling and a passivity controller with its bound, pressed on a wall:
+/// the shortest of some runs, over all ticks.
 [[nodiscard]] double guardsTime();
 
 }  // namespace palpate::tools

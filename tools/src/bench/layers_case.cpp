@@ -27,7 +27,8 @@ constexpr std::array<Shell, 5> kShells = {{{"skin", 0.050, 700.0, 2.0, 1.2},
                                            {"bone", 0.038, 2000.0, 0.5, 0.0},
                                            {"marrow", 0.033, 400.0, 4.0, 0.0}}};
 
-/// `mean` and up to a fifth more or less, in waves of some centimeters, as a scan of 2 mm has it; 16 bits.
+/// `mean` and up to a fifth more or less, in waves of some centimeters, as a scan of 2 mm has it;
+/// 16 bits.
 MaterialMapPtr waves(double mean, double phase) {
   vdb::Image image;
   image.size = {61, 61, 61};

@@ -16,7 +16,8 @@ using loops::LoopLimit;
 [[nodiscard]] std::string limitsTable(const std::vector<LoopLimit>& rows);
 [[nodiscard]] std::string limitsCsv(const std::vector<LoopLimit>& rows);
 
-/// Largest stiffness over rate, by device, of `rows` of one scene and renderer: found, and the budget.
+/// Largest stiffness over rate, by device, of `rows` of one scene and renderer: found, and the
+/// budget.
 [[nodiscard]] std::string rateMap(const std::vector<LoopLimit>& rows, const Machine& machine);
 
 /// A point of the map below.

@@ -1,5 +1,6 @@
 #pragma once
-/// One renderer on one case: how long a tick takes, how far off its force is, and how often it does not come to rest.
+/// One renderer on one case: how long a tick takes, how far off its force is, and how often it does
+/// not come to rest.
 
 #include <optional>
 #include <string>
@@ -40,7 +41,8 @@ struct Judgement {
 
 struct Measurement {
   std::size_t ticks = 0;  ///< timed hot
-  /// One after another; of each tick the shortest of all runs, so that what else the machine did is left out.
+  /// One after another; of each tick the shortest of all runs, so that what else the machine did is
+  /// left out.
   HotTimes hot;
   std::optional<OnceTimes> paced = {};
   std::optional<OnceTimes> cold = {};
@@ -52,7 +54,8 @@ struct Measurement {
   std::optional<double> true_step = {}, true_turn = {};
 };
 
-/// `flood` is asked for if there are cold ticks. Nothing if the renderer cannot do the case, and then `why`.
+/// `flood` is asked for if there are cold ticks. Nothing if the renderer cannot do the case, and
+/// then `why`.
 [[nodiscard]] std::optional<Measurement> measure(const ContactCase& what, RendererKind kind,
                                                  const MeasureSettings& settings, CacheFlood* flood,
                                                  const Progress& progress, std::string& why);

@@ -34,8 +34,8 @@ class PathMaker {
   std::vector<Vec3> points_;
 };
 
-/// A unit vector that goes round a great circle once in 2 pi, while the circle itself turns about z a
-/// twentieth as fast: in ten rounds it comes by most of the sphere.
+/// A unit vector that goes round a great circle once in 2 pi, while the circle itself turns about z
+/// a twentieth as fast: in ten rounds it comes by most of the sphere.
 [[nodiscard]] Vec3 windingDirection(double s) noexcept;
 
 }  // namespace palpate::tools

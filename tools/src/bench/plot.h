@@ -24,7 +24,8 @@ struct Plot {
   std::vector<PlotPoint> points;
 };
 
-/// 1200 x 800 points. Marks that would cover one another are moved apart, with a line to where they belong.
+/// 1200 x 800 points. Marks that would cover one another are moved apart, with a line to where they
+/// belong.
 [[nodiscard]] std::string plotSvg(const Plot& plot);
 
 }  // namespace palpate::tools

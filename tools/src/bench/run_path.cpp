@@ -14,7 +14,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::microseconds kSpin(80);
 constexpr std::size_t kStretches = 10;
 
-/// Plays the path from its first point; `before` is called with each tick's index ahead of the timed update.
+/// Plays the path from its first point; `before` is called with each tick's index ahead of the
+/// timed update.
 template <typename Before, typename After>
 void play(const ContactCase& what, HapticRenderer& renderer, const Before& before,
           const After& after) {

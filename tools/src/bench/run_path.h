@@ -1,5 +1,6 @@
 #pragma once
-/// Runs a renderer along a case's path with a clock beside it: hot, at the pace of a device, and cold.
+/// Runs a renderer along a case's path with a clock beside it: hot, at the pace of a device, and
+/// cold.
 
 #include <cstdint>
 #include <vector>
@@ -17,8 +18,9 @@ struct HotRun {
 [[nodiscard]] HotRun runHot(const ContactCase& what, HapticRenderer& renderer, int repeats,
                             const Progress& progress);
 
-/// [ns] of about `wanted` ticks that begin kTickSeconds after one another, as a servo loop's do, in stretches
-/// spread over the judged part of the path. The loop sleeps in between, so that caches hold what the machine left.
+/// [ns] of about `wanted` ticks that begin kTickSeconds after one another, as a servo loop's do, in
+/// stretches spread over the judged part of the path. The loop sleeps in between, so that caches
+/// hold what the machine left.
 [[nodiscard]] std::vector<std::int64_t> runPaced(const ContactCase& what, HapticRenderer& renderer,
                                                  int wanted, const Progress& progress);
 

@@ -16,7 +16,8 @@ struct ServoFigures {
   devices::ServoReport report;
   double seconds = 0.0;
 
-  /// No turn in ten thousand was missed, and one in a thousand came later than half a period at most.
+  /// No turn in ten thousand was missed, and one in a thousand came later than half a period at
+  /// most.
   [[nodiscard]] bool isGood() const;
 };
 

@@ -31,12 +31,13 @@ struct FileCheck {
 
 [[nodiscard]] FileCheck checkMeshFile(const std::string& file, const CheckOptions& options,
                                       Console& console);
-/// One grid of the level-set class that cannot be touched is a no, and so is a file without any that can.
+/// One grid of the level-set class that cannot be touched is a no, and so is a file without any
+/// that can.
 [[nodiscard]] FileCheck checkGridFile(const std::string& file, const CheckOptions& options,
                                       Console& console);
 
-/// Makes all of it; what its grids could not hold of meshes and scans is a note, and does not make the answer no. @throws Error, if it
-/// cannot be made.
+/// Makes all of it; what its grids could not hold of meshes and scans is a note, and does not make
+/// the answer no. @throws Error, if it cannot be made.
 [[nodiscard]] FileCheck checkSceneFile(const std::string& file, Console& console);
 
 [[nodiscard]] Json findingsJson(const std::vector<Finding>& findings);

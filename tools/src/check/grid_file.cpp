@@ -10,8 +10,8 @@
 namespace palpate::tools {
 namespace {
 
-/// Where the mean of |gradient| is farther from 1, values are not distances in the grid's own unit: forces and
-/// contact would be off by as much. As certified() has it.
+/// Where the mean of |gradient| is farther from 1, values are not distances in the grid's own unit:
+/// forces and contact would be off by as much. As certified() has it.
 constexpr double kMostSlope = 0.25;
 
 struct GridVerdict {
@@ -71,10 +71,10 @@ Json certificateJson(const vdb::BandCertificate& c) {
 }
 
 std::string certificateText(const vdb::BandCertificate& c, const LengthUnit& unit) {
-  std::string text = "    certified " + formatNumber(c.within / unit.metres, 3) + " " + unit.name +
+  std::string text = "    certified " + formatNumber(c.within / unit.meters, 3) + " " + unit.name +
                      " to each side of the surface answer, no slope is above " +
                      formatNumber(c.steepest, 3) + ", off by at most " +
-                     formatNumber(c.off / unit.metres, 2) + " " + unit.name + " where smooth\n";
+                     formatNumber(c.off / unit.meters, 2) + " " + unit.name + " where smooth\n";
   if (c.rough > 0.0) {
     text += "    " + formatNumber(100.0 * c.rough, 2) +
             " % of the surface has edges, or bends within a voxel, one at " +
@@ -119,16 +119,16 @@ std::string gridText(const vdb::GridCheck& check, const GridVerdict& verdict,
   std::string text = "  " + (check.grid.name.empty() ? "(no name)" : check.grid.name) + ": " +
                      check.grid.type + ", " + check.grid.grid_class + ", " +
                      countOf(info.active_voxels, "active voxel", "active voxels") + " of " +
-                     formatNumber(info.voxel_size / unit.metres) + " " + unit.name + "\n";
+                     formatNumber(info.voxel_size / unit.meters) + " " + unit.name + "\n";
   if (check.has_distances) {
     const vdb::GradientStatistics& g = check.gradient;
     text += "    band     " + formatNumber(info.half_width) + " voxels on each side\n";
     if (g.voxels > 0) {
       text += "    gradient " + formatNumber(g.mean) + " on average, " +
               formatNumber(g.deviation, 2) + " RMS from 1, at worst " + formatNumber(g.worst, 3) +
-              " at " + formatVector(g.worst_place / unit.metres) + " " + unit.name + "\n";
+              " at " + formatVector(g.worst_place / unit.meters) + " " + unit.name + "\n";
     }
-    text += "    volume   " + formatNumber(check.volume / std::pow(unit.metres, 3)) + " " +
+    text += "    volume   " + formatNumber(check.volume / std::pow(unit.meters, 3)) + " " +
             unit.name + "^3\n";
   }
   text += findingsText(verdict.findings, "    ");
@@ -163,7 +163,7 @@ FileCheck checkGridFile(const std::string& file, const CheckOptions& options, Co
     const std::string& own = check.grid.info.length_unit;
     const std::string& name = own.empty() ? options.units : own;
     // Without a unit, places are given in the grid's own numbers, which are then those in m.
-    const LengthUnit unit = metresPer(name) ? lengthUnit(name) : LengthUnit{"units", 1.0};
+    const LengthUnit unit = metersPer(name) ? lengthUnit(name) : LengthUnit{"units", 1.0};
     const GridVerdict verdict = judge(check, unit);
     any_yes = any_yes || verdict.is_yes;
     any_no = any_no || (!verdict.is_yes && verdict.is_surface);

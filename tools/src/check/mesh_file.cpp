@@ -29,7 +29,7 @@ void findSize(Checked& c) {
   if (size >= kSmall && size <= kLarge) return;
   std::string better;
   for (const char* const name : {"mm", "cm", "m", "in", "um"}) {
-    const double other = size / c.unit.metres * lengthUnit(name).metres;
+    const double other = size / c.unit.meters * lengthUnit(name).meters;
     if (other >= 10.0 * kSmall && other <= kLarge / 3.0 && better.empty()) better = name;
   }
   c.findings.push_back({"mesh.size",
@@ -47,7 +47,7 @@ void findEdges(Checked& c) {
                           countOf(d.holes.size(), "hole", "holes") + " with " +
                               countOf(d.boundary_edges, "edge", "edges") +
                               " that have one triangle; the largest is " +
-                              formatNumber(hole.length / c.unit.metres) + " " + c.unit.name +
+                              formatNumber(hole.length / c.unit.meters) + " " + c.unit.name +
                               " around, at " + placeText(hole.middle, c.unit),
                           d.holes.size(), hole.middle});
   }
@@ -173,15 +173,15 @@ FileCheck checkMeshFile(const std::string& file, const CheckOptions& options, Co
 
   const std::string cube = " " + unit.name + "^3";
   const auto volume_text = [&](double volume) {
-    return formatNumber(volume / std::pow(unit.metres, 3)) + cube;
+    return formatNumber(volume / std::pow(unit.meters, 3)) + cube;
   };
-  const Vec3 size = d.bounds.size() / unit.metres;
+  const Vec3 size = d.bounds.size() / unit.meters;
   out.text = file + ": a mesh of " + countOf(c.mesh.triangles.size(), "triangle", "triangles") +
              " and " + countOf(c.mesh.vertices.size(), "corner", "corners") + " in " +
              countOf(d.parts, "part", "parts") + "\n";
   out.text += "  size    " + formatNumber(size.x) + " x " + formatNumber(size.y) + " x " +
               formatNumber(size.z) + " " + unit.name + "; area " +
-              formatNumber(d.area / (unit.metres * unit.metres)) + " " + unit.name + "^2" +
+              formatNumber(d.area / (unit.meters * unit.meters)) + " " + unit.name + "^2" +
               (d.boundary_edges == 0 ? ", encloses " + volume_text(d.volume) : "") + "\n";
   out.text += "  space   " + spaceText(c.mesh, options.scan) + "\n";
   if (d.hollow_parts > 0) {
@@ -189,7 +189,7 @@ FileCheck checkMeshFile(const std::string& file, const CheckOptions& options, Co
   }
   out.text += findingsText(c.findings, "  ");
   const std::string voxels =
-      "with voxels of " + formatNumber(trial.voxel / unit.metres, 3) + " " + unit.name;
+      "with voxels of " + formatNumber(trial.voxel / unit.meters, 3) + " " + unit.name;
   if (trial.refused) {
     out.text += "  no: a bake " + voxels + " refuses it: " + problemText(*trial.refused) + "\n";
   } else {

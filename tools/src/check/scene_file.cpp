@@ -29,7 +29,7 @@ FileCheck checkSceneFile(const std::string& file, Console& console) {
   for (const vdb::GridRecord& grid : loaded.grids()) findLoss(grid, findings);
   for (const MapGap& gap : mapGaps(loaded.description(), *scene)) {
     findings.push_back({gap.misses() ? "scene.map_misses" : "scene.map_partial",
-                        gapText(gap, scene->lengthUnit(), scene->metresPerUnit())});
+                        gapText(gap, scene->lengthUnit(), scene->metersPerUnit())});
   }
   for (const WallNote& note : wallNotes(*scene)) {
     if (note.is_warning) findings.push_back({note.code, note.text, 1, note.place});

@@ -4,7 +4,8 @@
 namespace palpate::tools {
 namespace {
 
-/// Text that roff takes as it is: no line begins with a control character, no hyphen turns into a dash.
+/// Text that roff takes as it is: no line begins with a control character, no hyphen turns into a
+/// dash.
 std::string plain(std::string_view text) {
   std::string out;
   bool begins = true;

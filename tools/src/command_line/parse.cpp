@@ -37,8 +37,8 @@ Error unknownArgument(const CLI::App& app, const Verb& verb, const std::string& 
                     close.empty() ? more : "did you mean " + close + "?");
 }
 
-/// `--insert A B C` becomes `--insert A --insert B --insert C`, so that a list of points never swallows
-/// what follows it; and "-.5,..." is told apart from a short option.
+/// `--insert A B C` becomes `--insert A --insert B --insert C`, so that a list of points never
+/// swallows what follows it; and "-.5,..." is told apart from a short option.
 std::vector<std::string> spreadPoints(const Verb& verb, const std::vector<std::string>& arguments) {
   std::vector<std::string> out;
   std::string list;

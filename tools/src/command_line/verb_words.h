@@ -30,8 +30,8 @@ struct VerbWords {
 /// palpate(1), in the man macros of roff.
 [[nodiscard]] std::string manPage(const std::vector<VerbWords>& verbs);
 
-/// A script that completes verbs, options, their words and files in `shell`, one of bash, zsh and fish; behind
-/// `palpate help scene` also `scene_words`.
+/// A script that completes verbs, options, their words and files in `shell`, one of bash, zsh and
+/// fish; behind `palpate help scene` also `scene_words`.
 [[nodiscard]] std::string completion(const std::string& shell, const std::vector<VerbWords>& verbs,
                                      const std::vector<std::string>& scene_words);
 

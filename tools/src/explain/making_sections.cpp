@@ -34,7 +34,7 @@ void addMaps(const Scene& scene, const SceneDescription& description, Report& re
   rows.writeTo(report, "maps", "Parameters that differ from place to place");
   report.json["map_gaps"] = Json::array();
   for (const MapGap& gap : mapGaps(description, scene)) {
-    report.notes.push_back(gapText(gap, scene.lengthUnit(), scene.metresPerUnit()));
+    report.notes.push_back(gapText(gap, scene.lengthUnit(), scene.metersPerUnit()));
     report.text += "  " + report.notes.back() + "\n";
     report.json["map_gaps"].push_back({{"name", gap.parameter},
                                        {"source", gap.source},

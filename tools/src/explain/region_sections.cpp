@@ -28,7 +28,7 @@ std::string openingsOf(const Scene& scene, const Sheet& sheet) {
 
 void addDevice(const Scene& scene, Report& report) {
   const DeviceMapping& device = scene.device();
-  const double unit = scene.metresPerUnit();
+  const double unit = scene.metersPerUnit();
   const Box3 reach = device.reach();
   const Mat3& axes = device.rotation;
   report.json["device"] = {
@@ -57,7 +57,7 @@ void addDevice(const Scene& scene, Report& report) {
 
 void addRegions(const Scene& scene, Report& report) {
   const auto regions = scene.regions();
-  const double unit = scene.metresPerUnit();
+  const double unit = scene.metersPerUnit();
   ReportRows rows({"region", "made from", "content", "wall", "can be entered", "a point of it"});
   std::string unreachable;
   for (std::size_t i = 0; i < regions.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
-/// The walls between regions, and the ports that lead through them: by the classes of their tissues.
+/// The walls between regions, and the ports that lead through them: by the classes of their
+/// tissues.
 
 #include <cstddef>
 #include <string>

@@ -80,7 +80,7 @@ class ImportReport {
       }
       if (shares.size() > 2) touches += ", " + std::to_string(shares.size() - 2) + " more";
       table.add({scan_.nameOf(r), labels, tissue, why, formatCount(region.voxels),
-                 cubicCentimetres(region.volume), formatCount(region.pieces.size()),
+                 cubicCentimeters(region.volume), formatCount(region.pieces.size()),
                  region.within ? scan_.nameOf(*region.within) : "-", touches});
       json.push_back({{"name", scan_.nameOf(r)},
                       {"tissue", tissue},
@@ -167,7 +167,7 @@ class ImportReport {
                       {"volume_m3", volume},
                       {"felt_as", region.tissue->name},
                       {"why", region.why}});
-      text += "  " + region.name + ": " + cubicCentimetres(volume) + " cm^3, " + region.why + "\n";
+      text += "  " + region.name + ": " + cubicCentimeters(volume) + " cm^3, " + region.why + "\n";
     }
     report_.json["unmatched"] = std::move(json);
     if (found.empty()) return;
@@ -181,7 +181,7 @@ class ImportReport {
     Json json = Json::array();
     for (const OpenAir& air : scan_.open_air) {
       json.push_back({{"name", air.name}, {"labels", air.labels}, {"volume_m3", air.volume}});
-      report_.text += air.name + " (" + cubicCentimetres(air.volume) +
+      report_.text += air.name + " (" + cubicCentimeters(air.volume) +
                       " cm^3) is air that reaches the image's border: it is outside\n";
     }
     report_.json["outside"] = std::move(json);

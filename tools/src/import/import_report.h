@@ -10,7 +10,8 @@
 
 namespace palpate::tools {
 
-/// `way`: the one that was asked for, or null. `written`: the files that were; none if it was a dry run.
+/// `way`: the one that was asked for, or null. `written`: the files that were; none if it was a dry
+/// run.
 [[nodiscard]] Report importReport(const ImportOptions& options, const ImportedScan& scan,
                                   const TissueTable& tissues, const NeedleWay* way,
                                   const std::vector<std::string>& written);

@@ -16,8 +16,8 @@ namespace {
 
 /// [voxels] on each side of a surface, as scenes have it.
 constexpr double kHalfWidth = 6.0;
-// Measured on a pelvis of 28 labels and five other scans, as the most that `palpate touch` had at a time: all were within a tenth
-// of this.
+// Measured on a pelvis of 28 labels and five other scans, as the most that `palpate touch` had at a
+// time: all were within a tenth of this.
 constexpr double kBytesOfCommand = 75e6;
 constexpr double kBytesPerVoxel = 105.0;     // active, of the grids: labels, grid and bricks
 constexpr double kBytesPerImageVoxel = 4.0;  // as they are read
@@ -38,8 +38,8 @@ std::string word(const std::string& text) {
              : sceneWord(text);
 }
 
-std::string millimetres(double metres, int digits = 4) {
-  return formatNumber(metres * 1e3, digits);
+std::string millimeters(double meters, int digits = 4) {
+  return formatNumber(meters * 1e3, digits);
 }
 
 class SceneWriter {
@@ -71,9 +71,9 @@ class SceneWriter {
     line("# Made by `palpate import` from " + options_.scan() +
          (more > 0 ? " and " + std::to_string(more) + " more" : "") + ": " +
          std::to_string(image.size[0]) + " x " + std::to_string(image.size[1]) + " x " +
-         std::to_string(image.size[2]) + " voxels of " + millimetres(glm::length(image.axes[0])) +
-         " x " + millimetres(glm::length(image.axes[1])) + " x " +
-         millimetres(glm::length(image.axes[2])) + " mm.");
+         std::to_string(image.size[2]) + " voxels of " + millimeters(glm::length(image.axes[0])) +
+         " x " + millimeters(glm::length(image.axes[1])) + " x " +
+         millimeters(glm::length(image.axes[2])) + " mm.");
     line(
         "# It is yours to edit. Lengths are in mm, in the scan's axes "
         "(RAS): x right, y front, z head.");
@@ -86,7 +86,7 @@ class SceneWriter {
     line("#   palpate touch SCENE.yaml --insert " + point(way.from) + " " + point(way.to) +
          " --back --image SCENE.png");
     for (const OpenAir& air : scan_.open_air) {
-      line("# " + air.name + " (" + cubicCentimetres(air.volume) +
+      line("# " + air.name + " (" + cubicCentimeters(air.volume) +
            " cm^3) is air that reaches the image's border: it is outside, and no layer.");
     }
     if (!scan_.changes.empty()) {
@@ -96,11 +96,15 @@ class SceneWriter {
     }
     line("palpate: 1");
     line("length: mm");
-    // Deep in bone a wall asks for far more than any device has, and for more than a hand should get.
-    line("force: {max: 7.9 N, slew: 2000 N/s}  # the most that a Touch X exerts; 2 N more in a millisecond");
+    // Deep in bone a wall asks for far more than any device has, and for more than a hand should
+    // get.
+    line(
+        "force: {max: 7.9 N, slew: 2000 N/s}  # the most that a Touch X exerts; 2 N more in a "
+        "millisecond");
   }
 
-  /// What was asked for where the scan leaves something open; images that are written here leave nothing open.
+  /// What was asked for where the scan leaves something open; images that are written here leave
+  /// nothing open.
   [[nodiscard]] std::string reading() const {
     const ScanOptions& o = options_.reading;
     std::string keys;
@@ -215,7 +219,7 @@ class SceneWriter {
 
   [[nodiscard]] std::string about(std::size_t r) const {
     const vdb::LabelSurvey::Region& region = scan_.survey.regions[r];
-    std::string text = cubicCentimetres(region.volume) + " cm^3";
+    std::string text = cubicCentimeters(region.volume) + " cm^3";
     if (region.pieces.size() > 1) text += " in " + std::to_string(region.pieces.size()) + " pieces";
     if (region.within) text += ", within " + scan_.nameOf(*region.within);
     std::string touches;
@@ -228,7 +232,7 @@ class SceneWriter {
   }
 
   void layers() {
-    const std::string voxel = ", voxel: " + millimetres(scan_.voxel);
+    const std::string voxel = ", voxel: " + millimeters(scan_.voxel);
     line("layers:   # where two overlap the later one wins, and has the wall");
     if (scan_.has_body) {
       line("  # what in the body has no label: " + about(scan_.survey.gap()));
@@ -279,7 +283,7 @@ class SceneWriter {
         "`hole`: either way where one is");
     // A tip that overlaps a hole of its own size finds it.
     const std::string hole_at =
-        ", hole: {radius: " + millimetres(2.0 * tissues_.tip_radius.value) + " mm, reopens_at: ";
+        ", hole: {radius: " + millimeters(2.0 * tissues_.tip_radius.value) + " mm, reopens_at: ";
     std::vector<const SourcedNumber*> told;
     for (const Passage& port : crossings_.ports) {
       for (const TissueForce* one : {&port.in, &port.out, &port.reopens}) {
@@ -308,7 +312,7 @@ class SceneWriter {
 
 }  // namespace
 
-std::string cubicCentimetres(double volume) {
+std::string cubicCentimeters(double volume) {
   const double value = volume * 1e6;
   return value < 1000.0 ? formatNumber(value, 3) : formatCount(std::llround(value));
 }

@@ -47,13 +47,13 @@ struct ImportedScan {
   std::vector<vdb::IslandChange> changes;  ///< that were made to the labels
 
   [[nodiscard]] std::string nameOf(std::size_t region) const;
-  /// What touches a region, with its share of the region's surface, the largest first; what the image's
-  /// border cuts off touches nothing that is known.
+  /// What touches a region, with its share of the region's surface, the largest first; what the
+  /// image's border cuts off touches nothing that is known.
   [[nodiscard]] std::vector<std::pair<std::string, double>> neighborsOf(std::size_t region) const;
 };
 
 /// Of a volume in [m3].
-[[nodiscard]] std::string cubicCentimetres(double volume);
+[[nodiscard]] std::string cubicCentimeters(double volume);
 
 /// What a grid will take, before it is made.
 struct GridEstimate {

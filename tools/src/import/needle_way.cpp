@@ -107,7 +107,8 @@ class NeedleWayFinder {
   }
 
  private:
-  /// The n-th of evenly spread directions (a spiral from pole to pole that turns by the golden angle).
+  /// The n-th of evenly spread directions (a spiral from pole to pole that turns by the golden
+  /// angle).
   static Vec3 direction(int n) {
     const double z = 1.0 - (2.0 * n + 1.0) / kDirections;
     const double angle = n * std::numbers::pi * (3.0 - std::sqrt(5.0));

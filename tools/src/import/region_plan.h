@@ -31,8 +31,8 @@ struct RegionPlan {
 inline constexpr const char* kGapName = "soft_tissue";
 
 /// `counts`: voxels of each label of the image.
-/// @throws Error: kInput for labels that the table or the image does not hold, kUsage for a --region that
-/// is not NAME=LABELS, or a label in two regions; as chooseTissues().
+/// @throws Error: kInput for labels that the table or the image does not hold, kUsage for a
+/// --region that is not NAME=LABELS, or a label in two regions; as chooseTissues().
 [[nodiscard]] RegionPlan planRegions(const ImportOptions& options,
                                      const std::map<int, std::uint64_t>& counts,
                                      const LabelNames& labels, const TissueTable& tissues);

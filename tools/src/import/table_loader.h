@@ -15,7 +15,7 @@ class TableLoader final : public SceneLoader {
   TableLoader(const Document& document, std::string code)
       : document_(document), code_(std::move(code)) {}
   [[nodiscard]] const Document& document() const noexcept override { return document_; }
-  [[nodiscard]] double metresPerUnit() const noexcept override { return 1.0; }
+  [[nodiscard]] double metersPerUnit() const noexcept override { return 1.0; }
   [[nodiscard]] std::string lengthUnit() const override { return "m"; }
   [[nodiscard]] std::string resolvePath(const std::string& path) const override { return path; }
   [[nodiscard]] FieldSourcePtr field(const Node& node) const override { throw none(node.mark); }

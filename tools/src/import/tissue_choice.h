@@ -30,8 +30,8 @@ struct NamedLabels {
 };
 
 /// In the order of `regions`. `notes` gets what a user should know of a choice.
-/// @throws Error: kUsage for a --tissue that names no tissue or fits no region, kInput for such a line of a file, or if
-/// nothing fits and the table has no `unknown`.
+/// @throws Error: kUsage for a --tissue that names no tissue or fits no region, kInput for such a
+/// line of a file, or if nothing fits and the table has no `unknown`.
 [[nodiscard]] std::vector<TissueChoice> chooseTissues(const ImportOptions& options,
                                                       const std::vector<NamedLabels>& regions,
                                                       const LabelNames& labels,

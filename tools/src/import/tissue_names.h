@@ -1,5 +1,6 @@
 #pragma once
-/// Which tissue the name or the code of a label means: data/materials/names.yaml, which says how names are read.
+/// Which tissue the name or the code of a label means: data/materials/names.yaml, which says how
+/// names are read.
 
 #include <map>
 #include <optional>
@@ -21,14 +22,16 @@ struct NameVerdict {
       false;  ///< more than the name of a structure: words together, or what it is made of
 };
 
-/// "ParaHippocampal_L2" as para, hippocampal, l, 2; ordinals as words (3rd: third), what is in brackets left out.
+/// "ParaHippocampal_L2" as para, hippocampal, l, 2; ordinals as words (3rd: third), what is in
+/// brackets left out.
 [[nodiscard]] std::vector<std::string> wordsOf(std::string_view name);
 
 class TissueNames {
  public:
   /// The tissue of each name, all of one image: some words mean another thing among others.
   [[nodiscard]] std::vector<NameVerdict> of(const std::vector<std::string>& names) const;
-  /// Of a code, if it is one of those that are listed. A tissue of "none": the words have to say more.
+  /// Of a code, if it is one of those that are listed. A tissue of "none": the words have to say
+  /// more.
   [[nodiscard]] std::optional<std::string> ofCode(const vdb::LabelCode& code) const;
   /// Of a label's number in a table such as "freesurfer".
   [[nodiscard]] std::optional<std::string> ofNumber(const std::string& table, int number) const;

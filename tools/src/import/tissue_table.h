@@ -1,5 +1,6 @@
 #pragma once
-/// What tissues feel like, each number with where it is from: data/materials/tissues.yaml, or a file like it.
+/// What tissues feel like, each number with where it is from: data/materials/tissues.yaml, or a
+/// file like it.
 
 #include <optional>
 #include <string>
@@ -79,7 +80,8 @@ struct TissueTable {
     SourcedNumber stiffness;  ///< [N/m^2]
     SourcedNumber strength;   ///< [N/m] the load that tears the tissue
   };
-  /// None where the tissue has no `cutting` or no `shaft`, or the table says nothing of the shaft's modulus.
+  /// None where the tissue has no `cutting` or no `shaft`, or the table says nothing of the shaft's
+  /// modulus.
   [[nodiscard]] std::optional<Lateral> lateral(const Tissue& tissue) const;
 
  private:

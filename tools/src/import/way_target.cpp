@@ -105,8 +105,9 @@ class Depths {
     return i + size_[0] * (j + size_[1] * k);
   }
 
-  /// A distance over the 26 steps to neighbors, in two sweeps: at most a tenth longer than the straight one (Borgefors 1986,
-  /// Distance transformations in digital images), which is enough to tell what is deep.
+  /// A distance over the 26 steps to neighbors, in two sweeps: at most a tenth longer than the
+  /// straight one (Borgefors 1986, Distance transformations in digital images), which is enough to
+  /// tell what is deep.
   void sweep(bool forward) {
     const int way = forward ? -1 : 1;
     for (std::size_t nk = 1; nk + 1 < size_[2]; ++nk) {

@@ -1,5 +1,6 @@
 #pragma once
-/// The list of its own files that a bundle carries: what was damaged since, and what is not of it, is found by that.
+/// The list of its own files that a bundle carries: what was damaged since, and what is not of it,
+/// is found by that.
 
 #include <filesystem>
 #include <optional>
@@ -15,8 +16,8 @@ namespace palpate::tools {
 /// Name, bytes and hash of each file below `bundle`, but for its `pack.json`.
 [[nodiscard]] Json contentsOf(const std::filesystem::path& bundle);
 
-/// @throws Error (kInput, pack.damaged) for the first file of the list that is missing or not as it was packed. The scene may be
-/// edited.
+/// @throws Error (kInput, pack.damaged) for the first file of the list that is missing or not as it
+/// was packed. The scene may be edited.
 void checkContents(const std::filesystem::path& bundle);
 
 /// A file or folder below `bundle` that its list does not have, and that replacing it would lose.

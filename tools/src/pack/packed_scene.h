@@ -15,12 +15,14 @@ enum class Named {
   kMore   ///< a further file of an image
 };
 
-/// The name of a file within the bundle, for one as the scene names it; `image` is the entry of `images:` that it is of.
+/// The name of a file within the bundle, for one as the scene names it; `image` is the entry of
+/// `images:` that it is of.
 using NameInBundle =
     std::function<std::string(Named what, const std::string& name, const std::string& image)>;
 
-/// The text of `document` with other names of files, and all else, comments as well, as it was. Absolute names in comments are
-/// changed too. @throws Error (kInput) for a name that does not stand in one line.
+/// The text of `document` with other names of files, and all else, comments as well, as it was.
+/// Absolute names in comments are changed too. @throws Error (kInput) for a name that does not
+/// stand in one line.
 [[nodiscard]] std::string packedText(const Document& document, const NameInBundle& name);
 
 /// Whether a material of the scene is made of the image.

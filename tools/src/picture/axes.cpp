@@ -29,8 +29,8 @@ void ticks(const Sheet& s, const Vec3& direction, int axis, double low, int pixe
   // Off the world's axes coordinates count from the plane's own point.
   const double origin = axis < 0 ? 0.0 : s.plane.point[axis];
   const double sign = axis < 0 ? 1.0 : direction[axis];
-  const double a = (origin + sign * low) / s.unit.metres;
-  const double b = (origin + sign * (low + pixels * s.view.step)) / s.unit.metres;
+  const double a = (origin + sign * low) / s.unit.meters;
+  const double b = (origin + sign * (low + pixels * s.view.step)) / s.unit.meters;
   const double every = niceBelow(std::abs(b - a) / 5.0);
   const auto first = static_cast<long>(std::ceil(std::min(a, b) / every));
   const auto last = static_cast<long>(std::floor(std::max(a, b) / every));
@@ -43,8 +43,8 @@ void ticks(const Sheet& s, const Vec3& direction, int axis, double low, int pixe
 }  // namespace
 
 void drawScaleBar(Sheet& s) {
-  const double length = niceBelow(0.22 * s.view.width * s.view.step / s.unit.metres);
-  const double width = length * s.unit.metres / s.view.step;
+  const double length = niceBelow(0.22 * s.view.width * s.view.step / s.unit.meters);
+  const double width = length * s.unit.meters / s.view.step;
   const double x = s.left + s.px(18);
   const double y = s.top + s.view.height - s.px(20);
   const TextStyle style = s.font(14);

@@ -29,7 +29,8 @@ struct Camera {
   }
 };
 
-/// Turned to look from `toward` (any length but zero, finite), `up` (or, if that is along it, y) as upright as can be.
+/// Turned to look from `toward` (any length but zero, finite), `up` (or, if that is along it, y) as
+/// upright as can be.
 [[nodiscard]] inline Camera cameraFrom(const Vec3& toward, const Vec3& up = {0.0, 0.0, 1.0}) {
   Camera camera;
   // Scaled first: the square of a very long or short vector is none of double precision.

@@ -80,7 +80,8 @@ class Canvas {
   /// Everything until unclip() stays within the rectangle.
   void clip(double x, double y, double w, double h);
   void unclip();
-  /// Four bytes a pixel: blue, green, red and one that means nothing; valid until the canvas is drawn to or gone.
+  /// Four bytes a pixel: blue, green, red and one that means nothing; valid until the canvas is
+  /// drawn to or gone.
   struct Bytes {
     const unsigned char* data = nullptr;
     int width = 0;

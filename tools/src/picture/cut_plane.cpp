@@ -33,8 +33,8 @@ int alignedAxis(const Vec3& direction) {
   return -1;
 }
 
-/// Main directions of the points about their mean: eigenvectors of the covariance by Jacobi rotations,
-/// the longest spread first.
+/// Main directions of the points about their mean: eigenvectors of the covariance by Jacobi
+/// rotations, the longest spread first.
 struct Spread {
   Vec3 mean{0.0};
   std::array<Vec3, 3> direction{};
@@ -99,7 +99,7 @@ CutPlane planeAcross(int axis, double value, const LengthUnit& unit) {
   plane.up_axis = kUp[axis];
   plane.right = axisVector(plane.right_axis);
   plane.up = axisVector(plane.up_axis);
-  plane.name = "at " + std::string(1, "xyz"[axis]) + " = " + formatNumber(value / unit.metres) +
+  plane.name = "at " + std::string(1, "xyz"[axis]) + " = " + formatNumber(value / unit.meters) +
                " " + unit.name;
   return plane;
 }
@@ -121,7 +121,7 @@ CutPlane planeThrough(const Vec3& point, const Vec3& normal, const LengthUnit& u
   const Vec3 wish = std::abs(n.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
   plane.up = glm::normalize(wish - glm::dot(wish, n) * n);
   plane.right = glm::cross(plane.up, n);
-  plane.name = "through " + formatVector(point / unit.metres, 3) + " " + unit.name + " across " +
+  plane.name = "through " + formatVector(point / unit.meters, 3) + " " + unit.name + " across " +
                formatDirection(n);
   plane.right_axis = alignedAxis(plane.right);
   plane.up_axis = alignedAxis(plane.up);
@@ -178,7 +178,7 @@ CutPlane parseCut(const std::string& text, const LengthUnit& unit) {
   if (!good) throw usageError("--cut", "'" + text + "' is not six numbers");
   const Vec3 normal(numbers[3], numbers[4], numbers[5]);
   if (normal == Vec3(0.0)) throw usageError("--cut", "the normal has no direction");
-  return planeThrough(Vec3(numbers[0], numbers[1], numbers[2]) * unit.metres, normal, unit);
+  return planeThrough(Vec3(numbers[0], numbers[1], numbers[2]) * unit.meters, normal, unit);
 }
 
 }  // namespace palpate::tools

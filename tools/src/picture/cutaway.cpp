@@ -25,8 +25,8 @@ double differenceOf(const Color& a, const Color& b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }
 
-/// Rays through the pixels' centers, and finer ones where that is not enough. Band by band, so that only the picture
-/// itself takes memory that grows with its height.
+/// Rays through the pixels' centers, and finer ones where that is not enough. Band by band, so that
+/// only the picture itself takes memory that grows with its height.
 class Drawing {
  public:
   Drawing(const SpaceScene& space, const Camera& camera)

@@ -9,7 +9,8 @@ namespace palpate::tools {
 /// Looks at the cut face of `plane` from its front, right and above.
 [[nodiscard]] Camera cameraOn(const CutPlane& plane);
 
-/// Moves and scales `camera` so that all of the scene that is not cut away, and all of `points`, fill `width` x `height` pixels.
+/// Moves and scales `camera` so that all of the scene that is not cut away, and all of `points`,
+/// fill `width` x `height` pixels.
 void fitCamera(Camera& camera, const SpaceScene& space, const std::vector<Vec3>& points, int width,
                int height);
 

@@ -22,7 +22,7 @@ void DistanceLines::check(double pixel) const {
   throw Error(
       ErrorKind::kUsage,
       {"usage.render", "--iso: lines so close together run into one another in this picture",
-       "at least " + formatNumber(kFewest * pixel / scene_.metresPerUnit(), 2) + " " +
+       "at least " + formatNumber(kFewest * pixel / scene_.metersPerUnit(), 2) + " " +
            scene_.lengthUnit()});
 }
 
@@ -33,7 +33,8 @@ double DistanceLines::inkAt(const Vec3& p, const Vec3& normal, double pixel) con
     if (!region.field || region.field->bounds().distanceTo(p) >= distance) continue;
     const FieldSample sample = region.field->sample(p);
     const double slope = glm::length(sample.gradient);
-    // Beyond the band of a grid only a bound of the distance is known, which may be the least of all.
+    // Beyond the band of a grid only a bound of the distance is known, which may be the least of
+    // all.
     const double value = std::abs(sample.value) / (slope > 0.0 ? slope : 1.0);
     if (value >= distance) continue;
     distance = value;

@@ -11,7 +11,8 @@ class DistanceLines {
   /// A line every `spacing` [m], the surfaces themselves left out.
   DistanceLines(const Scene& scene, double spacing) : scene_(scene), spacing_(spacing) {}
 
-  /// 0 to 1: how much ink a pixel of side `pixel` [m] around `p` has, on a plane across unit `normal`. Every fifth line is dark.
+  /// 0 to 1: how much ink a pixel of side `pixel` [m] around `p` has, on a plane across unit
+  /// `normal`. Every fifth line is dark.
   [[nodiscard]] double inkAt(const Vec3& p, const Vec3& normal, double pixel) const;
   /// @throws Error (kUsage) if lines in pixels of side `pixel` [m] would run into one another.
   void check(double pixel) const;

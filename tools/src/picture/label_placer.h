@@ -16,7 +16,8 @@ class LabelPlacer {
   /// Keeps labels off a drawn line.
   void markBusy(const std::vector<Pixel>& line);
 
-  /// Where a label of this size lies wholly in `region`, as far from its walls as can be; its middle.
+  /// Where a label of this size lies wholly in `region`, as far from its walls as can be; its
+  /// middle.
   [[nodiscard]] std::optional<Pixel> placeInside(RegionId region, double width, double height);
 
   /// Room for a label near `anchor`, on empty space if there is any near; its middle.

@@ -97,7 +97,7 @@ double drawLegend(Sheet& s, double y) {
   }
   if (s.lines) {
     entry("equal distance",
-          "from a surface, every " + formatNumber(s.lines->spacing() / s.unit.metres) + " " +
+          "from a surface, every " + formatNumber(s.lines->spacing() / s.unit.meters) + " " +
               s.unit.name,
           stroke({mixed(rgb(0xFFFFFF), kInk, 0.5), s.px(1.3)}));
   }

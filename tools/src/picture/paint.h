@@ -1,5 +1,6 @@
 #pragma once
-/// The color of a point of a cut face: its region's, darkened and lightened by a scan's gray values.
+/// The color of a point of a cut face: its region's, darkened and lightened by a scan's gray
+/// values.
 
 #include <map>
 #include <memory>
@@ -14,8 +15,8 @@ namespace palpate::tools {
 
 class Paint {
  public:
-  /// Without an image: plain colors. Gray runs from the 1st to the 99th percentile of the voxels. `colors` of
-  /// regions, by their names, go before those of the palette.
+  /// Without an image: plain colors. Gray runs from the 1st to the 99th percentile of the voxels.
+  /// `colors` of regions, by their names, go before those of the palette.
   Paint(std::shared_ptr<const vdb::Image> image, const Scene& scene,
         const std::map<std::string, vdb::LabelColor>& colors);
 

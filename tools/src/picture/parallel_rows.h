@@ -7,8 +7,8 @@
 
 namespace palpate::tools {
 
-/// Calls `row(y, worker)` once for every y in [0, rows); `worker` counts from 0 to workerCount() - 1
-/// and never runs two rows at once. Reports on the calling thread. `row` must not throw.
+/// Calls `row(y, worker)` once for every y in [0, rows); `worker` counts from 0 to workerCount() -
+/// 1 and never runs two rows at once. Reports on the calling thread. `row` must not throw.
 void parallelRows(int rows, const Progress& progress, const char* what,
                   const std::function<void(int y, std::size_t worker)>& row);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// The picture of a scene: a flat section with names, walls, ports, the hand's path and the forces; the scene in
-/// space with its front cut away; and a legend.
+/// The picture of a scene: a flat section with names, walls, ports, the hand's path and the forces;
+/// the scene in space with its front cut away; and a legend.
 
 #include <map>
 #include <memory>
@@ -29,8 +29,8 @@ struct PictureOptions {
   int forces = 0;             ///< arrows of restForces() along the longer side; 0: none
 };
 
-/// The gray values to show: of the scene's image called `wanted`, of the file `wanted`, or if it is empty
-/// of the scene's first image without names; null if there is none. @throws Error (kInput).
+/// The gray values to show: of the scene's image called `wanted`, of the file `wanted`, or if it is
+/// empty of the scene's first image without names; null if there is none. @throws Error (kInput).
 [[nodiscard]] std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
                                                              const std::string& wanted);
 

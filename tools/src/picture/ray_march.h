@@ -20,15 +20,16 @@ struct SpaceScene {
   const Paint& paint;
   Box3 box;                            ///< [m] nothing beyond it is seen
   std::optional<CutPlane> plane = {};  ///< what lies on the side of its normal is cut away
-  /// 0 to 1, by region: of the walls into it from outer ones, and of those out of it; empty: all 1. Cut faces are opaque.
+  /// 0 to 1, by region: of the walls into it from outer ones, and of those out of it; empty: all 1.
+  /// Cut faces are opaque.
   std::vector<double> opacity = {};
   /// Seen from both sides: the regions that they cut, and the scan's gray values around them.
   std::vector<CutPlane> slices = {};
   const DistanceLines* lines = nullptr;  ///< on the cut face and on slices; null: none
 };
 
-/// What a ray met first. Neighbors with different `part` are set apart by a dark edge, and so are those of the cut face
-/// between which it cuts a sheet.
+/// What a ray met first. Neighbors with different `part` are set apart by a dark edge, and so are
+/// those of the cut face between which it cuts a sheet.
 struct Hit {
   Color color = rgb(0xFFFFFF);  ///< of all that it met, down to what is opaque
   int part = -1;  ///< region and whether it is the cut face; -1: nothing; below: a sheet or a slice
@@ -44,8 +45,8 @@ struct Hit {
 /// The share of their color that cut faces and slices keep, whichever way they face.
 inline constexpr double kFlatShade = 0.97;
 
-/// The share of its color that a surface keeps under the light of `camera`: soft, from a broad lamp behind the viewer's left
-/// shoulder and from the sky.
+/// The share of its color that a surface keeps under the light of `camera`: soft, from a broad lamp
+/// behind the viewer's left shoulder and from the sky.
 [[nodiscard]] double shadeOf(const Vec3& normal, const Camera& camera);
 
 /// One ray after the other; owns the scratch.
@@ -55,11 +56,13 @@ class RayMarch {
   RayMarch(const RayMarch&) = delete;
   RayMarch& operator=(const RayMarch&) = delete;
 
-  /// [m] from begin() along the rays through all pixels within `radius` pixels of (x, y): up to there they meet nothing.
+  /// [m] from begin() along the rays through all pixels within `radius` pixels of (x, y): up to
+  /// there they meet nothing.
   [[nodiscard]] double freeWay(double x, double y, double radius);
   /// `free`: freeWay() of a round spot that holds (x, y), or 0.
   [[nodiscard]] Hit cast(double x, double y, double free = 0.0);
-  /// 0 to 1: how much of the light of `p` [m] gets to the viewer; what is within `margin` [m] before it hides nothing.
+  /// 0 to 1: how much of the light of `p` [m] gets to the viewer; what is within `margin` [m]
+  /// before it hides nothing.
   [[nodiscard]] double lightFrom(const Vec3& p, double margin);
 
  private:
@@ -92,7 +95,8 @@ class RayMarch {
   /// probe() at `t` [m] along that ray; the distance holds along it only.
   double probeAlong(const Vec3& origin, double t, Signs& out) const;
   [[nodiscard]] double advance(double safe) const;
-  /// Between `before` and `after` on the ray the region changes; moves `after` and the signs onto the first change.
+  /// Between `before` and `after` on the ray the region changes; moves `after` and the signs onto
+  /// the first change.
   Surface surface(const Vec3& origin, double before, double& after);
   /// The first sheet in the list that lies between here_ and there_, both in the same region.
   [[nodiscard]] std::optional<Surface> sheet(const Vec3& origin, double before, double after);
@@ -102,7 +106,8 @@ class RayMarch {
   const SpaceScene& space_;
   const Camera& camera_;
   Signs signs_[3];
-  /// Of the last point, of the next, and between them: pointers, as a scene's signs have kilobytes to swap.
+  /// Of the last point, of the next, and between them: pointers, as a scene's signs have kilobytes
+  /// to swap.
   Signs *here_ = &signs_[0], *there_ = &signs_[1], *middle_ = &signs_[2];
   Vec3 way_;
   std::vector<Box3> bounds_;

@@ -16,15 +16,15 @@ std::uint64_t cellOf(const Scene& scene, const Signs& signs) {
   return scene.partition().regionOf(signs) | sheetSides(scene, signs).inner << 16U;
 }
 
-/// True if a sheet lies between two cells of one region, the second of which is beyond the line by no more than
-/// rounding.
+/// True if a sheet lies between two cells of one region, the second of which is beyond the line by
+/// no more than rounding.
 bool sheetBetween(const Scene& scene, const Signs& here, const Signs& there) {
   const SheetSides beyond = sheetSides(scene, there);
   return ((sheetSides(scene, here).inner ^ beyond.inner) & beyond.extent) != 0;
 }
 
-/// Finds the lines by looking at every square of four pixel centers: each side whose ends are in different
-/// regions is crossed once, at a point found by halving.
+/// Finds the lines by looking at every square of four pixel centers: each side whose ends are in
+/// different regions is crossed once, at a point found by halving.
 class Tracer {
  public:
   Tracer(const Scene& scene, const View& view, const Section& section)

@@ -1,6 +1,6 @@
 #pragma once
-/// A flat cut through a scene: which region each pixel is in, and the lines between regions with what
-/// they are: walls, absent walls, ports.
+/// A flat cut through a scene: which region each pixel is in, and the lines between regions with
+/// what they are: walls, absent walls, ports.
 
 #include <vector>
 
@@ -57,7 +57,8 @@ struct Boundary {
 struct Section {
   int width = 0;
   int height = 0;
-  /// Of the pixels' centers: the region, and above it one bit for each sheet, set on its inner side.
+  /// Of the pixels' centers: the region, and above it one bit for each sheet, set on its inner
+  /// side.
   std::vector<std::uint64_t> cells;
   std::vector<Boundary> boundaries;
 
@@ -75,7 +76,8 @@ struct Section {
 /// More sheets than these are not drawn.
 inline constexpr std::size_t kMostSheets = 48;
 
-/// A bit for each sheet: whether the cell `signs` is on its inner side, and whether it is within its extent.
+/// A bit for each sheet: whether the cell `signs` is on its inner side, and whether it is within
+/// its extent.
 struct SheetSides {
   std::uint64_t inner = 0;
   std::uint64_t extent = 0;

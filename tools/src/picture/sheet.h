@@ -1,5 +1,6 @@
 #pragma once
-/// Sheet: what the parts of a picture share, and those parts in the order in which they are painted.
+/// Sheet: what the parts of a picture share, and those parts in the order in which they are
+/// painted.
 
 #include <algorithm>
 #include <functional>
@@ -18,8 +19,8 @@
 
 namespace palpate::tools {
 
-/// One picture being drawn. The section lies at (left, top), the view in space and the legend in a column of width
-/// `side` on the right. Lengths in pixels of the sheet unless noted.
+/// One picture being drawn. The section lies at (left, top), the view in space and the legend in a
+/// column of width `side` on the right. Lengths in pixels of the sheet unless noted.
 struct Sheet {
   const Scene& scene;
   const PictureOptions& options;
@@ -42,7 +43,7 @@ struct Sheet {
   Sheet(const Scene& the_scene, const PictureOptions& the_options)
       : scene(the_scene),
         options(the_options),
-        unit{the_scene.lengthUnit(), the_scene.metresPerUnit()},
+        unit{the_scene.lengthUnit(), the_scene.metersPerUnit()},
         scale(std::clamp(std::min(the_options.width / 1600.0, the_options.height / 1000.0), 0.45,
                          4.0)),
         canvas(the_options.width, the_options.height),
@@ -64,7 +65,8 @@ void drawBoundaries(Sheet& s);  ///< walls, ports, sheets of the section
 void drawTrack(Sheet& s);       ///< hand, proxy and forces; sets `peak`
 /// Feels the plane within `box`, as the options ask for.
 void feelPlane(Sheet& s, const Box3& box, const Progress& progress);
-/// Of what feelPlane() found; `at` says where a point [m] is on the sheet, and a pixel is `step` [m].
+/// Of what feelPlane() found; `at` says where a point [m] is on the sheet, and a pixel is `step`
+/// [m].
 void drawFelt(Sheet& s, const std::function<Pixel(const Vec3&)>& at, double step);
 void drawScaleBar(Sheet& s);            ///< in the lower left corner of `view`
 void drawAxes(Sheet& s);                ///< coordinates around the section

@@ -102,7 +102,8 @@ void SpacePath::drawBar(Sheet& s, double y) const {
 }
 
 Color forceColor(double share) {
-  // From dark to bright, blue to yellow, so that also eyes that tell red from green badly see which is more.
+  // From dark to bright, blue to yellow, so that also eyes that tell red from green badly see which
+  // is more.
   constexpr Color kLow = rgb(0x1F3FA8);
   constexpr Color kMiddle = rgb(0xC3426B);
   constexpr Color kHigh = rgb(0xF5B70B);

@@ -29,8 +29,9 @@ struct SpaceView {
 /// Takes a frame of a motion, from 0 on, as a PNG.
 using FrameSink = std::function<void(int frame, const std::string& png)>;
 
-/// Without a motion a PNG, else an animated WebP; or, with a sink for the frames, nothing. `picture.plane`, if given, is what is
-/// cut along, turned to face the viewer; the track is colored by force.
+/// Without a motion a PNG, else an animated WebP; or, with a sink for the frames, nothing.
+/// `picture.plane`, if given, is what is cut along, turned to face the viewer; the track is colored
+/// by force.
 /// @throws Error: kUsage for a layer that the scene lacks, kOperation, kCancelled.
 [[nodiscard]] std::string drawSpacePicture(const Scene& scene, const PictureOptions& picture,
                                            const SpaceView& view, Console& console,

@@ -1,5 +1,6 @@
 #pragma once
-/// Forces, distances and energy over time, so coarse that a plot shows all of it and no peak is lost.
+/// Forces, distances and energy over time, so coarse that a plot shows all of it and no peak is
+/// lost.
 
 #include <algorithm>
 #include <vector>
@@ -32,8 +33,8 @@ struct TickColumn {
   Extent work;  ///< [J] on the hand since the first tick, each force held until the next tick
 };
 
-/// All ticks in at most kMost columns, of equal numbers of ticks but for the last, in constant memory. A reading without a place or
-/// a time counts not.
+/// All ticks in at most kMost columns, of equal numbers of ticks but for the last, in constant
+/// memory. A reading without a place or a time counts not.
 class TickColumns final : public devices::RecordSink {
  public:
   static constexpr std::size_t kMost = 1024;

@@ -15,8 +15,8 @@ using Rows = std::vector<std::vector<std::string>>;
 constexpr double kNoDepth = 1e-9;  // [m] a proxy stands off its wall by a rounding error
 constexpr std::size_t kMostRows = 500;
 
-std::string millimetres(double metres) {
-  return formatNumber(1e3 * (metres < kNoDepth ? 0.0 : metres), 4);
+std::string millimeters(double meters) {
+  return formatNumber(1e3 * (meters < kNoDepth ? 0.0 : meters), 4);
 }
 
 /// What the record was made with.
@@ -92,7 +92,7 @@ void addTouched(HtmlPage& page, const Touch& touch) {
   Rows rows = {{"region", "visits", "time, s", "deepest, mm", "peak force, N"}};
   for (const Sum& sum : sums) {
     rows.push_back({touch.source.regions[sum.region], std::to_string(sum.visits),
-                    formatNumber(sum.seconds, 4), millimetres(sum.depth),
+                    formatNumber(sum.seconds, 4), millimeters(sum.depth),
                     formatNumber(sum.peak, 3)});
   }
   page.table("What was touched", rows);
@@ -105,7 +105,7 @@ void addVisits(HtmlPage& page, const Touch& touch) {
   for (std::size_t i = 0; i < std::min(s.visits.size(), kMostRows); ++i) {
     const Visit& v = s.visits[i];
     rows.push_back({std::to_string(i + 1), touch.source.regions[v.region], formatNumber(v.t, 4),
-                    millimetres(v.entry_depth), millimetres(v.depth),
+                    millimeters(v.entry_depth), millimeters(v.depth),
                     formatNumber(v.peak_force, 3)});
   }
   page.table("Regions in order", rows);

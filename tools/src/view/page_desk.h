@@ -1,5 +1,6 @@
 #pragma once
-/// PageDesk: answers what pages ask about a session or a recorded run, and does what the one that steers says.
+/// PageDesk: answers what pages ask about a session or a recorded run, and does what the one that
+/// steers says.
 
 #include <memory>
 #include <mutex>

@@ -27,11 +27,13 @@ struct PageDecision {
   std::string path = {};  ///< below the page's folder, without query; empty: the folder itself
 };
 
-/// Whether a request at `port` is one of the page whose folder is `token`. A WebSocket needs an Origin, as each browser sends it.
+/// Whether a request at `port` is one of the page whose folder is `token`. A WebSocket needs an
+/// Origin, as each browser sends it.
 [[nodiscard]] PageDecision decide(const PageRequest& request, std::string_view token,
                                   std::uint16_t port);
 
-/// 128 bits that nobody can guess, in hexadecimal digits. @throws Error (kOperation) if the system has none.
+/// 128 bits that nobody can guess, in hexadecimal digits. @throws Error (kOperation) if the system
+/// has none.
 [[nodiscard]] std::string randomToken();
 
 }  // namespace palpate::tools

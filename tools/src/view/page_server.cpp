@@ -131,7 +131,8 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
     return decision;
   }
 
-  /// Nothing from elsewhere; a WebSocket has to be named, as not every browser takes it for the same address.
+  /// Nothing from elsewhere; a WebSocket has to be named, as not every browser takes it for the
+  /// same address.
   [[nodiscard]] std::string policy() const {
     const std::string port = std::to_string(port_);
     return "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
@@ -235,8 +236,8 @@ class PageServer::Work::Line : public std::enable_shared_from_this<Line> {
     });
   }
 
-  /// Sends what there is now, unless the last message is still under way, or waits in a page that is busy: what is behind it
-  /// there would be old when it is shown.
+  /// Sends what there is now, unless the last message is still under way, or waits in a page that
+  /// is busy: what is behind it there would be old when it is shown.
   void tick() {
     const auto now = Clock::now();
     if (is_writing_ || (!is_seen_ && now - sent_ < work_.unseen())) return;

@@ -51,12 +51,14 @@ struct PageServerCounts {
   std::uint64_t bytes = 0;        ///< sent
 };
 
-/// On 127.0.0.1 only, below a folder whose name nobody can guess. One thread of its own; what a browser does or leaves undone
-/// holds up nobody else, and takes bounded memory: so many connections, one message under way to each, messages of so many
-/// bytes and so many a second from each.
+/// On 127.0.0.1 only, below a folder whose name nobody can guess. One thread of its own; what a
+/// browser does or leaves undone holds up nobody else, and takes bounded memory: so many
+/// connections, one message under way to each, messages of so many bytes and so many a second from
+/// each.
 ///
-/// A page sends {"seen":true} for each message that it has shown, and gets the next one then, or after a while. The page
-/// that sends {"steer":true} steers, until it sends false or goes; commands of others are dropped.
+/// A page sends {"seen":true} for each message that it has shown, and gets the next one then, or
+/// after a while. The page that sends {"steer":true} steers, until it sends false or goes; commands
+/// of others are dropped.
 class PageServer {
  public:
   static constexpr int kMostConnections = 64;

@@ -104,7 +104,7 @@ ShownScene::ShownScene(ScenePtr scene, const LoadedScene& loaded, std::string te
   json_ = {{"schema", "palpate.view/1"},
            {"number", number},
            {"file", vdb::fileName(description.file)},
-           {"unit", {{"name", scene_->lengthUnit()}, {"meters", scene_->metresPerUnit()}}},
+           {"unit", {{"name", scene_->lengthUnit()}, {"meters", scene_->metersPerUnit()}}},
            {"box", boxJson(viewBox(*scene_))},
            {"start", vectorJson(handStart(*scene_))},
            {"start_region", scene_->startRegion()},

@@ -1,5 +1,6 @@
 #pragma once
-/// ShownScene: a scene as a page shows it: names, colors, words, and surfaces that are made one after the other.
+/// ShownScene: a scene as a page shows it: names, colors, words, and surfaces that are made one
+/// after the other.
 
 #include <atomic>
 #include <memory>
@@ -18,7 +19,8 @@ namespace palpate::tools {
 /// Room around all that has bounds, for the eye.
 [[nodiscard]] Box3 viewBox(const Scene& scene);
 
-/// Where a hand begins that has no place of its own: in the start region, above the scene if that is the outside.
+/// Where a hand begins that has no place of its own: in the start region, above the scene if that
+/// is the outside.
 [[nodiscard]] Vec3 handStart(const Scene& scene);
 
 /// What the probe feels at a place, in words.
@@ -33,7 +35,8 @@ class ShownScene {
   /// Surfaces err by this share of the view's diagonal at most, where the finest lattice allows.
   static constexpr double kTolerance = 5e-4;
 
-  /// Reads what it needs of `loaded`, and makes the surfaces in a thread of its own. `number`: how many scenes were shown before.
+  /// Reads what it needs of `loaded`, and makes the surfaces in a thread of its own. `number`: how
+  /// many scenes were shown before.
   ShownScene(ScenePtr scene, const LoadedScene& loaded, std::string text, int number);
   ~ShownScene();
   ShownScene(const ShownScene&) = delete;

@@ -1,5 +1,6 @@
 #pragma once
-/// SteeredHand: a hand that goes where a page says, as a hand goes: smoothly, and no faster than one can follow.
+/// SteeredHand: a hand that goes where a page says, as a hand goes: smoothly, and no faster than
+/// one can follow.
 
 #include <algorithm>
 #include <cmath>

@@ -19,15 +19,17 @@ struct SurfaceNet {
   int cells = 0;  ///< of the lattice along the longest side of the box
 };
 
-/// The part of the surface of `field` within `box`, which is bounded: one point in each lattice cell that the surface passes through,
-/// moved onto it along the gradient. A surface that leaves the box is open there.
+/// The part of the surface of `field` within `box`, which is bounded: one point in each lattice
+/// cell that the surface passes through, moved onto it along the gradient. A surface that leaves
+/// the box is open there.
 [[nodiscard]] SurfaceNet surfaceNet(const Field& field, const Box3& box, int cells);
 
-/// The same on the coarsest of some lattices whose error is at most `tolerance` [m], or on the finest.
+/// The same on the coarsest of some lattices whose error is at most `tolerance` [m], or on the
+/// finest.
 [[nodiscard]] SurfaceNet surfaceWithin(const Field& field, const Box3& box, double tolerance);
 
-/// Little-endian: "PSRF", the numbers of points and triangles (uint32), the points and the normals (float32, three each), the
-/// triangles (uint32, three each).
+/// Little-endian: "PSRF", the numbers of points and triangles (uint32), the points and the normals
+/// (float32, three each), the triangles (uint32, three each).
 [[nodiscard]] std::string surfaceBytes(const SurfaceNet& net);
 
 }  // namespace palpate::tools

@@ -1,5 +1,6 @@
 #pragma once
-/// What is written from the vocabulary of scene files: the JSON Schema, the tables of the documents, and help.
+/// What is written from the vocabulary of scene files: the JSON Schema, the tables of the
+/// documents, and help.
 
 #include <string>
 #include <string_view>
@@ -12,7 +13,8 @@ namespace palpate::tools {
 /// The JSON Schema, draft 7, of scene files; ends with a newline.
 [[nodiscard]] std::string schemaText(const Vocabulary& vocabulary);
 
-/// A table in Markdown of the keys of `map`; of "in_code" the kinds of fields and the functions that make them.
+/// A table in Markdown of the keys of `map`; of "in_code" the kinds of fields and the functions
+/// that make them.
 /// @throws Error (kUsage) if there is no such map.
 [[nodiscard]] std::string keyTable(const Vocabulary& vocabulary, std::string_view map);
 

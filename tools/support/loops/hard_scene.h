@@ -14,8 +14,8 @@ struct HardScene {
   std::string text;   ///< of the scene file, in mm; every wall has 1000 N/m
   Vec3 at{0.0};       ///< [m] on the surface
   Vec3 out{0.0};      ///< [-] unit, out of it: pressed against this
-  /// [1/m] Of a frictionless convex surface: the hand has to hold it sideways with F / (R - d), R = 1 / curvature. 0: flat,
-  /// hollow, or held by an edge.
+  /// [1/m] Of a frictionless convex surface: the hand has to hold it sideways with F / (R - d), R =
+  /// 1 / curvature. 0: flat, hollow, or held by an edge.
   double curvature = 0.0;
   /// [-] Of the wall, static and kinetic alike.
   double friction = 0.0;

@@ -30,7 +30,8 @@ struct LoopLimit {
   LoopCase what;
   double linear = 0.0;  ///< [N/m] exact limit of the sampled loop on a flat wall
   double budget = 0.0;  ///< [N/m] StabilityBudget::stiffness()
-  /// [N/m] The stiffest wall on which the hand comes to rest, to 1 %; 0: not even on the softest; kMost: on every one.
+  /// [N/m] The stiffest wall on which the hand comes to rest, to 1 %; 0: not even on the softest;
+  /// kMost: on every one.
   double found = 0.0;
   double cycle = 0.0;      ///< [N] peak to peak of the force, 15 % above
   double frequency = 0.0;  ///< [Hz] of it

@@ -13,10 +13,11 @@ namespace palpate::loops {
 struct LoopSetting {
   devices::LoopModel loop;
   devices::Path hand;  ///< [m, world] where the hand wants to go
-  double gain =
-      1.0;  ///< [-] force at the device per force of the renderer: makes every wall that much stiffer
+  double gain = 1.0;   ///< [-] force at the device per force of the renderer: makes every wall that
+                       ///< much stiffer
   double window = 0.5;  ///< [s] at the end, that is judged
-  /// Noise of the sensor: each coordinate of a reading is one encoder step too high, too low, or right. Its seed is fixed.
+  /// Noise of the sensor: each coordinate of a reading is one encoder step too high, too low, or
+  /// right. Its seed is fixed.
   bool is_noisy = false;
   /// Called every kPollTicks ticks; what it throws ends the run.
   std::function<void()> poll = {};
@@ -47,13 +48,14 @@ struct LoopOutcome {
   }
 };
 
-/// Runs `renderer`, which is reset first, until the hand's path ends. `wall` [N/m]: the renderer's largest stiffness.
+/// Runs `renderer`, which is reset first, until the hand's path ends. `wall` [N/m]: the renderer's
+/// largest stiffness.
 /// @throws Error as SimulatedDevice.
 [[nodiscard]] LoopOutcome runLoop(HapticRenderer& renderer, const LoopSetting& setting,
                                   double wall);
 
-/// [m] How far behind the surface a hand wants to go that presses with `force` [N] on a wall of `stiffness` [N/m], by its
-/// own spring and that of its grip.
+/// [m] How far behind the surface a hand wants to go that presses with `force` [N] on a wall of
+/// `stiffness` [N/m], by its own spring and that of its grip.
 [[nodiscard]] double depthOfForce(const devices::LoopModel& loop, double stiffness, double force);
 
 /// How a hand comes to where it holds.
@@ -63,12 +65,13 @@ enum class Motion : std::uint8_t {
   kDrag,   ///< slowly, and then 10 mm along the surface at 0.5 m/s and back
 };
 
-/// Where a hand goes that starts 2 mm out of `at` and, once it is `depth` [m] inside, holds for `hold` [s]. `out` [-] is a
-/// unit vector.
+/// Where a hand goes that starts 2 mm out of `at` and, once it is `depth` [m] inside, holds for
+/// `hold` [s]. `out` [-] is a unit vector.
 [[nodiscard]] devices::Path pressOn(const Vec3& at, const Vec3& out, double depth, double hold,
                                     Motion motion = Motion::kPress);
 
-/// The largest gain at which `is_stable` holds, between `low` and `high`, to 1 %; 0 if it does not at `low`.
+/// The largest gain at which `is_stable` holds, between `low` and `high`, to 1 %; 0 if it does not
+/// at `low`.
 [[nodiscard]] double largestGain(const std::function<bool(double)>& is_stable, double low,
                                  double high);
 

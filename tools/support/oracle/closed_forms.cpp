@@ -78,7 +78,8 @@ Minima coneInside(const Vec3& p, const Vec3& base, const Vec3& axis, double radi
   const double up = glm::dot(p - base, axis);
   const Vec3 across = (p - base) - up * axis;
   const double flat = glm::length(across);
-  // In the half-plane through the axis: the base from (0, 0) to (radius, 0), the side from there to (0, height).
+  // In the half-plane through the axis: the base from (0, 0) to (radius, 0), the side from there to
+  // (0, height).
   if (up >= 0.0 && flat * height + up * radius <= radius * height) return {p};
   const double length = std::hypot(radius, height);
   const double share =
@@ -100,7 +101,8 @@ Minima twoBallUnionOutside(const Vec3& p, const Ball& a, const Ball& b) {
   // A ball that P is outside of has no minimum of its own: from there P pulls away from it.
   if (isInside(p, a) && !isInside(onSphere(p, a), b)) minima.push_back(onSphere(p, a));
   if (isInside(p, b) && !isInside(onSphere(p, b), a)) minima.push_back(onSphere(p, b));
-  // The crease holds where P pulls into both balls' normals' cone: x - P = l_a n_a + l_b n_b, l >= 0.
+  // The crease holds where P pulls into both balls' normals' cone: x - P = l_a n_a + l_b n_b, l >=
+  // 0.
   const Vec3 x = onCrease(p, a, b);
   const Vec3 na = (x - a.center) / a.radius;
   const Vec3 nb = (x - b.center) / b.radius;
@@ -159,8 +161,8 @@ Vec3 closestOnEllipsoid(const Vec3& p, const Vec3& radii) {
     r[i] = static_cast<Real>(radii[static_cast<int>(i)]);
     q[i] = std::fabs(static_cast<Real>(p[static_cast<int>(i)]));
   }
-  // x_i = r_i^2 q_i / (r_i^2 + t); t is the largest root of F(t) = sum (r_i q_i / (r_i^2 + t))^2 - 1,
-  // which falls from t > -(smallest r)^2 on.
+  // x_i = r_i^2 q_i / (r_i^2 + t); t is the largest root of F(t) = sum (r_i q_i / (r_i^2 + t))^2 -
+  // 1, which falls from t > -(smallest r)^2 on.
   const Real smallest = std::min({r[0], r[1], r[2]});
   const auto excess = [&](Real t) {
     Real sum = -1.0L;

@@ -122,8 +122,9 @@ std::optional<double> entry(const FeasibleSet& set, const Vec3& q, const Vec3& d
   return std::nullopt;
 }
 
-/// By values alone: all directions coarsely, then a grid of directions about the best one, made finer
-/// and finer. A grid, because the best direction may lie at a corner of those that meet the set.
+/// By values alone: all directions coarsely, then a grid of directions about the best one, made
+/// finer and finer. A grid, because the best direction may lie at a corner of those that meet the
+/// set.
 LocalPoint byDirections(const FeasibleSet& set, const Vec3& q, double radius,
                         const std::optional<Vec3>& allowed) {
   constexpr int kDirections = 600;

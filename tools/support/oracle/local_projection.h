@@ -15,10 +15,10 @@ struct LocalPoint {
   bool smooth = true;  ///< false: found by searching directions (a cusp, a kink inside a field)
 };
 
-/// The point of `set` nearest to `q` among those within `radius` of it. One must exist; `allowed` is
-/// one, if any is known. All subsets of up to three sides are tried in every branch, each solved to
-/// rounding: alternating projections stall at creases. Where no subset has a solution (a cusp, an
-/// apex, a kink), directions are searched by values alone, which takes some milliseconds.
+/// The point of `set` nearest to `q` among those within `radius` of it. One must exist; `allowed`
+/// is one, if any is known. All subsets of up to three sides are tried in every branch, each solved
+/// to rounding: alternating projections stall at creases. Where no subset has a solution (a cusp,
+/// an apex, a kink), directions are searched by values alone, which takes some milliseconds.
 [[nodiscard]] LocalPoint projectLocally(const FeasibleSet& set, const Vec3& q, double radius,
                                         const std::optional<Vec3>& allowed = {});
 

@@ -120,14 +120,15 @@ class Run {
     return out;
   }
 
-  /// Off a stationary point that is not a minimum, the way it falls away. The caller runs both ways.
+  /// Off a stationary point that is not a minimum, the way it falls away. The caller runs both
+  /// ways.
   Vec3 kicked(const Vec3& x, const Vec3& direction, double h) {
     was_kicked_ = true;
     return projectLocally(set_, x + kick_ * 0.1 * h * direction, h).point;
   }
 
-  /// Newton on y - P = sum mu_i grad g_i(y), g_i(y) = 0, from `x`; nothing if it does not stay near,
-  /// or if a side would pull.
+  /// Newton on y - P = sum mu_i grad g_i(y), g_i(y) = 0, from `x`; nothing if it does not stay
+  /// near, or if a side would pull.
   [[nodiscard]] std::optional<Stationary> polish(const Vec3& x,
                                                  const std::vector<std::size_t>& active) const {
     const std::size_t m = active.size();

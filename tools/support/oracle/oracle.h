@@ -25,13 +25,13 @@ struct OracleResult {
   std::size_t steps = 0;
   std::vector<std::size_t> active = {};  ///< sides of the set it rests on; empty where it is free
 
-  /// |x - proxy| / |proxy - hip|, which does not depend on the scale; with a depth below `least_depth`
-  /// [m], in shares of that.
+  /// |x - proxy| / |proxy - hip|, which does not depend on the scale; with a depth below
+  /// `least_depth` [m], in shares of that.
   [[nodiscard]] double errorOf(const Vec3& x, const Vec3& hip, double least_depth = 1e-9) const;
 };
 
-/// From the renderer's own `previous` proxy: the limit h -> 0 of x <- project(x + h (P - x)/|P - x|),
-/// with P = `hip` fixed. `previous` need not be exactly allowed, only near an allowed point.
+/// From the renderer's own `previous` proxy: the limit h -> 0 of x <- project(x + h (P - x)/|P -
+/// x|), with P = `hip` fixed. `previous` need not be exactly allowed, only near an allowed point.
 [[nodiscard]] OracleResult solveOracle(const FeasibleSet& set, const Vec3& previous,
                                        const Vec3& hip, const OracleSettings& settings = {});
 

@@ -13,8 +13,8 @@ struct Plane {
   Vec3 normal{0.0, 0.0, 0.0};  ///< [-] unit
 };
 
-/// The point of up to three planes that is nearest to `p` [m]: Lagrange's conditions of min |x - p|^2, solved plane by plane
-/// in an orthonormal basis of the normals.
+/// The point of up to three planes that is nearest to `p` [m]: Lagrange's conditions of min |x -
+/// p|^2, solved plane by plane in an orthonormal basis of the normals.
 Vec3 nearestOn(const std::array<Plane, 3>& planes, std::size_t count, const Vec3& p) noexcept {
   std::array<Vec3, 3> basis{};
   std::size_t rank = 0;
@@ -40,7 +40,8 @@ class GodObject : public RivalRenderer {
  protected:
   [[nodiscard]] const Facets& facets() const noexcept { return facets_; }
 
-  /// Where the point goes that is drawn to `goal`, and stands at `from` now; the facets that hold it in `held`.
+  /// Where the point goes that is drawn to `goal`, and stands at `from` now; the facets that hold
+  /// it in `held`.
   Vec3 draw(const Vec3& from, const Vec3& goal) noexcept {
     std::array<Plane, 3> planes{};
     count_ = 0;
@@ -93,7 +94,8 @@ class ForceShading final : public GodObject {
       point_ = plain;
       return;
     }
-    // First on planes through the point with the interpolated normals; then from there on the true facets.
+    // First on planes through the point with the interpolated normals; then from there on the true
+    // facets.
     std::array<Plane, 3> planes{};
     const std::size_t count = heldBy();
     for (std::size_t i = 0; i < count; ++i) {

@@ -15,8 +15,8 @@ struct Solid {
   double damping = 0.0;    ///< [N s/m]
 };
 
-/// What the interface asks for beside a tick: rivals cross nothing, keep to the contents of the scene, have no sources of
-/// energy and no limits of the force.
+/// What the interface asks for beside a tick: rivals cross nothing, keep to the contents of the
+/// scene, have no sources of energy and no limits of the force.
 class RivalRenderer : public HapticRenderer {
  public:
   [[nodiscard]] TickResult update(const HipState& hip) noexcept final;
@@ -29,7 +29,8 @@ class RivalRenderer : public HapticRenderer {
   [[nodiscard]] const Vec3& unlimitedForce() const noexcept final { return last_.force; }
   [[nodiscard]] double sourceWork() const noexcept final { return 0.0; }
   void reset() noexcept final;
-  /// Their memory is not a RendererState: a state is always that of a first tick, and none is taken.
+  /// Their memory is not a RendererState: a state is always that of a first tick, and none is
+  /// taken.
   [[nodiscard]] RendererState state() const noexcept final { return {}; }
   [[nodiscard]] RendererState checkpoint() noexcept final { return {}; }
   [[nodiscard]] bool setState(const RendererState& /*state*/) noexcept final { return false; }

@@ -1,7 +1,8 @@
 #pragma once
-/// Published renderers behind our interface, for comparison. Each keeps to the idea of its source and to nothing else: no ports,
-/// no contents, no friction. They feel the layers of a scene whose walls are not absent, each as a solid from outside, with
-/// the stiffness and damping that its wall has there.
+/// Published renderers behind our interface, for comparison. Each keeps to the idea of its source
+/// and to nothing else: no ports, no contents, no friction. They feel the layers of a scene whose
+/// walls are not absent, each as a solid from outside, with the stiffness and damping that its wall
+/// has there.
 
 #include <memory>
 
@@ -10,8 +11,8 @@
 
 namespace palpate::rivals {
 
-// All keep their memory apart from RendererState: they can be reset, but not resumed from a state of their own.
-// All throw Error (kInput, rivals.no_solid) for a scene without a solid.
+// All keep their memory apart from RendererState: they can be reset, but not resumed from a state
+// of their own. All throw Error (kInput, rivals.no_solid) for a scene without a solid.
 
 /// The nearest point of the surface now, without history.
 [[nodiscard]] std::unique_ptr<HapticRenderer> closestPoint(ScenePtr scene);
@@ -19,23 +20,26 @@ namespace palpate::rivals {
 /// The sum over all solids of stiffness times depth, along each one's gradient.
 [[nodiscard]] std::unique_ptr<HapticRenderer> potentialField(ScenePtr scene);
 
-/// Salisbury and Tarr (Proceedings of the ASME Dynamic Systems and Control Division 61, 1997): the probe is projected on the plane
-/// at the last contact point, and that point is brought back by one step of Newton's a tick.
+/// Salisbury and Tarr (Proceedings of the ASME Dynamic Systems and Control Division 61, 1997): the
+/// probe is projected on the plane at the last contact point, and that point is brought back by one
+/// step of Newton's a tick.
 [[nodiscard]] std::unique_ptr<HapticRenderer> tangentTracking(ScenePtr scene);
 
 struct SlowPlane {
   double period = 0.01;   ///< [s] from plane to plane
   double recovery = 0.0;  ///< [s] in which a new plane comes to its place; 0: at once
 };
-/// Adachi, Kumano and Ogino (VRAIS 1995): a plane through the nearest point, renewed slowly. With `recovery` as Mark, Randolph,
-/// Finch, Van Verth and Taylor (SIGGRAPH 1996) have it: the new plane comes to its place little by little.
+/// Adachi, Kumano and Ogino (VRAIS 1995): a plane through the nearest point, renewed slowly. With
+/// `recovery` as Mark, Randolph, Finch, Van Verth and Taylor (SIGGRAPH 1996) have it: the new plane
+/// comes to its place little by little.
 [[nodiscard]] std::unique_ptr<HapticRenderer> slowPlane(ScenePtr scene, const SlowPlane& settings);
 
-/// Zilles and Salisbury (IROS 1995): a point that up to three facets hold back, as near to the probe as they let it.
+/// Zilles and Salisbury (IROS 1995): a point that up to three facets hold back, as near to the
+/// probe as they let it.
 [[nodiscard]] std::unique_ptr<HapticRenderer> godObject(ScenePtr scene, TriangleMesh mesh);
 
-/// Ruspini, Kolarov and Khatib (SIGGRAPH 1997): the god-object, drawn not to the probe but to where a plane of the
-/// interpolated normal would have it.
+/// Ruspini, Kolarov and Khatib (SIGGRAPH 1997): the god-object, drawn not to the probe but to where
+/// a plane of the interpolated normal would have it.
 [[nodiscard]] std::unique_ptr<HapticRenderer> forceShading(ScenePtr scene, TriangleMesh mesh);
 
 struct Voxels {
@@ -44,8 +48,8 @@ struct Voxels {
   double ramp = 0.0;   ///< [voxels] over which the occupancy rises; 0: it is 0 or 1
   Gradient gradient = Gradient::kInterpolated;
 };
-/// Avila and Sobierajski (Visualization 1996): voxels that are occupied or not; the force is as long as the interpolated value
-/// says and goes along the gradient of the voxels.
+/// Avila and Sobierajski (Visualization 1996): voxels that are occupied or not; the force is as
+/// long as the interpolated value says and goes along the gradient of the voxels.
 [[nodiscard]] std::unique_ptr<HapticRenderer> voxelOccupancy(ScenePtr scene, const Voxels& voxels);
 
 }  // namespace palpate::rivals

@@ -8,8 +8,8 @@
 namespace palpate::rivals {
 namespace {
 
-/// Corner n of a cube is at (n & 1, n >> 1 & 1, n >> 2 & 1). Six tetrahedra about the diagonal from 0 to 7; neighbors
-/// agree on the diagonals of their faces.
+/// Corner n of a cube is at (n & 1, n >> 1 & 1, n >> 2 & 1). Six tetrahedra about the diagonal from
+/// 0 to 7; neighbors agree on the diagonals of their faces.
 constexpr std::array<std::array<int, 4>, 6> kTetrahedra{
     {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
 

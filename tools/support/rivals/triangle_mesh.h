@@ -18,7 +18,8 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// The surface of `field` within `box` [m], in cubes of `edge` [m] that are cut up into six tetrahedra each. Normals are the field's.
+/// The surface of `field` within `box` [m], in cubes of `edge` [m] that are cut up into six
+/// tetrahedra each. Normals are the field's.
 [[nodiscard]] TriangleMesh meshOf(const Field& field, const Box3& box, double edge);
 
 /// What a straight way meets first.
@@ -40,7 +41,8 @@ class Facets {
   [[nodiscard]] const Vec3& cornerOf(std::uint32_t triangle) const noexcept {
     return mesh_.points[mesh_.triangles[triangle][0]];
   }
-  /// [-] Unit: of the corners, by the barycentric coordinates of `p` [m], a point of the plane of `triangle`.
+  /// [-] Unit: of the corners, by the barycentric coordinates of `p` [m], a point of the plane of
+  /// `triangle`.
   [[nodiscard]] Vec3 shadedNormal(std::uint32_t triangle, const Vec3& p) const noexcept;
 
  private:

@@ -50,7 +50,7 @@ class FieldBaker {
       : options_(options),
         progress_(progress),
         plan_(plan),
-        units_per_metre_(1.0 / plan_.metres_per_unit),
+        units_per_meter_(1.0 / plan_.meters_per_unit),
         domain_(domain),
         source_(field, domain_, isCut(field, options), plan_.band),
         search_(source_, plan_, 2.0 * plan_.half_width) {}
@@ -130,7 +130,7 @@ class FieldBaker {
       }
       ValueBatch distances;
       source_.values(in_block, points, search_.centerOf(origin, 4), search_.radiusOf(4), distances);
-      leaf.store(local, distances, units_per_metre_, background());
+      leaf.store(local, distances, units_per_meter_, background());
     }
     if (leaf.any_active || (leaf.any_inside && leaf.any_outside)) return Verdict::kKeep;
     return leaf.any_inside ? Verdict::kInside : Verdict::kOutside;
@@ -139,7 +139,7 @@ class FieldBaker {
   const BakeOptions& options_;
   const Progress& progress_;
   const BakePlan& plan_;
-  double units_per_metre_;
+  double units_per_meter_;
   Box3 domain_;  ///< [m] holds the surface
   BandSource source_;
   CubeSearch search_;

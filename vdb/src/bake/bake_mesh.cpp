@@ -35,7 +35,8 @@ using Lower = Upper::ChildNodeType;
 /// [voxels] Triangles that smooth facets are cut into: none is felt.
 constexpr double kSmoothSide = 0.6;
 
-/// [voxels^2] that stands for the leaves of a band; long needles have one all along without any area.
+/// [voxels^2] that stands for the leaves of a band; long needles have one all along without any
+/// area.
 double estimatedArea(const Solid& solid) {
   double sum = 0.0;
   for (const auto& [i, j, k] : solid.triangles) {
@@ -66,7 +67,7 @@ void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& colum
   if (columns.doubt()) {
     throw inputError("mesh.ambiguous",
                      "the mesh does not tell what is solid: at " +
-                         eachInMillimetres(columns.doubt()->place * plan.voxel) + " " +
+                         eachInMillimeters(columns.doubt()->place * plan.voxel) + " " +
                          columns.doubt()->why,
                      hint, mesh.source);
   }
@@ -77,7 +78,7 @@ void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& colum
     if (!crossing) continue;
     throw inputError("mesh.ambiguous",
                      "the mesh passes through itself at " +
-                         eachInMillimetres(*crossing * plan.voxel) + " and encloses a space of " +
+                         eachInMillimeters(*crossing * plan.voxel) + " and encloses a space of " +
                          std::to_string(pocket.voxels) +
                          " voxels there: inside by the flood, outside by the winding number",
                      hint, mesh.source);
@@ -101,15 +102,15 @@ class MeshBaker {
     const double half = 0.5 * options.shell_thickness / plan_.voxel;
     if (!(half >= 0.0) || !std::isfinite(half)) {
       throw inputError("bake.shell_thickness", "the shell's thickness is " +
-                                                   inMillimetres(options.shell_thickness) +
+                                                   inMillimeters(options.shell_thickness) +
                                                    "; it must be a length, or 0 for a solid");
     }
     if (half > 0.0 && half <= 0.5) {
       throw inputError("bake.too_thin",
-                       "a shell of " + inMillimetres(options.shell_thickness) +
-                           " would have holes in a grid of " + inMillimetres(plan_.voxel) +
+                       "a shell of " + inMillimeters(options.shell_thickness) +
+                           " would have holes in a grid of " + inMillimeters(plan_.voxel) +
                            " voxels",
-                       "use voxels of " + inMillimetres(options.shell_thickness / kHeld) +
+                       "use voxels of " + inMillimeters(options.shell_thickness / kHeld) +
                            ", or a thicker shell");
     }
     if (half > 0.0 && options.mesh_sign == MeshSign::kUnsigned) {
@@ -171,7 +172,8 @@ class MeshBaker {
     }
   }
 
-  /// Lists by place, below, have a limit that only parts far from each other reach before the memory's.
+  /// Lists by place, below, have a limit that only parts far from each other reach before the
+  /// memory's.
   void refuseTooLong() const {
     constexpr int kMost = 1 << 24;
     const Coord dim = range_.dim();
@@ -179,7 +181,7 @@ class MeshBaker {
     throw Error(ErrorKind::kOperation,
                 {"bake.too_fine",
                  "'" + options_.name + "' is more than 2^24 voxels of " +
-                     inMillimetres(plan_.voxel) + " long",
+                     inMillimeters(plan_.voxel) + " long",
                  "use larger voxels; also check that the mesh has the length unit it should"});
   }
 
@@ -222,7 +224,7 @@ class MeshBaker {
                           local.squares.data()));
     auto leaf = std::make_unique<Leaf>(origin, plan_.background, false);
     float* const values = leaf->buffer().data();
-    const auto unit = static_cast<float>(plan_.voxel / plan_.metres_per_unit);
+    const auto unit = static_cast<float>(plan_.voxel / plan_.meters_per_unit);
     const float shell = shell_.value_or(0.0F);
     const float background = plan_.background;
     Leaf::NodeMaskType active = leaf->getValueMask();

@@ -46,7 +46,7 @@ std::uint64_t memoryLimit(std::uint64_t max_memory) {
 
 BakePlan checkOptions(const BakeOptions& options) {
   if (!(options.voxel_size > 0.0) || !std::isfinite(options.voxel_size)) {
-    throw inputError("bake.voxel_size", "the voxel size is " + inMillimetres(options.voxel_size) +
+    throw inputError("bake.voxel_size", "the voxel size is " + inMillimeters(options.voxel_size) +
                                             "; it must be a positive length");
   }
   if (!(options.half_width >= 2.0 && options.half_width <= 1000.0)) {
@@ -58,26 +58,26 @@ BakePlan checkOptions(const BakeOptions& options) {
     throw inputError("bake.box", "the box to bake in is empty or infinite",
                      "give it two finite corners, the lower one first");
   }
-  const std::optional<double> metres = metresPer(options.length_unit);
-  if (!metres) {
+  const std::optional<double> meters = metersPer(options.length_unit);
+  if (!meters) {
     throw inputError("unit.unknown", "unknown length unit '" + options.length_unit + "'",
                      "use m, cm, mm or um");
   }
   // OpenVDB takes a transform whose determinant is below 3e-15 for singular.
   constexpr double kLeastVoxel = 1.5e-5;  // [units]
-  if (options.voxel_size < kLeastVoxel * *metres) {
+  if (options.voxel_size < kLeastVoxel * *meters) {
     throw inputError("bake.voxel_size",
-                     "the voxel size is " + inMillimetres(options.voxel_size) + "; a grid in " +
+                     "the voxel size is " + inMillimeters(options.voxel_size) + "; a grid in " +
                          options.length_unit + " holds voxels of " +
-                         inMillimetres(kLeastVoxel * *metres) + " and more",
+                         inMillimeters(kLeastVoxel * *meters) + " and more",
                      "check the length unit; or write the grid in a smaller unit");
   }
   BakePlan plan;
   plan.voxel = options.voxel_size;
   plan.half_width = options.half_width;
   plan.band = options.half_width * options.voxel_size;
-  plan.metres_per_unit = *metres;
-  plan.background = static_cast<float>(plan.band / *metres);
+  plan.meters_per_unit = *meters;
+  plan.background = static_cast<float>(plan.band / *meters);
   plan.max_memory = memoryLimit(options.max_memory);
   return plan;
 }
@@ -91,7 +91,7 @@ openvdb::CoordBBox voxelRange(const Box3& bounds, const BakePlan& plan, const st
     if (!(std::max(std::abs(lo), std::abs(hi)) < kMost)) {
       throw Error(ErrorKind::kOperation,
                   {"bake.too_fine",
-                   "'" + name + "' reaches more than 2^29 voxels of " + inMillimetres(plan.voxel) +
+                   "'" + name + "' reaches more than 2^29 voxels of " + inMillimeters(plan.voxel) +
                        " from the origin",
                    "use larger voxels; also check that the shape has the length unit it should"});
     }
@@ -105,7 +105,7 @@ openvdb::FloatGrid::Ptr emptyGrid(const BakePlan& plan, const BakeOptions& optio
   initializeOpenVdb();
   auto grid = openvdb::FloatGrid::create(plan.background);
   grid->setTransform(
-      openvdb::math::Transform::createLinearTransform(plan.voxel / plan.metres_per_unit));
+      openvdb::math::Transform::createLinearTransform(plan.voxel / plan.meters_per_unit));
   grid->setName(options.name);
   return grid;
 }
@@ -117,7 +117,7 @@ LevelSet finishGrid(openvdb::FloatGrid::Ptr grid, const BakePlan& plan,
                      "no voxel of '" + options.name +
                          "' lies inside: the shape is empty, or thinner "
                          "than voxels of " +
-                         inMillimetres(plan.voxel) + " can hold",
+                         inMillimeters(plan.voxel) + " can hold",
                      "use voxels smaller than a third of the thinnest part; a shape far too small "
                      "may have been read in the wrong length unit");
   }
@@ -148,11 +148,11 @@ void requireMemory(double area, double margin, const BakePlan& plan) {
   std::string hint = "allow more than " + roughlyInGigabytes(2.0 * fixed);
   if (limit > 2.0 * fixed) {
     const double fits = 1.1 * plan.voxel * std::sqrt(growing / (limit - fixed));
-    hint = "voxels of " + inMillimetres(roundedUp(fits)) +
+    hint = "voxels of " + inMillimeters(roundedUp(fits)) +
            " should fit; also check that the shape has the length unit it should";
   }
   throw Error(ErrorKind::kOperation, {"bake.memory",
-                                      "voxels of " + inMillimetres(plan.voxel) + " need about " +
+                                      "voxels of " + inMillimeters(plan.voxel) + " need about " +
                                           roughlyInGigabytes(growing + fixed) + "; " +
                                           roughlyInGigabytes(limit) + " are allowed",
                                       hint});

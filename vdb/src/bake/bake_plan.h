@@ -20,7 +20,7 @@ struct BakePlan {
   double voxel = 0.0;            ///< [m]
   double half_width = 0.0;       ///< [voxels] of the band, each side
   double band = 0.0;             ///< [m] the same
-  double metres_per_unit = 1.0;  ///< [m] of the grid's length unit
+  double meters_per_unit = 1.0;  ///< [m] of the grid's length unit
   float background = 0.0F;       ///< [units]
   std::uint64_t max_memory = 0;  ///< [bytes]
 };
@@ -44,15 +44,15 @@ struct BakePlan {
 [[nodiscard]] LevelSet withLostParts(const LevelSet& grid, const std::string& lost);
 
 /// The memory of a band around a surface of `area` [voxels^2].
-/// @throws Error (kOperation), naming a voxel size that fits, if it is more than `margin` times what
-/// the plan allows.
+/// @throws Error (kOperation), naming a voxel size that fits, if it is more than `margin` times
+/// what the plan allows.
 void requireMemory(double area, double margin, const BakePlan& plan);
 
 /// [bytes] What 0 stands for in `max_memory`: 80 % of the machine's.
 [[nodiscard]] std::uint64_t memoryLimit(std::uint64_t max_memory);
 
-/// Runs body(index) for every index below `count` in parallel, in pieces of some 50 ms between which
-/// the calling thread reports progress, from share `from` to `to`.
+/// Runs body(index) for every index below `count` in parallel, in pieces of some 50 ms between
+/// which the calling thread reports progress, from share `from` to `to`.
 template <typename Body>
 void parallelWithProgress(std::size_t count, const Progress& progress, std::string_view what,
                           double from, double to, const Body& body) {

@@ -48,7 +48,8 @@ class Watch final : public tbb::task_scheduler_observer {
     observe(true);
   }
   ~Watch() override {
-    // A thread that is still about to leave gets its processors back first; it has nothing left to do.
+    // A thread that is still about to leave gets its processors back first; it has nothing left to
+    // do.
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     while (inside_ > 0 && std::chrono::steady_clock::now() < until) std::this_thread::yield();
     observe(false);

@@ -9,10 +9,11 @@ namespace palpate::vdb {
 
 enum class Verdict : std::uint8_t { kOutside, kInside, kKeep };
 
-/// A field that is not exact can fall short of the distance to its own bounds, and would have a band without end
-/// there: so that it ends, values rise with twice that distance to the band's width. Near the surface the
-/// field stays as smooth as it is, also where its bounds touch it. And a box may cut it off. judge() also serves fields
-/// whose value is not a distance (implicit_distances.h). Any number of threads may ask.
+/// A field that is not exact can fall short of the distance to its own bounds, and would have a
+/// band without end there: so that it ends, values rise with twice that distance to the band's
+/// width. Near the surface the field stays as smooth as it is, also where its bounds touch it. And
+/// a box may cut it off. judge() also serves fields whose value is not a distance
+/// (implicit_distances.h). Any number of threads may ask.
 class BandSource {
  public:
   /// `domain` holds the surface, `band` is the half width; both in [m].
@@ -21,8 +22,9 @@ class BandSource {
   [[nodiscard]] const FieldParts& parts() const noexcept { return parts_; }
   [[nodiscard]] const FieldPart& whole() const noexcept { return parts_.whole(); }
 
-  /// Whether every point within `radius` of `center` is more than the band away from the surface; if
-  /// not, `to` is what is left of `from` there. It is exact, or only in the band if that is enough.
+  /// Whether every point within `radius` of `center` is more than the band away from the surface;
+  /// if not, `to` is what is left of `from` there. It is exact, or only in the band if that is
+  /// enough.
   [[nodiscard]] Verdict judge(const FieldPart& from, const Vec3& center, double radius,
                               bool only_in_band, FieldPart& to) const;
 

@@ -42,8 +42,8 @@ std::unique_ptr<Lower> makeLower(const Coord& origin, const Group& group, float 
   return node;
 }
 
-/// Groups in a fixed order. What is searched together stands together, so that the last one is asked
-/// first.
+/// Groups in a fixed order. What is searched together stands together, so that the last one is
+/// asked first.
 class Groups {
  public:
   [[nodiscard]] Group& at(const Coord& voxel) {

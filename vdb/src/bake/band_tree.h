@@ -16,8 +16,9 @@ struct BandBlock {
   int size = 8;
 };
 
-/// Adds `leaves`, whose origins are given beside them (null: there is none), and blocks that are inside,
-/// whose voxels get the value -background, to a tree without voxels. None may overlap another.
+/// Adds `leaves`, whose origins are given beside them (null: there is none), and blocks that are
+/// inside, whose voxels get the value -background, to a tree without voxels. None may overlap
+/// another.
 void fillTree(openvdb::FloatTree& tree, const std::vector<openvdb::Coord>& origins,
               std::vector<std::unique_ptr<BandLeaf>> leaves, const std::vector<BandBlock>& inside);
 

@@ -12,8 +12,8 @@ constexpr std::size_t kMostForLeastArea = 100;
 /// Edges that lack triangles, as the triangles would run; the same edge as often as it lacks one.
 using Missing = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
 
-/// Simple loops out of edges of which as many begin in each vertex as end there: any walk comes back
-/// to a vertex that it has seen, and what lies between is a loop.
+/// Simple loops out of edges of which as many begin in each vertex as end there: any walk comes
+/// back to a vertex that it has seen, and what lies between is a loop.
 std::vector<std::vector<std::uint32_t>> loopsOf(Missing& missing,
                                                 const std::vector<std::uint32_t>& starts) {
   std::vector<std::vector<std::uint32_t>> loops;

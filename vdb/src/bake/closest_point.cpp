@@ -16,9 +16,10 @@ constexpr double kFarthest = 2.5;      ///< from the start
 constexpr double kModelEnough = 3e-4;  ///< of a step that the next one would only square
 constexpr double kOnSurface = 1e-5;
 constexpr double kLeastGain = 2e-3;  ///< of a step along the surface
-/// [voxels] A step s through a surface that bends by k a voxel leaves some k^2 s^3 / 6, if its bend changes over the same way
-/// as it turns; a surface that is flat where it is looked at is taken for one that bends by kLeastBend. That may be
-/// kMostLeft, and a tenth of what a cubic spline leaves of such a bend, 0.037 k^3.
+/// [voxels] A step s through a surface that bends by k a voxel leaves some k^2 s^3 / 6, if its bend
+/// changes over the same way as it turns; a surface that is flat where it is looked at is taken for
+/// one that bends by kLeastBend. That may be kMostLeft, and a tenth of what a cubic spline leaves
+/// of such a bend, 0.037 k^3.
 constexpr double kMostLeft = 1e-6;
 constexpr double kShareLeft = 0.0037;
 constexpr double kMostAnywhere = 1e-3;
@@ -34,7 +35,8 @@ std::pair<Vec3, Vec3> across(const Vec3& n) noexcept {
   return {u, glm::cross(n, u)};
 }
 
-/// From where the jet was taken to the closest point to `p` on the zero set of s + g e + e H e / 2, `apart` from there.
+/// From where the jet was taken to the closest point to `p` on the zero set of s + g e + e H e / 2,
+/// `apart` from there.
 std::optional<Vec3> onModel(const FieldJet& jet, const Vec3& apart, double voxel) noexcept {
   Vec3 e(0.0);
   for (int step = 0; step < kModelSteps; ++step) {
@@ -56,7 +58,8 @@ std::optional<Vec3> onModel(const FieldJet& jet, const Vec3& apart, double voxel
     const double vv = glm::dot(v, bent_v);
     const double size = uu * vv - uv * uv;
     const double flat = glm::dot(u, u) * glm::dot(v, v);
-    // Beyond a center of curvature the matrix turns indefinite; there the point on the tangent plane leads.
+    // Beyond a center of curvature the matrix turns indefinite; there the point on the tangent
+    // plane leads.
     Vec3 move = rest - lambda * g + down;
     if (uu > 0.0 && size > 1e-3 * flat) {
       const Vec3 pull = rest - down - hessian * down;

@@ -26,7 +26,8 @@ Columns::Columns(const Solid& solid, MeshSign sign, const Progress& progress) {
                          const Vec3& a = solid.vertices[i];
                          const Vec3& b = solid.vertices[j];
                          const Vec3& c = solid.vertices[k];
-                         // A hair beyond the triangle's box, where rounding could still find a side to be crossed.
+                         // A hair beyond the triangle's box, where rounding could still find a side
+                         // to be crossed.
                          constexpr double kHair = 1e-6;
                          const Vec3 lo = glm::min(glm::min(a, b), c) - kHair;
                          const Vec3 hi = glm::max(glm::max(a, b), c) + kHair;

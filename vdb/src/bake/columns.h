@@ -15,11 +15,11 @@ namespace palpate::vdb {
 
 /// Where the lines along z through voxel centers enter and leave a solid.
 ///
-/// The walls crossed, each with its direction, add up to the winding number of each part; a point is
-/// in a part where that is not zero. A part that lies in another and is turned the other way is a
-/// cavity, whatever way the outer one is turned; all others are solid, and those that overlap, one.
-/// That is the winding number's vote. The flood's: what cannot be reached from outside is inside,
-/// cavities excepted. With MeshSign::kFlood they are not, and the flood decides.
+/// The walls crossed, each with its direction, add up to the winding number of each part; a point
+/// is in a part where that is not zero. A part that lies in another and is turned the other way is
+/// a cavity, whatever way the outer one is turned; all others are solid, and those that overlap,
+/// one. That is the winding number's vote. The flood's: what cannot be reached from outside is
+/// inside, cavities excepted. With MeshSign::kFlood they are not, and the flood decides.
 class Columns {
  public:
   /// Parts of which nothing tells whether they are cavities or inside out.
@@ -37,7 +37,8 @@ class Columns {
 
   [[nodiscard]] bool isInside(int x, int y, int z) const noexcept;
 
-  /// The same for the voxels from y and z on, eight along each: a byte for each y, a bit for each z.
+  /// The same for the voxels from y and z on, eight along each: a byte for each y, a bit for each
+  /// z.
   [[nodiscard]] std::array<std::uint8_t, 8> areInside(int x, int y, int z) const noexcept;
 
   [[nodiscard]] const std::optional<Doubt>& doubt() const noexcept { return doubt_; }

@@ -13,7 +13,8 @@
 
 namespace palpate::vdb {
 
-/// Halves cubes of voxels, from the whole down to 8^3, and drops those that the band does not reach.
+/// Halves cubes of voxels, from the whole down to 8^3, and drops those that the band does not
+/// reach.
 class CubeSearch {
  public:
   /// A cube that the band can touch, and what decides about the field there.
@@ -22,11 +23,12 @@ class CubeSearch {
     std::uint32_t part = 0;
   };
 
-  /// `width` [voxels]: of the band that `source` judges by, both sides together; for the estimate of memory, which may
-  /// be off by `margin`.
+  /// `width` [voxels]: of the band that `source` judges by, both sides together; for the estimate
+  /// of memory, which may be off by `margin`.
   CubeSearch(const BandSource& source, const BakePlan& plan, double width, double margin = 1.0);
 
-  /// Among the voxels of `range`. @throws Error (kOperation) if the grid would be too large, kCancelled.
+  /// Among the voxels of `range`. @throws Error (kOperation) if the grid would be too large,
+  /// kCancelled.
   void run(const openvdb::CoordBBox& range, const Progress& progress);
 
   [[nodiscard]] const std::vector<Cube>& cubes() const noexcept { return cubes_; }

@@ -39,8 +39,8 @@ void forEachEdge(const std::vector<Side>& sides, const Visit& visit) {
   return 0.5 * glm::length(glm::cross(vertices[t[1]] - a, vertices[t[2]] - a));
 }
 
-/// Turns triangles so that neighbors across an edge of two agree, as most of the area between edges of
-/// other numbers does. Returns which were turned.
+/// Turns triangles so that neighbors across an edge of two agree, as most of the area between edges
+/// of other numbers does. Returns which were turned.
 std::vector<bool> turnAlike(const std::vector<Vec3>& vertices, const std::vector<Side>& sides,
                             std::vector<Triangle>& triangles);
 

@@ -30,13 +30,13 @@ Error emptySolidError(const Mesh& mesh, const Solid& solid, const BakePlan& plan
   const double thickness = area > 0.0 ? 2.0 * volume / area : 0.0;
   const std::string none = "no voxel lies inside: ";
   const auto lengthText = [&](double voxels) {
-    return inMillimetres(voxels * plan.voxel) + " (" + inVoxels(voxels) + ")";
+    return inMillimeters(voxels * plan.voxel) + " (" + inVoxels(voxels) + ")";
   };
   if (longest < 2.0) {
     return inputError("bake.empty",
                       none + "the whole mesh is only " + lengthText(longest) + " long",
                       "it may have been read in the wrong length unit; else use voxels of " +
-                          inMillimetres(longest * plan.voxel / 64.0),
+                          inMillimeters(longest * plan.voxel / 64.0),
                       mesh.source);
   }
   if (thickness < 1e-6 * longest) {
@@ -47,7 +47,7 @@ Error emptySolidError(const Mesh& mesh, const Solid& solid, const BakePlan& plan
   return inputError(
       "bake.empty",
       none + "the mesh is about " + lengthText(thickness) + " thick, and passes between the voxels",
-      "use voxels of " + inMillimetres(thickness * plan.voxel / kHeld) +
+      "use voxels of " + inMillimeters(thickness * plan.voxel / kHeld) +
           ", or make it a shell of some thickness",
       mesh.source);
 }

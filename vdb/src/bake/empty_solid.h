@@ -7,8 +7,8 @@
 
 namespace palpate::vdb {
 
-/// `bake.empty` (kInput) with its cause: the mesh is smaller than a voxel, encloses nothing, or is too thin; and
-/// with a voxel that holds it.
+/// `bake.empty` (kInput) with its cause: the mesh is smaller than a voxel, encloses nothing, or is
+/// too thin; and with a voxel that holds it.
 [[nodiscard]] Error emptySolidError(const Mesh& mesh, const Solid& solid, const BakePlan& plan);
 
 }  // namespace palpate::vdb

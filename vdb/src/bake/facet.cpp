@@ -26,7 +26,8 @@ Vector anyAcross(const Vector& v) noexcept {
   return normalizedOr(glm::cross(v, axis), axis);
 }
 
-/// Its frame. False, and nothing, for a triangle lower than `least` times its longest side, unless `any`.
+/// Its frame. False, and nothing, for a triangle lower than `least` times its longest side, unless
+/// `any`.
 template <typename Vector>
 bool makeFacetOf(std::array<Vector, 3> corners, typename Vector::value_type least, bool any,
                  Facet& facet) noexcept {

@@ -120,7 +120,8 @@ ValueRange FieldParts::narrowNode(const FieldPart& from, std::size_t at, const V
     all.lo = std::min(all.lo, range.lo);
     all.hi = std::min(all.hi, range.hi);
   }
-  // Beyond the limit anything is as good. One stays in any case: the one whose values are the least.
+  // Beyond the limit anything is as good. One stays in any case: the one whose values are the
+  // least.
   const double most = std::min(all.hi, limit);
   std::size_t kept = 0;
   std::size_t end = begin + 1;

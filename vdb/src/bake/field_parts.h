@@ -1,5 +1,6 @@
 #pragma once
-/// A field's CSG taken apart, so that in a cell only those operands are asked that can matter there.
+/// A field's CSG taken apart, so that in a cell only those operands are asked that can matter
+/// there.
 
 #include <algorithm>
 #include <cstdint>
@@ -19,24 +20,24 @@ struct FieldPart {
   std::vector<double> least;  ///< [m] scratch of narrow()
 };
 
-/// Where the values in a ball lie, by the Lipschitz bounds of the operands: no less than `lo`, no more
-/// than `hi` [m]; infinite where nothing is known.
+/// Where the values in a ball lie, by the Lipschitz bounds of the operands: no less than `lo`, no
+/// more than `hi` [m]; infinite where nothing is known.
 struct ValueRange {
   double lo = 0.0;
   double hi = 0.0;
 };
 
-/// Unions, intersections, complements and placements; all else is a leaf. Refers to the field, and never
-/// changes; any number of threads may ask.
+/// Unions, intersections, complements and placements; all else is a leaf. Refers to the field, and
+/// never changes; any number of threads may ask.
 class FieldParts {
  public:
   explicit FieldParts(const Field& field);
 
   [[nodiscard]] const FieldPart& whole() const noexcept { return whole_; }
 
-  /// Puts into `to` what decides about the value somewhere in the ball, out of what did so in a ball
-  /// that holds it. The values there stay the same, bit for bit; but those beyond +-`limit` [m] may
-  /// become others beyond it with the same sign.
+  /// Puts into `to` what decides about the value somewhere in the ball, out of what did so in a
+  /// ball that holds it. The values there stay the same, bit for bit; but those beyond +-`limit`
+  /// [m] may become others beyond it with the same sign.
   ValueRange narrow(const FieldPart& from, const Vec3& center, double radius, double limit,
                     FieldPart& to) const;
 

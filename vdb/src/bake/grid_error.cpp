@@ -16,7 +16,8 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-/// [voxels] A point of the surface that lies further from the voxel it was looked for from is another's.
+/// [voxels] A point of the surface that lies further from the voxel it was looked for from is
+/// another's.
 constexpr double kFarthest = 2.0;
 
 GridError worse(const GridError& a, const GridError& b) {
@@ -25,8 +26,8 @@ GridError worse(const GridError& a, const GridError& b) {
   return out;
 }
 
-/// A place in the voxel at `at`, each of whose coordinates is -0.5 to 0.5 voxels from the center, always the
-/// same: on a lattice, errors of interpolation would vanish at every point alike.
+/// A place in the voxel at `at`, each of whose coordinates is -0.5 to 0.5 voxels from the center,
+/// always the same: on a lattice, errors of interpolation would vanish at every point alike.
 Vec3 scattered(const openvdb::Coord& at) noexcept {
   Vec3 out(0.0);
   std::uint64_t state = 0x9E3779B97F4A7C15U;
@@ -48,7 +49,7 @@ class Comparison {
 
   [[nodiscard]] GridError in(const Leaf& leaf) const noexcept {
     const double voxel = grid_.info().voxel_size;
-    const auto near = static_cast<float>(voxel / grid_.info().metres_per_unit);
+    const auto near = static_cast<float>(voxel / grid_.info().meters_per_unit);
     GridError worst;
     for (auto value = leaf.cbeginValueOn(); value; ++value) {
       if (std::fabs(*value) >= near) continue;

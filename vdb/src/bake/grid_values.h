@@ -16,7 +16,7 @@ class GridValues {
   using Leaf = openvdb::FloatTree::LeafNodeType;
 
   GridValues(const LevelSet& grid, const BakePlan& plan)
-      : values_(grid.impl().grid->tree()), voxels_per_unit_(plan.metres_per_unit / plan.voxel) {}
+      : values_(grid.impl().grid->tree()), voxels_per_unit_(plan.meters_per_unit / plan.voxel) {}
 
   [[nodiscard]] const Leaf* leafAt(const openvdb::Coord& at) const {
     return values_.probeConstLeaf(at);

@@ -42,7 +42,7 @@ constexpr std::size_t kBlocksToTellBy = 100;
 
 HybridOptions checked(HybridOptions options) {
   if (!(options.tolerance >= 0.0)) {
-    throw inputError("bake.tolerance", "the tolerance is " + inMillimetres(options.tolerance, 3) +
+    throw inputError("bake.tolerance", "the tolerance is " + inMillimeters(options.tolerance, 3) +
                                            "; it must be 0 or more");
   }
   if (options.sampler == Sampler::kCubic) {
@@ -52,7 +52,7 @@ HybridOptions checked(HybridOptions options) {
 }
 
 std::string errorText(const GridError& error) {
-  return inMillimetres(error.off, 3) + " and " + shortNumber(error.turn / kDegree, 2) + " degree";
+  return inMillimeters(error.off, 3) + " and " + shortNumber(error.turn / kDegree, 2) + " degree";
 }
 
 Pose inverse(const Pose& pose) {
@@ -199,7 +199,7 @@ class HybridBaker {
     if (error.off <= limit.off && error.turn <= limit.turn) return;
     throw inputError("bake.other_field",
                      "the grid " + grid.info().name + " is off its part of the field by " +
-                         errorText(error) + " near " + eachInMillimetres(error.where, 3),
+                         errorText(error) + " near " + eachInMillimeters(error.where, 3),
                      "it was made of another field: bake again");
   }
 
@@ -298,7 +298,7 @@ class HybridBaker {
     const GridError limit = allowed(bake_options.voxel_size);
     if (error.off > limit.off || error.turn > limit.turn) {
       out.reason = "stays analytic: a grid is off by up to " + errorText(error) + ", worst near " +
-                   eachInMillimetres(error.where, 3);
+                   eachInMillimeters(error.where, 3);
       return;
     }
     out.reason = "is a grid, off by at most " + errorText(error);

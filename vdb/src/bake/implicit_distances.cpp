@@ -23,16 +23,20 @@ namespace {
 
 using openvdb::Coord;
 
-/// [voxels] beyond the band that still tell their neighbors: the nearest way round a hollow leads past them.
+/// [voxels] beyond the band that still tell their neighbors: the nearest way round a hollow leads
+/// past them.
 constexpr double kBeyond = 1.0;
 /// [voxels] A neighbor's point that is nearer by less is the same one.
 constexpr double kNearer = 2e-3;
 constexpr int kLooks = 3;
-/// [voxels] A closest point that is further off than the one its search began at by more is another place's.
+/// [voxels] A closest point that is further off than the one its search began at by more is another
+/// place's.
 constexpr double kSamePlace = 2e-3;
-/// [voxels] A neighbor's point this near to the one that two in a row lead to is one of a smooth surface.
+/// [voxels] A neighbor's point this near to the one that two in a row lead to is one of a smooth
+/// surface.
 constexpr double kInLine = 1.0;
-/// [voxels] Of a voxel that no one asks for: out of every band, so that it tells its neighbors nothing.
+/// [voxels] Of a voxel that no one asks for: out of every band, so that it tells its neighbors
+/// nothing.
 constexpr double kOutOfReach = 1e6;
 
 class Spreading {
@@ -111,7 +115,8 @@ class Spreading {
     return {place, foot, glm::length(foot), is_inside};
   }
 
-  /// For the closest point of a voxel, from that of a neighbor, `start`, on. `step` leads to the neighbor.
+  /// For the closest point of a voxel, from that of a neighbor, `start`, on. `step` leads to the
+  /// neighbor.
   [[nodiscard]] Vec3 footOf(const DistanceLeaf& leaf, const Around& around, std::size_t place,
                             const Vec3& start, const Coord& step) const noexcept {
     const Vec3 voxel = leaf.positionOf(place);
@@ -136,7 +141,8 @@ class Spreading {
     return (crept - p) / plan_.voxel;
   }
 
-  /// A voxel that is found for the first time, and whose side was not looked up, has that of the voxel that it is found from.
+  /// A voxel that is found for the first time, and whose side was not looked up, has that of the
+  /// voxel that it is found from.
   [[nodiscard]] bool isInside(std::size_t b, const DistanceLeaf& leaf, const Around& around,
                               std::size_t place, const Coord& step) const noexcept {
     const bool is_found = leaf.distance[place] != DistanceLeaf::kNowhere;
@@ -175,7 +181,7 @@ void requireNear(const openvdb::CoordBBox& range, const BakePlan& plan,
     throw Error(ErrorKind::kOperation,
                 {"bake.too_fine",
                  "'" + options.name + "' reaches more than 2^23 voxels of " +
-                     inMillimetres(plan.voxel) + " from the origin",
+                     inMillimeters(plan.voxel) + " from the origin",
                  "use larger voxels, or move the shape; also check that it has the length unit it "
                  "should"});
   }

@@ -15,13 +15,15 @@ namespace {
 
 using openvdb::Coord;
 
-/// [voxels] The side is looked up of all voxels that may be as near as that. A voxel whose neighbor, by a corner, is on the other
-/// side is among them.
+/// [voxels] The side is looked up of all voxels that may be as near as that. A voxel whose
+/// neighbor, by a corner, is on the other side is among them.
 constexpr double kSided = 1.75;
-/// [voxels] Up to here a voxel looks for its closest point by itself. Each point of the surface has a voxel within 0.87.
+/// [voxels] Up to here a voxel looks for its closest point by itself. Each point of the surface has
+/// a voxel within 0.87.
 constexpr double kSeeded = 1.2;
-/// In a leaf no slope is taken for steeper than that many times the steepest between points two voxels apart there: a
-/// bound for all of space is many times what a quadratic form, say, has near its surface.
+/// In a leaf no slope is taken for steeper than that many times the steepest between points two
+/// voxels apart there: a bound for all of space is many times what a quadratic form, say, has near
+/// its surface.
 constexpr double kSteeper = 1.7;
 
 constexpr std::size_t kVoxels = DistanceLeaf::kVoxels;
@@ -32,7 +34,8 @@ Coord offsetOf(std::size_t place) noexcept {
   return {n >> 6, n >> 3 & 7, n & 7};
 }
 
-/// The largest slope [value per step] among 4^3 values, by differences to the neighbors along the axes.
+/// The largest slope [value per step] among 4^3 values, by differences to the neighbors along the
+/// axes.
 double steepestOf(const ValueBatch& values) noexcept {
   double most = 0.0;
   for (std::size_t n = 0; n < kBatch; ++n) {
@@ -47,8 +50,8 @@ double steepestOf(const ValueBatch& values) noexcept {
   return std::sqrt(most);
 }
 
-/// [m] How far it is to the surface at least, if the field bends by no more than twice what it does here:
-/// where |S| = |grad S| t + |H| t^2.
+/// [m] How far it is to the surface at least, if the field bends by no more than twice what it does
+/// here: where |S| = |grad S| t + |H| t^2.
 double leastDistance(const FieldJet& jet) noexcept {
   double square = 0.0;
   for (int column = 0; column < 3; ++column) {

@@ -1,5 +1,6 @@
 #pragma once
-/// Where the surface of an implicit field is, as a bake needs it: voxels beside it with their closest points.
+/// Where the surface of an implicit field is, as a bake needs it: voxels beside it with their
+/// closest points.
 
 #include <openvdb/openvdb.h>
 
@@ -29,8 +30,9 @@ struct ImplicitSurface {
       leaves;  ///< a voxel that is in none, or not known there, has its neighbors' side
 };
 
-/// Looks at what lies within `domain` [m]: cubes of voxels are halved and dropped where the field's Lipschitz bound says that
-/// the surface is not there. Of a plate that passes between voxels there are feet too.
+/// Looks at what lies within `domain` [m]: cubes of voxels are halved and dropped where the field's
+/// Lipschitz bound says that the surface is not there. Of a plate that passes between voxels there
+/// are feet too.
 /// @throws Error (kOperation) for memory, (kInput) where the field is not a number, kCancelled.
 [[nodiscard]] ImplicitSurface findSurface(const Field& field, const Box3& domain,
                                           const BakePlan& plan, const BakeOptions& options,

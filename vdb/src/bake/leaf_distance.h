@@ -1,5 +1,6 @@
 #pragma once
-/// The least distance of each voxel of a leaf to a list of triangles: the inner loop of the mesh bake.
+/// The least distance of each voxel of a leaf to a list of triangles: the inner loop of the mesh
+/// bake.
 
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,6 @@
-// The search of leaf_distance.h over eight lanes: a kernel, as simd.h says. None of the standard library's code is in it, so
-// that no inline function of another header is compiled for more than the least processor.
+// The search of leaf_distance.h over eight lanes: a kernel, as simd.h says. None of the standard
+// library's code is in it, so that no inline function of another header is compiled for more than
+// the least processor.
 
 #include "bake/leaf_distance.h"
 #include "simd.h"
@@ -37,7 +38,8 @@ PALPATE_KERNEL Lanes squaresOf(const Facet& f, const Lanes& x, const Lanes& y,
     least = n == 0 ? square : min(least, square);
   }
   const Lanes height = planeOf(f.normal, all(f.normal[3]), x, y, z);
-  // Within all sides it is none. Beside the longest, or else rounding could take the way beyond a needle's tip for its inside.
+  // Within all sides it is none. Beside the longest, or else rounding could take the way beyond a
+  // needle's tip for its inside.
   const Lanes in_plane =
       whereLess(outermost, zero, whereLess(zero, beyond_longest, least, zero), least);
   return fma(height, height, in_plane);
@@ -59,7 +61,8 @@ struct Lists {
   std::uint32_t counts[8];
 };
 
-/// Of `count` facets, those within reach of each part; `reach` is its half diagonal. From nullptr: all.
+/// Of `count` facets, those within reach of each part; `reach` is its half diagonal. From nullptr:
+/// all.
 PALPATE_KERNEL void select(const LeafQuery& q, const std::uint32_t* from, std::uint32_t count,
                            const Eight& at, float reach, float* squares, Lists& to) noexcept {
   Lanes least = all(kFarSquare);

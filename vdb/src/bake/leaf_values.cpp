@@ -10,8 +10,8 @@ namespace {
 
 using Flags = std::array<std::uint8_t, PointBatch::kCount>;
 
-/// Bit n of the result is that of flag n, 0 or 1. Eight at a time: the product puts flag n of them at bit
-/// 56 + n, and no two terms of it at one place.
+/// Bit n of the result is that of flag n, 0 or 1. Eight at a time: the product puts flag n of them
+/// at bit 56 + n, and no two terms of it at one place.
 std::uint64_t bitsOf(const Flags& flags) noexcept {
   std::uint64_t bits = 0;
   for (std::size_t group = 0; group < 8; ++group) {
@@ -35,10 +35,10 @@ void LeafValues::fill(const openvdb::Coord& local, float value) noexcept {
 }
 
 void LeafValues::store(const openvdb::Coord& local, const ValueBatch& distances,
-                       double units_per_metre, float background) noexcept {
+                       double units_per_meter, float background) noexcept {
   std::array<float, PointBatch::kCount> found, stored;
   for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
-    found[n] = static_cast<float>(distances[n] * units_per_metre);
+    found[n] = static_cast<float>(distances[n] * units_per_meter);
   }
   Flags is_near, is_number, is_inside;
   for (std::size_t n = 0; n < PointBatch::kCount; ++n) {

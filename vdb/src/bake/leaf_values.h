@@ -21,9 +21,9 @@ struct LeafValues {
   /// One value for a cube, outside the band. `local` is its first voxel in the leaf.
   void fill(const openvdb::Coord& local, float value) noexcept;
 
-  /// Distances [m], z fastest. In the band are those below `background` [units]; the others become that, with
-  /// their sign.
-  void store(const openvdb::Coord& local, const ValueBatch& distances, double units_per_metre,
+  /// Distances [m], z fastest. In the band are those below `background` [units]; the others become
+  /// that, with their sign.
+  void store(const openvdb::Coord& local, const ValueBatch& distances, double units_per_meter,
              float background) noexcept;
 
   [[nodiscard]] std::unique_ptr<BandLeaf> leafAt(const openvdb::Coord& origin,

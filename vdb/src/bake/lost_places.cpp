@@ -8,7 +8,7 @@ namespace palpate::vdb {
 namespace {
 
 std::string textOf(const LostPlace& place) {
-  return inMillimetres(place.thickness) + " thin near " + eachInMillimetres(place.where);
+  return inMillimeters(place.thickness) + " thin near " + eachInMillimeters(place.where);
 }
 
 }  // namespace
@@ -28,9 +28,9 @@ void LostPlaces::refusePlates(const BakePlan& plan, const BakeOptions& options) 
   if (first == nullptr) return;
   throw inputError("bake.too_thin",
                    "'" + options.name + "' is " + textOf(*first) +
-                       " and would have holes in a grid of " + inMillimetres(plan.voxel) +
+                       " and would have holes in a grid of " + inMillimeters(plan.voxel) +
                        " voxels",
-                   "a voxel of " + inMillimetres(thinnest / kHeld) +
+                   "a voxel of " + inMillimeters(thinnest / kHeld) +
                        " holds it; or keep this part analytic, or make it a sheet");
 }
 

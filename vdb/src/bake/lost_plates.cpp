@@ -16,7 +16,8 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 
 constexpr int kDepths = 4;
 
-/// Whether a shape may have parts thinner than `length`: what solids of such a feature size are united from has none.
+/// Whether a shape may have parts thinner than `length`: what solids of such a feature size are
+/// united from has none.
 bool mayBeThin(const Field& field, double length) {
   const FieldStructure structure = field.structure();
   switch (structure.kind) {
@@ -46,8 +47,8 @@ class Search {
   void lookInto(const LevelSet& grid) { grid_ = gridField(grid, Sampler::kAccessor); }
 
   [[nodiscard]] LostPlaces in(const Leaf& leaf) const {
-    // What decides at all points that are looked at from here; of fields that are not distances, these may
-    // be anywhere.
+    // What decides at all points that are looked at from here; of fields that are not distances,
+    // these may be anywhere.
     constexpr double kReach = 0.5 * 1.7320508075688774 * 7.0 + kBySurface + kHeld + kGoesOn + 0.1;
     const openvdb::Coord first = leaf.origin();
     const Vec3 center = (Vec3(first.x(), first.y(), first.z()) + Vec3(3.5)) * plan_.voxel;
@@ -60,7 +61,7 @@ class Search {
       return lost;
     }
     // What is outside the band is further off.
-    const auto near = static_cast<float>(kBySurface * plan_.voxel / plan_.metres_per_unit);
+    const auto near = static_cast<float>(kBySurface * plan_.voxel / plan_.meters_per_unit);
     const float* const values = leaf.buffer().data();
     for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
       if (std::fabs(values[n]) >= near) continue;

@@ -15,7 +15,8 @@ namespace palpate::vdb {
 /// [voxels] No point of the surface is further than that from the center of some voxel.
 inline constexpr double kBySurface = 0.9;
 /// [voxels] Plates from here on are held wherever they pass between voxels: a cell's half diagonal
-/// and its mirror image, 1.73, are the longest way that can be free of centers; trilinear values close it at less.
+/// and its mirror image, 1.73, are the longest way that can be free of centers; trilinear values
+/// close it at less.
 inline constexpr double kHeld = 1.75;
 /// [voxels] How far the shape must go on to all sides.
 inline constexpr double kGoesOn = 2.0;
@@ -48,11 +49,11 @@ class LostPlaces {
   std::vector<LostPlace> places_;
 };
 
-/// A plate thinner than about a voxel has no voxel inside where it passes between them: holes, which a hand
-/// falls through; a wire is broken there, and a crumb gone. Looks for such places from every voxel by the surface; a
-/// plate counts where it goes on for two voxels to all sides, so that the last voxel of a sharp edge does not, a wire
-/// where it does so to both (lost_wires.h).
-/// Wires and crumbs alone are not refused: meshes of scans have some.
+/// A plate thinner than about a voxel has no voxel inside where it passes between them: holes,
+/// which a hand falls through; a wire is broken there, and a crumb gone. Looks for such places from
+/// every voxel by the surface; a plate counts where it goes on for two voxels to all sides, so that
+/// the last voxel of a sharp edge does not, a wire where it does so to both (lost_wires.h). Wires
+/// and crumbs alone are not refused: meshes of scans have some.
 /// @throws Error (kInput) naming a plate, the thickness there and a voxel size that holds it.
 /// @return LostPlaces::wiresAndCrumbs()
 [[nodiscard]] std::string refuseLostPlates(const Field& field, const LevelSet& grid,
@@ -68,7 +69,8 @@ struct BakedMesh {
   const Columns& columns;
 };
 
-/// The same of a mesh, in leaves with walls that face away from each other; the others hold no plate.
+/// The same of a mesh, in leaves with walls that face away from each other; the others hold no
+/// plate.
 [[nodiscard]] std::string refuseLostPlates(const BakedMesh& mesh, const LevelSet& grid,
                                            const BakePlan& plan, const BakeOptions& options);
 

@@ -13,8 +13,9 @@
 namespace palpate::vdb {
 namespace {
 
-/// [voxels] Depths that are looked at first: where the grid is negative at all of them it has no hole. Its values
-/// in a plate are least in the middle, so that a hole shows at the next of them too.
+/// [voxels] Depths that are looked at first: where the grid is negative at all of them it has no
+/// hole. Its values in a plate are least in the middle, so that a hole shows at the next of them
+/// too.
 constexpr std::array<double, 3> kFirstDepths{0.2, 0.5, 0.8};
 /// [voxels] A way down along a direction that is known no better ends at its beginning.
 constexpr double kHair = 1e-4;
@@ -114,13 +115,13 @@ class Search {
     goDown(foot, -normal, triangles, places);
   }
 
-  /// From an edge of less than a right angle the way on is not always into the part, but halfway between
-  /// the walls that meet there it is: how wires of three sides are found.
+  /// From an edge of less than a right angle the way on is not always into the part, but halfway
+  /// between the walls that meet there it is: how wires of three sides are found.
   void goDownFromEdge(const Vec3& p, const Vec3& foot, double distance,
                       std::span<const std::uint32_t> triangles, std::vector<Place>& places) const {
     Vec3 sum(0.0);
-    double most =
-        0.0;  // of the walls' normals, all turned the same way, the one most towards the voxel tells which
+    double most = 0.0;  // of the walls' normals, all turned the same way, the one most towards the
+                        // voxel tells which
     for (const std::uint32_t triangle : triangles) {
       const Corners t = cornersOf(mesh_.walls, triangle);
       if (glm::distance(closestOn(t, p), p) > distance + kHair) continue;
@@ -133,7 +134,8 @@ class Search {
     if (glm::length(out) > kHair) goDown(foot, -glm::normalize(out), triangles, places, true);
   }
 
-  /// Looks down to the wall opposite, and at what the grid has half-way; false if there is no such wall.
+  /// Looks down to the wall opposite, and at what the grid has half-way; false if there is no such
+  /// wall.
   bool goDown(const Vec3& foot, const Vec3& in, std::span<const std::uint32_t> triangles,
               std::vector<Place>& places, bool from_edge = false) const {
     double thickness = kHeld;

@@ -18,7 +18,8 @@ namespace palpate::vdb {
 ///   bool isInside(const Vec3&): of the solid;
 ///   bool isHeld(const Vec3&): by the grid.
 ///
-/// A cone is not a wire: the tip of a needle of 5 degrees and more may be lost, as the last voxels of an edge.
+/// A cone is not a wire: the tip of a needle of 5 degrees and more may be lost, as the last voxels
+/// of an edge.
 template <class Solid>
 class ThinPart {
  public:
@@ -30,8 +31,8 @@ class ThinPart {
     // The cut square to the way along, from where it is widest: `in` may go through it aslant.
     const Vec3 widest = longestAcross(middle, start.along);
     start.in = glm::cross(widest, start.along);
-    // Halfway along two directions is not yet the middle of a cut with corners; from there on, the way that it
-    // takes is the part's own.
+    // Halfway along two directions is not yet the middle of a cut with corners; from there on, the
+    // way that it takes is the part's own.
     for (int n = 0; n < 4; ++n) {
       if (!center(start)) return {};
     }
@@ -52,8 +53,8 @@ class ThinPart {
  private:
   /// Across that, plates look at their own four sides.
   static constexpr double kWide = 2.0 * kGoesOn;
-  /// Of the thicknesses at both ends of four voxels: less is a tip. One of 5 degrees is lost from where it
-  /// is 1.5 voxels thick, and has 0.79 there.
+  /// Of the thicknesses at both ends of four voxels: less is a tip. One of 5 degrees is lost from
+  /// where it is 1.5 voxels thick, and has 0.79 there.
   static constexpr double kWireTaper = 0.8;
   static constexpr double kStep = 0.25;
 

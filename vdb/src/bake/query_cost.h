@@ -5,8 +5,8 @@
 
 namespace palpate::vdb {
 
-/// [ns] of one sample() near the surface of `field` within `box` [m], which is bounded: the least of several
-/// passes, for about a millisecond. Each query waits for the one before, as in a loop.
+/// [ns] of one sample() near the surface of `field` within `box` [m], which is bounded: the least
+/// of several passes, for about a millisecond. Each query waits for the one before, as in a loop.
 [[nodiscard]] double queryNanoseconds(const Field& field, const Box3& box);
 
 }  // namespace palpate::vdb

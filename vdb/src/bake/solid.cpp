@@ -13,10 +13,11 @@
 namespace palpate::vdb {
 namespace {
 
-/// A lid may have this share of the closed part's area: beyond, the form does not tell where a wall was.
+/// A lid may have this share of the closed part's area: beyond, the form does not tell where a wall
+/// was.
 constexpr double kMostLid = 0.125;
-/// [voxels] An open part that is no larger than this, or no wider than a quarter of a voxel on the mean, is a
-/// speck: closed by whatever lid, a grid would hardly show it.
+/// [voxels] An open part that is no larger than this, or no wider than a quarter of a voxel on the
+/// mean, is a speck: closed by whatever lid, a grid would hardly show it.
 constexpr double kSpeck = 4.0;
 constexpr double kSliver = 0.25;
 /// A vertex farther out than this many times the size of what all others fill is a slip.
@@ -72,7 +73,7 @@ void refuseOutliers(const Mesh& mesh) {
       if (glm::distance(p, middle) <= kFar * size) continue;
       throw inputError("mesh.outlier",
                        "vertex " + std::to_string(vertex) + " (from 0) lies at " +
-                           eachInMillimetres(p) +
+                           eachInMillimeters(p) +
                            ", more than a thousand times the size of the rest away",
                        "remove it, or put it where it belongs", mesh.source);
     }
@@ -182,8 +183,8 @@ bool isSpeck(const SolidPart& part, double lid) {
   return length <= kSpeck || part.area - lid <= kSliver * length;
 }
 
-/// Takes the triangles of open specks away, with their lids, unless nothing else is there. `first_lid` and
-/// `holes` are those of what is left.
+/// Takes the triangles of open specks away, with their lids, unless nothing else is there.
+/// `first_lid` and `holes` are those of what is left.
 void dropSpecks(Solid& solid, std::vector<Hole>& holes, std::size_t& first_lid,
                 std::vector<bool>& turned, double voxel) {
   const std::vector<double> lids = lidsOf(solid, first_lid);
@@ -201,8 +202,8 @@ void dropSpecks(Solid& solid, std::vector<Hole>& holes, std::size_t& first_lid,
   }
   if (count == 0 || count == solid.parts.size()) return;
   solid.dropped = std::to_string(count) + (count == 1 ? " open fragment, " : " open fragments, ") +
-                  (count == 1 ? "" : "the largest ") + inMillimetres(size(*largest) * voxel) +
-                  " across near " + eachInMillimetres(largest->box.center() * voxel);
+                  (count == 1 ? "" : "the largest ") + inMillimeters(size(*largest) * voxel) +
+                  " across near " + eachInMillimeters(largest->box.center() * voxel);
   std::size_t lid = first_lid;
   std::erase_if(holes, [&](const Hole& hole) {
     const bool is_gone = is_speck[solid.part_of[lid]];
@@ -251,8 +252,8 @@ void requireSmallLids(const Mesh& mesh, const Solid& solid, const std::vector<Ho
     throw inputError(
         "mesh.open",
         "the mesh is open: " + std::to_string(count) + (count == 1 ? " hole" : " holes") +
-            ", the largest " + inMillimetres(glm::length(box.size()) * voxel) + " across at " +
-            eachInMillimetres(middle * voxel) +
+            ", the largest " + inMillimeters(glm::length(box.size()) * voxel) + " across at " +
+            eachInMillimeters(middle * voxel) +
             ", too large beside the surface to guess what closes it",
         "close it in a mesh editor; or let the winding number decide (--sign winding), which puts "
         "flat lids on all holes; or ask for a shell of some thickness (--shell 2mm)",

@@ -31,7 +31,8 @@ struct Solid {
   std::string dropped;     ///< "3 open fragments, ..."; empty if there were none
 };
 
-/// Unless `sign` says what closes them, parts that are open and too small for the voxels to hold are dropped.
+/// Unless `sign` says what closes them, parts that are open and too small for the voxels to hold
+/// are dropped.
 /// @throws Error (kInput): no faces, index out of range, vertex not finite or far from all others,
 /// open by more than its form tells (mesh.open; only if `sign` is kVote); each with a place.
 [[nodiscard]] Solid makeSolid(const Mesh& mesh, double voxel, MeshSign sign);

@@ -10,8 +10,8 @@
 
 namespace palpate::vdb {
 
-/// Counts the walls below a point; its triangles are listed by the cells of a grid in the plane z = 0.
-/// Thread-safe, with a counter() for each thread.
+/// Counts the walls below a point; its triangles are listed by the cells of a grid in the plane z =
+/// 0. Thread-safe, with a counter() for each thread.
 class SolidInside {
  public:
   /// Both must outlive it, and `solid` still have all the walls that `columns` were made from.
@@ -19,7 +19,8 @@ class SolidInside {
 
   [[nodiscard]] WallCount counter() const { return WallCount(columns_.roles()); }
 
-  /// `p` [voxels]. What a flood filled is known at voxels only: there, whether all around are inside.
+  /// `p` [voxels]. What a flood filled is known at voxels only: there, whether all around are
+  /// inside.
   [[nodiscard]] bool at(const Vec3& p, WallCount& count) const;
 
  private:

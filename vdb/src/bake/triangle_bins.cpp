@@ -50,7 +50,8 @@ class Walk {
  private:
   static constexpr int kMostLeaves = 6;
 
-  /// For a small triangle, leaf by leaf; what depends on one axis only is found once for each row of them.
+  /// For a small triangle, leaf by leaf; what depends on one axis only is found once for each row
+  /// of them.
   void listAll(const Box3& reach) {
     struct Row {
       double gap, away;

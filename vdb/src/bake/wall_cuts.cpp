@@ -12,13 +12,13 @@
 namespace palpate::vdb {
 namespace {
 
-/// [voxels] What lies as near to a plane or line lies in it. Far above the rounding of places (1e-12 at ten
-/// thousand voxels), and nothing that near to a cut shows in distances.
+/// [voxels] What lies as near to a plane or line lies in it. Far above the rounding of places
+/// (1e-12 at ten thousand voxels), and nothing that near to a cut shows in distances.
 constexpr double kInPlane = 1e-8;
 /// [voxels] Shorter cuts divide nothing.
 constexpr double kShort = 1e-8;
-/// More cuts than that are halved by their place first: cuts along a curve that bends one way would each
-/// leave all others on one side.
+/// More cuts than that are halved by their place first: cuts along a curve that bends one way would
+/// each leave all others on one side.
 constexpr std::size_t kMany = 32;
 
 /// A triangle's plane, with its sides as lines in it.
@@ -225,7 +225,8 @@ WallCutter::Halves WallCutter::halve(const Polygon& polygon, const std::vector<W
 }
 
 void WallCutter::add(const Polygon& polygon, std::vector<Corners3>& pieces) {
-  // Corners are taken off by turns from both ends, so that a round piece does not become a fan of needles.
+  // Corners are taken off by turns from both ends, so that a round piece does not become a fan of
+  // needles.
   std::size_t low = 0;
   std::size_t high = polygon.size() - 1;
   for (bool from_low = true; high - low > 1; from_low = !from_low) {

@@ -16,8 +16,9 @@ struct WallCut {
   Vec3 from{0.0}, to{0.0};
 };
 
-/// The cuts of every triangle. Triangles are paired by a tree of their boxes: near-linear in their number
-/// and in the length of the lines that they meet along. The result does not depend on the number of threads.
+/// The cuts of every triangle. Triangles are paired by a tree of their boxes: near-linear in their
+/// number and in the length of the lines that they meet along. The result does not depend on the
+/// number of threads.
 class WallCuts {
  public:
   /// @throws Error (kCancelled).
@@ -46,8 +47,8 @@ enum class WallUse : std::uint8_t {
 
 using Corners3 = std::array<Vec3, 3>;
 
-/// Cuts a triangle along its cuts and asks `use_at(point, normal)`, kIdle or kNeeded, once for each piece. Pieces that
-/// are needed are added to `pieces` as triangles, unless all of it is one use.
+/// Cuts a triangle along its cuts and asks `use_at(point, normal)`, kIdle or kNeeded, once for each
+/// piece. Pieces that are needed are added to `pieces` as triangles, unless all of it is one use.
 class WallCutter {
  public:
   using Polygon = std::vector<Vec3>;

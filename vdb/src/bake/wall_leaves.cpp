@@ -98,8 +98,8 @@ class LeafMaker {
   [[nodiscard]] bool isBeyond(const Coord& origin) const noexcept {
     return source_.boxDistance(centerOf(origin)) > 0.0;
   }
-  void set(BandLeaf& leaf, std::size_t n, double metres) const {
-    const auto value = static_cast<float>(metres / plan_.metres_per_unit);
+  void set(BandLeaf& leaf, std::size_t n, double meters) const {
+    const auto value = static_cast<float>(meters / plan_.meters_per_unit);
     const auto place = static_cast<openvdb::Index>(n);
     if (std::fabs(value) < plan_.background) {
       leaf.setValueOn(place, value);

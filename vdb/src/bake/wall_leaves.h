@@ -6,7 +6,8 @@
 
 namespace palpate::vdb {
 
-/// Puts the voxels of the band into `grid`, those of the box's faces too. Tiles and inactive voxels keep the grid's background.
+/// Puts the voxels of the band into `grid`, those of the box's faces too. Tiles and inactive voxels
+/// keep the grid's background.
 void addLeaves(const DistanceLeaves& leaves, const Field& field, const BakeDomain& domain,
                const BakePlan& plan, openvdb::FloatGrid& grid);
 

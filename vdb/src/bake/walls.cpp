@@ -16,8 +16,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// [voxels] On a wall's sides, its neighborhood is looked at from so far: what is nearer to another wall than
-/// that may be taken for the wrong side, and distances are off by no more.
+/// [voxels] On a wall's sides, its neighborhood is looked at from so far: what is nearer to another
+/// wall than that may be taken for the wrong side, and distances are off by no more.
 constexpr double kBeside = 1e-5;
 
 constexpr std::size_t kBatch = 256;
@@ -72,7 +72,8 @@ void inBatches(std::size_t count, const SolidInside& inside, const Progress& pro
 class Patches {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffU;
-  /// The largest of a patch: one of them may lie so near to another wall that its sides tell nothing.
+  /// The largest of a patch: one of them may lie so near to another wall that its sides tell
+  /// nothing.
   using Witnesses = std::array<std::uint32_t, 3>;
 
   Patches(const Solid& solid, const WallCuts& cuts) : parent_(solid.triangles.size()) {
@@ -141,7 +142,8 @@ Sorted sortByCuts(const Solid& solid, const SolidInside& inside, const Progress&
   return sorted;
 }
 
-/// For solids that a flood filled: what is inside is known at voxels only, so that borders are found by halving.
+/// For solids that a flood filled: what is inside is known at voxels only, so that borders are
+/// found by halving.
 class Halver {
  public:
   explicit Halver(Looker& look) : look_(look) {}

@@ -13,10 +13,10 @@
 
 namespace palpate::vdb {
 
-/// Without the parts of triangles that have the solid, or nothing, on both sides: where parts overlap,
-/// and walls that stand in the solid. A triangle that is partly such is cut along the lines where others cross it
-/// (of a solid that a flood filled, to a tenth of a voxel). Vertices are added; triangles that are whole keep
-/// their order.
+/// Without the parts of triangles that have the solid, or nothing, on both sides: where parts
+/// overlap, and walls that stand in the solid. A triangle that is partly such is cut along the
+/// lines where others cross it (of a solid that a flood filled, to a tenth of a voxel). Vertices
+/// are added; triangles that are whole keep their order.
 /// @throws Error (kCancelled).
 void dropIdleWalls(Solid& solid, const Columns& columns, const Progress& progress);
 
@@ -25,8 +25,8 @@ class CrossingSearch {
  public:
   explicit CrossingSearch(const Solid& solid);
 
-  /// A place [voxels] near `box` where two triangles of one part, without a common vertex, meet; exact,
-  /// and touching counts (mesh/triangles_meet.h).
+  /// A place [voxels] near `box` where two triangles of one part, without a common vertex, meet;
+  /// exact, and touching counts (mesh/triangles_meet.h).
   [[nodiscard]] std::optional<Vec3> in(const Box3& box);
 
  private:

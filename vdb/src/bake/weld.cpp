@@ -9,7 +9,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Of the mesh's size. Copies of a corner that are each off by up to 1e-5 along each axis are up to 3.5e-5 apart.
+/// Of the mesh's size. Copies of a corner that are each off by up to 1e-5 along each axis are up
+/// to 3.5e-5 apart.
 constexpr std::array<double, 3> kReaches{1e-6, 1e-5, 4e-5};
 /// [voxels] What is joined is not felt.
 constexpr double kLargestReach = 0.1;
@@ -85,7 +86,8 @@ bool weldRims(Solid& solid, const std::vector<Side>& sides, double reach) {
   });
   if (!any || !(reach > 0.0)) return false;
   const Box3 bounds = boundsOf(solid);
-  // Cells much larger than the reach, so that few vertices are near a border and look into a second one.
+  // Cells much larger than the reach, so that few vertices are near a border and look into a second
+  // one.
   const double size = 16.0 * reach;
   struct Cell {
     Vec3 place;

@@ -19,10 +19,12 @@ using cells::Range;
 
 /// [voxels] A cell whose coefficients are all beyond that needs no closer look.
 constexpr float kClear = 2.5F;
-/// What rounding to floats leaves of a slope: some six roundings of values up to 20 voxels, three times each.
+/// What rounding to floats leaves of a slope: some six roundings of values up to 20 voxels, three
+/// times each.
 constexpr double kRounding = 5e-5;
 
-/// Of |slope along a direction|, from the ranges of three components: the direction is their middle.
+/// Of |slope along a direction|, from the ranges of three components: the direction is their
+/// middle.
 double leastSlope(const std::array<Range, 3>& d) noexcept {
   double middle[3];
   double square = 0.0;
@@ -39,7 +41,8 @@ double leastSlope(const std::array<Range, 3>& d) noexcept {
   return least / std::sqrt(square);
 }
 
-/// Whether some cell may be nearer to the surface than kClear, so that the brick is worth a closer look.
+/// Whether some cell may be nearer to the surface than kClear, so that the brick is worth a closer
+/// look.
 bool isNear(const Brick& brick) noexcept {
   float least = std::numeric_limits<float>::infinity();
   bool has_negative = false;

@@ -8,7 +8,8 @@
 
 namespace palpate::vdb {
 
-/// Blocks of 8^3 voxels are named by their coordinates, which are those of their first voxel over 8.
+/// Blocks of 8^3 voxels are named by their coordinates, which are those of their first voxel
+/// over 8.
 struct BlockMap {
   std::vector<openvdb::Coord> bricks;  ///< blocks that get a brick, in the order of memory
   openvdb::CoordBBox inside_tiles;     ///< [voxels] of all tiles inside
@@ -32,8 +33,8 @@ struct BlockTable {
   openvdb::CoordBBox box;                    ///< [blocks] what the table covers
 };
 
-/// One level while it is small beside the bricks, two levels otherwise. @throws Error (kInput) if the
-/// blocks lie too far apart for these.
+/// One level while it is small beside the bricks, two levels otherwise. @throws Error (kInput) if
+/// the blocks lie too far apart for these.
 [[nodiscard]] BlockTable makeTable(const openvdb::FloatTree& tree, const BlockMap& map);
 
 }  // namespace palpate::vdb

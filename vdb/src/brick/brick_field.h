@@ -6,23 +6,25 @@
 
 namespace palpate::vdb {
 
-/// Final, and its members inline: a caller that knows the type pays one call through a pointer, to the
-/// kernel of the instruction set.
+/// Final, and its members inline: a caller that knows the type pays one call through a pointer, to
+/// the kernel of the instruction set.
 class BrickField final : public Field {
  public:
-  /// `sampler` is kCubic or kTrilinear. The grid is taken as it is, not widened. Must not be asked out of the box
-  /// `within` [m].
+  /// `sampler` is kCubic or kTrilinear. The grid is taken as it is, not widened. Must not be asked
+  /// out of the box `within` [m].
   explicit BrickField(const LevelSet& grid, Sampler sampler = Sampler::kCubic,
                       InstructionSet set = chosenInstructionSet(),
                       const Box3& within = Box3::everything());
-  /// @throws Error (kOperation) if the bricks would take more than `max_memory` [bytes]; 0: no limit.
+  /// @throws Error (kOperation) if the bricks would take more than `max_memory` [bytes]; 0: no
+  /// limit.
   BrickField(const LevelSet& grid, Sampler sampler, InstructionSet set, const Box3& within,
              std::uint64_t max_memory);
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
     return sample_(view_, p);
   }
-  /// Trilinear: the Hessian is that of the cell, which has no diagonal; by differences across cells.
+  /// Trilinear: the Hessian is that of the cell, which has no diagonal; by differences across
+  /// cells.
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     return jet_ != nullptr ? jet_(view_, p) : Field::jet(p);
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// Haptic bricks as the kernels see them: a level set copied so that one point needs one lookup and one
-/// piece of memory.
+/// Haptic bricks as the kernels see them: a level set copied so that one point needs one lookup and
+/// one piece of memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace palpate::vdb {
 
-/// The stencil of every cell in a block of 8^3 voxels: one voxel before the block and two behind it.
+/// The stencil of every cell in a block of 8^3 voxels: one voxel before the block and two behind
+/// it.
 struct alignas(64) Brick {
   static constexpr int kSide = 8;              ///< cells along an axis
   static constexpr std::ptrdiff_t kRows = 11;  ///< voxels along an axis, from -1 to 9

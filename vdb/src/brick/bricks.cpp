@@ -68,8 +68,8 @@ unsigned gatherPart(const BlockRow& row, unsigned x, unsigned y, float* to) {
   return static_cast<unsigned>(word >> (8 * y + kFirst)) & ((1U << kCount) - 1U);
 }
 
-/// The voxels of a neighborhood's row along z: of the first block the last three, of the last one the
-/// first four. `x` and `y` count within the blocks. Returns a bit for each that is known.
+/// The voxels of a neighborhood's row along z: of the first block the last three, of the last one
+/// the first four. `x` and `y` count within the blocks. Returns a bit for each that is known.
 unsigned gatherRow(const BlockRow& row, unsigned x, unsigned y, float* to) {
   return gatherPart<0, 5, 3>(row, x, y, to) | gatherPart<1, 0, 8>(row, x, y, to + 3) << 3 |
          gatherPart<2, 0, 4>(row, x, y, to + 11) << 11;
@@ -145,7 +145,7 @@ class BrickMaker {
   BrickMaker(const LevelSet& grid, Sampler sampler)
       : cubic_(sampler == Sampler::kCubic),
         plateau_(plateauOf(grid.info(), sampler)),
-        units_per_voxel_(grid.info().voxel_size / grid.info().metres_per_unit),
+        units_per_voxel_(grid.info().voxel_size / grid.info().meters_per_unit),
         tree_(grid.impl().grid->constTreePtr()) {
     if (!tree_->hasActiveTiles()) return;
     const openvdb::FloatTree::Ptr copy(new openvdb::FloatTree(*tree_));
@@ -171,7 +171,8 @@ class BrickMaker {
     (cubic_ ? fillCubic : fillLinear)(part.neighborhood, plateau_, units_per_voxel_, brick);
     part.last_square = steepestSquareIn(brick, cubic_);
     double square = part.last_square;
-    // Cell by cell only what could be the steepest of all; what is left out could not, in whatever order bricks are made.
+    // Cell by cell only what could be the steepest of all; what is left out could not, in whatever
+    // order bricks are made.
     if (cubic_ && square > std::max(kNotSteep * kNotSteep, part.steepest_square)) {
       const double slope = steepestInCells(brick);
       square = std::min(square, slope * slope);
@@ -179,8 +180,8 @@ class BrickMaker {
     part.steepest_square = std::max(part.steepest_square, square);
   }
 
-  /// Of all that was made. The slope of a distance is 1, though a grid whose surface is flat may measure less. The
-  /// margin is for what rounding does to the samples.
+  /// Of all that was made. The slope of a distance is 1, though a grid whose surface is flat may
+  /// measure less. The margin is for what rounding does to the samples.
   [[nodiscard]] double lipschitz() const {
     double steepest_square = 0.0;
     for (const Part& part : parts_) {
@@ -261,7 +262,7 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler, const Box3& within,
   view_.shift = -view_.origin * view_.per_voxel - 0.5;
   for (int axis = 0; axis < 3; ++axis)
     view_.size[axis] = 8 * static_cast<std::uint64_t>(size[axis]);
-  view_.plateau = maker.plateau() * info.metres_per_unit;
+  view_.plateau = maker.plateau() * info.meters_per_unit;
 }
 
 BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler, double least_within) {
@@ -278,7 +279,8 @@ BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler, double least_wit
   for (const Part& part : maker.parts()) survey.bounds.add(part.bounds);
   survey.lipschitz = maker.lipschitz();
   if (survey.bounds.within() >= least_within) return survey;
-  // Holes and plates as thin as a voxel are steep, and weaken that bound everywhere: look where it matters.
+  // Holes and plates as thin as a voxel are steep, and weaken that bound everywhere: look where it
+  // matters.
   std::vector<CellBounds> bounds(map.bricks.size());
   maker.forAll(map.bricks.size(), [&](std::size_t n, const Accessor& accessor, Part& part) {
     Brick brick;

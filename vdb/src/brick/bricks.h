@@ -11,8 +11,8 @@
 
 namespace palpate::vdb {
 
-/// Owns the memory that a BrickView looks into. Moves, and never changes after it is made; any number
-/// of threads may read.
+/// Owns the memory that a BrickView looks into. Moves, and never changes after it is made; any
+/// number of threads may read.
 class Bricks {
  public:
   /// Copies `grid`, in parallel. `sampler` is kCubic or kTrilinear. The band is taken as it is: too
@@ -49,7 +49,8 @@ struct BrickSurvey {
   BandBounds bounds;
   double lipschitz = 1.0;  ///< as Bricks::lipschitz()
 };
-/// Looks a second time, longer, if BandBounds::within() is below `least_within` [voxels] by slopes alone.
+/// Looks a second time, longer, if BandBounds::within() is below `least_within` [voxels] by slopes
+/// alone.
 [[nodiscard]] BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler,
                                        double least_within = 0.0);
 

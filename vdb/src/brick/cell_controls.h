@@ -17,7 +17,8 @@ inline constexpr std::size_t kFine = 3 * kCells + 1;  ///< control values along 
 inline constexpr std::size_t kFineRow =
     kFine + 3;  ///< floats, so that four can be read at the last
 
-/// The control values of the cells along one axis, out of 11 coefficients `step` apart; `to` likewise.
+/// The control values of the cells along one axis, out of 11 coefficients `step` apart; `to`
+/// likewise.
 template <typename From, typename To>
 void refine(const From& from, const To& to) noexcept {
   for (std::size_t i = 0; i <= kCells; ++i) {

@@ -7,13 +7,15 @@
 namespace palpate::vdb {
 
 enum class InstructionSet {
-  kBase,  ///< what the compiler may use anyway: SSE2 on x86-64
-  kAvx2,  ///< AVX2 and FMA
-  kAvx512,  ///< the same on the 32 registers of AVX-512 (F and VL), of 256 bits still: wider ones took longer
+  kBase,    ///< what the compiler may use anyway: SSE2 on x86-64
+  kAvx2,    ///< AVX2 and FMA
+  kAvx512,  ///< the same on the 32 registers of AVX-512 (F and VL), of 256 bits still: wider ones
+            ///< took longer
 };
 
 /// The best of this processor, unless the environment variable PALPATE_INSTRUCTION_SET says `base`,
-/// `avx2` or `avx512`. @throws Error (kInput) for another word, or for a set that the processor lacks.
+/// `avx2` or `avx512`. @throws Error (kInput) for another word, or for a set that the processor
+/// lacks.
 [[nodiscard]] InstructionSet chosenInstructionSet();
 
 [[nodiscard]] bool isSupported(InstructionSet set) noexcept;

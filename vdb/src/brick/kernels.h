@@ -1,7 +1,7 @@
 // One look into bricks: a kernel, as simd.h says.
 //
-// The cubic kernel: with c the 4^3 coefficients around the point and w, d, e the weights of the cubic
-// B-spline, its first and its second derivative along one axis,
+// The cubic kernel: with c the 4^3 coefficients around the point and w, d, e the weights of the
+// cubic B-spline, its first and its second derivative along one axis,
 //   value = sum wx wy wz c,  d/dx = sum dx wy wz c,  d2/dxdy = sum dx dy wz c,  ...
 // Sums run over y first, then x, each on four lanes along z; then over the lanes.
 //
@@ -18,15 +18,15 @@ namespace {
 
 using Lanes = Doubles;
 
-/// Where a point lies. Along each axis: the voxel before it, from 0 in the box and anything beyond it,
-/// and how far it is from the middle of the cell that begins there, from -0.5 to 0.5.
+/// Where a point lies. Along each axis: the voxel before it, from 0 in the box and anything beyond
+/// it, and how far it is from the middle of the cell that begins there, from -0.5 to 0.5.
 struct Cell {
   std::uint64_t i, j, k;
   double ux, uy, uz;
 };
 
-/// 1.5 * 2^52: a double plus this has its nearest integer in the last bits, and the bits of what is not
-/// a number, infinite or negative are, less those of this, beyond every box.
+/// 1.5 * 2^52: a double plus this has its nearest integer in the last bits, and the bits of what is
+/// not a number, infinite or negative are, less those of this, beyond every box.
 inline constexpr double kRounder = 0x1.8p52;
 inline constexpr auto kRounderBits = std::bit_cast<std::uint64_t>(kRounder);
 
@@ -82,9 +82,9 @@ PALPATE_KERNEL bool isKnown(const Brick& brick, const Cell& cell) noexcept {
   return (brick.known[(cell.i & 7) * 8 + (cell.j & 7)] >> (cell.k & 7) & 1U) != 0;
 }
 
-/// Weights of the four coefficients along one axis, at a from the cell's end and b from its beginning:
-/// a3, w1, w2, b3 make 6 times the value, -a2, d1, -d2, b2 make 2 times the first derivative, and
-/// a, 3b - 2, 3a - 2, b the second.
+/// Weights of the four coefficients along one axis, at a from the cell's end and b from its
+/// beginning: a3, w1, w2, b3 make 6 times the value, -a2, d1, -d2, b2 make 2 times the first
+/// derivative, and a, 3b - 2, 3a - 2, b the second.
 struct Weights {
   Lanes a, b, a2, b2, a3, b3, w1, w2, d1, d2;
 };
@@ -105,8 +105,8 @@ PALPATE_KERNEL Weights weightsAt(double u) noexcept {
   return w;
 }
 
-/// The weights of the lanes along z: of the value, of its first and of its second derivative. All with
-/// the 1/6 of the sums along x and y, so that a value's sum is whole.
+/// The weights of the lanes along z: of the value, of its first and of its second derivative. All
+/// with the 1/6 of the sums along x and y, so that a value's sum is whole.
 struct LaneWeights {
   Lanes value, slope, bend;
 };
@@ -178,7 +178,8 @@ PALPATE_KERNEL Slabs sumSlabs(const float* first, const Weights& y) noexcept {
           {s0.bend, s1.bend, s2.bend, s3.bend}};
 }
 
-/// The sums over a cell's stencil that make value and gradient, and what the Hessian is made of besides.
+/// The sums over a cell's stencil that make value and gradient, and what the Hessian is made of
+/// besides.
 struct Sums {
   Weights x;
   LaneWeights z;

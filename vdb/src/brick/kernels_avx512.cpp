@@ -1,4 +1,5 @@
-// The kernels for processors with AVX-512 F and VL: four lanes as with AVX2, in twice the registers.
+// The kernels for processors with AVX-512 F and VL: four lanes as with AVX2, in twice the
+// registers.
 
 #if defined(__x86_64__)
 

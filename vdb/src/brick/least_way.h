@@ -21,17 +21,20 @@ struct CellBounds {
 };
 void boundCells(const Brick& brick, bool cubic, CellBounds& to) noexcept;
 
-/// A way shorter than a voxel that ends in a cell begins in it or in one of the 26 around. If none of them may hold the surface, no
-/// such way comes from the surface. Otherwise it comes from cells that answer, on which |value| rises by no more than
-/// their slopes let it, to what |value| is at least where it leaves them.
+/// A way shorter than a voxel that ends in a cell begins in it or in one of the 26 around. If none
+/// of them may hold the surface, no such way comes from the surface. Otherwise it comes from cells
+/// that answer, on which |value| rises by no more than their slopes let it, to what |value| is at
+/// least where it leaves them.
 class LeastWay {
  public:
   /// `bounds` are those of the bricks at `blocks`, in units of bricks. Both have to outlive it.
   LeastWay(const std::vector<openvdb::Coord>& blocks, const std::vector<CellBounds>& bounds);
 
-  /// Whether brick n has a cell that does not answer beside one that may hold the surface: others need no look.
+  /// Whether brick n has a cell that does not answer beside one that may hold the surface: others
+  /// need no look.
   [[nodiscard]] bool matters(std::size_t n) const;
-  /// [voxels] So far is it at least from the surface to a point of brick n that does not answer; 1 at most.
+  /// [voxels] So far is it at least from the surface to a point of brick n that does not answer; 1
+  /// at most.
   [[nodiscard]] double in(std::size_t n, const Brick& brick, bool cubic) const;
 
  private:

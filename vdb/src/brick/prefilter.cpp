@@ -58,8 +58,8 @@ Reach reachOf(const Neighborhood& from) {
   return reach;
 }
 
-/// Second differences along the axes, and their sum D, of one slab of voxels across x. Loops run over
-/// the ends of rows, so that they are long; what comes of that is not looked at.
+/// Second differences along the axes, and their sum D, of one slab of voxels across x. Loops run
+/// over the ends of rows, so that they are long; what comes of that is not looked at.
 struct Differences {
   alignas(64) std::array<double, kSlab> along_x, along_y, along_z, sum;
 };

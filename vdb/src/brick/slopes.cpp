@@ -7,7 +7,8 @@ namespace {
 
 double larger(double a, double b) noexcept { return a < b ? b : a; }
 
-/// The larger of the squares of the differences from a coefficient to the one before and the one after it.
+/// The larger of the squares of the differences from a coefficient to the one before and the one
+/// after it.
 double largerSquare(float before, float here, float after) noexcept {
   const double middle = here;
   const double down = middle - static_cast<double>(before);
@@ -17,8 +18,8 @@ double largerSquare(float before, float here, float after) noexcept {
 
 }  // namespace
 
-// Row by row, in loops that compilers turn into vector code. Where there is no coefficient before or after, the
-// own one stands for it: no difference.
+// Row by row, in loops that compilers turn into vector code. Where there is no coefficient before
+// or after, the own one stands for it: no difference.
 double steepestSquare(const float* first, std::size_t side,
                       const std::array<std::size_t, 2>& strides) noexcept {
   std::array<double, kMostSide> most{};

@@ -16,7 +16,8 @@ using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 using Values = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
 
-/// Of a voxel's |gradient| against the mean. Where two faces meet at a right angle it is 0.7 between them.
+/// Of a voxel's |gradient| against the mean. Where two faces meet at a right angle it is 0.7
+/// between them.
 constexpr double kLeastSlope = 0.9;
 /// Slopes are summed as whole millionths, so that the order of threads does not count.
 constexpr double kPerSlope = 1e6;

@@ -16,10 +16,11 @@ inline constexpr double kNoFoot = 1e6;  ///< [voxels] no surface point is known
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// Of each active voxel the surface point against its gradient, as far as its value says. Voxels whose gradient leads astray get
-/// kNoFoot: those at the rim of the band, whose differences would be one-sided and off by a degree, and those beside a crease,
-/// whose differences mix what belongs to two sides and come out short. `offsets` has the leaves of `tree`. The result does not
-/// depend on the number of threads.
+/// Of each active voxel the surface point against its gradient, as far as its value says. Voxels
+/// whose gradient leads astray get kNoFoot: those at the rim of the band, whose differences would
+/// be one-sided and off by a degree, and those beside a crease, whose differences mix what belongs
+/// to two sides and come out short. `offsets` has the leaves of `tree`. The result does not depend
+/// on the number of threads.
 void findVoxelFeet(const openvdb::FloatTree& tree, double units_per_voxel, Offsets& offsets);
 
 }  // namespace palpate::vdb

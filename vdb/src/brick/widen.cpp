@@ -2,9 +2,9 @@
 //
 // First layer by layer: each new voxel takes the nearest of the surface points that its neighbors
 // know, as in the vector distance transform; the old voxels know theirs by their value and its
-// gradient. Then in rounds: a spline through the band so far, and for each new voxel the closest point
-// on its zero set by Newton's method. Near the surface the spline depends little on new voxels, so
-// that a round leaves a few hundredths of the error before it.
+// gradient. Then in rounds: a spline through the band so far, and for each new voxel the closest
+// point on its zero set by Newton's method. Near the surface the spline depends little on new
+// voxels, so that a round leaves a few hundredths of the error before it.
 
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/Morphology.h>
@@ -51,7 +51,7 @@ class Widening {
         half_width_(half_width),
         work_width_(std::max(half_width, kLeastWorkWidth)),
         progress_(progress),
-        units_per_voxel_(grid.info().voxel_size / grid.info().metres_per_unit),
+        units_per_voxel_(grid.info().voxel_size / grid.info().meters_per_unit),
         grid_(copyOf(*grid.impl().grid)),
         tree_(grid_->tree()),
         old_(tree_, false, true, openvdb::TopologyCopy()),
@@ -153,7 +153,8 @@ class Widening {
     const double square = glm::dot(normal, normal);
     if (!(square > 0.01)) return nearest;
     const Vec3 straight = normal * (glm::dot(normal, nearest) / square);
-    // Much nearer than the point: the surface ends there in an edge, and the point stays the nearest.
+    // Much nearer than the point: the surface ends there in an edge, and the point stays the
+    // nearest.
     return glm::length(nearest) - glm::length(straight) < kSmooth ? straight : nearest;
   }
 
@@ -179,7 +180,8 @@ class Widening {
         const Vec3 x = origin + voxel_size * vec(at);
         const Vec3 offset = closestPoint(spline, x, x + voxel_size * guess) / voxel_size;
         const double distance = glm::length(offset);
-        // A step that does not converge, or that leads to another part of the surface, adds nothing.
+        // A step that does not converge, or that leads to another part of the surface, adds
+        // nothing.
         if (!(std::abs(distance - glm::length(guess)) < kSamePlace)) continue;
         offsets.setValueOnly(voxel.pos(), toVdb(offset));
         leaf.setValueOnly(voxel.pos(), std::copysign(toUnits(distance), *voxel));
@@ -214,8 +216,8 @@ class Widening {
     return Vec3(std::nan(""));
   }
 
-  /// A distance grows by no more than the way. What was guessed wrong, outside sharp edges, must not
-  /// claim more room than its neighbors leave: contact would leap into the wall.
+  /// A distance grows by no more than the way. What was guessed wrong, outside sharp edges, must
+  /// not claim more room than its neighbors leave: contact would leap into the wall.
   void lower() {
     const Tree before(tree_);
     forLeaves([&](Leaf& leaf, Offsets::LeafNodeType&) {

@@ -22,8 +22,9 @@ using openvdb::Coord;
 constexpr double kMostSlope = 0.25;
 /// [voxels] Beside the surface, more than that is damage.
 constexpr double kMostStep = 0.25;
-/// [voxels] Values can be off by less than that and contradict no neighbor by more than kSmallStep: one half of a grid against the
-/// other by the square root of 3 less that of 2, a single voxel by half of that.
+/// [voxels] Values can be off by less than that and contradict no neighbor by more than kSmallStep:
+/// one half of a grid against the other by the square root of 3 less that of 2, a single voxel by
+/// half of that.
 constexpr double kUnseen = 0.4;
 /// Fewer active voxels are widened again faster than they are worth keeping.
 constexpr std::uint64_t kLeastKept = 100'000;
@@ -95,7 +96,7 @@ class Certifier {
   [[nodiscard]] Vec3 place(const Coord& at) const {
     return grid_.impl().origin + grid_.info().voxel_size * Vec3(at.x(), at.y(), at.z());
   }
-  [[nodiscard]] std::string placeText(const Coord& at) const { return inMillimetres(place(at)); }
+  [[nodiscard]] std::string placeText(const Coord& at) const { return inMillimeters(place(at)); }
   [[nodiscard]] std::string name() const { return "grid '" + grid_.info().name + "'"; }
 
   [[noreturn]] void no(const char* code, const std::string& what, const char* hint) const {
@@ -215,7 +216,7 @@ class Certifier {
       no("vdb.no_surface",
          "has voxels inside, but samples of it are outside everywhere: the whole shape is smaller "
          "than a voxel of " +
-             inMillimetres(grid_.info().voxel_size, 3),
+             inMillimeters(grid_.info().voxel_size, 3),
          "use smaller voxels; also check the length unit");
     }
     if (c.steepest > kMostSteep) {
@@ -253,8 +254,8 @@ std::string roughNote(const LevelSet& grid, const BandCertificate& c) {
   if (!(c.rough > kMostRough)) return {};
   return shortNumber(100.0 * c.rough, 3) +
          " % of its surface has edges, or bends within a voxel of " +
-         inMillimetres(grid.info().voxel_size, 3) + ", one place at " +
-         inMillimetres(c.slope_place) +
+         inMillimeters(grid.info().voxel_size, 3) + ", one place at " +
+         inMillimeters(c.slope_place) +
          "; there the surface that is felt is off by a large share of a voxel; smaller voxels hold "
          "it";
 }

@@ -14,16 +14,16 @@ namespace {
 
 using openvdb::Coord;
 
-double volumeOf(const openvdb::FloatGrid& grid, const GridTally& tally, double metres) {
+double volumeOf(const openvdb::FloatGrid& grid, const GridTally& tally, double meters) {
   const double voxel = std::abs(grid.transform().baseMap()->determinant());
-  return tally.inside * voxel * metres * metres * metres;
+  return tally.inside * voxel * meters * meters * meters;
 }
 
-void look(const openvdb::FloatGrid& grid, double metres, GridCheck& check) {
+void look(const openvdb::FloatGrid& grid, double meters, GridCheck& check) {
   const GridTally tally = tallyOf(grid);
   const auto place = [&](const Coord& at) {
     const openvdb::Vec3d p = grid.indexToWorld(at);
-    return metres * Vec3(p.x(), p.y(), p.z());
+    return meters * Vec3(p.x(), p.y(), p.z());
   };
   const auto defect = [&](const FoundVoxels& found) {
     return VoxelDefect{found.voxels, found.voxels > 0 ? place(found.first) : Vec3(0.0)};
@@ -41,7 +41,7 @@ void look(const openvdb::FloatGrid& grid, double metres, GridCheck& check) {
     check.gradient.worst = tally.worst;
     check.gradient.worst_place = place(tally.worst_at);
   }
-  check.volume = volumeOf(grid, tally, metres);
+  check.volume = volumeOf(grid, tally, meters);
 }
 
 /// The same as a scene does before the grid is touched.
@@ -69,7 +69,7 @@ bool mayHoldDistances(const openvdb::GridBase& grid) {
 
 double solidVolume(const LevelSet& grid) {
   const openvdb::FloatGrid& floats = *grid.impl().grid;
-  return volumeOf(floats, tallyOf(floats), grid.info().metres_per_unit);
+  return volumeOf(floats, tallyOf(floats), grid.info().meters_per_unit);
 }
 
 std::vector<GridCheck> checkVdb(const std::string& path, const std::string& name,
@@ -86,20 +86,20 @@ std::vector<GridCheck> checkVdb(const std::string& path, const std::string& name
     GridCheck check;
     check.grid = file.summaryOf(entry);
     LevelSetInfo& info = check.grid.info;
-    if (info.length_unit.empty() && metresPer(unit_if_missing)) {
+    if (info.length_unit.empty() && metersPer(unit_if_missing)) {
       info.length_unit = unit_if_missing;
-      info.metres_per_unit = *metresPer(unit_if_missing);
-      info.voxel_size *= info.metres_per_unit;
+      info.meters_per_unit = *metersPer(unit_if_missing);
+      info.voxel_size *= info.meters_per_unit;
       if (!info.bounds.isEmpty()) {
-        info.bounds = {info.bounds.lo * info.metres_per_unit,
-                       info.bounds.hi * info.metres_per_unit};
+        info.bounds = {info.bounds.lo * info.meters_per_unit,
+                       info.bounds.hi * info.meters_per_unit};
       }
     }
     // Points and the like are refused by their kind; their trees are not read.
     const bool is_known = VdbWalk::canWalk(entry.descriptor.gridType());
     const openvdb::GridBase::Ptr grid = is_known ? file.read(entry) : entry.grid;
     if (mayHoldDistances(*grid)) {
-      look(static_cast<const openvdb::FloatGrid&>(*grid), info.metres_per_unit, check);
+      look(static_cast<const openvdb::FloatGrid&>(*grid), info.meters_per_unit, check);
     }
     try {
       const LevelSet accepted = acceptLevelSet(grid, unit_if_missing, unknown_class, path);

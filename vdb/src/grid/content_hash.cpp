@@ -89,7 +89,7 @@ std::string contentHash(const LevelSet& grid) {
   const LevelSetInfo& info = grid.info();
   state = mixed(state, bitsOf(static_cast<double>(tree.background())));
   state = mixed(state, bitsOf(info.voxel_size));
-  state = mixed(state, bitsOf(info.metres_per_unit));
+  state = mixed(state, bitsOf(info.meters_per_unit));
   for (int axis = 0; axis < 3; ++axis) state = mixed(state, bitsOf(grid.impl().origin[axis]));
   char text[17];
   std::snprintf(text, sizeof text, "%016llx",

@@ -61,12 +61,13 @@ class AccessorField final : public Field {
         tree_(grid_.impl().grid->tree()),
         origin_(grid_.impl().origin),
         voxel_(grid_.info().voxel_size),
-        metres_per_unit_(grid_.info().metres_per_unit),
+        meters_per_unit_(grid_.info().meters_per_unit),
         plateau_(plateauOf(grid_.info(), Sampler::kAccessor)) {
     const Survey survey = surveyGrid(*grid_.impl().grid, plateau_);
     // The slope of a distance is 1, though a grid whose surface is flat may measure less.
     lipschitz_ = std::max(1.0, survey.steepest);
-    // A cell is negative somewhere only if a corner is; it has a known voxel only if a corner is one.
+    // A cell is negative somewhere only if a corner is; it has a known voxel only if a corner is
+    // one.
     if (!survey.inside.empty()) bounds_ = around(survey.inside);
     reach_ = bounds_.unitedWith(survey.known.empty() ? Box3{} : around(survey.known));
   }
@@ -116,12 +117,12 @@ class AccessorField final : public Field {
     const double far = mix(along_z[2], along_z[3], t.y);
     const Vec3 slope(far - near, mix(along_z[1] - along_z[0], along_z[3] - along_z[2], t.x),
                      mix(mix(dz[0], dz[1], t.y), mix(dz[2], dz[3], t.y), t.x));
-    return {mix(near, far, t.x) * metres_per_unit_, slope * (metres_per_unit_ / voxel_), true};
+    return {mix(near, far, t.x) * meters_per_unit_, slope * (meters_per_unit_ / voxel_), true};
   }
 
   /// Where no voxel is near; also where p is not a number.
   [[nodiscard]] FieldSample beyond(const Vec3& p) const noexcept {
-    const double plateau = plateau_ * metres_per_unit_;
+    const double plateau = plateau_ * meters_per_unit_;
     if (!isFinite(p)) return {std::numeric_limits<double>::quiet_NaN(), Vec3(0.0), false};
     if (reach_.isEmpty()) return {plateau, Vec3(0.0), false};
     const Vec3 out = glm::max(glm::max(reach_.lo - p, p - reach_.hi), Vec3(0.0));
@@ -133,7 +134,7 @@ class AccessorField final : public Field {
   const Tree& tree_;
   Vec3 origin_;             ///< [m] center of voxel (0, 0, 0)
   double voxel_;            ///< [m]
-  double metres_per_unit_;  ///< [m]
+  double meters_per_unit_;  ///< [m]
   float plateau_;           ///< [units]
   double lipschitz_ = 1.0;
   Box3 bounds_;

@@ -65,16 +65,16 @@ bool fillFromAny(const openvdb::GridBase& base, const openvdb::CoordBBox& box, I
 Vec3 fromVdb(const openvdb::Vec3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// [m] of the length unit of a grid. @throws Error (kInput, unit.unknown).
-double metresOf(const openvdb::GridBase& grid, const std::string& unit_if_missing,
+double metersOf(const openvdb::GridBase& grid, const std::string& unit_if_missing,
                 const std::string& path) {
   const std::string unit = unitOf(grid, unit_if_missing, path);
-  const auto metres = metresPer(unit);
-  if (metres) return *metres;
+  const auto meters = metersPer(unit);
+  if (meters) return *meters;
   throw inputError("unit.unknown", "unknown length unit '" + unit + "'", "use m, cm, mm or um",
                    path);
 }
 
-Image imageOf(const openvdb::GridBase& grid, double metres, const std::string& path) {
+Image imageOf(const openvdb::GridBase& grid, double meters, const std::string& path) {
   if (!grid.transform().isLinear()) {
     throw inputError("vdb.transform",
                      "grid '" + grid.getName() + "' has a transform that is not linear (a frustum)",
@@ -98,9 +98,9 @@ Image imageOf(const openvdb::GridBase& grid, double metres, const std::string& p
   for (int axis = 0; axis < 3; ++axis) {
     openvdb::Vec3d step(0.0);
     step[axis] = 1.0;
-    image.axes[axis] = metres * (fromVdb(grid.indexToWorld(step)) - origin);
+    image.axes[axis] = meters * (fromVdb(grid.indexToWorld(step)) - origin);
   }
-  image.origin = metres * fromVdb(grid.indexToWorld(box.min()));
+  image.origin = meters * fromVdb(grid.indexToWorld(box.min()));
   return image;
 }
 
@@ -134,14 +134,14 @@ Image readVdbImage(const std::string& path, const std::string& name,
                    const std::string& unit_if_missing) {
   VdbFile file(path);
   const openvdb::GridBase::Ptr grid = file.read(file.choose(name));
-  return imageOf(*grid, metresOf(*grid, unit_if_missing, path), path);
+  return imageOf(*grid, metersOf(*grid, unit_if_missing, path), path);
 }
 
 DistanceImage readVdbDistances(const std::string& path, const std::string& name,
                                const std::string& unit_if_missing) {
   VdbFile file(path);
   const openvdb::GridBase::Ptr grid = file.read(file.choose(name));
-  const double metres = metresOf(*grid, unit_if_missing, path);
+  const double meters = metersOf(*grid, unit_if_missing, path);
   const openvdb::FloatGrid::Ptr floats = asFloats(grid);
   if (!floats) {
     throw inputError("vdb.type",
@@ -149,8 +149,8 @@ DistanceImage readVdbDistances(const std::string& path, const std::string& name,
                          "; distances are floats or doubles",
                      "", path);
   }
-  const std::uint64_t marked = markInside(*floats, metres, path);
-  return {imageOf(*floats, metres, path), marked};
+  const std::uint64_t marked = markInside(*floats, meters, path);
+  return {imageOf(*floats, meters, path), marked};
 }
 
 }  // namespace palpate::vdb

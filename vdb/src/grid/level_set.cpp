@@ -38,8 +38,8 @@ double uniformScale(const openvdb::math::Transform& transform) {
   return scale;
 }
 
-Vec3 fromVdb(const openvdb::Vec3d& v, double metres_per_unit) {
-  return Vec3(v.x(), v.y(), v.z()) * metres_per_unit;
+Vec3 fromVdb(const openvdb::Vec3d& v, double meters_per_unit) {
+  return Vec3(v.x(), v.y(), v.z()) * meters_per_unit;
 }
 
 /// How many voxels are active, and where.
@@ -75,20 +75,20 @@ Active activeOf(const openvdb::FloatTree& tree) {
 }
 
 LevelSetInfo inspect(const openvdb::FloatGrid& grid, const std::string& length_unit,
-                     double metres_per_unit, double scale) {
+                     double meters_per_unit, double scale) {
   LevelSetInfo info;
   info.name = grid.getName();
   info.length_unit = length_unit;
-  info.metres_per_unit = metres_per_unit;
-  info.voxel_size = scale * metres_per_unit;
+  info.meters_per_unit = meters_per_unit;
+  info.voxel_size = scale * meters_per_unit;
   // The background is a float: no more than a float's digits of the quotient mean anything.
   info.half_width = static_cast<float>(static_cast<double>(grid.background()) / scale);
   const Active active = activeOf(grid.tree());
   info.active_voxels = active.voxels;
   info.memory = grid.memUsage();
   if (info.active_voxels > 0) {
-    info.bounds.include(fromVdb(grid.indexToWorld(active.box.min()), metres_per_unit));
-    info.bounds.include(fromVdb(grid.indexToWorld(active.box.max()), metres_per_unit));
+    info.bounds.include(fromVdb(grid.indexToWorld(active.box.min()), meters_per_unit));
+    info.bounds.include(fromVdb(grid.indexToWorld(active.box.max()), meters_per_unit));
   }
   for (auto entry = grid.beginMeta(); entry != grid.endMeta(); ++entry) {
     if (isReserved(entry->first) || entry->second->typeName() != "string") continue;
@@ -106,8 +106,8 @@ void initializeOpenVdb() {
 
 LevelSet makeLevelSet(openvdb::FloatGrid::Ptr grid, const std::string& length_unit,
                       const std::map<std::string, std::string>& metadata) {
-  const std::optional<double> metres = metresPer(length_unit);
-  if (!metres) {
+  const std::optional<double> meters = metersPer(length_unit);
+  if (!meters) {
     throw inputError("unit.unknown", "unknown length unit '" + length_unit + "'",
                      "use m, cm, mm or um");
   }
@@ -135,8 +135,8 @@ LevelSet makeLevelSet(openvdb::FloatGrid::Ptr grid, const std::string& length_un
     grid->insertMeta(key, openvdb::StringMetadata(value));
   }
   auto impl = std::make_shared<LevelSet::Impl>();
-  impl->info = inspect(*grid, length_unit, *metres, scale);
-  impl->origin = fromVdb(grid->indexToWorld(openvdb::Coord(0)), *metres);
+  impl->info = inspect(*grid, length_unit, *meters, scale);
+  impl->origin = fromVdb(grid->indexToWorld(openvdb::Coord(0)), *meters);
   impl->grid = std::move(grid);
   return LevelSet(std::move(impl));
 }

@@ -13,7 +13,7 @@
 
 namespace palpate::vdb {
 
-std::uint64_t markInside(openvdb::FloatGrid& grid, double metres_per_unit,
+std::uint64_t markInside(openvdb::FloatGrid& grid, double meters_per_unit,
                          const std::string& path) {
   const GridTally before = tallyOf(grid);
   if (before.sign_breaks.voxels == 0) return 0;
@@ -21,18 +21,18 @@ std::uint64_t markInside(openvdb::FloatGrid& grid, double metres_per_unit,
   grid.tree().voxelizeActiveTiles();
   openvdb::tools::pruneInactive(grid.tree());
   openvdb::tools::signedFloodFill(grid.tree());
-  // Sides now go from voxel to voxel up to the band. Where none breaks, each space between has one side, that
-  // of the band all around it; where the band has a hole, some must.
+  // Sides now go from voxel to voxel up to the band. Where none breaks, each space between has one
+  // side, that of the band all around it; where the band has a hole, some must.
   const GridTally after = tallyOf(grid);
   if (after.sign_breaks.voxels > 0) {
-    const openvdb::Vec3d p = metres_per_unit * grid.indexToWorld(after.sign_breaks.first);
+    const openvdb::Vec3d p = meters_per_unit * grid.indexToWorld(after.sign_breaks.first);
     throw inputError(
         "vdb.torn",
         "the inside of grid '" + grid.getName() +
             "' is not marked, and its band does not tell it: inside and outside meet "
             "without a band in between at " +
             std::to_string(after.sign_breaks.voxels) + " voxels, one at " +
-            inMillimetres(Vec3(p.x(), p.y(), p.z())),
+            inMillimeters(Vec3(p.x(), p.y(), p.z())),
         "the band has holes, or the grid was cut off: write it again with a whole band "
         "all around",
         path);
@@ -46,7 +46,7 @@ MarkedInside withInsideMarked(const LevelSet& grid, const std::string& path) {
   if (tallyOf(old).sign_breaks.voxels == 0) return {grid, 0};
   const LevelSetInfo& info = grid.info();
   const openvdb::FloatGrid::Ptr copy = old.deepCopy();
-  const std::uint64_t voxels = markInside(*copy, info.metres_per_unit, path);
+  const std::uint64_t voxels = markInside(*copy, info.meters_per_unit, path);
   return {makeLevelSet(copy, info.length_unit), voxels};
 }
 

@@ -9,8 +9,8 @@
 namespace palpate::vdb {
 
 /// How many voxels that are not active changed sides.
-/// @throws Error (kInput, vdb.torn) where a hole in the band joins inside and outside; `path` is the
-/// file to name. `grid` is then of no use.
-std::uint64_t markInside(openvdb::FloatGrid& grid, double metres_per_unit, const std::string& path);
+/// @throws Error (kInput, vdb.torn) where a hole in the band joins inside and outside; `path` is
+/// the file to name. `grid` is then of no use.
+std::uint64_t markInside(openvdb::FloatGrid& grid, double meters_per_unit, const std::string& path);
 
 }  // namespace palpate::vdb

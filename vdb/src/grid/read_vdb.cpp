@@ -70,7 +70,8 @@ void requireLevelSet(const openvdb::GridBase& grid, UnknownClass unknown_class,
   }
 }
 
-/// Parts of a tree lie at multiples of their size. One that damage has put elsewhere cannot be found again.
+/// Parts of a tree lie at multiples of their size. One that damage has put elsewhere cannot be
+/// found again.
 void requireSoundBlocks(const openvdb::FloatGrid& grid, const std::string& path) {
   std::atomic<bool> not_finite = false;
   std::atomic<bool> misplaced = false;

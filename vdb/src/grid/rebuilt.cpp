@@ -56,7 +56,7 @@ LevelSet withDistancesRebuilt(const LevelSet& grid, const Progress& progress) {
   const openvdb::FloatGrid::Ptr copy = grid.impl().grid->deepCopy();
   Tree& tree = copy->tree();
   tree.voxelizeActiveTiles();
-  const double units_per_voxel = info.voxel_size / info.metres_per_unit;
+  const double units_per_voxel = info.voxel_size / info.meters_per_unit;
   const auto width = static_cast<float>(std::min(kKept, info.half_width) * units_per_voxel);
   const auto beside = static_cast<float>(kBesideSurface * units_per_voxel);
   const Mask doubts = doubtful(tree, units_per_voxel);

@@ -9,8 +9,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Newton's method along the gradient: from the cell's middle, a voxel away at most, three steps are
-/// enough for a thousandth of a voxel on any field that is nearly a distance.
+/// Newton's method along the gradient: from the cell's middle, a voxel away at most, three steps
+/// are enough for a thousandth of a voxel on any field that is nearly a distance.
 Vec3 ontoSurface(const Field& field, const Vec3& from) {
   constexpr int kSteps = 4;
   const double voxel = field.featureSize();
@@ -18,7 +18,8 @@ Vec3 ontoSurface(const Field& field, const Vec3& from) {
   for (int step = 0; step < kSteps; ++step) {
     const FieldSample sample = field.sample(p);
     const double square = glm::dot(sample.gradient, sample.gradient);
-    // At an edge of the solid, where the gradient all but vanishes, the cell's own vertex is better.
+    // At an edge of the solid, where the gradient all but vanishes, the cell's own vertex is
+    // better.
     if (!sample.in_band || !(square > 0.04)) return from;
     p -= sample.gradient * (sample.value / square);
     if (!(glm::length(p - from) < voxel)) return from;
@@ -61,7 +62,7 @@ Mesh surfaceMesh(const LevelSet& grid, const Progress& progress) {
     }
     const openvdb::Vec3s& p = points[i];
     mesh.vertices.push_back(
-        ontoSurface(*field, grid.info().metres_per_unit * Vec3(p.x(), p.y(), p.z())));
+        ontoSurface(*field, grid.info().meters_per_unit * Vec3(p.x(), p.y(), p.z())));
   }
   mesh.triangles.reserve(triangles.size() + 2 * quads.size());
   for (const openvdb::Vec3I& t : triangles) mesh.triangles.push_back({t[0], t[1], t[2]});

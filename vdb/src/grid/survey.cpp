@@ -59,7 +59,7 @@ float plateauOf(const LevelSetInfo& info, Sampler sampler) noexcept {
   const double slack = sampler == Sampler::kCubic
                            ? 2.0 / 6.0 / std::max(info.half_width - 2.0 * std::sqrt(3.0), 1.0)
                            : 3.0 / 8.0 / (info.half_width - 0.5 * std::sqrt(3.0));
-  return static_cast<float>((info.half_width - slack) * info.voxel_size / info.metres_per_unit);
+  return static_cast<float>((info.half_width - slack) * info.voxel_size / info.meters_per_unit);
 }
 
 Survey surveyGrid(const openvdb::FloatGrid& grid, float plateau) {

@@ -1,7 +1,8 @@
 #pragma once
-/// .vdb streams with errors. OpenVDB's own io::File never looks at its streams, so that a full disk and a
-/// file cut short pass for success; here every short read or write throws std::ios_base::failure,
-/// and every length is checked (vdb_walk.h) before OpenVDB takes it for true.
+/// .vdb streams with errors. OpenVDB's own io::File never looks at its streams, so that a full disk
+/// and a file cut short pass for success; here every short read or write throws
+/// std::ios_base::failure, and every length is checked (vdb_walk.h) before OpenVDB takes it for
+/// true.
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>

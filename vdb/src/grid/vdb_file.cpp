@@ -41,9 +41,9 @@ LevelSetInfo infoOf(const openvdb::GridBase& grid, const std::string& name) {
   LevelSetInfo info;
   info.name = name;
   info.length_unit = textOf(grid, "length_unit");
-  info.metres_per_unit = metresPer(info.length_unit).value_or(1.0);
+  info.meters_per_unit = metersPer(info.length_unit).value_or(1.0);
   const double scale = grid.voxelSize().x();
-  info.voxel_size = scale * info.metres_per_unit;
+  info.voxel_size = scale * info.meters_per_unit;
   if (const auto* floats = dynamic_cast<const openvdb::FloatGrid*>(&grid)) {
     info.half_width = static_cast<float>(static_cast<double>(floats->background()) / scale);
   }
@@ -56,7 +56,7 @@ LevelSetInfo infoOf(const openvdb::GridBase& grid, const std::string& name) {
   if (lo && hi && info.active_voxels > 0) {
     for (const openvdb::Vec3i& corner : {*lo, *hi}) {
       const openvdb::Vec3d p = grid.indexToWorld(openvdb::Vec3d(corner));
-      info.bounds.include(Vec3(p.x(), p.y(), p.z()) * info.metres_per_unit);
+      info.bounds.include(Vec3(p.x(), p.y(), p.z()) * info.meters_per_unit);
     }
   }
   for (auto entry = grid.beginMeta(); entry != grid.endMeta(); ++entry) {

@@ -40,11 +40,13 @@ class VdbFile {
   [[nodiscard]] const std::vector<VdbArchive::Entry>& entries() const noexcept {
     return archive_.entries();
   }
-  /// By name, or the only one if that is empty. @throws Error (kInput, vdb.no_grid, vdb.which_grid).
+  /// By name, or the only one if that is empty. @throws Error (kInput, vdb.no_grid,
+  /// vdb.which_grid).
   [[nodiscard]] const VdbArchive::Entry& choose(const std::string& name) const;
   /// With all its voxels. @throws Error (kInput, vdb.unreadable).
   [[nodiscard]] openvdb::GridBase::Ptr read(const VdbArchive::Entry& entry);
-  /// [bytes] What the grid takes when it is read. Reads no voxels. @throws Error (kInput, vdb.unreadable).
+  /// [bytes] What the grid takes when it is read. Reads no voxels. @throws Error (kInput,
+  /// vdb.unreadable).
   [[nodiscard]] std::uint64_t memoryOf(const VdbArchive::Entry& entry);
   /// As listVdb() tells it; reads no voxels. @throws Error (kInput, vdb.unreadable).
   [[nodiscard]] VdbGridSummary summaryOf(const VdbArchive::Entry& entry);
@@ -60,7 +62,8 @@ class VdbFile {
 [[nodiscard]] std::string typeOf(const openvdb::GridBase& grid);
 /// "level set", "fog volume", "staggered", "unknown".
 [[nodiscard]] std::string classOf(const openvdb::GridBase& grid);
-/// The file's own, or else `unit_if_missing`. @throws Error (kInput, vdb.no_unit) if there is neither.
+/// The file's own, or else `unit_if_missing`. @throws Error (kInput, vdb.no_unit) if there is
+/// neither.
 [[nodiscard]] std::string unitOf(const openvdb::GridBase& grid, const std::string& unit_if_missing,
                                  const std::string& path);
 

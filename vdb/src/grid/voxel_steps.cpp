@@ -112,7 +112,7 @@ void add(VoxelSteps::Holes& to, const VoxelSteps::Holes& from) {
 VoxelSteps stepsOf(const LevelSet& grid) {
   const Tree& tree = grid.impl().grid->tree();
   const LevelSetInfo& info = grid.info();
-  const double scale = info.metres_per_unit / info.voxel_size;
+  const double scale = info.meters_per_unit / info.voxel_size;
   openvdb::tree::LeafManager<const Tree> leaves(tree);
   std::vector<VoxelSteps> found(leaves.leafCount());
   leaves.foreach ([&](const Leaf& leaf, std::size_t n) {

@@ -9,8 +9,8 @@
 
 namespace palpate::vdb {
 
-/// Two distances never differ by more than the way between their voxels, and where a voxel and the way to the next are together
-/// shorter than the band is wide, that one is in the band.
+/// Two distances never differ by more than the way between their voxels, and where a voxel and the
+/// way to the next are together shorter than the band is wide, that one is in the band.
 struct VoxelSteps {
   struct Worst {
     double by = 0.0;  ///< [voxels] more than the way
@@ -24,8 +24,8 @@ struct VoxelSteps {
   Holes near_holes, far_holes;  ///< likewise
 };
 
-/// [voxels] Beside the surface is what is no further than that from it. A cubic spline's surface depends on it; what is further
-/// can be rebuilt.
+/// [voxels] Beside the surface is what is no further than that from it. A cubic spline's surface
+/// depends on it; what is further can be rebuilt.
 inline constexpr double kBesideSurface = 2.0;
 
 /// [voxels] Contradictions up to here are what float voxels and other people's tools leave.

@@ -23,8 +23,8 @@ enum class Packing {
 /// missing; this reader does neither.
 class ByteStream {
  public:
-  /// Begins at the front of the file, which is gzip data if it begins as they do. `format` is what the
-  /// codes of errors begin with ("nifti").
+  /// Begins at the front of the file, which is gzip data if it begins as they do. `format` is what
+  /// the codes of errors begin with ("nifti").
   /// @throws Error (kInput): missing, a directory, empty, not readable.
   ByteStream(std::string path, std::string format);
   /// Begins at byte `offset`.

@@ -24,7 +24,8 @@ constexpr std::size_t kPreamble = 128;
 constexpr std::size_t kLongestText = 4096;
 constexpr int kDeepest = 32;
 
-/// Where values have no representation, nothing else tells these from bytes: of segmentations, then of structure sets.
+/// Where values have no representation, nothing else tells these from bytes: of segmentations, then
+/// of structure sets.
 constexpr std::array<std::uint32_t, 16> kSequences = {
     0x00620002, 0x0062000A, 0x0062000F, 0x00209113, 0x00209116, 0x00289110, 0x52009229, 0x52009230,
     0x30060010, 0x30060012, 0x30060014, 0x30060020, 0x30060039, 0x30060040, 0x30060080, 0x30060086};

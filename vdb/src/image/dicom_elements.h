@@ -25,11 +25,13 @@ struct DicomItem {
   [[nodiscard]] bool has(std::uint32_t tag) const { return texts.contains(tag); }
   /// The text, without the blanks around it; empty if there is none.
   [[nodiscard]] std::string text(std::uint32_t tag) const;
-  /// The numbers of a text such as "1\-2.5"; `count` 0: however many there are. @throws Error (kInput, dicom.value)
+  /// The numbers of a text such as "1\-2.5"; `count` 0: however many there are. @throws Error
+  /// (kInput, dicom.value)
   [[nodiscard]] std::vector<double> numbers(std::uint32_t tag, std::size_t count) const;
   /// An unsigned short. @throws Error (kInput, dicom.value)
   [[nodiscard]] std::optional<int> shortAt(std::uint32_t tag) const;
-  /// So many unsigned shorts; empty if the element is not there. @throws Error (kInput, dicom.value)
+  /// So many unsigned shorts; empty if the element is not there. @throws Error (kInput,
+  /// dicom.value)
   [[nodiscard]] std::vector<int> shorts(std::uint32_t tag, std::size_t count) const;
   /// The items of a sequence; empty if it is not there.
   [[nodiscard]] const std::vector<DicomItem>& items(std::uint32_t tag) const;
@@ -39,8 +41,8 @@ struct DicomItem {
 
 /// GDCM takes what is missing of a file for zeros, or ends the process on an assertion. So every
 /// file is walked by this code: every length must fit, every sequence end. GDCM sees none of these
-/// bytes but those of packed pixels. The outermost level has short values only, and no sequences, unless they are asked
-/// for.
+/// bytes but those of packed pixels. The outermost level has short values only, and no sequences,
+/// unless they are asked for.
 struct DicomElements : DicomItem {
   std::string transfer_syntax;
   bool has_pixels = false;

@@ -19,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace dicom;
 
-/// Directions and spacings of slices of one volume, and steps between them, are written with five digits or so.
+/// Directions and spacings of slices of one volume, and steps between them, are written with five
+/// digits or so.
 constexpr double kSameDirection = 1e-4;
 constexpr double kEvenSteps = 0.05;   ///< [share of a step]
 constexpr double kShearToTell = 0.1;  ///< [degrees]
@@ -204,8 +205,8 @@ void tell(const std::vector<Slice>& slices, const Vec3& step, std::vector<std::s
   if (e.text(kLossy) == "01") notes.emplace_back("the pixels went through lossy compression");
 }
 
-/// Whether a file is of a kind that has no pixels: a folder's index, presentations, raw data, reports, plans. A
-/// slice without pixels was cut short.
+/// Whether a file is of a kind that has no pixels: a folder's index, presentations, raw data,
+/// reports, plans. A slice without pixels was cut short.
 bool needsNoPixels(const DicomElements& e) {
   const std::string kind = e.text(kStorageClass);
   const std::string images = "1.2.840.10008.5.1.4.1.1.";

@@ -17,7 +17,8 @@ struct DicomSeries {
   std::vector<std::string> notes;
 };
 
-/// The series of `path`: of a folder its only one, or the one with UID `wanted`; of a file that of the file.
+/// The series of `path`: of a folder its only one, or the one with UID `wanted`; of a file that of
+/// the file.
 /// @throws Error (kInput, codes "dicom.*").
 [[nodiscard]] DicomSeries findDicomSeries(const std::string& path, const std::string& wanted);
 

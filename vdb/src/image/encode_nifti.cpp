@@ -16,7 +16,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the header is written as it stands");
 
-constexpr double kMillimetres = 1e3;
+constexpr double kMillimeters = 1e3;
 constexpr std::size_t kVoxelsAt = 352;  ///< the header, and four bytes that say: no extension
 
 std::string gzipped(const std::string& bytes) {
@@ -64,7 +64,7 @@ nifti_1_header headerOf(const Image& image) {
     }
     header.dim[axis + 1] = static_cast<short>(size);
     header.pixdim[axis + 1] =
-        static_cast<float>(glm::length(image.axes[static_cast<int>(axis)]) * kMillimetres);
+        static_cast<float>(glm::length(image.axes[static_cast<int>(axis)]) * kMillimeters);
     count *= static_cast<std::size_t>(size);
   }
   for (int axis = 4; axis < 8; ++axis) header.dim[axis] = 1;
@@ -81,9 +81,9 @@ nifti_1_header headerOf(const Image& image) {
   float* const rows[3] = {header.srow_x, header.srow_y, header.srow_z};
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      rows[row][column] = static_cast<float>(image.axes[column][row] * kMillimetres);
+      rows[row][column] = static_cast<float>(image.axes[column][row] * kMillimeters);
     }
-    rows[row][3] = static_cast<float>(image.origin[row] * kMillimetres);
+    rows[row][3] = static_cast<float>(image.origin[row] * kMillimeters);
   }
   std::memcpy(header.magic, "n+1", 4);
   std::memcpy(header.descrip, "palpate", 7);

@@ -38,9 +38,9 @@ std::optional<double> slopeAtZero(const Image& image) {
 }
 
 bool looksLikeDistances(const Image& image) {
-  constexpr double kPerMillimetre = 1e3;
+  constexpr double kPerMillimeter = 1e3;
   const auto slope = slopeAtZero(image);
-  return slope && std::abs(*slope / kPerMillimetre - 1.0) < 0.2;
+  return slope && std::abs(*slope / kPerMillimeter - 1.0) < 0.2;
 }
 
 std::string distancesNote(const Image& image) {

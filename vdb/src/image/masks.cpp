@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// [voxels] Headers of one grid, written by several programs in single precision or six digits, agree this well.
+/// [voxels] Headers of one grid, written by several programs in single precision or six digits,
+/// agree this well.
 constexpr double kSameGrid = 0.01;
 
 constexpr const char* kExtensions[] = {".nii.gz",   ".nii",  ".seg.nrrd", ".nrrd",

@@ -16,10 +16,10 @@ namespace palpate::vdb {
 [[nodiscard]] std::vector<std::string> maskFiles(const std::string& path,
                                                  const std::vector<std::string>& with);
 
-/// A label image whose labels are the masks, from 1 in their order, called as their files are. A voxel is of a mask
-/// where that is not 0. Overlaps go as mergeStructures() says.
-/// @throws Error (kInput): masks.grid for one that lies elsewhere, masks.values for one of several values, masks.name
-/// for two of one name; also what the files' own readers throw.
+/// A label image whose labels are the masks, from 1 in their order, called as their files are. A
+/// voxel is of a mask where that is not 0. Overlaps go as mergeStructures() says.
+/// @throws Error (kInput): masks.grid for one that lies elsewhere, masks.values for one of several
+/// values, masks.name for two of one name; also what the files' own readers throw.
 [[nodiscard]] Image readMasks(const std::string& path, const ImageOptions& options);
 [[nodiscard]] ImageInfo readMasksInfo(const std::string& path, const ImageOptions& options);
 /// Of those masks that have a code of their own.

@@ -132,7 +132,7 @@ Scalar voxelType(int datatype, const std::string& path) {
 }
 
 /// [m] in one unit of the header's spatial coordinates.
-double metresPerSpaceUnit(int code, const std::string& path, std::vector<std::string>& notes) {
+double metersPerSpaceUnit(int code, const std::string& path, std::vector<std::string>& notes) {
   switch (code) {
     case NIFTI_UNITS_METER:
       return 1.0;
@@ -294,7 +294,7 @@ NiftiHeader interpret(Header raw, int version, bool swapped, const std::string& 
   out.later_bytes = static_cast<std::uint64_t>(std::clamp(later, 0.0, 1e18));
   applyScaling(out, *nim);
 
-  const double scale = metresPerSpaceUnit(nim->xyz_units, path, out.notes);
+  const double scale = metersPerSpaceUnit(nim->xyz_units, path, out.notes);
   out.length_unit = nim->xyz_units == NIFTI_UNITS_METER    ? "m"
                     : nim->xyz_units == NIFTI_UNITS_MICRON ? "um"
                                                            : "mm";

@@ -51,7 +51,8 @@ std::vector<float> readText(const NrrdHeader& header, Oddities& odd) {
   return values;
 }
 
-/// Where the voxels begin, as a stream of what they unpack to. @throws Error if they cannot all be there.
+/// Where the voxels begin, as a stream of what they unpack to. @throws Error if they cannot all be
+/// there.
 std::unique_ptr<ByteStream> openData(const NrrdHeader& header, const std::string& path) try {
   const double bytes =
       static_cast<double>(header.count()) * static_cast<double>(bytesOf(header.coding.type));

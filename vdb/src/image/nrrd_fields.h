@@ -29,7 +29,8 @@ struct NrrdFields {
                            std::string hint = {}) const;
 };
 
-/// @throws Error (kInput): missing, empty, no NRRD file, a line that is none of a header, a field given twice.
+/// @throws Error (kInput): missing, empty, no NRRD file, a line that is none of a header, a field
+/// given twice.
 [[nodiscard]] NrrdFields readNrrdFields(const std::string& path);
 
 }  // namespace palpate::vdb

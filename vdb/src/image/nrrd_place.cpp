@@ -11,7 +11,7 @@ namespace palpate::vdb {
 namespace {
 
 /// [m] in the unit of space.
-double metresPerUnit(const NrrdFields& fields, NrrdHeader& out) {
+double metersPerUnit(const NrrdFields& fields, NrrdHeader& out) {
   const std::string* text = fields.find("spaceunits");
   out.length_unit = "mm";
   if (text == nullptr) return 1e-3;
@@ -27,10 +27,10 @@ double metresPerUnit(const NrrdFields& fields, NrrdHeader& out) {
   }
   constexpr std::pair<std::string_view, double> kUnits[] = {
       {"mm", 1e-3}, {"m", 1.0}, {"cm", 1e-2}, {"um", 1e-6}, {"µm", 1e-6}};
-  for (const auto& [known, metres] : kUnits) {
+  for (const auto& [known, meters] : kUnits) {
     if (known != name) continue;
-    out.length_unit = metres == 1e-6 ? "um" : name;
-    return metres;
+    out.length_unit = meters == 1e-6 ? "um" : name;
+    return meters;
   }
   throw fields.fail("nrrd.unit", "spaceunits", "the length unit " + *text + " is not known",
                     "m, cm, mm and um are");
@@ -135,10 +135,10 @@ std::vector<std::optional<Vec3>> readNrrdDirections(const NrrdFields& fields, st
 
 void placeNrrd(const NrrdFields& fields, const std::vector<std::optional<Vec3>>& directions,
                const ImageOptions& options, NrrdHeader& out) {
-  const double metres = metresPerUnit(fields, out);
+  const double meters = metersPerUnit(fields, out);
   if (options.affine == AffineChoice::kSpacing) {
     const Vec3 spacing = readSpacings(fields, directions, out);
-    for (int a = 0; a < 3; ++a) out.place.axes[a][a] = spacing[a] * metres;
+    for (int a = 0; a < 3; ++a) out.place.axes[a][a] = spacing[a] * meters;
     return;
   }
   if (directions.empty()) {
@@ -155,9 +155,9 @@ void placeNrrd(const NrrdFields& fields, const std::vector<std::optional<Vec3>>&
   }
   const Vec3 sign = toRas(fields, options.space);
   for (int a = 0; a < 3; ++a) {
-    out.place.axes[a] = *directions[out.spatial[static_cast<std::size_t>(a)]] * sign * metres;
+    out.place.axes[a] = *directions[out.spatial[static_cast<std::size_t>(a)]] * sign * meters;
   }
-  out.place.origin = readOrigin(fields, out.notes) * sign * metres;
+  out.place.origin = readOrigin(fields, out.notes) * sign * meters;
   if (!isUsable(out.place)) {
     throw fields.fail("nrrd.singular", "spacedirections",
                       "the space directions are singular: they give the voxels no volume in space");

@@ -23,7 +23,8 @@ std::optional<int> numberOfKey(std::string_view key) {
   return numberIn<int>(key.substr(kPrefix.size(), bar - kPrefix.size()));
 }
 
-/// The type out of Slicer's tags, "...|TerminologyEntry:CONTEXT~CATEGORY~TYPE~...|", where each is SCHEME^VALUE^MEANING.
+/// The type out of Slicer's tags, "...|TerminologyEntry:CONTEXT~CATEGORY~TYPE~...|", where each is
+/// SCHEME^VALUE^MEANING.
 std::optional<LabelCode> codeIn(std::string_view tags) {
   constexpr std::string_view kKey = "TerminologyEntry:";
   constexpr int kType = 2;

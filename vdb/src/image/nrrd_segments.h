@@ -27,8 +27,9 @@ struct Segment {
 
 class Segments {
  public:
-  /// From the header's key/value pairs. A segment keeps its label value unless one before it has the same
-  /// (in another layer); then it gets the smallest above all. @throws Error (kInput, nrrd.segment).
+  /// From the header's key/value pairs. A segment keeps its label value unless one before it has
+  /// the same (in another layer); then it gets the smallest above all. @throws Error (kInput,
+  /// nrrd.segment).
   Segments(const std::map<std::string, std::string>& pairs, int layers, std::string path);
 
   [[nodiscard]] bool empty() const noexcept { return segments_.empty(); }
@@ -37,8 +38,8 @@ class Segments {
   /// What was done to label values.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
-  /// One label image out of the layers, each of `size`. Where segments overlap, the later one in the file has the
-  /// voxel; a note says how much that is. `voxel_volume` [m3].
+  /// One label image out of the layers, each of `size`. Where segments overlap, the later one in
+  /// the file has the voxel; a note says how much that is. `voxel_volume` [m3].
   /// @throws Error (kInput, nrrd.segment, nrrd.segment_extent).
   [[nodiscard]] std::vector<float> merged(const std::vector<std::vector<float>>& layers,
                                           const std::array<int, 3>& size, double voxel_volume,

@@ -25,8 +25,9 @@ struct PlaneGrid {
   Vec3 first{0.0};         ///< [mm] position of plane 0
 };
 
-/// The planes that all positions are of. The step is the stated one if that fits, else the least gap. `margin` empty
-/// planes are added at both ends. @throws Error (kInput, dicom.spacing) if no step fits.
+/// The planes that all positions are of. The step is the stated one if that fits, else the least
+/// gap. `margin` empty planes are added at both ends. @throws Error (kInput, dicom.spacing) if no
+/// step fits.
 [[nodiscard]] PlaneGrid planeGrid(const PlaneSet& planes, int margin, const std::string& path,
                                   std::vector<std::string>& notes);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostTold = 8;
 
-std::string cubicCentimetres(double cubic_metres) { return shortNumber(cubic_metres * 1e6, 3); }
+std::string cubicCentimeters(double cubic_meters) { return shortNumber(cubic_meters * 1e6, 3); }
 
 /// The place of each structure in the order in which they are painted: the last has what it has.
 std::vector<std::size_t> paintOrder(const std::vector<Structure>& structures,
@@ -66,12 +66,12 @@ void Overlaps::tell(std::uint64_t voxels, const std::string& rule, const NameTab
   std::stable_sort(ordered.begin(), ordered.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string text = std::to_string(voxels) + " voxels (" +
-                     cubicCentimetres(static_cast<double>(voxels) * voxel_volume) + " cm^3) " +
+                     cubicCentimeters(static_cast<double>(voxels) * voxel_volume) + " cm^3) " +
                      rule + ":";
   for (std::size_t n = 0; n < ordered.size() && n < kMostTold; ++n) {
     const auto& [pair, shared] = ordered[n];
     text += (n == 0 ? " " : ", ") + names.at(pair.first) + " has " +
-            cubicCentimetres(static_cast<double>(shared) * voxel_volume) + " cm^3 of " +
+            cubicCentimeters(static_cast<double>(shared) * voxel_volume) + " cm^3 of " +
             names.at(pair.second);
   }
   if (ordered.size() > kMostTold) {

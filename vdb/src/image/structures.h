@@ -40,7 +40,8 @@ class Overlaps {
  public:
   /// So many voxels of `loser` are `winner`'s.
   void add(int winner, int loser, std::uint64_t voxels) { pairs_[{winner, loser}] += voxels; }
-  /// One note on all shared voxels, if there are any. `voxels`: their number; `rule`: who has them; `voxel_volume` [m3].
+  /// One note on all shared voxels, if there are any. `voxels`: their number; `rule`: who has them;
+  /// `voxel_volume` [m3].
   void tell(std::uint64_t voxels, const std::string& rule, const NameTable& names,
             double voxel_volume, std::vector<std::string>& notes) const;
 
@@ -48,9 +49,10 @@ class Overlaps {
   std::map<std::pair<int, int>, std::uint64_t> pairs_;
 };
 
-/// Label values of an image of `image.size`. Where structures overlap, the one that `priority` names first has the
-/// voxel; else the one of fewer voxels, of equal ones the later. `what`: "masks", for the note on shared voxels, which
-/// goes to `image.notes` as one on structures without voxels does.
+/// Label values of an image of `image.size`. Where structures overlap, the one that `priority`
+/// names first has the voxel; else the one of fewer voxels, of equal ones the later. `what`:
+/// "masks", for the note on shared voxels, which goes to `image.notes` as one on structures without
+/// voxels does.
 /// @throws Error (kInput, labels.priority) for a name that no structure has.
 [[nodiscard]] std::vector<float> mergeStructures(const std::vector<Structure>& structures,
                                                  const std::string& what,

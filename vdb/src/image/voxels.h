@@ -32,7 +32,8 @@ struct Oddities {
 void convertVoxels(std::span<unsigned char> raw, const VoxelCoding& coding, float* out,
                    Oddities& odd);
 
-/// `count` voxels from where `stream` is. @throws Error (kInput, "<format>.truncated") if it holds less.
+/// `count` voxels from where `stream` is. @throws Error (kInput, "<format>.truncated") if it holds
+/// less.
 [[nodiscard]] std::vector<float> readVoxels(ByteStream& stream, std::uint64_t count,
                                             const VoxelCoding& coding, Oddities& odd);
 

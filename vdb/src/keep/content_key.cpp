@@ -11,8 +11,8 @@
 
 namespace palpate::vdb {
 
-// Each step can be undone, so that neither half loses a difference; the two differ in multiplier and
-// turn, so that what one takes for the same the other tells apart.
+// Each step can be undone, so that neither half loses a difference; the two differ in multiplier
+// and turn, so that what one takes for the same the other tells apart.
 void ContentKey::mix(std::uint64_t word) noexcept {
   state_[0] = (state_[0] ^ word) * 0x9E3779B97F4A7C15U;
   state_[0] ^= state_[0] >> 29;

@@ -9,7 +9,8 @@
 
 namespace palpate::vdb {
 
-/// 128 bits of all that is added, in its order. Not a signature: it tells damage and change, not forgery.
+/// 128 bits of all that is added, in its order. Not a signature: it tells damage and change, not
+/// forgery.
 class ContentKey {
  public:
   /// A text with its length, so that "ab", "c" is not "a", "bc".
@@ -23,7 +24,8 @@ class ContentKey {
   }
   /// Bytes as they are; where they are cut into pieces counts.
   ContentKey& addBytes(const void* bytes, std::size_t count);
-  /// All bytes of a file, but for the last `but` of them; false if they cannot be read. Stops as pollStop() does.
+  /// All bytes of a file, but for the last `but` of them; false if they cannot be read. Stops as
+  /// pollStop() does.
   bool addFile(const std::string& path, std::uint64_t but = 0);
 
   /// 32 hexadecimal digits.

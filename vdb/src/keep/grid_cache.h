@@ -9,10 +9,11 @@
 
 namespace palpate::vdb {
 
-/// Files in a folder of the user's own, each named after what it was made of (`key`), and sealed: its end says whose key it
-/// has and the hash of all before. A file is written beside its place and renamed, and taken only if its seal and, of a grid, its
-/// certificate hold; one that is damaged is made again. When all together are larger than the bound, those that were used
-/// the longest time ago go. Failing to keep something is not an error.
+/// Files in a folder of the user's own, each named after what it was made of (`key`), and sealed:
+/// its end says whose key it has and the hash of all before. A file is written beside its place and
+/// renamed, and taken only if its seal and, of a grid, its certificate hold; one that is damaged is
+/// made again. When all together are larger than the bound, those that were used the longest time
+/// ago go. Failing to keep something is not an error.
 class GridCache {
  public:
   static constexpr std::uint64_t kMostBytes = 4'000'000'000;
@@ -30,7 +31,8 @@ class GridCache {
   /// `key`: hexadecimal digits, and what of a '-'. `max_memory` as of readVdb().
   [[nodiscard]] std::optional<LevelSet> find(const std::string& key, Sampler sampler,
                                              std::uint64_t max_memory = 0) const;
-  /// `grid` has its certificate. One larger than a quarter of the bound is not kept. Whether it was.
+  /// `grid` has its certificate. One larger than a quarter of the bound is not kept. Whether it
+  /// was.
   bool keep(const std::string& key, const LevelSet& grid) const;
 
   /// A few words about something that takes long to read.

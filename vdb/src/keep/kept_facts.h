@@ -16,12 +16,13 @@ struct KeptFacts {
   LevelSetInfo made;  ///< the grid as it was made, before its band was widened
 };
 
-/// `grid` with the facts in its metadata. Notes about `what` will be about whatever the grid is called then, all others
-/// about its file.
+/// `grid` with the facts in its metadata. Notes about `what` will be about whatever the grid is
+/// called then, all others about its file.
 [[nodiscard]] LevelSet withFacts(const LevelSet& grid, const KeptFacts& facts,
                                  const std::string& what);
 
-/// The facts of a grid, called `what` now and made of `file`. The grid's own metadata stay in `made`.
+/// The facts of a grid, called `what` now and made of `file`. The grid's own metadata stay in
+/// `made`.
 [[nodiscard]] KeptFacts factsOf(const LevelSet& grid, const std::string& what,
                                 const std::string& file);
 

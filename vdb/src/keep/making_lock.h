@@ -5,9 +5,10 @@
 
 namespace palpate::vdb {
 
-/// A lock on a byte of the file `locks` in a folder, which the kernel gives back whatever ends the process. It belongs to the
-/// object, so that threads of one process wait for each other too. Where there can be none (a folder that cannot be written
-/// to, a file system without locks) there is none, and the work is done as if alone.
+/// A lock on a byte of the file `locks` in a folder, which the kernel gives back whatever ends the
+/// process. It belongs to the object, so that threads of one process wait for each other too. Where
+/// there can be none (a folder that cannot be written to, a file system without locks) there is
+/// none, and the work is done as if alone.
 class MakingLock {
  public:
   /// `key`: 16 hexadecimal digits or more. Takes nothing yet.

@@ -32,7 +32,8 @@ SourceState::File SourceState::look(const std::string& path) {
   file.device = about.st_dev;
   file.node = about.st_ino;
   file.bytes = about.st_size;
-  // When it was written to, and when anything about it changed: who puts another file in its place may keep the first.
+  // When it was written to, and when anything about it changed: who puts another file in its place
+  // may keep the first.
   file.times = {about.st_mtim.tv_sec, about.st_mtim.tv_nsec, about.st_ctim.tv_sec,
                 about.st_ctim.tv_nsec};
   return file;

@@ -15,15 +15,17 @@ class SourceState {
   SourceState() = default;
   /// Of files and folders as they are, whose bytes nobody asks for.
   explicit SourceState(const std::vector<std::string>& files);
-  /// Adds to `key` the bytes of the files, and their names within their folders where there are several: they may mean
-  /// something. isKnown() is false if one cannot be read. A file that comes into one of `folders`, or leaves it, is a change.
+  /// Adds to `key` the bytes of the files, and their names within their folders where there are
+  /// several: they may mean something. isKnown() is false if one cannot be read. A file that comes
+  /// into one of `folders`, or leaves it, is a change.
   SourceState(const std::vector<std::string>& files, ContentKey& key,
               const std::vector<std::string>& folders = {});
 
   [[nodiscard]] bool isKnown() const noexcept { return is_known_; }
   /// Whether both are of the same files as they were then.
   [[nodiscard]] bool isOfTheSame(const SourceState& other) const { return files_ == other.files_; }
-  /// Whether no file was written to or replaced since: what was made of them is of the bytes that were looked at.
+  /// Whether no file was written to or replaced since: what was made of them is of the bytes that
+  /// were looked at.
   [[nodiscard]] bool isUnchanged() const;
 
  private:

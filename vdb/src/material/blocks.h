@@ -1,6 +1,6 @@
 #pragma once
-/// The voxels of a material grid, laid out for reading: blocks of 8^3 with a rim of one voxel, so that the 27
-/// voxels of a sample lie in one block.
+/// The voxels of a material grid, laid out for reading: blocks of 8^3 with a rim of one voxel, so
+/// that the 27 voxels of a sample lie in one block.
 
 #include <array>
 #include <cstdint>
@@ -34,7 +34,8 @@ struct MaterialGrid::Blocks {
     const int number = i / kSide + count[0] * (j / kSide + count[1] * (k / kSide));
     return table[static_cast<std::size_t>(number)];
   }
-  /// Among the voxels of a block, where the 3^3 about one begin: its rim is one voxel ahead of them.
+  /// Among the voxels of a block, where the 3^3 about one begin: its rim is one voxel ahead of
+  /// them.
   [[nodiscard]] static std::size_t cornerOf(int i, int j, int k) noexcept {
     const int corner = ((k % kSide) * kRow + j % kSide) * kRow + i % kSide;
     return static_cast<std::size_t>(corner);

@@ -9,9 +9,9 @@ namespace palpate::vdb {
 namespace {
 
 /// The voxels across the faces of one.
-class Neighbours {
+class Neighbors {
  public:
-  explicit Neighbours(const std::array<int, 3>& size)
+  explicit Neighbors(const std::array<int, 3>& size)
       : size_{static_cast<std::size_t>(size[0]), static_cast<std::size_t>(size[1]),
               static_cast<std::size_t>(size[2])} {}
 
@@ -35,9 +35,9 @@ class Neighbours {
 }  // namespace
 
 bool fillUnknown(const std::array<int, 3>& size, std::vector<float>& values) {
-  const Neighbours neighbours(size);
-  // A ring's voxels are marked when they are found, and get their values together, so that none counts for
-  // another of its ring.
+  const Neighbors neighbors(size);
+  // A ring's voxels are marked when they are found, and get their values together, so that none
+  // counts for another of its ring.
   std::vector<std::size_t> ring;
   std::vector<bool> found(values.size(), false);
   bool any_known = false;
@@ -49,7 +49,7 @@ bool fillUnknown(const std::array<int, 3>& size, std::vector<float>& values) {
   for (std::size_t voxel = 0; voxel < values.size(); ++voxel) {
     if (std::isnan(values[voxel])) continue;
     any_known = true;
-    neighbours.forEach(voxel, reach);
+    neighbors.forEach(voxel, reach);
   }
   std::vector<float> means;
   while (!ring.empty()) {
@@ -57,7 +57,7 @@ bool fillUnknown(const std::array<int, 3>& size, std::vector<float>& values) {
     for (const std::size_t voxel : ring) {
       double sum = 0.0;
       int count = 0;
-      neighbours.forEach(voxel, [&](std::size_t other) {
+      neighbors.forEach(voxel, [&](std::size_t other) {
         if (std::isnan(values[other])) return;
         sum += static_cast<double>(values[other]);
         ++count;
@@ -66,7 +66,7 @@ bool fillUnknown(const std::array<int, 3>& size, std::vector<float>& values) {
     }
     const std::vector<std::size_t> filled = std::exchange(ring, {});
     for (std::size_t i = 0; i < filled.size(); ++i) values[filled[i]] = means[i];
-    for (const std::size_t voxel : filled) neighbours.forEach(voxel, reach);
+    for (const std::size_t voxel : filled) neighbors.forEach(voxel, reach);
   }
   return any_known;
 }

@@ -88,7 +88,7 @@ double valueScale(const openvdb::GridBase& grid, const MaterialGridRequest& requ
 }
 
 /// Where voxel (0, 0, 0) of `box` is, and the steps from voxel to voxel [m].
-void placeOf(const openvdb::FloatGrid& grid, const openvdb::CoordBBox& box, double metres,
+void placeOf(const openvdb::FloatGrid& grid, const openvdb::CoordBBox& box, double meters,
              const std::string& path, Image& image) {
   if (!grid.transform().isLinear()) {
     throw inputError("vdb.transform",
@@ -97,12 +97,12 @@ void placeOf(const openvdb::FloatGrid& grid, const openvdb::CoordBBox& box, doub
   }
   const auto world = [&](const openvdb::Vec3d& index) {
     const openvdb::Vec3d p = grid.indexToWorld(index);
-    return Vec3(p.x(), p.y(), p.z()) * metres;
+    return Vec3(p.x(), p.y(), p.z()) * meters;
   };
   // By the map's own matrix, so that no difference of far points rounds.
   const openvdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
   for (int axis = 0; axis < 3; ++axis) {
-    for (int i = 0; i < 3; ++i) image.axes[axis][i] = m(axis, i) * metres;
+    for (int i = 0; i < 3; ++i) image.axes[axis][i] = m(axis, i) * meters;
   }
   image.origin = world(box.min().asVec3d());
   const double volume = glm::determinant(image.axes);
@@ -112,7 +112,7 @@ void placeOf(const openvdb::FloatGrid& grid, const openvdb::CoordBBox& box, doub
   }
 }
 
-Image denseOf(const openvdb::FloatGrid& grid, double metres, double scale,
+Image denseOf(const openvdb::FloatGrid& grid, double meters, double scale,
               const std::string& path) {
   const std::string name = "grid '" + grid.getName() + "'";
   const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
@@ -128,7 +128,7 @@ Image denseOf(const openvdb::FloatGrid& grid, double metres, double scale,
     }
     image.size[static_cast<std::size_t>(axis)] = static_cast<int>(length);
   }
-  placeOf(grid, box, metres, path, image);
+  placeOf(grid, box, meters, path, image);
   image.values.assign(static_cast<std::size_t>(count), std::numeric_limits<float>::quiet_NaN());
   for (auto on = grid.cbeginValueOn(); on; ++on) {
     const float value = *on;
@@ -155,9 +155,9 @@ Image denseOf(const openvdb::FloatGrid& grid, double metres, double scale,
   return image;
 }
 
-openvdb::math::Transform::Ptr transformOf(const Image& image, double metres) {
-  const Mat3 axes = image.axes / metres;
-  const Vec3 origin = image.origin / metres;
+openvdb::math::Transform::Ptr transformOf(const Image& image, double meters) {
+  const Mat3 axes = image.axes / meters;
+  const Vec3 origin = image.origin / meters;
   const double voxel = axes[0].x;
   if (voxel > 0.0 && axes == Mat3(voxel)) {
     auto transform = openvdb::math::Transform::createLinearTransform(voxel);
@@ -177,13 +177,13 @@ openvdb::math::Transform::Ptr transformOf(const Image& image, double metres) {
 openvdb::FloatGrid::Ptr toOpenVdb(const NamedMaterialGrid& named) {
   initializeOpenVdb();
   const Image image = named.grid->voxels();
-  const std::optional<double> metres = metresPer(named.length_unit);
-  if (!metres) {
+  const std::optional<double> meters = metersPer(named.length_unit);
+  if (!meters) {
     throw inputError("unit.unknown", "unknown length unit '" + named.length_unit + "'",
                      "use m, cm, mm or um");
   }
   auto grid = openvdb::FloatGrid::create(0.0F);
-  grid->setTransform(transformOf(image, *metres));
+  grid->setTransform(transformOf(image, *meters));
   auto writer = grid->getAccessor();
   std::size_t n = 0;
   for (int k = 0; k < image.size[2]; ++k) {
@@ -221,14 +221,14 @@ MaterialGridPtr readMaterialGrid(const std::string& path, const MaterialGridRequ
   requireFogVolume(*entry.grid, path);
   const double scale = valueScale(*entry.grid, request, path);
   const std::string unit = unitOf(*entry.grid, request.length_unit_if_missing, path);
-  const std::optional<double> metres = metresPer(unit);
-  if (!metres) {
+  const std::optional<double> meters = metersPer(unit);
+  if (!meters) {
     throw inputError("unit.unknown", "unknown length unit '" + unit + "'", "use m, cm, mm or um",
                      path);
   }
   return readingFrom(path, [&] {
     const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.read(entry));
-    Image image = denseOf(*grid, *metres, scale, path);
+    Image image = denseOf(*grid, *meters, scale, path);
     image.source = path + ": " + entry.name();
     // In another unit the steps would be others.
     const Quantisation known = scale == 1.0 ? quantisationOf(*grid) : Quantisation{};

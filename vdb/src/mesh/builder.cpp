@@ -58,8 +58,8 @@ std::uint32_t MeshBuilder::weld(const Vec3& p) {
   return entry->second;
 }
 
-/// A triangle with two corners in one point has no area, and its other two sides cancel. One with three
-/// corners in a line has no area either, but without it its neighbors would not meet.
+/// A triangle with two corners in one point has no area, and its other two sides cancel. One with
+/// three corners in a line has no area either, but without it its neighbors would not meet.
 void MeshBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   if (a == b || b == c || c == a) {
     ++mesh_.dropped_triangles;

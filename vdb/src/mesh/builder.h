@@ -15,18 +15,19 @@ namespace palpate::vdb {
 
 class MeshBuilder {
  public:
-  MeshBuilder(std::string source, double metres_per_unit) : metres_per_unit_(metres_per_unit) {
+  MeshBuilder(std::string source, double meters_per_unit) : meters_per_unit_(meters_per_unit) {
     mesh_.source = std::move(source);
   }
 
-  /// Number of the welded vertex at `p` [units of the file]. `where` says which one it is in the file
+  /// Number of the welded vertex at `p` [units of the file]. `where` says which one it is in the
+  /// file
   /// ("vertex 7 (from 0)"), `line` where that is.
   /// @throws Error (kInput, mesh.not_finite)
   template <typename Where>
   std::uint32_t addVertex(const Vec3& p, const Where& where, int line = 0) {
     if (!isFinite(p)) refuseVertex(p, where(), line);
     if (++vertices_ % 1024 == 0) pollStop();
-    return weld(p * metres_per_unit_);
+    return weld(p * meters_per_unit_);
   }
 
   /// Corners are numbers from addVertex(); polygons are cut into triangles by their ears.
@@ -57,7 +58,7 @@ class MeshBuilder {
   std::uint64_t spent_ = 0;  ///< tests of ears
   std::uint64_t polygons_ = 0;
   std::uint64_t vertices_ = 0;
-  double metres_per_unit_;
+  double meters_per_unit_;
   Mesh mesh_;
   std::unordered_map<std::array<std::uint64_t, 3>, std::uint32_t, BitsHash> numbers_;
 };
@@ -67,16 +68,17 @@ class MeshBuilder {
                               std::size_t count, int line = 0);
 
 /// STL, ASCII and binary; told apart by the length of the file, not by its first word.
-[[nodiscard]] Mesh readStl(const std::string& path, double metres_per_unit);
+[[nodiscard]] Mesh readStl(const std::string& path, double meters_per_unit);
 
 /// Wavefront OBJ: vertices and faces; normals, groups and materials are passed over.
-[[nodiscard]] Mesh readObj(const std::string& path, double metres_per_unit);
+[[nodiscard]] Mesh readObj(const std::string& path, double meters_per_unit);
 
 /// PLY, ASCII and binary of either byte order.
-[[nodiscard]] Mesh readPly(const std::string& path, double metres_per_unit);
+[[nodiscard]] Mesh readPly(const std::string& path, double meters_per_unit);
 
-/// Legacy VTK polydata, ASCII and binary: polygons and triangle strips; points and lines are passed over.
-[[nodiscard]] Mesh readVtk(const std::string& path, double metres_per_unit);
+/// Legacy VTK polydata, ASCII and binary: polygons and triangle strips; points and lines are passed
+/// over.
+[[nodiscard]] Mesh readVtk(const std::string& path, double meters_per_unit);
 
 /// What the first lines of a file say of its space; kStated if they do not.
 [[nodiscard]] Space statedSpace(const std::string& path);

@@ -94,8 +94,8 @@ EdgeCells::EdgeCells(const std::vector<Vec3>& vertices, const std::vector<MeshTr
   std::vector<std::pair<double, std::uint32_t>> near;
   for (const auto& [x, y, z] : cells) {
     const Vec3 center = lo_ + size * (Vec3(x, y, z) + 0.5);
-    // Nothing farther from the middle than the nearest and the cell's diameter is nearest anywhere in it. That
-    // nearest is no farther than the edge that the cell is about.
+    // Nothing farther from the middle than the nearest and the cell's diameter is nearest anywhere
+    // in it. That nearest is no farther than the edge that the cell is about.
     near.clear();
     double least = reach + radius;
     triangle_tree.visitMeeting(

@@ -26,8 +26,8 @@ struct NearestPoint {
 /// The nearest point of the stretch from a to b.
 [[nodiscard]] Vec3 nearestOf(const Vec3& a, const Vec3& b, const Vec3& p) noexcept;
 
-/// Cubes of space about sharp edges, each with the triangles one of which is nearest to any point in it, and with the
-/// edges within reach.
+/// Cubes of space about sharp edges, each with the triangles one of which is nearest to any point
+/// in it, and with the edges within reach.
 class EdgeCells {
  public:
   struct Lists {

@@ -38,8 +38,9 @@ class Bytes {
   std::string out_;
 };
 
-/// As it is in a file of floats: vertices in one place then are one, and triangles with two corners there are
-/// left out. A side that is gone takes both its triangles with it, so that what was closed stays so.
+/// As it is in a file of floats: vertices in one place then are one, and triangles with two corners
+/// there are left out. A side that is gone takes both its triangles with it, so that what was
+/// closed stays so.
 Mesh inFloats(const Mesh& mesh, double per_unit) {
   struct Hash {
     std::size_t operator()(const std::array<std::uint32_t, 3>& bits) const noexcept {
@@ -213,7 +214,7 @@ MeshFormat meshFormat(const std::string& path) {
                    "meshes are written as .stl, .obj, .ply or .glb", path);
 }
 
-std::string encodeMesh(const Mesh& mesh, MeshFormat format, double metres_per_unit) {
+std::string encodeMesh(const Mesh& mesh, MeshFormat format, double meters_per_unit) {
   if (mesh.triangles.empty()) {
     throw inputError("mesh.no_faces", "there is no triangle to write", "", mesh.source);
   }
@@ -225,11 +226,11 @@ std::string encodeMesh(const Mesh& mesh, MeshFormat format, double metres_per_un
   }
   switch (format) {
     case MeshFormat::kStl:
-      return encodeStl(mesh, metres_per_unit);
+      return encodeStl(mesh, meters_per_unit);
     case MeshFormat::kObj:
-      return encodeObj(mesh, metres_per_unit);
+      return encodeObj(mesh, meters_per_unit);
     case MeshFormat::kPly:
-      return encodePly(mesh, metres_per_unit);
+      return encodePly(mesh, meters_per_unit);
     case MeshFormat::kGlb:
       break;
   }

@@ -28,8 +28,8 @@ struct FlatFaces {
   std::vector<FlatEdge> edges;
 };
 
-/// The faces of a closed mesh: the largest triangle first, and what hangs together with it within `tolerance` of its
-/// plane; then the next. Nothing if there are more than `most`.
+/// The faces of a closed mesh: the largest triangle first, and what hangs together with it within
+/// `tolerance` of its plane; then the next. Nothing if there are more than `most`.
 [[nodiscard]] std::optional<FlatFaces> findFlatFaces(
     const std::vector<Vec3>& vertices, const std::vector<std::array<std::uint32_t, 3>>& triangles,
     double tolerance, std::size_t most);

@@ -11,8 +11,8 @@ namespace {
 
 class Obj {
  public:
-  Obj(std::string_view text, const std::string& path, double metres_per_unit)
-      : scanner_{text}, path_(path), builder_(path, metres_per_unit) {}
+  Obj(std::string_view text, const std::string& path, double meters_per_unit)
+      : scanner_{text}, path_(path), builder_(path, meters_per_unit) {}
 
   Mesh read() {
     for (std::string_view key = scanner_.word(); !key.empty(); key = scanner_.word()) {
@@ -29,7 +29,8 @@ class Obj {
                 {"mesh.unreadable", what, "export the mesh again", path_, scanner_.line});
   }
 
-  /// The next word of this line, and of the next one where this ends in a backslash; empty at the end.
+  /// The next word of this line, and of the next one where this ends in a backslash; empty at the
+  /// end.
   std::string_view wordOfLine() {
     for (;;) {
       std::string_view word = scanner_.wordOfLine();
@@ -95,9 +96,9 @@ class Obj {
 
 }  // namespace
 
-Mesh readObj(const std::string& path, double metres_per_unit) {
+Mesh readObj(const std::string& path, double meters_per_unit) {
   const std::string bytes = readBytes(path);
-  return Obj(bytes, path, metres_per_unit).read();
+  return Obj(bytes, path, meters_per_unit).read();
 }
 
 }  // namespace palpate::vdb

@@ -34,8 +34,8 @@ constexpr ScalarName kScalars[] = {
 
 class Ply {
  public:
-  Ply(std::string_view bytes, const std::string& path, double metres_per_unit)
-      : input_{bytes}, path_(path), builder_(path, metres_per_unit) {}
+  Ply(std::string_view bytes, const std::string& path, double meters_per_unit)
+      : input_{bytes}, path_(path), builder_(path, meters_per_unit) {}
 
   Mesh read() {
     readHeader();
@@ -204,13 +204,13 @@ class Ply {
 
 }  // namespace
 
-Mesh readPly(const std::string& path, double metres_per_unit) {
+Mesh readPly(const std::string& path, double meters_per_unit) {
   const std::string bytes = readBytes(path);
   if (!bytes.starts_with("ply")) {
     throw inputError("mesh.unreadable", "this is no PLY file: it does not begin with 'ply'", "",
                      path);
   }
-  return Ply(bytes, path, metres_per_unit).read();
+  return Ply(bytes, path, meters_per_unit).read();
 }
 
 }  // namespace palpate::vdb

@@ -17,9 +17,11 @@
 namespace palpate::vdb {
 namespace {
 
-/// Of the mesh's size: what lies as near to a plane lies in it. Files of floats are off by up to 1e-7.
+/// Of the mesh's size: what lies as near to a plane lies in it. Files of floats are off by up to
+/// 1e-7.
 constexpr double kFlat = 1e-6;
-/// Deeper nests of pockets within pockets are none that a tree of half-spaces is better for than a grid.
+/// Deeper nests of pockets within pockets are none that a tree of half-spaces is better for than a
+/// grid.
 constexpr int kDeepest = 8;
 
 /// A tree over half-spaces within a box that is known.
@@ -48,10 +50,10 @@ class Polyhedron final : public Field {
   double feature_;
 };
 
-/// Builds the tree from outside in. A solid is the intersection of the half-spaces of those faces that lie on its
-/// convex hull, less the pockets that the hull closes. A pocket is bounded by faces that hang together without
-/// crossing an edge of the hull; its lids lie in planes of the hull, which hold already, so that it is the
-/// solid of its own faces, turned inside out, built alike.
+/// Builds the tree from outside in. A solid is the intersection of the half-spaces of those faces
+/// that lie on its convex hull, less the pockets that the hull closes. A pocket is bounded by faces
+/// that hang together without crossing an edge of the hull; its lids lie in planes of the hull,
+/// which hold already, so that it is the solid of its own faces, turned inside out, built alike.
 class TreeBuilder {
  public:
   TreeBuilder(const std::vector<Vec3>& vertices, const FlatFaces& flat, double tolerance)
@@ -146,7 +148,8 @@ class TreeBuilder {
     return list;
   }
 
-  /// Whether a plane through the edge has all points on one side: seen along it, they leave half a turn free.
+  /// Whether a plane through the edge has all points on one side: seen along it, they leave half a
+  /// turn free.
   [[nodiscard]] bool isOnHull(const FlatEdge& edge,
                               const std::vector<std::uint32_t>& points) const {
     const Vec3& base = vertices_[edge.from];
@@ -226,7 +229,8 @@ bool agrees(const Field& tree, const std::vector<Vec3>& vertices,
   return true;
 }
 
-/// Whether some triangles tell already that there are too many faces, before the whole mesh is looked at.
+/// Whether some triangles tell already that there are too many faces, before the whole mesh is
+/// looked at.
 bool hasManyFaces(const Mesh& mesh, std::size_t most_faces) {
   std::vector<Vec3> normals;
   const std::size_t step = 1 + mesh.triangles.size() / (8 * most_faces + 8);
@@ -264,7 +268,8 @@ FieldPtr polyhedronField(const Mesh& mesh, std::size_t most_faces) {
   Box3 box;
   for (const SolidPart& part : solid.parts) box = box.unitedWith(part.box);
   const Vec3 lengths = box.size();
-  // What a grid of it would have for voxels, so that whoever bakes it finer or coarser has a measure.
+  // What a grid of it would have for voxels, so that whoever bakes it finer or coarser has a
+  // measure.
   const double feature = std::max({lengths.x, lengths.y, lengths.z}) / 128.0;
   std::size_t left = most_faces;
   for (std::uint32_t part = 0; part < solid.parts.size(); ++part) {

@@ -20,7 +20,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Assimp drops faces whose indices are out of range and tells only its log, which is one for the process.
+/// Assimp drops faces whose indices are out of range and tells only its log, which is one for the
+/// process.
 class DroppedFaces final : public Assimp::LogStream {
  public:
   DroppedFaces() : lock_(mutex()), created_(Assimp::DefaultLogger::isNullLogger()) {
@@ -95,7 +96,7 @@ class Collector {
   MeshBuilder& builder_;
 };
 
-Mesh parseWithAssimp(const std::string& path, double metres_per_unit) {
+Mesh parseWithAssimp(const std::string& path, double meters_per_unit) {
   const DroppedFaces dropped;
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(path, 0);
@@ -112,7 +113,7 @@ Mesh parseWithAssimp(const std::string& path, double metres_per_unit) {
     throw inputError("mesh.index", "some faces name vertices that are not there",
                      "the file is damaged or was written wrongly; export the mesh again", path);
   }
-  MeshBuilder builder(path, metres_per_unit);
+  MeshBuilder builder(path, meters_per_unit);
   Collector(*scene, path, builder).collect(*scene->mRootNode, aiMatrix4x4());
   return builder.take();
 }
@@ -133,12 +134,12 @@ Mesh takeMesh(ChildReader& in) {
   return mesh;
 }
 
-Mesh readWithAssimp(const std::string& path, double metres_per_unit) {
-  if (!libraryLimits().in_child) return parseWithAssimp(path, metres_per_unit);
+Mesh readWithAssimp(const std::string& path, double meters_per_unit) {
+  if (!libraryLimits().in_child) return parseWithAssimp(path, meters_per_unit);
   const ChildTask task{std::filesystem::file_size(path), "mesh.unreadable", "Assimp",
                        "the file may be damaged; export the mesh again, as STL, OBJ or PLY", path};
   ChildReader result =
-      runInChild(task, [&](ChildWriter& out) { put(out, parseWithAssimp(path, metres_per_unit)); });
+      runInChild(task, [&](ChildWriter& out) { put(out, parseWithAssimp(path, meters_per_unit)); });
   return takeMesh(result);
 }
 
@@ -174,17 +175,17 @@ std::string readBytes(const std::string& path) {
 
 namespace {
 
-// STL, OBJ and PLY are read by our own code: of files that were cut short Assimp 5.2.5 takes some for
-// whole and crashes on others, and it cannot say which line is wrong.
-Mesh readAsItIs(const std::string& path, double metres_per_unit) {
+// STL, OBJ and PLY are read by our own code: of files that were cut short Assimp 5.2.5 takes some
+// for whole and crashes on others, and it cannot say which line is wrong.
+Mesh readAsItIs(const std::string& path, double meters_per_unit) {
   const std::string extension = extensionOf(path);
-  if (extension == ".stl") return readStl(path, metres_per_unit);
-  if (extension == ".ply") return readPly(path, metres_per_unit);
-  if (extension == ".obj") return readObj(path, metres_per_unit);
-  if (extension == ".vtk") return readVtk(path, metres_per_unit);
+  if (extension == ".stl") return readStl(path, meters_per_unit);
+  if (extension == ".ply") return readPly(path, meters_per_unit);
+  if (extension == ".obj") return readObj(path, meters_per_unit);
+  if (extension == ".vtk") return readVtk(path, meters_per_unit);
   openFile(path);
   if (extension == ".gltf" || extension == ".glb") checkGltf(readBytes(path), extension, path);
-  return readWithAssimp(path, metres_per_unit);
+  return readWithAssimp(path, meters_per_unit);
 }
 
 }  // namespace
@@ -194,8 +195,8 @@ std::string prescribedUnit(const std::string& path) {
   return extension == ".gltf" || extension == ".glb" ? "m" : "";
 }
 
-Mesh readMesh(const std::string& path, double metres_per_unit, Space space) {
-  Mesh mesh = readAsItIs(path, metres_per_unit);
+Mesh readMesh(const std::string& path, double meters_per_unit, Space space) {
+  Mesh mesh = readAsItIs(path, meters_per_unit);
   const Space stated = statedSpace(path);
   mesh.space_is_stated = space == Space::kStated && stated != Space::kStated;
   mesh.space = space != Space::kStated ? space : stated == Space::kLps ? stated : Space::kRas;

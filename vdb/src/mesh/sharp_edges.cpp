@@ -14,13 +14,14 @@
 namespace palpate::vdb {
 namespace {
 
-/// [voxels] As near to a sharp edge the triangles answer; a grid's spline reaches 4.9 voxels and is at full accuracy
-/// beyond four of an edge. Over the next voxel they hand over.
+/// [voxels] As near to a sharp edge the triangles answer; a grid's spline reaches 4.9 voxels and is
+/// at full accuracy beyond four of an edge. Over the next voxel they hand over.
 constexpr double kExact = 4.0;
 constexpr double kReach = 5.0;
 /// [voxels] The grid rounds an edge off by less: what is farther from its surface is none of it.
 constexpr double kMostRounding = 2.0;
-/// [voxels] The same farther than kMostRounding from every sharp edge, where the grid is far more exact than that.
+/// [voxels] The same farther than kMostRounding from every sharp edge, where the grid is far more
+/// exact than that.
 constexpr double kMostOff = 0.5;
 
 /// [voxels] Nearer to an edge or corner than that nothing is said to bend.
@@ -69,12 +70,14 @@ class SharpEdges final : public Field {
     return smooth;
   }
 
-  /// Tells of places [m] on triangles, where triangles answer, that are not on the surface of the solid: on walls within it.
+  /// Tells of places [m] on triangles, where triangles answer, that are not on the surface of the
+  /// solid: on walls within it.
   template <typename Tell>
   void forInnerWalls(const Tell& tell) const {
     for (const MeshTriangle& t : surface_.triangles) {
       pollStop();
-      // In rows along the longest side, so that a needle takes no more places than its length asks for.
+      // In rows along the longest side, so that a needle takes no more places than its length asks
+      // for.
       std::size_t apex = 0;
       for (std::size_t n = 1; n < 3; ++n) {
         if (glm::length(sideOpposite(t, n)) > glm::length(sideOpposite(t, apex))) apex = n;
@@ -197,8 +200,9 @@ class SharpEdges final : public Field {
       return out;
     }
     out.gradient = sign / distance * way;
-    // By an edge the surface bends all at once. As a slide goes no farther than the normal turns by half a radian, it
-    // would creep over the edge; taken for flat, it goes over it and is pulled back.
+    // By an edge the surface bends all at once. As a slide goes no farther than the normal turns by
+    // half a radian, it would creep over the edge; taken for flat, it goes over it and is pulled
+    // back.
     if (distance < kCreep * voxel_) return out;
     const double bend = sign / distance;
     out.hessian = (Mat3(1.0) - outer(out.gradient, out.gradient)) * bend;
@@ -224,8 +228,9 @@ double angleAt(const Vec3& corner, const Vec3& b, const Vec3& c) {
   return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
 }
 
-/// Turns each part as the solid has it that was baked (one that is inside out is solid all the same, one that is turned within
-/// another is a cavity), and drops those that are walls within the solid. Vertices are in meters.
+/// Turns each part as the solid has it that was baked (one that is inside out is solid all the
+/// same, one that is turned within another is a cavity), and drops those that are walls within the
+/// solid. Vertices are in meters.
 void keepSurface(Solid& solid, const Field& baked, double voxel) {
   std::vector<double> outward(solid.parts.size(), 0.0);
   std::vector<bool> is_surface(solid.parts.size(), false);
@@ -344,7 +349,7 @@ SharpField withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double
   }
   if (made.left_to_grid > 0) {
     throw inputError("mesh.sharp_inner",
-                     "by every sharp edge, at " + eachInMillimetres(made.place) +
+                     "by every sharp edge, at " + eachInMillimeters(made.place) +
                          " for one, is a wall that is not on the surface of the solid: parts "
                          "overlap there, or the grid has lost it",
                      "make the mesh one solid in a mesh editor; or leave sharp edges to the grid",

@@ -6,8 +6,8 @@
 
 namespace palpate::vdb {
 
-// 3D Slicer writes SPACE=RAS or SPACE=LPS into the title of VTK files, the header of STL files and comments of
-// PLY and OBJ files, always among the first lines.
+// 3D Slicer writes SPACE=RAS or SPACE=LPS into the title of VTK files, the header of STL files and
+// comments of PLY and OBJ files, always among the first lines.
 Space statedSpace(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 1024> head{};

@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kHeaderBytes = 80 + 4;
 constexpr std::size_t kTriangleBytes = 50;
 
-Mesh readBinary(const std::string& bytes, const std::string& path, double metres_per_unit) {
-  MeshBuilder builder(path, metres_per_unit);
+Mesh readBinary(const std::string& bytes, const std::string& path, double meters_per_unit) {
+  MeshBuilder builder(path, meters_per_unit);
   for (std::size_t at = kHeaderBytes; at < bytes.size(); at += kTriangleBytes) {
     std::array<std::uint32_t, 3> corners{};
     for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -31,8 +31,8 @@ Mesh readBinary(const std::string& bytes, const std::string& path, double metres
 
 class AsciiStl {
  public:
-  AsciiStl(std::string_view text, const std::string& path, double metres_per_unit)
-      : scanner_{text}, path_(path), builder_(path, metres_per_unit) {}
+  AsciiStl(std::string_view text, const std::string& path, double meters_per_unit)
+      : scanner_{text}, path_(path), builder_(path, meters_per_unit) {}
 
   Mesh read() {
     std::vector<std::uint32_t> corners;
@@ -90,18 +90,18 @@ class AsciiStl {
 
 }  // namespace
 
-Mesh readStl(const std::string& path, double metres_per_unit) {
+Mesh readStl(const std::string& path, double meters_per_unit) {
   const std::string bytes = readBytes(path);
   std::uint32_t count = 0;
   if (bytes.size() >= kHeaderBytes) std::memcpy(&count, bytes.data() + 80, sizeof count);
   const std::size_t wanted = kHeaderBytes + kTriangleBytes * static_cast<std::size_t>(count);
   if (bytes.size() >= kHeaderBytes && bytes.size() == wanted) {
-    return readBinary(bytes, path, metres_per_unit);
+    return readBinary(bytes, path, meters_per_unit);
   }
   const std::size_t word = bytes.find_first_not_of(" \t\r\n");
   const bool is_text = word != std::string::npos && bytes.compare(word, 5, "solid") == 0 &&
                        bytes.find('\0') == std::string::npos;
-  if (is_text) return AsciiStl(bytes, path, metres_per_unit).read();
+  if (is_text) return AsciiStl(bytes, path, meters_per_unit).read();
   if (bytes.size() < kHeaderBytes) {
     throw inputError("mesh.unreadable",
                      "this is no STL file: it has " + std::to_string(bytes.size()) +

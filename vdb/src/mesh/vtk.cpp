@@ -24,8 +24,8 @@ constexpr ScalarName kScalars[] = {
 
 class Vtk {
  public:
-  Vtk(std::string_view bytes, const std::string& path, double metres_per_unit)
-      : input_{bytes}, path_(path), builder_(path, metres_per_unit) {}
+  Vtk(std::string_view bytes, const std::string& path, double meters_per_unit)
+      : input_{bytes}, path_(path), builder_(path, meters_per_unit) {}
 
   Mesh read() {
     readHeader();
@@ -263,14 +263,14 @@ class Vtk {
 
 }  // namespace
 
-Mesh readVtk(const std::string& path, double metres_per_unit) {
+Mesh readVtk(const std::string& path, double meters_per_unit) {
   const std::string bytes = readBytes(path);
   if (!bytes.starts_with("# vtk DataFile Version ")) {
     throw inputError(
         "mesh.unreadable",
         "this is not a legacy VTK file: it does not begin with '# vtk DataFile Version'", "", path);
   }
-  return Vtk(bytes, path, metres_per_unit).read();
+  return Vtk(bytes, path, meters_per_unit).read();
 }
 
 }  // namespace palpate::vdb

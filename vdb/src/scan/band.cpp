@@ -13,12 +13,13 @@
 namespace palpate::vdb {
 namespace {
 
-/// A voxel center may lie on the surface; in a part one voxel thin, and beside it, it must not, lest the part
-/// vanish or swell.
+/// A voxel center may lie on the surface; in a part one voxel thin, and beside it, it must not,
+/// lest the part vanish or swell.
 constexpr double kHold = 0.3;
 constexpr double kBeside = 1.8;  ///< voxels that share a corner
-/// Voxels by which the surface may be nearer than the nearest voxel of the other side: a smooth one by about
-/// one; and no less, or curved ones would be bent. Of voxels that are not cubes, those as long as their diagonal.
+/// Voxels by which the surface may be nearer than the nearest voxel of the other side: a smooth one
+/// by about one; and no less, or curved ones would be bent. Of voxels that are not cubes, those as
+/// long as their diagonal.
 constexpr double kSlack = 1.3;
 /// Where the surface is between two voxels, at first.
 constexpr double kHalf = 0.5;
@@ -68,8 +69,8 @@ class Finder {
         }
       }
     }
-    // Ties are broken by the length in voxels, so that an offset and its opposite, which the other side
-    // sees, mean the same.
+    // Ties are broken by the length in voxels, so that an offset and its opposite, which the other
+    // side sees, mean the same.
     std::stable_sort(offsets_.begin(), offsets_.end(), [](const Offset& a, const Offset& b) {
       return a.distance != b.distance ? a.distance < b.distance : a.steps < b.steps;
     });
@@ -216,8 +217,8 @@ class Finder {
     return {};
   }
 
-  /// To the image's border, if that is within reach. An inside voxel near the box's border is near the
-  /// image's: masks have a margin.
+  /// To the image's border, if that is within reach. An inside voxel near the box's border is near
+  /// the image's: masks have a margin.
   [[nodiscard]] double borderDistance(const std::array<int, 3>& at) const noexcept {
     double nearest = kInfinity;
     for (int axis = 0; axis < 3; ++axis) {

@@ -29,8 +29,8 @@ struct BlockBounds {
   alignas(32) BandBlock::Values upper;
 };
 
-/// All lengths are in steps of the smallest spacing. The band holds the voxels with another one on the
-/// other side within kReach voxels, and inside voxels that near to the image's border.
+/// All lengths are in steps of the smallest spacing. The band holds the voxels with another one on
+/// the other side within kReach voxels, and inside voxels that near to the image's border.
 struct Band {
   static constexpr int kReach = 5;
 
@@ -56,10 +56,10 @@ struct Band {
   }
 };
 
-/// How far each voxel center may be from the surface, by the mask alone. Where the nearest voxel of the
-/// other side is d away, the surface is at most d away, and hardly nearer than the last voxel of the own
-/// side on the way there. Parts one voxel thin are held open.
-/// `spacing` of the voxels along each axis, in units of the smallest.
+/// How far each voxel center may be from the surface, by the mask alone. Where the nearest voxel of
+/// the other side is d away, the surface is at most d away, and hardly nearer than the last voxel
+/// of the own side on the way there. Parts one voxel thin are held open. `spacing` of the voxels
+/// along each axis, in units of the smallest.
 [[nodiscard]] Band bandOf(const Mask& mask, const Vec3& spacing);
 
 }  // namespace palpate::vdb

@@ -8,8 +8,9 @@
 
 namespace palpate::vdb {
 
-/// visit(voxel, axis, side, value inside, value outside) for each inside voxel of a block with a neighbor outside:
-/// box indices, and the neighbor is `side` (-1 or 1) away along `axis`. Outside is NaN beyond the image's border.
+/// visit(voxel, axis, side, value inside, value outside) for each inside voxel of a block with a
+/// neighbor outside: box indices, and the neighbor is `side` (-1 or 1) away along `axis`. Outside
+/// is NaN beyond the image's border.
 template <typename Visit>
 void forCrossings(const Band& band, const Mask& mask, const BandBlock& block, const Visit& visit) {
   const auto strides = mask.strides();

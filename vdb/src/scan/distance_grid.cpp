@@ -25,7 +25,7 @@ constexpr double kLeastFit = 2e-3;  ///< [voxels] less is not felt
 void fitOnce(const openvdb::FloatGrid::Ptr& grid, const DistanceLeaves& leaves,
              const BakePlan& plan, const BakeOptions& options) {
   const BrickField read(makeLevelSet(grid, options.length_unit), Sampler::kCubic);
-  const double units = plan.voxel / plan.metres_per_unit;
+  const double units = plan.voxel / plan.meters_per_unit;
   forBlocks(leaves.all().size(), [&](std::size_t b) {
     const DistanceLeaf& from = leaves.all()[b];
     Leaf* const leaf = grid->tree().probeLeaf(from.origin);
@@ -48,7 +48,7 @@ void fitOnce(const openvdb::FloatGrid::Ptr& grid, const DistanceLeaves& leaves,
 openvdb::FloatGrid::Ptr gridOf(const DistanceLeaves& leaves, const BakePlan& plan,
                                const BakeOptions& options) {
   openvdb::FloatGrid::Ptr grid = emptyGrid(plan, options);
-  const double units = plan.voxel / plan.metres_per_unit;
+  const double units = plan.voxel / plan.meters_per_unit;
   std::vector<std::unique_ptr<Leaf>> made(leaves.all().size());
   forBlocks(made.size(), [&](std::size_t b) {
     const DistanceLeaf& from = leaves.all()[b];

@@ -10,9 +10,9 @@ namespace palpate::vdb {
 [[nodiscard]] openvdb::FloatGrid::Ptr gridOf(const DistanceLeaves& leaves, const BakePlan& plan,
                                              const BakeOptions& options);
 
-/// Beside creases, distances bend more than a spline through them can follow. Voxels by the surface move by what
-/// that is off where their closest points are, so that it passes through the surface there too. Nothing is done where
-/// the band is too narrow for a cubic spline.
+/// Beside creases, distances bend more than a spline through them can follow. Voxels by the surface
+/// move by what that is off where their closest points are, so that it passes through the surface
+/// there too. Nothing is done where the band is too narrow for a cubic spline.
 void fitToSpline(const openvdb::FloatGrid::Ptr& grid, const DistanceLeaves& leaves,
                  const BakePlan& plan, const BakeOptions& options);
 

@@ -45,7 +45,8 @@ struct DistanceLeaf {
   }
 };
 
-/// All leaves with a voxel within `reach` along each axis of one of the points [voxels], in a fixed order.
+/// All leaves with a voxel within `reach` along each axis of one of the points [voxels], in a fixed
+/// order.
 class DistanceLeaves {
  public:
   DistanceLeaves(const std::vector<Vec3>& points, double reach);

@@ -36,11 +36,13 @@ bool haveCommonVoxel(const Band& a, const Band& b) {
   return false;
 }
 
-/// [steps] How far a lapped layer reaches into its neighbors, for each step of the longest spacing: more than the grids
-/// of two layers differ at their wall, and at most half a step. More of it would blur that wall near edges.
+/// [steps] How far a lapped layer reaches into its neighbors, for each step of the longest spacing:
+/// more than the grids of two layers differ at their wall, and at most half a step. More of it
+/// would blur that wall near edges.
 constexpr double kLap = 0.2;
 constexpr double kMostLap = 0.5;
-/// [steps] How deep below the skin of all layers the outer wall of a lapped layer may lie where it meets another.
+/// [steps] How deep below the skin of all layers the outer wall of a lapped layer may lie where it
+/// meets another.
 constexpr float kMostGroove = 0.5F;
 
 /// Whether a voxel of one has one of the other beside it, across a face, an edge or a corner.
@@ -63,8 +65,8 @@ bool meet(const Mask& a, const Mask& b) {
   return false;
 }
 
-/// Of a layer that has `own`, the smallest of its neighbors `least` (NaN: none near), all layers together `united`
-/// (NaN: deep within them).
+/// Of a layer that has `own`, the smallest of its neighbors `least` (NaN: none near), all layers
+/// together `united` (NaN: deep within them).
 float shared(float own, float least, float united) {
   const float other = std::fmin(least, -united);
   return std::isnan(other) ? own : 0.5F * (own - other);
@@ -193,8 +195,9 @@ float LabelPartition::shiftOf(std::size_t index, const Progress& progress) {
   if (neighbors.empty()) return *(shift = 0.0F);
   const Limits limits = limitsOf(index, neighbors, progress);
   const MaskedBand& own = cached(layers_[index], progress);
-  // What is taken off the layer's own values changes its share by half of that, so that half of the way is gone: of the
-  // rest, lines through thin layers tell too little, and neighbors move as well.
+  // What is taken off the layer's own values changes its share by half of that, so that half of the
+  // way is gone: of the rest, lines through thin layers tell too little, and neighbors move as
+  // well.
   shift = shiftToVolumeOf(own.band, own.mask, own.excess, [&](float value, int x, int y, int z) {
     return shared(value, limits.leastAt(x, y, z), limits.whole->band.valueAt(x, y, z));
   });

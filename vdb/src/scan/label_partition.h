@@ -26,18 +26,20 @@ struct MaskedBand {
 
 /// Every layer, and all of them together, is smoothed by itself, u_i and u_all, and then takes
 ///   f_i = (u_i - min over all others of u_j) / 2,
-/// what is in no layer, u_0 = -u_all, being one of the others. Edges, where three meet, cost small layers some volume;
-/// so from each u_i but u_0 a number is taken that brings f_i halfway back to its voxels' volume. Where only two meet u_j is -u_i
-/// and f_i is u_i; where more do, the layers share the walls u_i = u_j, and any two have f_i = -f_j there: no gap, no
-/// overlap. But a grid rounds off edges, and walls of three that meet form one: there grids of f_i leave gaps.
+/// what is in no layer, u_0 = -u_all, being one of the others. Edges, where three meet, cost small
+/// layers some volume; so from each u_i but u_0 a number is taken that brings f_i halfway back to
+/// its voxels' volume. Where only two meet u_j is -u_i and f_i is u_i; where more do, the layers
+/// share the walls u_i = u_j, and any two have f_i = -f_j there: no gap, no overlap. But a grid
+/// rounds off edges, and walls of three that meet form one: there grids of f_i leave gaps.
 ///
 /// Lapped layers reach over that, into each other but not into what is in no layer:
-///   e_i = max(min((u_i + u_all) / 2, u_all + groove), (u_i - min over the other layers of u_j) / 2 - lap)
+///   e_i = max(min((u_i + u_all) / 2, u_all + groove), (u_i - min over the other layers of u_j) / 2
+///   - lap)
 /// The wall between two of them is where e_i = e_j, which is where u_i = u_j, and wherever
 /// u_all is below -groove, one of them is negative. Far from others e_i is f_i.
 ///
-/// Layers that have a label in common do not limit each other. Values are about distances, in steps of the
-/// image's smallest spacing.
+/// Layers that have a label in common do not limit each other. Values are about distances, in steps
+/// of the image's smallest spacing.
 class LabelPartition {
  public:
   /// `image` must outlive it. `layers`: the labels of each.

@@ -155,7 +155,8 @@ std::optional<LatticeSpline::Foot> LatticeSpline::foot(const Vec3& p,
     const double size = uu * vv - uv * uv;
     // Of the metric alone that would be:
     const double flat = metric_size_ * square * glm::dot(u, u) * glm::dot(u, u);
-    // Beyond a center of curvature the matrix turns indefinite; there the point on the tangent plane leads.
+    // Beyond a center of curvature the matrix turns indefinite; there the point on the tangent
+    // plane leads.
     Vec3 move = apart - m * uphill + down;
     double enough = kEnough;
     if (uu > 0.0 && size > kLeastBent * flat) {

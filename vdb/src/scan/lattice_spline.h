@@ -10,13 +10,13 @@ namespace palpate::vdb {
 
 class BrickField;
 
-/// The tri-cubic spline through a band's values (as Sampler::kCubic has it), mapped by an affine. Beyond the
-/// image's border it continues as the values mirrored, outside: what is inside at the border ends half a
-/// voxel beyond it.
+/// The tri-cubic spline through a band's values (as Sampler::kCubic has it), mapped by an affine.
+/// Beyond the image's border it continues as the values mirrored, outside: what is inside at the
+/// border ends half a voxel beyond it.
 class LatticeSpline {
  public:
-  /// `axes` and `origin` place the voxels of the band's box, in the unit of all results. Values may be of
-  /// any scale.
+  /// `axes` and `origin` place the voxels of the band's box, in the unit of all results. Values may
+  /// be of any scale.
   LatticeSpline(const Band& band, const Mask& mask, const Mat3& axes, const Vec3& origin);
   ~LatticeSpline();
   LatticeSpline(const LatticeSpline&) = delete;
@@ -30,8 +30,8 @@ class LatticeSpline {
     Vec3 normal{0.0, 0.0, 0.0};  ///< [-] unit, outward, there
     double distance = 0.0;       ///< of the point that was asked; negative inside
   };
-  /// The closest point to `p` around `start`, by Newton's method on q + m grad S(q) = p, S(q) = 0. Nothing
-  /// if it does not converge.
+  /// The closest point to `p` around `start`, by Newton's method on q + m grad S(q) = p, S(q) = 0.
+  /// Nothing if it does not converge.
   [[nodiscard]] std::optional<Foot> foot(const Vec3& p, const Vec3& start) const noexcept;
 
  private:

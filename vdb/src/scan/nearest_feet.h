@@ -9,8 +9,8 @@
 
 namespace palpate::vdb {
 
-/// The way from each voxel of a block of 8^3 (in OpenVDB's order, place 64 x + 8 y + z) to its closest point of a
-/// surface, by axis.
+/// The way from each voxel of a block of 8^3 (in OpenVDB's order, place 64 x + 8 y + z) to its
+/// closest point of a surface, by axis.
 struct Feet {
   static constexpr float kNone = std::numeric_limits<float>::infinity();
 
@@ -30,14 +30,15 @@ struct Feet {
   }
 };
 
-/// For the voxels of a block, the nearest of those closest points that they and the 26 voxels around them have.
+/// For the voxels of a block, the nearest of those closest points that they and the 26 voxels
+/// around them have.
 class NearestFeet {
  public:
   /// `axes`: columns, the way from a voxel to the next, in the feet's unit and frame.
   explicit NearestFeet(const Mat3& axes) noexcept;
 
-  /// Looks at all voxels of the rows (8 x + y) that `rows` has a bit for. `around`: the feet of the block and of those
-  /// about it, 9 dx + 3 dy + dz from -1 on; null: there is none.
+  /// Looks at all voxels of the rows (8 x + y) that `rows` has a bit for. `around`: the feet of the
+  /// block and of those about it, 9 dx + 3 dy + dz from -1 on; null: there is none.
   void find(const std::array<const Feet*, 27>& around, std::uint64_t rows) noexcept;
 
   /// What find() found: the square of the distance; Feet::kNone if none of them has a point.

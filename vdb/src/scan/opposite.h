@@ -9,8 +9,8 @@
 
 namespace palpate::vdb {
 
-/// Distance transforms along one axis after the other (P. Felzenszwalb and D. Huttenlocher, 2012), of voxels at
-/// most kReach steps away along each axis. What lies beyond the image is on no side.
+/// Distance transforms along one axis after the other (P. Felzenszwalb and D. Huttenlocher, 2012),
+/// of voxels at most kReach steps away along each axis. What lies beyond the image is on no side.
 class Opposite {
  public:
   static constexpr int kReach = 5;
@@ -27,8 +27,8 @@ class Opposite {
   };
   static constexpr float kNone = 1e9F;
 
-  /// For the block whose first voxel is box voxel `first`. False if all that it reaches is on one side: nothing
-  /// is found then.
+  /// For the block whose first voxel is box voxel `first`. False if all that it reaches is on one
+  /// side: nothing is found then.
   bool find(const Mask& mask, const std::array<int, 3>& first, Found& found) const noexcept;
 
  private:

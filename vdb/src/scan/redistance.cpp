@@ -19,12 +19,13 @@ namespace {
 using openvdb::Coord;
 
 constexpr std::size_t kVoxels = DistanceLeaf::kVoxels;
-/// Voxels beyond the band that still tell their neighbors: the nearest way round a hollow leads past them.
+/// Voxels beyond the band that still tell their neighbors: the nearest way round a hollow leads
+/// past them.
 constexpr double kBeyond = 1.0;
 /// [voxels] A neighbor's point that is nearer by less is the same one.
 constexpr double kNearer = 1e-3;
-/// [lattice diagonals] By how much a closest point may be further off than where its search began, a
-/// crossing by linear interpolation; more is another place's.
+/// [lattice diagonals] By how much a closest point may be further off than where its search began,
+/// a crossing by linear interpolation; more is another place's.
 constexpr double kSamePlace = 0.3;
 /// [lattice diagonals] From there on the nearest lattice point is on a voxel's own side.
 constexpr double kClear = 0.5;
@@ -60,7 +61,8 @@ class Redistance {
       report(progress_, "distances", 0.1 + 0.7 * round / rounds);
       if (!feet_.spread(search)) break;
     }
-    // What is found late, a speck between lattice points, spreads through the band as well: half of it would contradict the rest.
+    // What is found late, a speck between lattice points, spreads through the band as well: half of
+    // it would contradict the rest.
     for (int look = 0; look < rounds; ++look) {
       report(progress_, "distances", 0.8 + 0.2 * look / rounds);
       if (!feet_.lookAround(search, kNearer)) break;
@@ -140,7 +142,8 @@ class Redistance {
     if (holds && result.distance * plan_.voxel < kClear * diagonal_) {
       result.inside = by_foot;
     } else {
-      // Smoothing rounds corners off that the mask has: there the spline tells, if it and the point agree on how far it is.
+      // Smoothing rounds corners off that the mask has: there the spline tells, if it and the point
+      // agree on how far it is.
       const bool by_mask = latticeInside(p);
       const double value = spline_.valueAt(indexOf(p)).value_or(0.0) * step_;
       const bool agrees = holds && (value < 0.0) == by_foot &&

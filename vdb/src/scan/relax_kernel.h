@@ -1,5 +1,5 @@
-// The inner loops of the smoothing of masks, eight voxels at a time: a kernel, as simd.h says. No fused operations, so that
-// every instruction set gives the same bits.
+// The inner loops of the smoothing of masks, eight voxels at a time: a kernel, as simd.h says. No
+// fused operations, so that every instruction set gives the same bits.
 
 #include "scan/relax.h"
 #include "simd.h"
@@ -29,15 +29,15 @@ PALPATE_KERNEL Floats twist(const float* c, std::ptrdiff_t u, std::ptrdiff_t v) 
   return known(load(c) - load(c + u) - load(c + v) + load(c + u + v));
 }
 
-/// The sum over the squares that share a row of voxels and its neighbor u away, by their places along the row: what
-/// the later of two such sums has more than the one before it is the force.
+/// The sum over the squares that share a row of voxels and its neighbor u away, by their places
+/// along the row: what the later of two such sums has more than the one before it is the force.
 PALPATE_KERNEL Floats twistAlongRow(const float* c, std::ptrdiff_t u) noexcept {
   return twist(c, u, kStepZ) - twist(c - kStepZ, u, kStepZ);
 }
 
-/// take(row, its first voxel, the force on its eight voxels) for each row that `rows` has a bit for. Differences that
-/// rows side by side share are worked out once. Those that touch a row without voxels are none, so nothing is
-/// carried across one.
+/// take(row, its first voxel, the force on its eight voxels) for each row that `rows` has a bit
+/// for. Differences that rows side by side share are worked out once. Those that touch a row
+/// without voxels are none, so nothing is carried across one.
 template <typename Take>
 PALPATE_KERNEL void forForces(const Patch& patch, std::uint64_t rows, const RelaxWeights& w,
                               const Take& take) {

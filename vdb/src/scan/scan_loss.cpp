@@ -27,8 +27,9 @@ struct Found {
   double depth = 0.0;  ///< [m] of loss.place on the wrong side
 };
 
-/// Whether the grid has a hole where the voxel is a single wall: a straight way through it, from a center on one side to
-/// that on the other, meets nothing of it. `sign`: 1 for inside voxels, -1 for a gap's.
+/// Whether the grid has a hole where the voxel is a single wall: a straight way through it, from a
+/// center on one side to that on the other, meets nothing of it. `sign`: 1 for inside voxels, -1
+/// for a gap's.
 bool isOpen(const Field& field, const Mask& mask, const Image& image, const std::array<int, 3>& at,
             double sign) {
   constexpr int kParts = 16;
@@ -129,7 +130,7 @@ std::string scanLossNote(const LevelSetInfo& info) {
     what += (what.empty() ? "" : ", ") + voxels(loss.filled) + " of the scan around it filled";
   }
   return what + ", where parts or gaps are thinner than voxels of " +
-         inMillimetres(info.voxel_size, 4) + " hold; most at " + inMillimetres(loss.place, 4) +
+         inMillimeters(info.voxel_size, 4) + " hold; most at " + inMillimeters(loss.place, 4) +
          "; smaller voxels keep them";
 }
 

@@ -10,8 +10,8 @@
 
 namespace palpate::vdb {
 
-/// Looks at every voxel of the band, by trilinear interpolation of the grid at its center; not at those that
-/// `apart` holds (nothing, or of the mask's box).
+/// Looks at every voxel of the band, by trilinear interpolation of the grid at its center; not at
+/// those that `apart` holds (nothing, or of the mask's box).
 [[nodiscard]] ScanLoss findLoss(const LevelSet& grid, const Band& band, const Mask& mask,
                                 const Mask& apart, const Image& image);
 

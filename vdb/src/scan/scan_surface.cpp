@@ -16,7 +16,8 @@
 namespace palpate::vdb {
 namespace {
 
-// Shares of the time, measured on the skin of a head at 1 mm with two cores; the rest is the distances'.
+// Shares of the time, measured on the skin of a head at 1 mm with two cores; the rest is the
+// distances'.
 constexpr double kMaskDone = 0.3;
 constexpr double kBandDone = 0.5;
 

@@ -13,8 +13,8 @@ constexpr double kThick = 1.5;
 constexpr float kNone = std::numeric_limits<float>::infinity();
 constexpr double kFar = 1e12;  ///< stands for infinite squares, which have no parabola
 
-/// The least of squares[m] + (n - m)^2 spacing^2 over all m, for every n, in place: the lower envelope of parabolas
-/// (P. Felzenszwalb and D. Huttenlocher, 2012).
+/// The least of squares[m] + (n - m)^2 spacing^2 over all m, for every n, in place: the lower
+/// envelope of parabolas (P. Felzenszwalb and D. Huttenlocher, 2012).
 class Envelope {
  public:
   void run(std::vector<double>& squares, double spacing) {

@@ -10,17 +10,19 @@
 
 namespace palpate::vdb {
 
-/// Signed distances to the mask's outline in each slice by itself. Between two slices they change evenly, so that
-/// the outlines of slices between, found by interpolation, lead over from one to the next (S. P. Raya and J. K.
-/// Udupa, "Shape-based interpolation", 1990): where a surface is nearly along the slices, far outlines tell where
-/// it is, and not only the steps between neighbors.
+/// Signed distances to the mask's outline in each slice by itself. Between two slices they change
+/// evenly, so that the outlines of slices between, found by interpolation, lead over from one to
+/// the next (S. P. Raya and J. K. Udupa, "Shape-based interpolation", 1990): where a surface is
+/// nearly along the slices, far outlines tell where it is, and not only the steps between
+/// neighbors.
 class SliceDistances {
  public:
-  /// Nothing unless one spacing is at least half as long again as the others. `spacing` in steps of the smallest.
+  /// Nothing unless one spacing is at least half as long again as the others. `spacing` in steps of
+  /// the smallest.
   [[nodiscard]] static std::optional<SliceDistances> of(const Mask& mask, const Vec3& spacing);
 
-  /// [steps] about the distance of a voxel of the box from the surface, without sign; nothing where the slice has
-  /// no outline.
+  /// [steps] about the distance of a voxel of the box from the surface, without sign; nothing where
+  /// the slice has no outline.
   [[nodiscard]] std::optional<double> distanceAt(const std::array<int, 3>& at) const noexcept;
 
  private:

@@ -16,14 +16,15 @@ namespace {
 
 using Values = BandBlock::Values;
 
-// More steps smooth more; after these a ball, a ring and a tilted plane all have normals within half a degree,
-// and longer waves than a scan's voxels tell of are left alone.
+// More steps smooth more; after these a ball, a ring and a tilted plane all have normals within
+// half a degree, and longer waves than a scan's voxels tell of are left alone.
 constexpr int kFirstSteps = 80;
 constexpr int kSecondSteps = 140;
 constexpr double kMostStretch = 4.0;
 /// The largest eigenvalue of the energy's matrix is 144/42 of its diagonal.
 constexpr float kStep = 1.0F / 3.5F;
-/// Steps of diffusion: the first ones also mix odd and even voxels. Together a Gaussian of 5.7 voxels.
+/// Steps of diffusion: the first ones also mix odd and even voxels. Together a Gaussian of 5.7
+/// voxels.
 constexpr int kDiffuseNear = 4;
 constexpr int kDiffuseFar = 26;
 constexpr double kDiffuseShare = 0.15;
@@ -58,7 +59,8 @@ class Smoothing {
 
   void run() {
     begin();
-    // Thick slices make long steps in voxels; what smooths them travels as far as the steps are many.
+    // Thick slices make long steps in voxels; what smooths them travels as far as the steps are
+    // many.
     const double longest = std::max({spacing_.x, spacing_.y, spacing_.z});
     const double more = std::min(longest, kMostStretch);
     relax(static_cast<int>(more * kFirstSteps), 0.0, 0.4, /*with_force=*/false);
@@ -163,8 +165,8 @@ class Smoothing {
     forBlocks(band_.blocks.size(), [&](std::size_t b) { work_[b].ahead = band_.blocks[b].value; });
   }
 
-  /// The force on the distances as they are: at the band's edge whole, elsewhere what is left of it when it
-  /// has spread along the surface.
+  /// The force on the distances as they are: at the band's edge whole, elsewhere what is left of it
+  /// when it has spread along the surface.
   void takeOutForces() {
     forBlocks(band_.blocks.size(), [&](std::size_t b) {
       Patch patch;

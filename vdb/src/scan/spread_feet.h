@@ -18,9 +18,10 @@ struct FoundFoot {
   bool inside = false;
 };
 
-/// A Search is FoundFoot(std::size_t leaf, std::size_t place, const Vec3& start, const openvdb::Coord& step): for the closest
-/// point of a voxel, from that of the neighbor which `step` leads to, `start` [voxels from the voxel], on. All voxels of a
-/// round search before any takes what it found, so that the order of threads does not count.
+/// A Search is FoundFoot(std::size_t leaf, std::size_t place, const Vec3& start, const
+/// openvdb::Coord& step): for the closest point of a voxel, from that of the neighbor which `step`
+/// leads to, `start` [voxels from the voxel], on. All voxels of a round search before any takes
+/// what it found, so that the order of threads does not count.
 class FootSpread {
  public:
   /// `reach` [voxels]: voxels farther off than that tell their neighbors nothing.
@@ -59,7 +60,8 @@ class FootSpread {
     });
   }
 
-  /// Takes what a neighbor knows to be nearer by `nearer` [voxels]; false if none does. After the last spread().
+  /// Takes what a neighbor knows to be nearer by `nearer` [voxels]; false if none does. After the
+  /// last spread().
   template <typename Search>
   bool lookAround(const Search& search, double nearer) {
     if (is_spreading_) std::fill(changed_.begin(), changed_.end(), std::uint8_t{1});
@@ -105,7 +107,8 @@ class FootSpread {
     return {which / 9 - 1, which / 3 % 3 - 1, which % 3 - 1};
   }
 
-  /// Leaves where nothing has changed, and not beside them either, have nothing to find. Whether something was found.
+  /// Leaves where nothing has changed, and not beside them either, have nothing to find. Whether
+  /// something was found.
   template <typename Body>
   bool round(const Body& body) {
     std::vector<std::vector<FoundFoot>> found(leaves_.all().size());

@@ -9,7 +9,8 @@ bool isInside(const Mask& mask, const std::array<int, 3>& at) noexcept {
   return mask.inside[static_cast<std::size_t>(mask.at(at[0], at[1], at[2]))] != 0;
 }
 
-/// Whether the cube of 2^3 voxels from `low` on is on one side; what lies beyond the image goes with it.
+/// Whether the cube of 2^3 voxels from `low` on is on one side; what lies beyond the image goes
+/// with it.
 bool isCube(const Mask& mask, const std::array<int, 3>& low, bool side) noexcept {
   for (int corner = 0; corner < 8; ++corner) {
     const std::array<int, 3> at = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),

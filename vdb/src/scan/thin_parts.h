@@ -10,9 +10,10 @@ namespace palpate::vdb {
 /// Whether a box index lies in the box.
 [[nodiscard]] bool isIn(const Mask& mask, const std::array<int, 3>& at) noexcept;
 
-/// Whether a voxel of the box is in a thin part of its own side, or such a part of the other side begins across one of
-/// its faces. Thin is a voxel if no cube of 2^3 voxels of its side holds it or one of the 26 voxels around it: a lone
-/// voxel on a body is not, nor is the tip of a ball. What lies beyond the image is of either side.
+/// Whether a voxel of the box is in a thin part of its own side, or such a part of the other side
+/// begins across one of its faces. Thin is a voxel if no cube of 2^3 voxels of its side holds it or
+/// one of the 26 voxels around it: a lone voxel on a body is not, nor is the tip of a ball. What
+/// lies beyond the image is of either side.
 [[nodiscard]] bool isAtThinPart(const Mask& mask, const std::array<int, 3>& at) noexcept;
 
 }  // namespace palpate::vdb

@@ -18,7 +18,8 @@ constexpr double kLeastRise =
     0.2;  ///< [steps] between neighbors on two sides; grazing surfaces have less
 constexpr double kLeastValue = 1e-6;  ///< [steps]
 
-/// What the surface encloses more than the voxels do, and how much more if it moves by a step; in voxels.
+/// What the surface encloses more than the voxels do, and how much more if it moves by a step; in
+/// voxels.
 struct Excess {
   double volume = 0.0;
   double slope = 0.0;
@@ -75,8 +76,8 @@ class Volume {
     return sumOf(sums_);
   }
 
-  /// By what the spline differs, where it passes zero, from the straight line between two voxels. A shift of all
-  /// leaves that as it is.
+  /// By what the spline differs, where it passes zero, from the straight line between two voxels. A
+  /// shift of all leaves that as it is.
   void findBends() {
     const LatticeSpline spline(band_, mask_, Mat3(1.0), Vec3(0.0));
     forBlocks(band_.blocks.size(), [&](std::size_t b) {
@@ -88,8 +89,8 @@ class Volume {
     });
   }
 
-  /// visit(voxel, step to its neighbor outside, both values) for each inside voxel of a block that has one; not
-  /// beyond the image's border.
+  /// visit(voxel, step to its neighbor outside, both values) for each inside voxel of a block that
+  /// has one; not beyond the image's border.
   template <typename Visit>
   void forPairs(const BandBlock& block, const Visit& visit) const {
     forCrossings(

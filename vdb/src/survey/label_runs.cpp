@@ -8,7 +8,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Sets that are joined two by two; the smaller number leads, so that the first run names its piece.
+/// Sets that are joined two by two; the smaller number leads, so that the first run names its
+/// piece.
 class Sets {
  public:
   explicit Sets(std::size_t count) : leader_(count) {

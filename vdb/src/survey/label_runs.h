@@ -74,8 +74,8 @@ class LabelRuns {
     return run + 1 < row_at_[row + 1] ? runs_[run + 1].first : size_[0];
   }
 
-  /// f(run of a, run of b, voxels in common) for runs that overlap, and with `edges` for those too that
-  /// only meet at an end, which a common edge is.
+  /// f(run of a, run of b, voxels in common) for runs that overlap, and with `edges` for those too
+  /// that only meet at an end, which a common edge is.
   template <class F>
   void meet(std::size_t row_a, std::size_t row_b, bool edges, F&& f) const {
     std::size_t a = row_at_[row_a];

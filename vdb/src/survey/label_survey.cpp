@@ -33,7 +33,7 @@ std::string placeOf(const Image& image, std::size_t voxel) {
          std::to_string(voxel / nx / ny) + ")";
 }
 
-Vec3 centreOf(const Image& image, std::size_t voxel) {
+Vec3 centerOf(const Image& image, std::size_t voxel) {
   const auto nx = static_cast<std::size_t>(image.size[0]);
   const auto ny = static_cast<std::size_t>(image.size[1]);
   const std::size_t row = voxel / nx;
@@ -79,7 +79,7 @@ class Survey {
       LabelSurvey::Region& region = survey_.regions[pieces[p].number];
       region.voxels += pieces[p].voxels;
       region.at_border = region.at_border || pieces[p].at_border;
-      region.pieces.push_back({pieces[p].voxels, centreOf(image_, pieces[p].seed),
+      region.pieces.push_back({pieces[p].voxels, centerOf(image_, pieces[p].seed),
                                pieces[p].at_border, survey_.outside(), p});
     }
     for (LabelSurvey::Region& region : survey_.regions) {
@@ -88,8 +88,8 @@ class Survey {
     const auto nx = static_cast<std::size_t>(image_.size[0]);
     runs.forEachRun([&](std::size_t piece, std::size_t first, std::size_t voxels) {
       Box3& bounds = survey_.regions[pieces[piece].number].bounds;
-      bounds.include(centreOf(image_, first));
-      if (voxels > 1) bounds.include(centreOf(image_, first / nx * nx + first % nx + voxels - 1));
+      bounds.include(centerOf(image_, first));
+      if (voxels > 1) bounds.include(centerOf(image_, first / nx * nx + first % nx + voxels - 1));
       addBorder(pieces[piece].number, first, voxels);
     });
   }
@@ -197,7 +197,8 @@ class Survey {
         ++depth[other];
       }
     }
-    // Those around one region are around each other too: the innermost is the one deepest in others.
+    // Those around one region are around each other too: the innermost is the one deepest in
+    // others.
     for (std::size_t one = 0; one < count; ++one) {
       for (const std::size_t other : encloses[one]) {
         auto& within = survey_.regions[other].within;

@@ -1,6 +1,6 @@
 #pragma once
-/// Device: where the hand is, and what it feels; and the loop that reads, ticks and writes, in real time or as fast as the
-/// machine goes.
+/// Device: where the hand is, and what it feels; and the loop that reads, ticks and writes, in real
+/// time or as fast as the machine goes.
 
 #include <atomic>
 #include <cstdint>
@@ -48,12 +48,14 @@ struct DeviceInfo {
   double max_torque = 0.0;                   ///< [Nm] 0: it has no motors for one
   int buttons = 0;                           ///< that it has
   SafetyLimits limits = {};                  ///< that the servo loop keeps
-  /// read() waits for the device's next reply, so that the device is the loop's clock: a real-time loop then has no other.
+  /// read() waits for the device's next reply, so that the device is the loop's clock: a real-time
+  /// loop then has no other.
   bool is_clock = false;
 };
 
-/// open() and close() are called while no loop runs; read() and write() from the servo thread only; cut() from any thread.
-/// A device at rest exerts no force: close() and the destructor zero it first.
+/// open() and close() are called while no loop runs; read() and write() from the servo thread only;
+/// cut() from any thread. A device at rest exerts no force: close() and the destructor zero it
+/// first.
 class PALPATE_EXPORT Device {
  public:
   virtual ~Device() = default;
@@ -68,12 +70,14 @@ class PALPATE_EXPORT Device {
   [[nodiscard]] virtual DeviceStatus read(DeviceState& out) noexcept = 0;
   [[nodiscard]] virtual DeviceStatus write(
       const Vec3& force) noexcept = 0;  ///< [N] in the same frame
-  /// The same with a torque [Nm]. The default leaves the torque out: of devices whose max_torque is 0.
+  /// The same with a torque [Nm]. The default leaves the torque out: of devices whose max_torque is
+  /// 0.
   [[nodiscard]] virtual DeviceStatus writeWrench(const Vec3& force, const Vec3& torque) noexcept;
 
-  /// Zero force at once, because the servo thread stands still: called from another one, maybe while read() or write() runs,
-  /// and only between open() and close(). Bounded wait; never throws. Later writes count again. The default does nothing: of
-  /// devices that let go by themselves when nobody writes.
+  /// Zero force at once, because the servo thread stands still: called from another one, maybe
+  /// while read() or write() runs, and only between open() and close(). Bounded wait; never throws.
+  /// Later writes count again. The default does nothing: of devices that let go by themselves when
+  /// nobody writes.
   virtual void cut() noexcept;
 
  protected:
@@ -93,7 +97,8 @@ struct ServoTurn {
   bool is_late = false;       ///< ended after the next tick was due (realtime only)
 };
 
-/// Called for each tick once its force was written. Must not allocate, lock, throw or block; without `realtime` it may block.
+/// Called for each tick once its force was written. Must not allocate, lock, throw or block;
+/// without `realtime` it may block.
 using ServoObserver = std::function<void(const ServoTurn&)>;
 
 /// How much the loop asks of the operating system.
@@ -103,14 +108,16 @@ enum class Elevate : std::uint8_t {
   kRequire,  ///< no loop without it
 };
 
-/// SCHED_FIFO: above the threaded interrupts (50), below the kernel's own migration and watchdog threads (99).
+/// SCHED_FIFO: above the threaded interrupts (50), below the kernel's own migration and watchdog
+/// threads (99).
 inline constexpr int kServoPriority = 75;
 
 struct ServoSettings {
   bool realtime = false;  ///< false: as fast as possible, one reading after the other
   double rate =
       1000.0;  ///< [Hz] 1 to 1e5; without `realtime` the watchdog and the first tick ask for it
-  /// A real-time priority of the calling thread (SCHED_FIFO) and locked memory, for as long as the loop runs.
+  /// A real-time priority of the calling thread (SCHED_FIFO) and locked memory, for as long as the
+  /// loop runs.
   Elevate elevate = Elevate::kOff;
   /// [s] without a new reading after which the force is zero; above 0. Without `realtime` a turn of
   /// the loop counts as 1 / rate. At least one turn may pass without a reading, however slow the
@@ -143,27 +150,31 @@ struct ServoReport {
   LatencyHistogram work;      ///< from the reading to the end of the write (realtime only)
 };
 
-/// Runs the loop on the calling thread until the path ends, the device fails or `stop` becomes true.
-/// Opens the device first and closes it last; whatever ends the loop (a tick that throws against its
-/// contract, too), the last thing written to the device is zero force.
+/// Runs the loop on the calling thread until the path ends, the device fails or `stop` becomes
+/// true. Opens the device first and closes it last; whatever ends the loop (a tick that throws
+/// against its contract, too), the last thing written to the device is zero force.
 ///
-/// - A force that is not finite, or that answers a position or velocity that is not finite, is written
+/// - A force that is not finite, or that answers a position or velocity that is not finite, is
+/// written
 ///   as zero. One longer than DeviceInfo::max_force is shortened to it, its direction kept.
 /// - kStale: the tick gets the previous reading again; before the first reading it is not called.
 /// - Watchdog: once the last new reading is `watchdog` old, zero is written and the tick is not
 ///   called, until a new reading comes; from then on forces grow from zero to their full length
 ///   within `recovery`.
 /// - A device whose maximum force is NaN, zero or below is written zero.
-/// - DeviceInfo::limits hold. A reading that is a jump counts as none. Until the device is homed, zero is written and the tick
+/// - DeviceInfo::limits hold. A reading that is a jump counts as none. Until the device is homed,
+/// zero is written and the tick
 ///   is not called. A SafetyFault ends the loop with kFault.
 /// - kTimeout, kDisconnected, kFault and kEnd, from read() or write(), end the loop.
 /// - realtime: tick k is due at start + k / rate by the monotonic clock. After an overrun the ticks
-///   that were missed are skipped, never made up for. If DeviceInfo::is_clock, a tick is due when the device replies instead.
-/// - realtime, and SafetyLimits::hang: a second thread writes zero force when the loop stands still.
+///   that were missed are skipped, never made up for. If DeviceInfo::is_clock, a tick is due when
+///   the device replies instead.
+/// - realtime, and SafetyLimits::hang: a second thread writes zero force when the loop stands
+/// still.
 ///
 /// The loop itself never allocates, locks or throws.
-/// @throws Error (kDevice) from opening; Error (kOperation) where kRequire is refused; Error (kUsage) for an empty `tick`, a bad rate (realtime),
-/// watchdog or recovery.
+/// @throws Error (kDevice) from opening; Error (kOperation) where kRequire is refused; Error
+/// (kUsage) for an empty `tick`, a bad rate (realtime), watchdog or recovery.
 [[nodiscard]] PALPATE_EXPORT ServoReport runServo(Device& device, const ServoTick& tick,
                                                   const ServoSettings& settings,
                                                   const std::atomic<bool>& stop,

@@ -1,6 +1,6 @@
 #pragma once
-/// A hand without a haptic device: a SpaceMouse, a gamepad or a mouse moves the probe, through the kernel's input devices
-/// (evdev). The force is shown, not felt.
+/// A hand without a haptic device: a SpaceMouse, a gamepad or a mouse moves the probe, through the
+/// kernel's input devices (evdev). The force is shown, not felt.
 
 #include <cstdint>
 #include <memory>
@@ -38,16 +38,19 @@ struct EvdevSettings {
                  Vec3(0.1)};  ///< [m] the position begins in its middle, and never leaves it
 };
 
-/// The device's frame: x to the right, y up, z towards the hand. A gamepad's left stick moves in the plane x, z; the right one
-/// up and down, and turns about y; the triggers lift (right) and lower (left).
+/// The device's frame: x to the right, y up, z towards the hand. A gamepad's left stick moves in
+/// the plane x, z; the right one up and down, and turns about y; the triggers lift (right) and
+/// lower (left).
 ///
-/// The position is the integral of the velocities over the kernel's time of each event, and over the time of read() since the
-/// last one. A SpaceMouse whose kernel reports relative axes is at rest when it is silent: the kernel drops its zeros.
-/// DeviceState::velocity is the backward difference of the positions. Bit i of the buttons is the i-th button by its code.
-/// DeviceInfo::max_force is 0: it has no motors, and write() does nothing. Other programs get the events, too.
+/// The position is the integral of the velocities over the kernel's time of each event, and over
+/// the time of read() since the last one. A SpaceMouse whose kernel reports relative axes is at
+/// rest when it is silent: the kernel drops its zeros. DeviceState::velocity is the backward
+/// difference of the positions. Bit i of the buttons is the i-th button by its code.
+/// DeviceInfo::max_force is 0: it has no motors, and write() does nothing. Other programs get the
+/// events, too.
 ///
-/// open() throws Error (kDevice) where no such device is plugged in, or access is denied. Once it is unplugged, read() and
-/// write() answer kDisconnected.
+/// open() throws Error (kDevice) where no such device is plugged in, or access is denied. Once it
+/// is unplugged, read() and write() answer kDisconnected.
 /// @throws Error (kUsage) for settings that are out of range.
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeEvdev(const EvdevSettings& settings);
 

@@ -14,10 +14,11 @@ namespace palpate::devices {
 constexpr std::uint16_t kFalconVendor = 0x0403;
 constexpr std::uint16_t kFalconProduct = 0xcb48;
 
-/// What differs from device to device, or that nobody has measured. In a file: one `name value` a line, '#' begins a comment.
+/// What differs from device to device, or that nobody has measured. In a file: one `name value` a
+/// line, '#' begins a comment.
 struct FalconCalibration {
-  /// [counts/Nm] of a motor's command by the torque at the thigh, from libnifalcon, never measured: a real force may be two
-  /// or three times off. Negative: the command that turns an arm outward.
+  /// [counts/Nm] of a motor's command by the torque at the thigh, from libnifalcon, never measured:
+  /// a real force may be two or three times off. Negative: the command that turns an arm outward.
   double counts_per_torque = -10000.0;
   double radians_per_count = 0.000635905;  ///< [rad] of a thigh by encoder count
   Vec3 zero_angles{0.610865, 0.610865,
@@ -33,16 +34,18 @@ struct FalconCalibration {
 
 struct FalconSettings {
   std::string serial;  ///< empty: the first one
-  /// 0 or more: an open file descriptor of its node. From then on libusb finds no devices by itself in this process.
+  /// 0 or more: an open file descriptor of its node. From then on libusb finds no devices by itself
+  /// in this process.
   int descriptor = -1;
   std::string firmware;  ///< image for a device that runs none; empty: such a device is refused
   FalconCalibration calibration = {};
 };
 
-/// The device's frame: x to the right, y up, z towards the hand, from FalconCalibration::origin. Its buttons: 1 plus, 2
-/// forward, 4 center, 8 minus. DeviceState::velocity is the backward difference of the positions.
-/// It replies once to each command, so it is the loop's clock (about 1 kHz). Until its encoders are homed (pull the grip out,
-/// then push it in) it gets zero force. libusb allocates a block of memory for each transfer.
+/// The device's frame: x to the right, y up, z towards the hand, from FalconCalibration::origin.
+/// Its buttons: 1 plus, 2 forward, 4 center, 8 minus. DeviceState::velocity is the backward
+/// difference of the positions. It replies once to each command, so it is the loop's clock (about 1
+/// kHz). Until its encoders are homed (pull the grip out, then push it in) it gets zero force.
+/// libusb allocates a block of memory for each transfer.
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeFalcon(const FalconSettings& settings);
 
 }  // namespace palpate::devices

@@ -1,5 +1,6 @@
 #pragma once
-/// Haply's Inverse3, through the service that its maker installs. Protocol from public sources, unverified on hardware.
+/// Haply's Inverse3, through the service that its maker installs. Protocol from public sources,
+/// unverified on hardware.
 
 #include <cstdint>
 #include <memory>
@@ -16,9 +17,10 @@ struct Inverse3Settings {
   std::string id;  ///< of the device; empty: the first that the service names
 };
 
-/// WebSocket and JSON live in a thread of their own; read() and write() only exchange values with it. Each write() sends a
-/// force, each answer of the service is a reading; the service forgets a force that is not sent again. Frame: the service's.
-/// open() throws Error (kDevice) if nothing answers there, or if the service does not know the device.
+/// WebSocket and JSON live in a thread of their own; read() and write() only exchange values with
+/// it. Each write() sends a force, each answer of the service is a reading; the service forgets a
+/// force that is not sent again. Frame: the service's. open() throws Error (kDevice) if nothing
+/// answers there, or if the service does not know the device.
 /// @throws Error (kDevice) in a build without Boost.Beast and nlohmann-json.
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeInverse3(const Inverse3Settings& settings);
 

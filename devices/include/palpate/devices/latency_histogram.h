@@ -24,8 +24,8 @@ class LatencyHistogram {
   [[nodiscard]] std::int64_t longest() const noexcept {
     return static_cast<std::int64_t>(longest_);
   }
-  /// [ns] that the given share (0 to 1) of the times does not exceed: at least the true one, and at most an eighth above it.
-  /// 0 of no times.
+  /// [ns] that the given share (0 to 1) of the times does not exceed: at least the true one, and at
+  /// most an eighth above it. 0 of no times.
   [[nodiscard]] std::int64_t quantile(double share) const noexcept {
     const double wanted = std::ceil(std::clamp(share, 0.0, 1.0) * static_cast<double>(count_));
     const auto rank = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(wanted));

@@ -24,7 +24,8 @@ using Path = std::vector<PathPoint>;
 /// A path whose rows are computed when they are asked for: of one size, however long it is.
 class PathFormula {
  public:
-  /// Row i < `last` is at position(i / rate), row `last` at `end`; `position` must not allocate, lock or throw.
+  /// Row i < `last` is at position(i / rate), row `last` at `end`; `position` must not allocate,
+  /// lock or throw.
   PathFormula(std::size_t last, double rate, const Vec3& end, std::function<Vec3(double)> position)
       : last_(last), rate_(rate), end_(end), position_(std::move(position)) {}
 
@@ -49,24 +50,25 @@ struct RecordedPath {
 /// What a path may hold.
 enum class PathRules : std::uint8_t {
   kSound,       ///< finite positions, at times that rise
-  kAsRecorded,  ///< whatever a device may have said: positions and times that are not numbers, times that do not rise
+  kAsRecorded,  ///< whatever a device may have said: positions and times that are not numbers,
+                ///< times that do not rise
 };
 
-/// CSV with the header `t,x,y,z` (s, m), or `t,device_x,device_y,device_z` for what a device itself said (DeviceFrame::kDevice), one
-/// row a tick; t must rise. Lines end in LF or CRLF, the
-/// last may have no end. Nothing else is let in: no comment, blank line, space, quote, NaN or
-/// infinity. The file is read in pieces: memory is what the path itself takes.
-/// By PathRules::kAsRecorded `nan`, `inf` and `-inf` are let in, and any time.
+/// CSV with the header `t,x,y,z` (s, m), or `t,device_x,device_y,device_z` for what a device itself
+/// said (DeviceFrame::kDevice), one row a tick; t must rise. Lines end in LF or CRLF, the last may
+/// have no end. Nothing else is let in: no comment, blank line, space, quote, NaN or infinity. The
+/// file is read in pieces: memory is what the path itself takes. By PathRules::kAsRecorded `nan`,
+/// `inf` and `-inf` are let in, and any time.
 /// @throws Error (kInput) with file:line:column and the offending line for anything else; codes
 /// path.unreadable, .empty, .header, .comment, .blank, .columns, .number, .not_finite, .time.
 [[nodiscard]] PALPATE_EXPORT RecordedPath readPath(const std::string& file,
                                                    PathRules rules = PathRules::kSound);
 
-// Generators. Row i is at t = i / rate, exactly; the first row is the start and the last row the end
-// point, exactly, at the first sample not before the end of the motion. In between, positions are the
-// formula given. Set-up only: they allocate.
-// All throw Error (kInput, path.parameter) for a value that is not finite or out of its range, and for
-// paths of more than 10^8 rows. `rate` is in [Hz], above 0.
+// Generators. Row i is at t = i / rate, exactly; the first row is the start and the last row the
+// end point, exactly, at the first sample not before the end of the motion. In between, positions
+// are the formula given. Set-up only: they allocate. All throw Error (kInput, path.parameter) for a
+// value that is not finite or out of its range, and for paths of more than 10^8 rows. `rate` is in
+// [Hz], above 0.
 
 /// Straight in to `depth` beyond `surface` against `normal`, hold, and out again: height above the
 /// surface, along `normal`: clearance - speed t down to -depth, -depth for `hold`, and back up to
@@ -110,8 +112,8 @@ struct TapPath {
 [[nodiscard]] PALPATE_EXPORT Path generate(const TapPath& shape, double rate);  ///< all of its rows
 
 /// Straight through way points at constant speed, there and (if asked) back: at the arc length
-/// speed t of the polyline. Ends at the last point, or at the first if `back`. With hold >= 1 / rate a
-/// row is exactly at the far end.
+/// speed t of the polyline. Ends at the last point, or at the first if `back`. With hold >= 1 /
+/// rate a row is exactly at the far end.
 struct InsertPath {
   std::vector<Vec3> points;  ///< [m] two or more, not all the same
   double speed = 0.05;       ///< [m/s] above 0
@@ -123,13 +125,14 @@ struct InsertPath {
                                            double rate);  ///< all of its rows
 
 /// One read() is one row of the path. The velocity is the backward difference of the rows (0 at the
-/// first, and where the time does not rise), the time is the row's. After the last row read() answers kEnd and leaves its argument alone.
-/// While it is not open, read() and write() answer kDisconnected. open() starts the path anew.
-/// Its maximum force is kMaxForce, its workspace the box of the path.
+/// first, and where the time does not rise), the time is the row's. After the last row read()
+/// answers kEnd and leaves its argument alone. While it is not open, read() and write() answer
+/// kDisconnected. open() starts the path anew. Its maximum force is kMaxForce, its workspace the
+/// box of the path.
 class PALPATE_EXPORT VirtualDevice final : public Device {
  public:
-  /// [N] A hundred times what desktop devices hold, so that closed forms hold in every sane scene, and
-  /// yet a limit, as every device has one.
+  /// [N] A hundred times what desktop devices hold, so that closed forms hold in every sane scene,
+  /// and yet a limit, as every device has one.
   static constexpr double kMaxForce = 1000.0;
 
   /// @throws Error (kInput) for an empty path or times that do not rise, unless `rules` let them.

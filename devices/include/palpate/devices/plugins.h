@@ -1,6 +1,6 @@
 #pragma once
-/// Devices whose makers give no protocol but a library, which is found when the device is opened: nothing of it is linked or
-/// shipped. Protocol from public sources, unverified on hardware.
+/// Devices whose makers give no protocol but a library, which is found when the device is opened:
+/// nothing of it is linked or shipped. Protocol from public sources, unverified on hardware.
 
 #include <memory>
 #include <string>
@@ -14,13 +14,14 @@ struct PluginSettings {
   std::string library;  ///< a path, or a name as dlopen() takes it; empty: the maker's usual one
 };
 
-/// 3D Systems' Touch and Phantom devices, by OpenHaptics' HD library (libHD.so). Frame: x to the right, y up, z towards the hand.
-/// The library's own thread reads the device and writes the force, 1000 times a second; if no force came for 20 of its turns it
-/// writes zero.
+/// 3D Systems' Touch and Phantom devices, by OpenHaptics' HD library (libHD.so). Frame: x to the
+/// right, y up, z towards the hand. The library's own thread reads the device and writes the force,
+/// 1000 times a second; if no force came for 20 of its turns it writes zero.
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeOpenHaptics(
     const PluginSettings& settings);
 
-/// Force Dimension's devices, by the DHD library (libdhd.so). Frame: x towards the hand, y to the right, z up.
+/// Force Dimension's devices, by the DHD library (libdhd.so). Frame: x towards the hand, y to the
+/// right, z up.
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeForceDimension(
     const PluginSettings& settings);
 

@@ -1,7 +1,8 @@
 #pragma once
-/// Records of ticks. A Recorder takes what goes into each tick and what comes out, and hands it on in a thread of its own.
-/// In files, the ticks are an array that NumPy loads, and beside it are the states from which a replay can begin. A replay
-/// feeds the readings to a session again, and compares what comes out.
+/// Records of ticks. A Recorder takes what goes into each tick and what comes out, and hands it on
+/// in a thread of its own. In files, the ticks are an array that NumPy loads, and beside it are the
+/// states from which a replay can begin. A replay feeds the readings to a session again, and
+/// compares what comes out.
 
 #include <array>
 #include <cstddef>
@@ -31,15 +32,16 @@ struct RecordedTick {
   bool has_state = false;             ///< RecordSink::addState() has brought what was before it
 };
 
-/// Who uses the ticks: a file, a summary, a plot. The recorder calls it in a thread of its own, where it may allocate, wait and throw:
-/// who throws gets no more of that record, the others do.
+/// Who uses the ticks: a file, a summary, a plot. The recorder calls it in a thread of its own,
+/// where it may allocate, wait and throw: who throws gets no more of that record, the others do.
 class PALPATE_EXPORT RecordSink {
  public:
   virtual ~RecordSink() = default;
   RecordSink(const RecordSink&) = delete;
   RecordSink& operator=(const RecordSink&) = delete;
 
-  /// Ticks come in order; SessionTick::number leaves a gap where some were dropped. `entries` are valid during the call.
+  /// Ticks come in order; SessionTick::number leaves a gap where some were dropped. `entries` are
+  /// valid during the call.
   virtual void add(const RecordedTick& tick, std::span<const RegionEntry> entries) = 0;
   /// What was before the tick that comes next.
   virtual void addState(const SessionState&) {}
@@ -54,7 +56,8 @@ struct RecorderSettings {
   std::size_t ticks = 16384;  ///< room for so many that were not handed on yet: 16 s at 1 kHz, 6 MB
   std::size_t entries = 4096;
   std::size_t states = 4;
-  /// When the ring is full, add() waits until there is room instead of dropping the tick: for loops that run as fast as they can.
+  /// When the ring is full, add() waits until there is room instead of dropping the tick: for loops
+  /// that run as fast as they can.
   bool waits = false;
   double flush = 0.25;  ///< [s] at most between two flushes
   /// Called at once, in the recorder's thread, when a sink has failed.
@@ -79,8 +82,8 @@ class PALPATE_EXPORT Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Real-time safe unless RecorderSettings::waits: never allocates, locks, throws or blocks, whatever the sinks do. `state`: what
-  /// was before the tick, if it is to be kept.
+  /// Real-time safe unless RecorderSettings::waits: never allocates, locks, throws or blocks,
+  /// whatever the sinks do. `state`: what was before the tick, if it is to be kept.
   void add(const SessionTick& tick, const ServoTurn& turn, std::span<const RegionEntry> entries,
            const SessionState* state = nullptr) noexcept;
 
@@ -92,8 +95,8 @@ class PALPATE_EXPORT Recorder {
   std::unique_ptr<Work> work_;
 };
 
-/// One row: the bytes of the file, little-endian and without gaps. Frames: `device`: of the readings, which DeviceInfo::frame
-/// says; `world`: the scene's.
+/// One row: the bytes of the file, little-endian and without gaps. Frames: `device`: of the
+/// readings, which DeviceInfo::frame says; `world`: the scene's.
 struct TickRecord {
   /// Ports of one tick that have room by name; event_count counts on.
   static constexpr std::size_t kEvents = 8;
@@ -138,13 +141,15 @@ static_assert(sizeof(TickRecord) == 288, "the file has no gaps between the colum
 /// A file that is written from front to back, and of which something at the front is written anew.
 class PALPATE_EXPORT OutFile {
  public:
-  /// Opens `file`, which is emptied; `name`: for messages. @throws Error (kOperation, record.write).
+  /// Opens `file`, which is emptied; `name`: for messages. @throws Error (kOperation,
+  /// record.write).
   OutFile(const std::string& file, std::string name);
   ~OutFile();
   OutFile(const OutFile&) = delete;
   OutFile& operator=(const OutFile&) = delete;
 
-  /// At the end. Where not all of it can be written, as many whole pieces of `piece` bytes stay as there is room for.
+  /// At the end. Where not all of it can be written, as many whole pieces of `piece` bytes stay as
+  /// there is room for.
   /// @throws Error (kOperation, record.write) with what the system says: a full disk, for one.
   void append(const void* bytes, std::size_t count, std::size_t piece);
   void overwrite(std::uint64_t at, std::string_view bytes);  ///< @throws Error as append()
@@ -158,8 +163,9 @@ class PALPATE_EXPORT OutFile {
   std::uint64_t size_ = 0;
 };
 
-/// Ticks as a structured array (.npy, format 1.0), whose columns are those of TickRecord. Rows are written a megabyte at a time or at
-/// flush(), and the number of rows after them: whatever ends the process, what the header promises is there, whole.
+/// Ticks as a structured array (.npy, format 1.0), whose columns are those of TickRecord. Rows are
+/// written a megabyte at a time or at flush(), and the number of rows after them: whatever ends the
+/// process, what the header promises is there, whole.
 class PALPATE_EXPORT RowFile final : public RecordSink {
  public:
   /// @throws Error as OutFile.
@@ -175,7 +181,8 @@ class PALPATE_EXPORT RowFile final : public RecordSink {
 /// States of a session, for the build that wrote them.
 class PALPATE_EXPORT StateFile final : public RecordSink {
  public:
-  /// `about`: what the record was made with; only a record about which the same is known has these states.
+  /// `about`: what the record was made with; only a record about which the same is known has these
+  /// states.
   /// @throws Error as OutFile.
   StateFile(const std::string& file, std::string name, std::string_view about);
   void add(const RecordedTick&, std::span<const RegionEntry>) override {}
@@ -188,7 +195,8 @@ class PALPATE_EXPORT StateFile final : public RecordSink {
 /// Reads what RowFile wrote, front to back, in constant memory.
 class PALPATE_EXPORT RecordReader {
  public:
-  /// @throws Error (kInput): record.unreadable, record.magic (not a .npy file), record.columns (not those of a record).
+  /// @throws Error (kInput): record.unreadable, record.magic (not a .npy file), record.columns (not
+  /// those of a record).
   explicit RecordReader(std::string file);
 
   /// Rows that are there, whole.
@@ -215,8 +223,8 @@ class PALPATE_EXPORT RecordReader {
 /// Reads what StateFile wrote.
 class PALPATE_EXPORT StateReader {
  public:
-  /// @throws Error (kInput): record.unreadable; record.states for a file that does not hold states, or holds those of another build or another
-  /// record.
+  /// @throws Error (kInput): record.unreadable; record.states for a file that does not hold states,
+  /// or holds those of another build or another record.
   StateReader(std::string file, std::string_view about);
 
   [[nodiscard]] std::size_t size() const noexcept { return ticks_.size(); }
@@ -231,7 +239,8 @@ class PALPATE_EXPORT StateReader {
   std::vector<std::uint64_t> ticks_;
 };
 
-/// What states depend on: the version, the compiler, the size and the layout. States of one are refused by another.
+/// What states depend on: the version, the compiler, the size and the layout. States of one are
+/// refused by another.
 [[nodiscard]] PALPATE_EXPORT std::string stateBuild();
 
 /// A checksum, FNV-1a of 64 bits: against damage, not against deceit.
@@ -264,10 +273,12 @@ struct RecordNames {
   std::vector<std::string> ports;
 };
 
-/// Feeds the record's readings to `session`, from its next row on, and compares each tick that is not below `from`. The record's next row must
-/// be the tick that the session is to make: 0, or that of the state which it resumed from. Ends at the record's end, before a
-/// gap, or when `stops` says so. With `names`, a region or port of the record is the one of the session's scene that is called the
-/// same, whatever its number, and one without a name there is another one; without, numbers are compared.
+/// Feeds the record's readings to `session`, from its next row on, and compares each tick that is
+/// not below `from`. The record's next row must be the tick that the session is to make: 0, or that
+/// of the state which it resumed from. Ends at the record's end, before a gap, or when `stops` says
+/// so. With `names`, a region or port of the record is the one of the session's scene that is
+/// called the same, whatever its number, and one without a name there is another one; without,
+/// numbers are compared.
 /// @throws Error (kInput) as RecordReader::next().
 [[nodiscard]] PALPATE_EXPORT ReplayReport replay(RecordReader& record, Session& session,
                                                  DeviceFrame frame, std::uint64_t from = 0,

@@ -25,8 +25,9 @@ struct InjectedFault {
   std::uint64_t count = 1;  ///< of calls
 };
 
-/// One read() is one row of the record, with its time, velocity and buttons; after the last it answers kEnd. open() starts anew.
-/// While it is not open, read() and write() answer kDisconnected. Deterministic.
+/// One read() is one row of the record, with its time, velocity and buttons; after the last it
+/// answers kEnd. open() starts anew. While it is not open, read() and write() answer kDisconnected.
+/// Deterministic.
 class PALPATE_EXPORT ReplayDevice final : public Device {
  public:
   /// @throws Error (kInput) for no rows.

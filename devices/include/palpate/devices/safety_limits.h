@@ -5,16 +5,17 @@
 
 namespace palpate::devices {
 
-/// Of one device; DeviceInfo has them. By default nothing is limited: a simulated hand cannot be hurt, and its forces are
-/// compared with closed forms. handLimits() has what a device that a person holds starts from.
-/// A limit that is NaN or below 0 permits nothing.
+/// Of one device; DeviceInfo has them. By default nothing is limited: a simulated hand cannot be
+/// hurt, and its forces are compared with closed forms. handLimits() has what a device that a
+/// person holds starts from. A limit that is NaN or below 0 permits nothing.
 struct SafetyLimits {
   double max_growth = kInfinity;  ///< [N/s] slew rate of the force vector; see ForceGuard::apply()
   /// [s] from zero to full force after open, homing, silence, a hang or a value that is not finite
   double ramp = 0.0;
   /// [m/s] of the hand, as a filter of kSpeedFilter sees it; beyond it: fault
   double max_speed = kInfinity;
-  /// [m/s] a reading further from the last good one than `jump_speed` times its age plus `jump_slack` [m] is dropped
+  /// [m/s] a reading further from the last good one than `jump_speed` times its age plus
+  /// `jump_slack` [m] is dropped
   double jump_speed = kInfinity;
   double jump_slack = 0.0;
   /// Dropped readings, or values that are not finite, in a row that make a fault; 0: never
@@ -29,7 +30,8 @@ struct SafetyLimits {
 
   /// [s] time constant of the speed that max_speed is compared with.
   static constexpr double kSpeedFilter = 0.01;
-  /// [-] of the motors' heat from which on the force is held back; full heat is what the continuous force makes.
+  /// [-] of the motors' heat from which on the force is held back; full heat is what the continuous
+  /// force makes.
   static constexpr double kWarm = 0.8;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-/// SafetyState: what a device may do at this moment, as a table of states and events; and what is counted on the way.
+/// SafetyState: what a device may do at this moment, as a table of states and events; and what is
+/// counted on the way.
 
 #include <array>
 #include <cstddef>

@@ -28,16 +28,17 @@ struct Clutched {
   double share = 1.0;            ///< [-] of the force that the hand gets
 };
 
-/// A value type, real-time safe. The reading with which the clutch is engaged, and that with which it is let go, have the position,
-/// the velocity and the share of the force that they would have had without; what changes begins with the next one. From there on
-/// the force fades to nothing, or comes back, and the velocity goes from what it was to zero, or to the hand's, as
-/// 3 s^2 - 2 s^3 over kFade: a drag that stopped at once would be a kick.
+/// A value type, real-time safe. The reading with which the clutch is engaged, and that with which
+/// it is let go, have the position, the velocity and the share of the force that they would have
+/// had without; what changes begins with the next one. From there on the force fades to nothing, or
+/// comes back, and the velocity goes from what it was to zero, or to the hand's, as 3 s^2 - 2 s^3
+/// over kFade: a drag that stopped at once would be a kick.
 class Clutch {
  public:
   static constexpr double kFade = 0.05;  ///< [s]
 
-  /// `position` [m, world] and `velocity` [m/s, world] of the reading by the mapping alone; `dt` [s] since the last reading,
-  /// of which nothing below 0 counts.
+  /// `position` [m, world] and `velocity` [m/s, world] of the reading by the mapping alone; `dt`
+  /// [s] since the last reading, of which nothing below 0 counts.
   [[nodiscard]] Clutched step(const Vec3& position, const Vec3& velocity, bool is_held,
                               double dt) noexcept {
     const double change = dt > 0.0 ? std::min(1.0, dt / kFade) : 0.0;
@@ -69,7 +70,8 @@ class Clutch {
 
 class Recorder;
 
-/// From `time` on the content of `region` feels as `change` says; what was changed of it before is taken back.
+/// From `time` on the content of `region` feels as `change` says; what was changed of it before is
+/// taken back.
 struct ContentEvent {
   double time = 0.0;  ///< [s] of the device
   RegionId region = kOutside;
@@ -80,23 +82,24 @@ struct SessionSettings {
   RendererSettings renderer = {};
   VelocitySettings velocity = {};
   ServoSettings servo = {};
-  int clutch_button =
-      0;  ///< bit of DeviceState::buttons, 0 to 31, that holds the clutch, where the scene allows one
+  int clutch_button = 0;  ///< bit of DeviceState::buttons, 0 to 31, that holds the clutch, where
+                          ///< the scene allows one
   std::vector<ContentEvent> changes = {};  ///< by time
-  /// Both are at the hand, in the device's frame. Not given: as the scene's `device` asks for, with what it does not say from
-  /// `loop` (hand_guards.h); off if it does not.
+  /// Both are at the hand, in the device's frame. Not given: as the scene's `device` asks for, with
+  /// what it does not say from `loop` (hand_guards.h); off if it does not.
   std::optional<PassivitySettings> passivity = {};
   std::optional<CouplingSettings> coupling = {};
-  /// [ticks] Before each tick whose number is a multiple of this, but 0, Session::checkpoint() is taken; 0: never. Two sessions
-  /// feel the same bit for bit only if theirs is the same: see HapticRenderer::checkpoint().
+  /// [ticks] Before each tick whose number is a multiple of this, but 0, Session::checkpoint() is
+  /// taken; 0: never. Two sessions feel the same bit for bit only if theirs is the same: see
+  /// HapticRenderer::checkpoint().
   std::uint64_t checkpoint_every = 0;
   /// The device and the hand that the scene is for: Session::overBudget() then warns. Its period
   /// and its velocity are the session's own, whatever is here.
   std::optional<LoopModel> loop = {};
 };
 
-/// All that one tick of a session leaves for the next. A value of fixed size, about 30 kB, for the build that made it: stored, it
-/// means nothing to another.
+/// All that one tick of a session leaves for the next. A value of fixed size, about 30 kB, for the
+/// build that made it: stored, it means nothing to another.
 struct SessionState {
   RendererState renderer;
   VelocityTracker tracker;
@@ -115,7 +118,8 @@ static_assert(std::is_trivially_copyable_v<SessionState>);
 struct SessionTick {
   std::uint64_t number = 0;  ///< from 0
   DeviceState reading;       ///< as it came
-  /// [s] since the last reading: the servo's period at the first, 0 where the time did not rise or is not a number
+  /// [s] since the last reading: the servo's period at the first, 0 where the time did not rise or
+  /// is not a number
   double dt = 0.0;
   HipState hip;                   ///< [world] what the renderer got; with a coupling the tool
   TickResult result;              ///< [world] what it answered
@@ -139,12 +143,13 @@ struct SessionView {
   bool is_held = false;  ///< the clutch is
 };
 
-/// Owns the renderer, the velocity tracker, the clutch, the guards of stability and all that they keep between ticks; the
-/// scene is shared and const.
-/// Construction may throw and allocate; step() never allocates, locks, throws or blocks. One thread at a time.
+/// Owns the renderer, the velocity tracker, the clutch, the guards of stability and all that they
+/// keep between ticks; the scene is shared and const. Construction may throw and allocate; step()
+/// never allocates, locks, throws or blocks. One thread at a time.
 class PALPATE_EXPORT Session {
  public:
-  /// Called after each tick of run(), in the servo thread: it must not allocate, lock, throw or block.
+  /// Called after each tick of run(), in the servo thread: it must not allocate, lock, throw or
+  /// block.
   using Listener = std::function<void(const SessionTick&, const HapticRenderer&)>;
 
   /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a servo loop, limits
@@ -155,23 +160,25 @@ class PALPATE_EXPORT Session {
   Session(Session&& other) noexcept;
   Session& operator=(Session&& other) noexcept;
 
-  /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld), velocity, clutch, coupling,
-  /// renderer, and the force back through the coupling and the passivity controller. A reading that is not finite gives
-  /// zero force.
+  /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld),
+  /// velocity, clutch, coupling, renderer, and the force back through the coupling and the
+  /// passivity controller. A reading that is not finite gives zero force.
   [[nodiscard]] SessionTick step(const DeviceState& reading, DeviceFrame frame) noexcept;
 
-  /// step() for each reading of `device`, by runServo(), until that ends or `stop` is set. @throws Error as runServo().
+  /// step() for each reading of `device`, by runServo(), until that ends or `stop` is set. @throws
+  /// Error as runServo().
   [[nodiscard]] ServoReport run(Device& device, const std::atomic<bool>& stop,
                                 const Listener& listener = {});
 
   /// The same, each tick into `recorder`, once its force was written. @throws Error as runServo().
   [[nodiscard]] ServoReport run(Device& device, const std::atomic<bool>& stop, Recorder& recorder);
 
-  /// What was before the last tick whose SessionTick::is_checkpoint is set. A session of the same scene and settings that resume()s
-  /// from it feels bit for bit what this one felt from there.
+  /// What was before the last tick whose SessionTick::is_checkpoint is set. A session of the same
+  /// scene and settings that resume()s from it feels bit for bit what this one felt from there.
   [[nodiscard]] const SessionState& checkpoint() const noexcept { return checkpoint_; }
-  /// Goes on from a checkpoint of a session with the same scene and settings; contents that changed before it are changed. False,
-  /// and nothing is done, if this session has made a tick, or if it cannot be a state of it.
+  /// Goes on from a checkpoint of a session with the same scene and settings; contents that changed
+  /// before it are changed. False, and nothing is done, if this session has made a tick, or if it
+  /// cannot be a state of it.
   [[nodiscard]] bool resume(const SessionState& state) noexcept;
   /// The number of the next tick.
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
@@ -181,11 +188,14 @@ class PALPATE_EXPORT Session {
     return passivity_ ? &passivity_->observer() : nullptr;
   }
 
-  /// From any thread: the hand goes on in another scene, with a renderer that is made here and now. While the servo thread runs, what was felt
-  /// goes with it by names (carryState()), up to the last region that the probe came into. From one tick to the next the scene is another; the
-  /// force begins at zero and comes back within kSwapFade. A scene that was offered and not yet taken is forgotten. Changes of contents asked
-  /// for by time do not hold in it, and a record does not know of it. Passivity and the coupling go on as they were asked for at first.
-  /// Waits for the servo thread, a second at most. One thread at a time. @throws Error (kInput) as makeRenderer().
+  /// From any thread: the hand goes on in another scene, with a renderer that is made here and now.
+  /// While the servo thread runs, what was felt goes with it by names (carryState()), up to the
+  /// last region that the probe came into. From one tick to the next the scene is another; the
+  /// force begins at zero and comes back within kSwapFade. A scene that was offered and not yet
+  /// taken is forgotten. Changes of contents asked for by time do not hold in it, and a record does
+  /// not know of it. Passivity and the coupling go on as they were asked for at first. Waits for
+  /// the servo thread, a second at most. One thread at a time. @throws Error (kInput) as
+  /// makeRenderer().
   void offer(ScenePtr scene, const RendererSettings& settings);
   /// From any thread: the last tick. None before the first.
   [[nodiscard]] std::optional<SessionView> view() const noexcept;
@@ -218,7 +228,8 @@ class PALPATE_EXPORT Session {
     Vec3 force{0.0, 0.0, 0.0};  ///< [N, world]
     double stiffness = 0.0;     ///< [N/m] of the wall, at the hand; 0: not known
   };
-  /// The renderer's answer for the probe at `probe`, through the coupling if there is one, and before the clutch.
+  /// The renderer's answer for the probe at `probe`, through the coupling if there is one, and
+  /// before the clutch.
   [[nodiscard]] Felt feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept;
   /// Changes the contents whose time has come.
   void changeUntil(double time) noexcept;

@@ -26,8 +26,9 @@ struct SimulationSettings {
 
 /// A hand whose way nobody knows beforehand.
 struct LiveHand {
-  /// [m] Where the hand wants to be at a time [s] since open(). Asked once for each reading, in the servo thread and at times that
-  /// rise, after once at 0: it must not allocate, lock, throw or block, and must be finite.
+  /// [m] Where the hand wants to be at a time [s] since open(). Asked once for each reading, in the
+  /// servo thread and at times that rise, after once at 0: it must not allocate, lock, throw or
+  /// block, and must be finite.
   std::function<Vec3(double)> position;
   double end = kInfinity;  ///< [s] when the hand lets go, and the device says kEnd
 };

@@ -18,7 +18,8 @@ struct UsbDevice {
   bool is_accessible = false;  ///< this user may open it
 };
 
-/// Every USB device there is; none where the build has no libusb. @throws Error (kDevice) if libusb does not start.
+/// Every USB device there is; none where the build has no libusb. @throws Error (kDevice) if libusb
+/// does not start.
 [[nodiscard]] PALPATE_EXPORT std::vector<UsbDevice> listUsbDevices();
 
 [[nodiscard]] PALPATE_EXPORT bool hasLibusb() noexcept;

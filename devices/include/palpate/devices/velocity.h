@@ -11,14 +11,19 @@
 namespace palpate::devices {
 
 enum class VelocityEstimator : std::uint8_t {
-  /// Over the last interval. Its delay is half of that; an encoder step of q [m] makes it noisy by q / T.
+  /// Over the last interval. Its delay is half of that; an encoder step of q [m] makes it noisy by
+  /// q / T.
   kBackwardDifference,
-  /// The slope of the least-squares line through the readings of the last `window`. Of readings at even times its delay is
+  /// The slope of the least-squares line through the readings of the last `window`. Of readings at
+  /// even times its delay is
   /// half the window: it is exact for a motion that accelerates evenly, half a window ago.
   kLeastSquares,
-  /// First-order adaptive windowing (Janabi-Sharifi, Hayward and Chen, IEEE Transactions on Control Systems Technology 8(6), 2000), of each axis by itself: the
-  /// slope over a window whose chord no reading in it leaves by more than `noise`. The window grows reading by reading and stops
-  /// before the first chord that some reading leaves, as the paper's does: a longer one may keep again. Long where the hand is
+  /// First-order adaptive windowing (Janabi-Sharifi, Hayward and Chen, IEEE Transactions on Control
+  /// Systems Technology 8(6), 2000), of each axis by itself: the
+  /// slope over a window whose chord no reading in it leaves by more than `noise`. The window grows
+  /// reading by reading and stops
+  /// before the first chord that some reading leaves, as the paper's does: a longer one may keep
+  /// again. Long where the hand is
   /// slow, short where it turns; its delay is half of what it took.
   kAdaptiveWindow,
 };
@@ -26,8 +31,9 @@ enum class VelocityEstimator : std::uint8_t {
 struct VelocitySettings {
   VelocityEstimator estimator = VelocityEstimator::kBackwardDifference;
   double window = 0.01;  ///< [s] kLeastSquares: how far back; kAdaptiveWindow: at most
-  /// [m] kAdaptiveWindow: by how much readings of an even motion may leave their chord; 0 or more. Of an encoder its whole
-  /// step: each end of the chord is off by up to half of one, and so is what lies between.
+  /// [m] kAdaptiveWindow: by how much readings of an even motion may leave their chord; 0 or more.
+  /// Of an encoder its whole step: each end of the chord is off by up to half of one, and so is
+  /// what lies between.
   double noise = 0.0;
 };
 
@@ -41,18 +47,19 @@ class PALPATE_EXPORT VelocityTracker {
  public:
   /// Readings that are kept: a window that holds more of them is that much shorter.
   static constexpr std::size_t kCapacity = 64;
-  /// [s] No hand's way is known across a longer gap: the reading behind it is a first one. A time stamp that leaps ahead by more
-  /// is broken, and so no velocity comes of it.
+  /// [s] No hand's way is known across a longer gap: the reading behind it is a first one. A time
+  /// stamp that leaps ahead by more is broken, and so no velocity comes of it.
   static constexpr double kLongestGap = 10.0;
 
-  /// @throws Error (kUsage, velocity.window, velocity.noise, velocity.estimator) for a window that is not above 0 or noise that is
-  /// below 0, or either that is not a number; for an unknown estimator.
+  /// @throws Error (kUsage, velocity.window, velocity.noise, velocity.estimator) for a window that
+  /// is not above 0 or noise that is below 0, or either that is not a number; for an unknown
+  /// estimator.
   explicit VelocityTracker(const VelocitySettings& settings = {});
 
-  /// The velocity at the reading at `position` [m] and `time` [s]. Zero at the first. A time that does not rise repeats the
-  /// last answer, and the reading is left out; if the time after it rises again, but not above the last that was taken, the clock
-  /// was set back, and that reading is a first one. A position or a time that is not finite gives NaN, and the next one is a
-  /// first one.
+  /// The velocity at the reading at `position` [m] and `time` [s]. Zero at the first. A time that
+  /// does not rise repeats the last answer, and the reading is left out; if the time after it rises
+  /// again, but not above the last that was taken, the clock was set back, and that reading is a
+  /// first one. A position or a time that is not finite gives NaN, and the next one is a first one.
   [[nodiscard]] Velocity add(double time, const Vec3& position) noexcept;
   /// The next reading is a first one.
   void reset() noexcept { count_ = 0; }

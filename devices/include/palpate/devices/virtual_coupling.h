@@ -1,6 +1,6 @@
 #pragma once
-/// A virtual coupling: a spring and a damper between the hand and the tool that touches the scene, so that the device
-/// never meets a stiffer or a more damped wall than it can hold.
+/// A virtual coupling: a spring and a damper between the hand and the tool that touches the scene,
+/// so that the device never meets a stiffer or a more damped wall than it can hold.
 
 #include <type_traits>
 
@@ -14,8 +14,9 @@ struct CouplingSettings {
   double damping = 0.0;    ///< [N s/m] B_c, 0 or more
 };
 
-/// The scene's force on the tool, and how it changes when the tool does. What is not known may be 0: the coupling then needs
-/// more ticks to settle, and settles as long as the true slope is below K_c + B_c / T.
+/// The scene's force on the tool, and how it changes when the tool does. What is not known may be
+/// 0: the coupling then needs more ticks to settle, and settles as long as the true slope is below
+/// K_c + B_c / T.
 struct ToolForce {
   Vec3 force{0.0, 0.0, 0.0};   ///< [N] with all dampers
   Vec3 normal{0.0, 0.0, 0.0};  ///< [-] unit, out of the wall that holds the tool; zero: none does
@@ -31,11 +32,13 @@ struct ToolMotion {
   Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s]
 };
 
-/// The tool has no mass: at each tick it is where the coupling's force is that of the scene. That is backward Euler,
+/// The tool has no mass: at each tick it is where the coupling's force is that of the scene. That
+/// is backward Euler,
 ///   K_c (x - h_k) + B_c ((x - x_{k-1}) - (h_k - h_{k-1})) / T = F(x, (x - x_{k-1}) / T),
-/// with h the hand and x the tool. reach() solves it with what the scene answered last, the scene is asked there, and
-/// push() takes one more step of Newton's with the new answer: exact for a flat wall of any stiffness and damping, and
-/// for anything at rest. In free motion the tool is at the hand, and no force is felt.
+/// with h the hand and x the tool. reach() solves it with what the scene answered last, the scene
+/// is asked there, and push() takes one more step of Newton's with the new answer: exact for a flat
+/// wall of any stiffness and damping, and for anything at rest. In free motion the tool is at the
+/// hand, and no force is felt.
 ///
 /// A wall K is felt as 1 / (1 / K + 1 / K_c): that is the price. A value; real-time safe.
 class PALPATE_EXPORT VirtualCoupling {
@@ -43,9 +46,11 @@ class PALPATE_EXPORT VirtualCoupling {
   /// @throws Error (kUsage, coupling.*) for a value out of its range.
   explicit VirtualCoupling(const CouplingSettings& settings);
 
-  /// The hand is at `hand` [m], `dt` [s] after the last time (of 0 or less: as long as then): where the scene is to be asked.
+  /// The hand is at `hand` [m], `dt` [s] after the last time (of 0 or less: as long as then): where
+  /// the scene is to be asked.
   [[nodiscard]] ToolMotion reach(const Vec3& hand, double dt) noexcept;
-  /// [N] On the hand, for the scene's answer at what reach() said. It never pulls into `answer.normal`.
+  /// [N] On the hand, for the scene's answer at what reach() said. It never pulls into
+  /// `answer.normal`.
   [[nodiscard]] Vec3 push(const ToolForce& answer) noexcept;
 
   /// [N/m] What the hand feels of a wall of `stiffness` [N/m] at rest.

@@ -25,13 +25,13 @@ struct SafeForce {
   bool is_shortened = false;  ///< to the device's maximum
 };
 
-/// A value without a clock of its own; real-time safe. For each turn of a loop: read(), ask() and wrote(). Times are in
-/// [ns] of one clock and never go back; one that does counts as no time.
+/// A value without a clock of its own; real-time safe. For each turn of a loop: read(), ask() and
+/// wrote(). Times are in [ns] of one clock and never go back; one that does counts as no time.
 class Safety {
  public:
-  /// `max_force` [N] as DeviceInfo has it. `watchdog` [ns]: silence after which the force is zero, if the limits ask for no
-  /// shorter one; at least two `turn`s [ns] of the loop pass before. `recovery` [ns]: the ramp after that, if the limits ask
-  /// for no longer one.
+  /// `max_force` [N] as DeviceInfo has it. `watchdog` [ns]: silence after which the force is zero,
+  /// if the limits ask for no shorter one; at least two `turn`s [ns] of the loop pass before.
+  /// `recovery` [ns]: the ramp after that, if the limits ask for no longer one.
   Safety(const SafetyLimits& limits, double max_force, std::int64_t watchdog, std::int64_t recovery,
          std::int64_t turn) noexcept;
 

@@ -16,7 +16,8 @@ struct OfferedScene {
   ScenePtr scene;
   std::unique_ptr<HapticRenderer> renderer;
   std::uint64_t number = 0;  ///< of the scene, from 1
-  /// How many regions the probe had come into when the state was taken that the renderer has; none: it has no state of before.
+  /// How many regions the probe had come into when the state was taken that the renderer has; none:
+  /// it has no state of before.
   std::optional<std::uint64_t> entries = {};
 };
 
@@ -31,8 +32,8 @@ class SceneSwap {
   SceneSwap(const SceneSwap&) = delete;
   SceneSwap& operator=(const SceneSwap&) = delete;
 
-  /// May allocate and free; frees what the servo thread has put away. The number of the scene that was offered before and
-  /// will never be taken, if there is one.
+  /// May allocate and free; frees what the servo thread has put away. The number of the scene that
+  /// was offered before and will never be taken, if there is one.
   std::optional<std::uint64_t> offer(OfferedScene offered) {
     auto made = std::make_unique<OfferedScene>(std::move(offered));
     delete retired_.exchange(nullptr, std::memory_order_acq_rel);
@@ -42,8 +43,9 @@ class SceneSwap {
   }
 
   enum class Taken { kNothing, kOld, kNew };
-  /// Real-time safe. kNew: the offered ones took the place of `scene` and `renderer`, which the other thread frees later. kOld: they
-  /// rest on a state from before the last of `entries` regions, and were put away.
+  /// Real-time safe. kNew: the offered ones took the place of `scene` and `renderer`, which the
+  /// other thread frees later. kOld: they rest on a state from before the last of `entries`
+  /// regions, and were put away.
   [[nodiscard]] Taken take(ScenePtr& scene, std::unique_ptr<HapticRenderer>& renderer,
                            std::uint64_t entries, std::uint64_t& number) noexcept {
     // A scene is taken only when there is room to put the old one away.

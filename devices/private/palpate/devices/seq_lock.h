@@ -10,8 +10,9 @@
 
 namespace palpate::devices {
 
-/// A value that one thread stores and others load whole. store() is real-time safe and never waits; load() tries a few times.
-/// Words are atomic, after H.-J. Boehm, "Can seqlocks get along with programming language memory models?", MSPC 2012.
+/// A value that one thread stores and others load whole. store() is real-time safe and never waits;
+/// load() tries a few times. Words are atomic, after H.-J. Boehm, "Can seqlocks get along with
+/// programming language memory models?", MSPC 2012.
 template <typename Value>
 class SeqLock {
   static_assert(std::is_trivially_copyable_v<Value>);

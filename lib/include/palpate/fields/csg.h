@@ -1,6 +1,6 @@
 #pragma once
-/// Fields made from other fields: Boolean combinations, with and without creases, placements, fields grown,
-/// shrunk and hollowed, and fields of which only a part is kept.
+/// Fields made from other fields: Boolean combinations, with and without creases, placements,
+/// fields grown, shrunk and hollowed, and fields of which only a part is kept.
 
 #include <vector>
 
@@ -22,15 +22,15 @@ namespace palpate {
 [[nodiscard]] PALPATE_EXPORT FieldPtr complement(FieldPtr operand);
 
 /// `whole`, an intersection of smooth solids with a value of its own, that shows `faces` as its
-/// structure (kFaces): contact then holds each face, and edges and corners between them, exactly. One
-/// face is a cheaper field of the same surface.
+/// structure (kFaces): contact then holds each face, and edges and corners between them, exactly.
+/// One face is a cheaper field of the same surface.
 /// @throws Error (kInput) if there are no faces, or something is null.
 [[nodiscard]] PALPATE_EXPORT FieldPtr withFaces(FieldPtr whole, std::vector<FieldPtr> faces);
 
-// Boolean combinations with a smooth transition (C2) instead of a crease. Where the operands' values
-// differ by `radius` [m] or more, they are the plain min and max; where they are equal, the value is
-// moved by radius / 6. The Lipschitz bound of the operands is kept, so blends of exact and bound
-// fields are bounds. A blend is one leaf: no port can name its operands.
+// Boolean combinations with a smooth transition (C2) instead of a crease. Where the operands'
+// values differ by `radius` [m] or more, they are the plain min and max; where they are equal, the
+// value is moved by radius / 6. The Lipschitz bound of the operands is kept, so blends of exact and
+// bound fields are bounds. A blend is one leaf: no port can name its operands.
 //
 // With more than two operands the order matters slightly: they are combined from the first on.
 // @throws Error (kInput) if there is no operand, one is null or a grid whose band ends nearer than
@@ -48,8 +48,8 @@ namespace palpate {
 
 // Rigid placement of a field. Metric, Lipschitz bound and feature size are kept.
 
-/// `field` moved by `pose` (field frame -> frame of the result). @throws Error (kInput) if `field` is
-/// null or `pose` is not finite and rigid (rotation orthonormal to 1e-9, determinant +1).
+/// `field` moved by `pose` (field frame -> frame of the result). @throws Error (kInput) if `field`
+/// is null or `pose` is not finite and rigid (rotation orthonormal to 1e-9, determinant +1).
 [[nodiscard]] PALPATE_EXPORT FieldPtr place(FieldPtr field, const Pose& pose);
 
 // Fields made from another field. All work through the CSG structure of the operand down to its
@@ -71,9 +71,10 @@ namespace palpate {
 
 // A field of which only a part is kept: what lies in a box.
 
-/// `field` within `box` [m]; beyond, what it is at the nearest point of the box. So it has one sign from the
-/// box's face outwards, goes on without a step, and `field` is never asked out of the box (but with what is not finite).
-/// One leaf. @throws Error (kInput) if `field` is null or `box` is empty.
+/// `field` within `box` [m]; beyond, what it is at the nearest point of the box. So it has one sign
+/// from the box's face outwards, goes on without a step, and `field` is never asked out of the box
+/// (but with what is not finite). One leaf. @throws Error (kInput) if `field` is null or `box` is
+/// empty.
 [[nodiscard]] PALPATE_EXPORT FieldPtr knownWithin(FieldPtr field, const Box3& box);
 
 /// What knownWithin() was given; `field` itself if it was not made so.

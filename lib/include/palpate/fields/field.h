@@ -28,8 +28,8 @@ struct FieldJet {
   bool in_band = true;           ///< as in FieldSample; outside the band the Hessian is zero too
 };
 
-/// Points that are asked for their values together, so that the work on them can share instructions: a
-/// cube of 4^3 voxels, say. What is not needed may be any finite point.
+/// Points that are asked for their values together, so that the work on them can share
+/// instructions: a cube of 4^3 voxels, say. What is not needed may be any finite point.
 struct PointBatch {
   static constexpr std::size_t kCount = 64;
   std::array<double, kCount> x, y, z;  ///< [m] the field's frame
@@ -73,9 +73,9 @@ class PALPATE_EXPORT Field {
  public:
   virtual ~Field() = default;
 
-  /// Value and gradient at `p` [m, the field's frame]. Where the gradient is not defined (a sphere's
-  /// center, a box's edge) it is one fixed unit vector of the generalized gradient; never NaN for
-  /// finite `p`. For a non-finite `p` the value is NaN or infinite and must not be used.
+  /// Value and gradient at `p` [m, the field's frame]. Where the gradient is not defined (a
+  /// sphere's center, a box's edge) it is one fixed unit vector of the generalized gradient; never
+  /// NaN for finite `p`. For a non-finite `p` the value is NaN or infinite and must not be used.
   [[nodiscard]] virtual FieldSample sample(const Vec3& p) const noexcept = 0;
 
   /// Value alone [m]. Override where it is cheaper than sample().
@@ -103,8 +103,8 @@ class PALPATE_EXPORT Field {
   /// the shape, or the voxel size of a grid. Positive and finite.
   [[nodiscard]] virtual double featureSize() const noexcept = 0;
 
-  /// True if the surface is one plane and S the distance to it, everywhere: it has no size of its own, and
-  /// featureSize() stands in for one.
+  /// True if the surface is one plane and S the distance to it, everywhere: it has no size of its
+  /// own, and featureSize() stands in for one.
   [[nodiscard]] virtual bool isFlat() const noexcept { return false; }
 
   /// The default is a leaf.

@@ -1,7 +1,7 @@
 #pragma once
 /// Solids given by a function whose value is not a distance (Metric::kImplicit): only sign and zero
-/// set count, and |value| / |gradient| is about the distance. All lengths in [m], in the field's own
-/// frame. The constructor functions throw Error (kInput) for parameters out of range.
+/// set count, and |value| / |gradient| is about the distance. All lengths in [m], in the field's
+/// own frame. The constructor functions throw Error (kInput) for parameters out of range.
 
 #include <functional>
 #include <vector>
@@ -12,10 +12,10 @@
 namespace palpate {
 
 /// Heart, upright along +z, `width` across its lobes along x: Taubin's sextic
-/// (x^2 + 9/4 y^2 + z^2 - 1)^3 = (x^2 + 9/80 y^2) z^3, written as u - z cbrt(w) so that its gradient
-/// does not vanish on the surface. The tip and the dimple, where the true surface has cusps of zero
-/// width, are rounded within about a hundredth of the half width. The Lipschitz bound holds
-/// everywhere. (G. Taubin, "Distance approximations for rasterizing implicit curves", 1994.)
+/// (x^2 + 9/4 y^2 + z^2 - 1)^3 = (x^2 + 9/80 y^2) z^3, written as u - z cbrt(w) so that its
+/// gradient does not vanish on the surface. The tip and the dimple, where the true surface has
+/// cusps of zero width, are rounded within about a hundredth of the half width. The Lipschitz bound
+/// holds everywhere. (G. Taubin, "Distance approximations for rasterizing implicit curves", 1994.)
 [[nodiscard]] PALPATE_EXPORT FieldPtr heart(const Vec3& center, double width);
 
 /// Coefficients of a polynomial of second degree in x, y, z [m] about its center. They may be given
@@ -38,8 +38,8 @@ struct QuadricCoefficients {
 /// X = 2 pi x / period. Endless: intersect it with a solid. lipschitz() is 1, everywhere.
 [[nodiscard]] PALPATE_EXPORT FieldPtr gyroid(const Vec3& center, double period);
 
-/// A wall along the gyroid, `thickness` across to within an eighth; at most a fifth of `period`. The
-/// intersection of two smooth fields, its two faces.
+/// A wall along the gyroid, `thickness` across to within an eighth; at most a fifth of `period`.
+/// The intersection of two smooth fields, its two faces.
 [[nodiscard]] PALPATE_EXPORT FieldPtr gyroidWall(const Vec3& center, double period,
                                                  double thickness);
 
@@ -57,16 +57,18 @@ struct Metaball {
 };
 
 /// The points where the sum of strength * fall-off is above `iso` (0 < iso). Out of bounds() the
-/// field rises by up to the distance d to that box, d - w atan(d / w) where w is half the smallest radius, so that
-/// it has a gradient everywhere, and its first two derivatives are continuous where the surface touches the box. The Lipschitz
-/// bound holds everywhere. Of many balls only those that reach the point are asked; a Gaussian ends
-/// where all of them together are below rounding. Throws if the balls cannot reach `iso`.
+/// field rises by up to the distance d to that box, d - w atan(d / w) where w is half the smallest
+/// radius, so that it has a gradient everywhere, and its first two derivatives are continuous where
+/// the surface touches the box. The Lipschitz bound holds everywhere. Of many balls only those that
+/// reach the point are asked; a Gaussian ends where all of them together are below rounding. Throws
+/// if the balls cannot reach `iso`.
 [[nodiscard]] PALPATE_EXPORT FieldPtr metaballs(std::vector<Metaball> balls, FallOff fall_off,
                                                 double iso);
 
 /// A function of one's own; its gradient and Hessian are taken numerically.
 struct UserFunction {
-  /// Negative inside. Must not throw (that ends the program) and, in the loop, not allocate or block.
+  /// Negative inside. Must not throw (that ends the program) and, in the loop, not allocate or
+  /// block.
   std::function<double(const Vec3&)> value;
   Box3 bounds = Box3::everything();            ///< [m] holds every point with value <= 0
   double feature_size = 0.0;                   ///< [m] steps of differences are small shares of it

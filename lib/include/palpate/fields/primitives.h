@@ -16,7 +16,8 @@ namespace palpate {
 /// Axis-aligned box with full edge lengths `size`. Exact, inside and out.
 [[nodiscard]] PALPATE_EXPORT FieldPtr box(const Vec3& center, const Vec3& size);
 
-/// Solid cylinder: `center` is the middle of its axis, `height` its full length, capped flat. Exact.
+/// Solid cylinder: `center` is the middle of its axis, `height` its full length, capped flat.
+/// Exact.
 [[nodiscard]] PALPATE_EXPORT FieldPtr cylinder(const Vec3& center, const Vec3& axis, double radius,
                                                double height);
 

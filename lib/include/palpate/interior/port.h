@@ -28,12 +28,13 @@ struct PassedBefore {
   PassedBefore(PortId before = 0, int at_least = 1) : port(before), times(at_least) {}
 };
 
-/// How the force that a wall gives way to depends on the speed v >= 0 [m/s] of the hand into it: that at rest times
+/// How the force that a wall gives way to depends on the speed v >= 0 [m/s] of the hand into it:
+/// that at rest times
 ///   1 + (ratio - 1) v / (v + speed).
-/// A fast hand comes near to `ratio` times the force at rest, and is half way there at `speed`. Mahvash and Dupont 2010
-/// (10.1109/TBME.2009.2036856) found that the force and the deformation at rupture approach a limit as insertion gets
-/// faster, at a speed that goes with the inverse of the tissue's relaxation time. The curve between both ends is the
-/// simplest one that does so.
+/// A fast hand comes near to `ratio` times the force at rest, and is half way there at `speed`.
+/// Mahvash and Dupont 2010 (10.1109/TBME.2009.2036856) found that the force and the deformation at
+/// rupture approach a limit as insertion gets faster, at a speed that goes with the inverse of the
+/// tissue's relaxation time. The curve between both ends is the simplest one that does so.
 struct RuptureRate {
   double ratio = 1.0;  ///< [-] more than 0; 1: the speed does not matter
   double speed = 0.0;  ///< [m/s] 0 or more, more than 0 unless `ratio` is 1
@@ -55,25 +56,25 @@ struct PALPATE_EXPORT Port {
   int mask = -1;           ///< open only within this mask of the partition; -1: everywhere
   PortDirection direction = PortDirection::kBoth;
   std::vector<PassedBefore> after;  ///< ports that must have been passed before
-  int slot = -1;  ///< of PassedPorts; -1: no `after` names this port. Given by Passages
-  Parameter
-      opens_at;  ///< [N] elastic normal force at which it opens; 0: always open. A map holds at the
-                 ///< point touched; where it is 0, the lightest touch opens
-  Parameter back;            ///< [N] the same for coming back
-  RuptureRate rate;          ///< how both depend on the speed that the wall is pressed at
+  int slot = -1;       ///< of PassedPorts; -1: no `after` names this port. Given by Passages
+  Parameter opens_at;  ///< [N] elastic normal force at which it opens; 0: always open. A map holds
+                       ///< at the point touched; where it is 0, the lightest touch opens
+  Parameter back;      ///< [N] the same for coming back
+  RuptureRate rate;    ///< how both depend on the speed that the wall is pressed at
   double hole_radius = 0.0;  ///< [m] of the hole that is left when force opens the port; 0: no hole
-  /// [N] opens the port within such a hole, in place of opens_at and back where these are larger. Of a map the
-  /// value counts where the wall gave way
+  /// [N] opens the port within such a hole, in place of opens_at and back where these are larger.
+  /// Of a map the value counts where the wall gave way
   Parameter reopens_at;
-  /// [m] Opened by force, it does so again only when the proxy has been this far from there, or the hand
-  /// is this far beyond the wall; 0: at once.
+  /// [m] Opened by force, it does so again only when the proxy has been this far from there, or the
+  /// hand is this far beyond the wall; 0: at once.
   double rearm = 0.0;
 
   /// True if going from `a` to `b` is the way in: from the first region named to the second.
   [[nodiscard]] bool leadsInward(RegionId a, RegionId b) const noexcept;
 
-  /// True if going from `a` to `b`, which the port joins, counts as inward. As leadsInward(), but where that
-  /// holds both ways (globs) only towards the later layer, so that the way back is the other way.
+  /// True if going from `a` to `b`, which the port joins, counts as inward. As leadsInward(), but
+  /// where that holds both ways (globs) only towards the later layer, so that the way back is the
+  /// other way.
   [[nodiscard]] bool countsInward(RegionId a, RegionId b) const noexcept {
     return leadsInward(a, b) && (a < b || !leadsInward(b, a));
   }

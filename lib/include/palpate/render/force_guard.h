@@ -26,7 +26,8 @@ class PALPATE_EXPORT ForceGuard {
   /// As before the first tick: the last force is zero and the ramp begins again.
   void reset() noexcept;
 
-  /// True if the numbers of the last tick are finite, and its time is not below 0; a damaged file may say otherwise.
+  /// True if the numbers of the last tick are finite, and its time is not below 0; a damaged file
+  /// may say otherwise.
   [[nodiscard]] bool isSound() const noexcept;
 
  private:

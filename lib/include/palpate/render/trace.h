@@ -32,7 +32,8 @@ class Trace {
     rows_.reserve(capacity);
     entries_.reserve(capacity + kMoreEntries);
   }
-  /// Adds a row and the regions entered in its tick. Rows and entries that no longer fit are counted as dropped.
+  /// Adds a row and the regions entered in its tick. Rows and entries that no longer fit are
+  /// counted as dropped.
   void add(TraceRow row, std::span<const RegionEntry> entries = {}) noexcept {
     if (rows_.size() == rows_.capacity()) {
       ++dropped_;
@@ -62,7 +63,8 @@ class Trace {
   std::uint64_t dropped_entries_ = 0;
 };
 
-/// Trace rows as CSV, one at a time: header() and then add() for each gives what traceCsv() gives. Names come from the scene.
+/// Trace rows as CSV, one at a time: header() and then add() for each gives what traceCsv() gives.
+/// Names come from the scene.
 class PALPATE_EXPORT TraceText {
  public:
   explicit TraceText(const Scene& scene);
@@ -80,8 +82,8 @@ class PALPATE_EXPORT TraceText {
 
 /// As CSV, with the header
 /// t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_ns
-/// with shortest numbers that read back exactly (`nan`, `inf` for a broken sensor's position). A name
-/// with a comma, quote or line end is quoted as RFC 4180 says. Names come from the scene.
+/// with shortest numbers that read back exactly (`nan`, `inf` for a broken sensor's position). A
+/// name with a comma, quote or line end is quoted as RFC 4180 says. Names come from the scene.
 [[nodiscard]] PALPATE_EXPORT std::string traceCsv(std::span<const TraceRow> rows,
                                                   const Scene& scene);
 

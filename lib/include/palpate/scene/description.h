@@ -19,7 +19,8 @@
 
 namespace palpate {
 
-/// How the energy of the loop is counted and controlled (devices/passivity.h). What is not given is as the device has it.
+/// How the energy of the loop is counted and controlled (devices/passivity.h). What is not given is
+/// as the device has it.
 struct PassivityRequest {
   bool controls = true;                   ///< false: the energy is counted only
   std::optional<double> mass = {};        ///< [kg] the device's least
@@ -43,9 +44,10 @@ struct CouplingRequest {
   friend bool operator==(const CouplingRequest&, const CouplingRequest&) = default;
 };
 
-/// World = offset + scale * rotation * device, in [m]; forces go back by the rotation, `force` times as large. So the hand does
-/// force / scale times the work that is done in the world, and a stiffness is felt scale * force times as stiff.
-/// The workspace is what the device's tip can be brought to.
+/// World = offset + scale * rotation * device, in [m]; forces go back by the rotation, `force`
+/// times as large. So the hand does force / scale times the work that is done in the world, and a
+/// stiffness is felt scale * force times as stiff. The workspace is what the device's tip can be
+/// brought to.
 struct DeviceMapping {
   Vec3 offset{0.0, 0.0, 0.0};  ///< [m, world] where the device's origin is
   Mat3 rotation{1.0};          ///< [-] of the device's axes into the world's; proper
@@ -72,14 +74,16 @@ struct DeviceMapping {
   /// [-] Stiffness at the hand per stiffness in the world.
   [[nodiscard]] double stiffnessAtHand() const noexcept { return force * scale; }
 
-  /// [m, world] A box around what a hand can get to; everything if the workspace is not bounded or there is a clutch.
+  /// [m, world] A box around what a hand can get to; everything if the workspace is not bounded or
+  /// there is a clutch.
   [[nodiscard]] Box3 reach() const noexcept {
     if (clutch || !workspace.isBounded()) return {Vec3(-kInfinity), Vec3(kInfinity)};
     return Pose{scale * rotation, offset}.apply(workspace);
   }
 };
 
-/// Limits of the rendered force that the author of a scene asks for. What is not given is not limited.
+/// Limits of the rendered force that the author of a scene asks for. What is not given is not
+/// limited.
 struct ForceRequest {
   std::optional<double> max = {};   ///< [N] more than 0; longer forces are shortened to it
   std::optional<double> slew = {};  ///< [N/s] more than 0; by how much the force may grow
@@ -105,8 +109,9 @@ struct PaperParameters {
   static constexpr int kMaxHalvings = 48;
   static constexpr double kAlpha = 1.0;
 
-  /// [m] epsilon: so near to the surface the contact point counts as on it; more than 0. By default 1 um, but at
-  /// most a ten-thousandth of the field's feature size. |S| is held against it times the slope of S.
+  /// [m] epsilon: so near to the surface the contact point counts as on it; more than 0. By default
+  /// 1 um, but at most a ten-thousandth of the field's feature size. |S| is held against it times
+  /// the slope of S.
   std::optional<double> epsilon = {};
   std::optional<int> max_halvings =
       {};  ///< MAX_N: of the segment in which the surface is searched; 1 to 1000
@@ -138,8 +143,8 @@ struct SourcePlace {
 [[nodiscard]] PALPATE_EXPORT Error errorAt(const SourcePlace& place, std::string code,
                                            std::string message, std::string hint = {});
 
-/// A field that is ready, or that costs work (a mesh, a scan) and is made when first asked for, so that
-/// what a scene does not need is never made. Set-up thread only.
+/// A field that is ready, or that costs work (a mesh, a scan) and is made when first asked for, so
+/// that what a scene does not need is never made. Set-up thread only.
 class PALPATE_EXPORT FieldSource {
  public:
   using Maker = std::function<FieldPtr(const Progress&)>;
@@ -161,8 +166,8 @@ class PALPATE_EXPORT FieldSource {
 
   /// The field, made now if need be. The same pointer every time.
   [[nodiscard]] const FieldPtr& get(const Progress& progress = {}) const;
-  /// What is needed of it where only `within` [m] matters: the field itself if it is made, or cannot be made
-  /// in part. The same pointer every time for the same box.
+  /// What is needed of it where only `within` [m] matters: the field itself if it is made, or
+  /// cannot be made in part. The same pointer every time for the same box.
   [[nodiscard]] const FieldPtr& get(const Box3& within, const Progress& progress = {}) const;
   /// [m] A box around the field; none if only making it would tell.
   [[nodiscard]] std::optional<Box3> bounds(const Progress& progress = {}) const;
@@ -203,8 +208,8 @@ struct LayerDescription {
   /// field is smallest has the point. Their fields may overlap; they should,
   /// a little, where edges meet, so that none of the image is left over between them.
   std::string label_group = {};
-  /// Of the group's image, ascending. Two layers that have one in common do not limit each other: the later has
-  /// what is in both.
+  /// Of the group's image, ascending. Two layers that have one in common do not limit each other:
+  /// the later has what is in both.
   std::vector<int> labels = {};
   SourcePlace place = {};
 };
@@ -233,8 +238,8 @@ struct PortDescription {
   std::string name;
   std::string from;  ///< region names and globs, with ", " between them
   std::string to;    ///< the same
-  /// It opens this sheet and no wall: `from` and `to` are empty, there is no `on`, and inward is against the
-  /// gradient of what the sheet is on.
+  /// It opens this sheet and no wall: `from` and `to` are empty, there is no `on`, and inward is
+  /// against the gradient of what the sheet is on.
   std::string sheet = {};
   FieldSourcePtr on = {};    ///< null: any facet
   std::string on_name = {};  ///< how the author called it
@@ -253,8 +258,8 @@ struct PortDescription {
   SourcePlace place = {};
 };
 
-/// An open surface: the part of `on`'s zero set where `where` is negative, with the same region on both
-/// sides (a dangling edge, a plate without thickness).
+/// An open surface: the part of `on`'s zero set where `where` is negative, with the same region on
+/// both sides (a dangling edge, a plate without thickness).
 struct SheetDescription {
   std::string name;
   FieldSourcePtr on;
@@ -269,7 +274,7 @@ enum class RendererKind { kConstraint, kPaper };
 struct SceneDescription {
   std::string file = {};
   std::string length_unit = "m";  ///< as named in the file, for output that people read
-  double metres_per_unit = 1.0;   ///< [m]
+  double meters_per_unit = 1.0;   ///< [m]
   std::vector<Material> materials = {};
   std::vector<NamedField> fields = {};
   std::vector<LayerDescription> layers = {};

@@ -17,8 +17,9 @@ namespace palpate {
 class Partition;
 class Passages;
 
-/// Whether there is a sequence of transitions, from the start and with the ports in their order, that leads
-/// somewhere. Of the shapes it looks at what touches what: a region in two parts counts as one.
+/// Whether there is a sequence of transitions, from the start and with the ports in their order,
+/// that leads somewhere. Of the shapes it looks at what touches what: a region in two parts counts
+/// as one.
 enum class Reach : std::uint8_t {
   kNo,         ///< none, however long
   kUndecided,  ///< none was found, nor that there is none
@@ -33,9 +34,8 @@ struct Region {
   bool wall_absent = false;
   Reach reach = Reach::kYes;  ///< by ports and absent walls from the start region
   bool reachable = true;      ///< unless reach is kNo
-  FieldPtr
-      field;  ///< the layer's whole field (label group share applied); null for outside and for
-              ///< what was left out
+  FieldPtr field;  ///< the layer's whole field (label group share applied); null for outside and
+                   ///< for what was left out
   std::string
       left_out;  ///< why the layer was not made: its place belongs to what is around; else empty
   std::string source;        ///< what it was made from; empty if analytic
@@ -67,7 +67,7 @@ class PALPATE_EXPORT Scene {
   [[nodiscard]] const PaperParameters& paper() const noexcept { return paper_; }
   [[nodiscard]] const DeviceMapping& device() const noexcept { return device_; }
   [[nodiscard]] const std::string& lengthUnit() const noexcept { return length_unit_; }
-  [[nodiscard]] double metresPerUnit() const noexcept { return metres_per_unit_; }
+  [[nodiscard]] double metersPerUnit() const noexcept { return meters_per_unit_; }
   /// The named fields of the description that were made, with their names, for `query`.
   [[nodiscard]] std::span<const NamedField> fields() const noexcept { return fields_; }
 
@@ -102,24 +102,27 @@ class PALPATE_EXPORT Scene {
   RendererKind renderer_ = RendererKind::kConstraint;
   DeviceMapping device_;
   std::string length_unit_ = "m";
-  double metres_per_unit_ = 1.0;
+  double meters_per_unit_ = 1.0;
 };
 
 using ScenePtr = std::shared_ptr<const Scene>;
 
 /// What a scene is compiled for.
 enum class Purpose {
-  kTouch,  ///< to be felt: what costs work and the probe can certainly not feel is left out (Region::left_out)
-  kShow,  ///< to be looked at: with all of its layers
+  kTouch,  ///< to be felt: what costs work and the probe can certainly not feel is left out
+           ///< (Region::left_out)
+  kShow,   ///< to be looked at: with all of its layers
 };
 
-/// Checks a description against itself and its geometry, makes its fields, and builds the scene. To be
-/// touched, a layer that costs work is left out if it lies beyond the device's workspace, or if no way leads into
-/// it and nothing that the probe can enter comes near it; ports into it lead nowhere then. Of the others only what lies
-/// within the workspace and somewhat beyond is made: 5 % of its diagonal, and as deep as a wall is felt through
-/// (`composite`). A probe that presses no deeper than that feels the whole; further off a cut shape goes on as it is at the cut.
-/// @throws Error (kInput) pointing at the offending place: unknown layer or material, a port between
-/// regions that do not touch, `on` not a leaf of either region, a cycle in `after`, ...
+/// Checks a description against itself and its geometry, makes its fields, and builds the scene. To
+/// be touched, a layer that costs work is left out if it lies beyond the device's workspace, or if
+/// no way leads into it and nothing that the probe can enter comes near it; ports into it lead
+/// nowhere then. Of the others only what lies within the workspace and somewhat beyond is made: 5 %
+/// of its diagonal, and as deep as a wall is felt through
+/// (`composite`). A probe that presses no deeper than that feels the whole; further off a cut shape
+/// goes on as it is at the cut.
+/// @throws Error (kInput) pointing at the offending place: unknown layer or material, a port
+/// between regions that do not touch, `on` not a leaf of either region, a cycle in `after`, ...
 [[nodiscard]] PALPATE_EXPORT ScenePtr compile(const SceneDescription& description,
                                               const Progress& progress = {},
                                               Purpose purpose = Purpose::kTouch);

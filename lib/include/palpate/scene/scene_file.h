@@ -2,9 +2,10 @@
 /// Scene files: YAML -> Document -> SceneDescription, strictly. What reads other files (meshes,
 /// grids, scans) is not known here; it comes through a SceneRegistry that the vdb module fills.
 ///
-/// A Document is a strict YAML subset as an immutable tree with places. No yaml-cpp type is visible here.
-/// Refused with file:line:column: duplicate keys, aliases and anchors, tags, more than one document,
-/// keys that are not plain text, nesting deeper than 64. JSON is a subset and is read too.
+/// A Document is a strict YAML subset as an immutable tree with places. No yaml-cpp type is visible
+/// here. Refused with file:line:column: duplicate keys, aliases and anchors, tags, more than one
+/// document, keys that are not plain text, nesting deeper than 64. JSON is a subset and is read
+/// too.
 
 #include <functional>
 #include <map>
@@ -69,18 +70,20 @@ struct MapWords;
 struct KeyWords;
 using VocabularyPtr = std::shared_ptr<const Vocabulary>;
 
-/// What lib itself reads. The top level is the map "scene"; the kinds of fields are the keys of "field_kind".
+/// What lib itself reads. The top level is the map "scene"; the kinds of fields are the keys of
+/// "field_kind".
 [[nodiscard]] PALPATE_EXPORT const VocabularyPtr& sceneVocabulary();
 
-/// A map node being read. A map that the vocabulary declares is checked whole when it is opened: unknown
-/// and missing keys, types and bounds; value(), text() and their like then only fetch what is there, or the
-/// declared default. In any other map every key must be asked for, by require(), optional() or one of the
-/// getters with a fallback, and what is left over is an error with a suggestion (finish()).
-/// All throw Error (kInput) at the offending place.
+/// A map node being read. A map that the vocabulary declares is checked whole when it is opened:
+/// unknown and missing keys, types and bounds; value(), text() and their like then only fetch what
+/// is there, or the declared default. In any other map every key must be asked for, by require(),
+/// optional() or one of the getters with a fallback, and what is left over is an error with a
+/// suggestion (finish()). All throw Error (kInput) at the offending place.
 class PALPATE_EXPORT MapReader {
  public:
   MapReader(const SceneLoader& loader, const Node& map, std::string what);
-  /// `declared`: the vocabulary's name of the map; read as one that it does not declare if it has no keys for it.
+  /// `declared`: the vocabulary's name of the map; read as one that it does not declare if it has
+  /// no keys for it.
   MapReader(const SceneLoader& loader, const Node& map, std::string what,
             std::string_view declared);
 
@@ -107,7 +110,7 @@ class PALPATE_EXPORT MapReader {
   [[nodiscard]] bool boolOr(std::string_view key, bool fallback);  ///< only true and false
   /// A bare number in the file's length unit, or a text with a unit; in [m].
   [[nodiscard]] double requireLength(std::string_view key);
-  [[nodiscard]] double lengthOr(std::string_view key, double fallback_metres);
+  [[nodiscard]] double lengthOr(std::string_view key, double fallback_meters);
   [[nodiscard]] Vec3 requirePoint(std::string_view key);  ///< lengths, in [m]
   /// Error at the key's value (or at the map if the key is not there).
   [[nodiscard]] Error errorAt(std::string_view key, std::string code, std::string message,
@@ -144,7 +147,7 @@ class PALPATE_EXPORT SceneLoader {
   virtual ~SceneLoader() = default;
   [[nodiscard]] virtual const Document& document() const noexcept = 0;
   [[nodiscard]] virtual const Vocabulary& vocabulary() const { return *sceneVocabulary(); }
-  [[nodiscard]] virtual double metresPerUnit() const noexcept = 0;
+  [[nodiscard]] virtual double metersPerUnit() const noexcept = 0;
   [[nodiscard]] virtual std::string lengthUnit() const = 0;
   /// A path written in the scene, made relative to the scene file's folder.
   [[nodiscard]] virtual std::string resolvePath(const std::string& path) const = 0;
@@ -156,8 +159,8 @@ class PALPATE_EXPORT SceneLoader {
   [[nodiscard]] virtual MaterialMapPtr map(const Node& node, const ParameterKind& of) const = 0;
 };
 
-/// Kinds that other modules add: what makes them, by their YAML keys, and what may be written of them. A kind that
-/// the vocabulary does not declare asks for its keys itself.
+/// Kinds that other modules add: what makes them, by their YAML keys, and what may be written of
+/// them. A kind that the vocabulary does not declare asks for its keys itself.
 struct SceneRegistry {
   /// `fields: {x: {mesh: {...}}}`: makes the source of a field; must not do heavy work itself.
   using FieldKind = std::function<FieldSourcePtr(MapReader&)>;
@@ -171,8 +174,8 @@ struct SceneRegistry {
     std::vector<int> labels = {};
   };
   using LayerKind = std::function<LayerSurface(MapReader&, const std::string& layer_name)>;
-  /// `stiffness: {image: ct, transfer: [...]}`: reads the map whose keys include the kind's name. It is
-  /// made at once, as its range decides whether it may stand there.
+  /// `stiffness: {image: ct, transfer: [...]}`: reads the map whose keys include the kind's name.
+  /// It is made at once, as its range decides whether it may stand there.
   using ParameterMapKind = std::function<MaterialMapPtr(MapReader&, const ParameterKind&)>;
 
   /// `grids: {tolerance, voxel}`: what a layer made of formulas is asked to become.
@@ -184,8 +187,8 @@ struct SceneRegistry {
     std::vector<FieldPtr> keep = {};  ///< these stay as they are, as ports name them
     SourcePlace place = {};
   };
-  /// The same field, of which the parts that a grid holds within the tolerance and answers faster are grids; made when
-  /// it is asked for.
+  /// The same field, of which the parts that a grid holds within the tolerance and answers faster
+  /// are grids; made when it is asked for.
   using GridChooser = std::function<FieldSourcePtr(const FieldSourcePtr&, const GridChoice&)>;
 
   VocabularyPtr vocabulary = sceneVocabulary();
@@ -196,7 +199,8 @@ struct SceneRegistry {
   GridChooser choose_grids = {};
 };
 
-/// @throws Error (kInput) for the first problem found, with file:line:column, the line and a remedy.
+/// @throws Error (kInput) for the first problem found, with file:line:column, the line and a
+/// remedy.
 [[nodiscard]] PALPATE_EXPORT SceneDescription parseScene(std::string_view text,
                                                          const std::string& file,
                                                          const SceneRegistry& registry = {});

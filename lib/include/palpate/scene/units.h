@@ -23,7 +23,7 @@ enum class Dimension {
 };
 
 /// Meters in one `unit` ("mm", "cm", "m", "um", "in"); nothing if the unit is not known.
-[[nodiscard]] PALPATE_EXPORT std::optional<double> metresPer(std::string_view unit) noexcept;
+[[nodiscard]] PALPATE_EXPORT std::optional<double> metersPer(std::string_view unit) noexcept;
 
 /// What became of a quantity's text.
 struct Quantity {

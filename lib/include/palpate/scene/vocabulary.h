@@ -1,7 +1,8 @@
 #pragma once
-/// The vocabulary of scene files as data: every map, its keys, and what may stand at them. The reader, the
-/// JSON Schema, the tables of the documents, help and completion are made from it. It is written in YAML
-/// (lib/src/scene/vocabulary.yaml says how); other modules add to a copy of it in the same way.
+/// The vocabulary of scene files as data: every map, its keys, and what may stand at them. The
+/// reader, the JSON Schema, the tables of the documents, help and completion are made from it. It
+/// is written in YAML (lib/src/scene/vocabulary.yaml says how); other modules add to a copy of it
+/// in the same way.
 
 #include <limits>
 #include <memory>
@@ -84,8 +85,8 @@ struct PALPATE_EXPORT MapWords {
 
 class PALPATE_EXPORT Vocabulary {
  public:
-  /// Adds what `text` declares: new maps and values, further keys of maps that there are, and keys in the
-  /// place of those of the same name. `file` is for messages. @throws Error (kInput).
+  /// Adds what `text` declares: new maps and values, further keys of maps that there are, and keys
+  /// in the place of those of the same name. `file` is for messages. @throws Error (kInput).
   void add(std::string_view text, const std::string& file);
 
   /// Null if there is none.

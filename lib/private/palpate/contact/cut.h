@@ -8,12 +8,13 @@
 
 namespace palpate {
 
-/// A straight cut, from where the tip entered a tissue to the furthest it got. Within the cut, and on the straight way out
-/// of it, the tip moves freely; against its end and its sides it presses with a spring, and where that would take more than
-/// the cutting force, it cuts: end or side give way and stay where they are then. So the spring is
-/// never switched off: it is anchored to tissue that moves along with the tip, and only slackens when
-/// the tip is drawn back (the tracking wall of Alamilla Daniel, Moreau and Redarce 2018). A value;
-/// real-time safe. Passive: apart from cutting it is a spring to a convex set.
+/// A straight cut, from where the tip entered a tissue to the furthest it got. Within the cut, and
+/// on the straight way out of it, the tip moves freely; against its end and its sides it presses
+/// with a spring, and where that would take more than the cutting force, it cuts: end or side give
+/// way and stay where they are then. So the spring is never switched off: it is anchored to tissue
+/// that moves along with the tip, and only slackens when the tip is drawn back (the tracking wall
+/// of Alamilla Daniel, Moreau and Redarce 2018). A value; real-time safe. Passive: apart from
+/// cutting it is a spring to a convex set.
 class Cut {
  public:
   Cut() = default;
@@ -22,8 +23,8 @@ class Cut {
   /// The tip is at `tip` [m]; the tissue is as stiff as `stiffness` [N/m] and gives way at
   /// `cutting_force` [N]. Returns the force [N] on the tip.
   [[nodiscard]] Vec3 step(const Vec3& tip, double stiffness, double cutting_force) noexcept;
-  /// The tip is at `tip` [m], on the walls `rests_on` (at most 3), which cannot be cut: the tissue before them is cut
-  /// through, and presses no more against them. Comes before step().
+  /// The tip is at `tip` [m], on the walls `rests_on` (at most 3), which cannot be cut: the tissue
+  /// before them is cut through, and presses no more against them. Comes before step().
   void restOn(const Vec3& tip, std::span<const HeldWall> rests_on) noexcept;
 
   [[nodiscard]] const Vec3& entry() const noexcept { return entry_; }  ///< [m]

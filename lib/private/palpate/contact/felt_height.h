@@ -1,6 +1,6 @@
 #pragma once
-/// Heights at which a wall is felt above where it is: bumps of a texture, and a surface smoothed by shading. Both are
-/// functions of the place alone, so that what is felt of them has a potential.
+/// Heights at which a wall is felt above where it is: bumps of a texture, and a surface smoothed by
+/// shading. Both are functions of the place alone, so that what is felt of them has a potential.
 
 #include <array>
 
@@ -17,13 +17,14 @@ struct FeltHeight {
 /// Height of the texture at `p` [m].
 [[nodiscard]] FeltHeight textureHeight(const Texture& texture, const Vec3& p) noexcept;
 
-/// [m] The depth down to which the texture is felt in full: deeper, it would be stiffer along the wall than the wall is.
-/// At least twice its amplitude; infinite for no texture.
+/// [m] The depth down to which the texture is felt in full: deeper, it would be stiffer along the
+/// wall than the wall is. At least twice its amplitude; infinite for no texture.
 [[nodiscard]] double textureReach(const Texture& texture) noexcept;
 
-/// A field smoothed over a radius: the quadratic B-spline of its distances at the nodes of a lattice that is fixed
-/// in space, two thirds of the radius wide. So value and gradient are continuous wherever the field has edges, and are
-/// each other's. Keeps the nodes around the last place. Real-time safe.
+/// A field smoothed over a radius: the quadratic B-spline of its distances at the nodes of a
+/// lattice that is fixed in space, two thirds of the radius wide. So value and gradient are
+/// continuous wherever the field has edges, and are each other's. Keeps the nodes around the last
+/// place. Real-time safe.
 class SmoothedField {
  public:
   /// At `p` [m] within reach of the surface; `radius` [m] more than 0.

@@ -1,7 +1,8 @@
 #pragma once
-/// Algorithms I and II of Maneewarn, Hannaford, Storti and Ganter, "Haptic rendering for internal content of
-/// an implicit object", to the letter. The contact point Po is driven by the probe's own motion, so it
-/// drifts and re-acquires where the surface is curved: that is the method, kept for comparison.
+/// Algorithms I and II of Maneewarn, Hannaford, Storti and Ganter, "Haptic rendering for internal
+/// content of an implicit object", to the letter. The contact point Po is driven by the probe's own
+/// motion, so it drifts and re-acquires where the surface is curved: that is the method, kept for
+/// comparison.
 
 #include "palpate/fields/field.h"
 
@@ -27,13 +28,14 @@ struct PaperContact {
   Vec3 interaction_point{0.0, 0.0, 0.0};  ///< [m] Pi: the probe projected on the normal line of Po
 };
 
-/// Algorithm I, first contact: bisects from the probe's last position (outside) to its present one. Where
-/// the segment has no bracket (the probe began beyond the wall), Po is found down the gradient.
+/// Algorithm I, first contact: bisects from the probe's last position (outside) to its present one.
+/// Where the segment has no bracket (the probe began beyond the wall), Po is found down the
+/// gradient.
 [[nodiscard]] PaperContact firstContact(const PaperSurface& surface, const Vec3& outside,
                                         const Vec3& probe) noexcept;
 
-/// Algorithm II, still in contact: Po slides by the probe's motion, and is re-acquired by Algorithm I on
-/// Po..Pi (or Po..P where Pi is outside) when it slid off the surface.
+/// Algorithm II, still in contact: Po slides by the probe's motion, and is re-acquired by Algorithm
+/// I on Po..Pi (or Po..P where Pi is outside) when it slid off the surface.
 [[nodiscard]] PaperContact trackContact(const PaperSurface& surface, const PaperContact& last,
                                         const Vec3& last_probe, const Vec3& probe) noexcept;
 

@@ -16,13 +16,14 @@ struct ShaftLaw {
   double stick_speed = 0.0;  ///< [m/s]
 };
 
-/// How far the tissue that sticks to the shaft is drawn along, and whether the shaft slides through it. A
-/// value; real-time safe. Passive: new length comes in unstretched, length that leaves takes its share of
-/// the stretch with it, and slipping only ever lets go.
+/// How far the tissue that sticks to the shaft is drawn along, and whether the shaft slides through
+/// it. A value; real-time safe. Passive: new length comes in unstretched, length that leaves takes
+/// its share of the stretch with it, and slipping only ever lets go.
 class ShaftSlip {
  public:
-  /// The shaft went in by `advance` [m] (out: less than 0), while the hand moves at `speed` [m/s] along it; now
-  /// `length` [m] of it is in this tissue. Returns the force [N] against going in that it feels.
+  /// The shaft went in by `advance` [m] (out: less than 0), while the hand moves at `speed` [m/s]
+  /// along it; now `length` [m] of it is in this tissue. Returns the force [N] against going in
+  /// that it feels.
   double step(const ShaftLaw& law, double length, double advance, double speed) noexcept;
   void reset() noexcept { *this = {}; }
 

@@ -21,7 +21,8 @@ struct SharedWall {
     return height_rise == Vec3(0.0) && stiffness_rise == Vec3(0.0) &&
            stiffening_rise == Vec3(0.0) && stiffness_press == Vec3(0.0);
   }
-  /// [N] What the energy, `depth` [m] deep, rises by with the place, where the press stays as it is, ...
+  /// [N] What the energy, `depth` [m] deep, rises by with the place, where the press stays as it
+  /// is, ...
   [[nodiscard]] Vec3 rise(double depth) const noexcept;
   /// [N] ... and the other way round.
   [[nodiscard]] Vec3 byPress(double depth) const noexcept {
@@ -30,15 +31,16 @@ struct SharedWall {
   }
 };
 
-/// Walls that share a press. Each stores its share of what its own law would store alone; so the force has a potential,
-/// whatever the shares, if what they change by is in it as well. One wall: all of it. Values; real-time safe.
+/// Walls that share a press. Each stores its share of what its own law would store alone; so the
+/// force has a potential, whatever the shares, if what they change by is in it as well. One wall:
+/// all of it. Values; real-time safe.
 class SharedWalls {
  public:
   /// More are left out: the ones that bear least.
   static constexpr std::size_t kMost = 4;
 
-  /// Adds a wall that bears `share` [-] of the press; `by_place` [1/m] is the gradient of the share where the place moves
-  /// and the press stays as it is, `by_press` [1/m] the other way round.
+  /// Adds a wall that bears `share` [-] of the press; `by_place` [1/m] is the gradient of the share
+  /// where the place moves and the press stays as it is, `by_press` [1/m] the other way round.
   void add(const SharedWall& felt, double share = 1.0, const Vec3& by_place = Vec3(0.0),
            const Vec3& by_press = Vec3(0.0)) noexcept;
 

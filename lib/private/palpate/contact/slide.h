@@ -21,10 +21,10 @@ struct HeldWall {
 /// ... and along all walls.
 [[nodiscard]] Vec3 tangentialPart(const Vec3& v, std::span<const HeldWall> walls) noexcept;
 
-/// The chain rule through a proxy at rest: the gradient by the hand's position of what has `gradient` by the
-/// proxy's. The proxy follows the hand by (I - sum lambda_i H_i / |grad S_i|)^-1 along the walls, and not at
-/// all across them; near the hand's focal points the inverse is held to 1000. Source: the derivative of the
-/// second-order condition of min |x - P|^2 on S = 0.
+/// The chain rule through a proxy at rest: the gradient by the hand's position of what has
+/// `gradient` by the proxy's. The proxy follows the hand by (I - sum lambda_i H_i / |grad S_i|)^-1
+/// along the walls, and not at all across them; near the hand's focal points the inverse is held to
+/// 1000. Source: the derivative of the second-order condition of min |x - P|^2 on S = 0.
 [[nodiscard]] Vec3 gradientByHand(const Vec3& gradient, std::span<const HeldWall> walls) noexcept;
 
 }  // namespace palpate

@@ -30,9 +30,9 @@ struct SweepResult {
       0.0;  ///< side * S + allowance at the end of what was swept (a lower bound of |S| there)
 };
 
-/// Sweeps from `a` to `b` [m]. `start` is side * S + allowance at `a`; a start on or beyond the surface counts as a hit
-/// if the motion leads further beyond, and as free to go if it leads away. At most `budget`
-/// evaluations.
+/// Sweeps from `a` to `b` [m]. `start` is side * S + allowance at `a`; a start on or beyond the
+/// surface counts as a hit if the motion leads further beyond, and as free to go if it leads away.
+/// At most `budget` evaluations.
 [[nodiscard]] SweepResult sweep(const SweepSurface& surface, const Vec3& a, const Vec3& b,
                                 double start, int budget) noexcept;
 

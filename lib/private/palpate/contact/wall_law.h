@@ -1,18 +1,19 @@
 #pragma once
-/// What a wall pushes with at one place, and the energy that it stores: its spring, pressed by the depth and by the
-/// height at which its surface is felt.
+/// What a wall pushes with at one place, and the energy that it stores: its spring, pressed by the
+/// depth and by the height at which its surface is felt.
 
 #include "palpate/contact/wall_spring.h"
 #include "palpate/core/math.h"
 
 namespace palpate {
 
-/// The force is secant(d) (d + c), with c the height, no more than `held` times the depth d either way, and from a depth
-/// of `reach` on fading out over as much again. So nothing is stored where nothing is pressed, and a light
-/// touch is never lost. Values; real-time safe.
+/// The force is secant(d) (d + c), with c the height, no more than `held` times the depth d either
+/// way, and from a depth of `reach` on fading out over as much again. So nothing is stored where
+/// nothing is pressed, and a light touch is never lost. Values; real-time safe.
 ///
-/// Height and stiffness may differ from place to place: the energy's derivatives by both, times their gradients,
-/// are the force along the wall without which a way there and back would give energy.
+/// Height and stiffness may differ from place to place: the energy's derivatives by both, times
+/// their gradients, are the force along the wall without which a way there and back would give
+/// energy.
 struct WallLaw {
   WallSpring spring;
   double height = 0.0;       ///< [m] at which the surface is felt above the wall
@@ -43,9 +44,10 @@ struct WallLaw {
   [[nodiscard]] double fading(double depth) const noexcept;
 };
 
-/// A wall's law behind a spring of `stop` [N/m], stiffer than the law is: how deep the law is pressed where the
-/// softer of the two gives way by `give` [m], that is d with d - force(d) / stop = give. Where the law would be stiffer
-/// than the stop allows, it counts as a straight line from there on.
+/// A wall's law behind a spring of `stop` [N/m], stiffer than the law is: how deep the law is
+/// pressed where the softer of the two gives way by `give` [m], that is d with d - force(d) / stop
+/// = give. Where the law would be stiffer than the stop allows, it counts as a straight line from
+/// there on.
 struct SoftWall {
   double depth = 0.0;    ///< [m]
   double force = 0.0;    ///< [N]

@@ -17,7 +17,8 @@ struct WallSpring {
   [[nodiscard]] double force(double depth) const noexcept {
     return depth > 0.0 ? secant(depth) * depth : 0.0;
   }
-  /// [m^2] What the stored energy changes by per change of `stiffness`: half of depth^2 where straight.
+  /// [m^2] What the stored energy changes by per change of `stiffness`: half of depth^2 where
+  /// straight.
   [[nodiscard]] double energyPerStiffness(double depth) const noexcept;
   /// [m^3] The same per change of `stiffening`.
   [[nodiscard]] static double energyPerStiffening(double depth) noexcept {

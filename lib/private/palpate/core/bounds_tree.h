@@ -1,5 +1,6 @@
 #pragma once
-/// A bounding-volume hierarchy over axis-aligned boxes: which of many things may be near a point or meet a box.
+/// A bounding-volume hierarchy over axis-aligned boxes: which of many things may be near a point or
+/// meet a box.
 
 #include <cstdint>
 #include <span>
@@ -11,9 +12,9 @@
 
 namespace palpate {
 
-/// Immutable after construction; visits are real-time safe (their stack is fixed, the tree's depth is
-/// bounded by halving). Items are numbered as in the constructor's list; empty boxes are never met,
-/// infinite ones always.
+/// Immutable after construction; visits are real-time safe (their stack is fixed, the tree's depth
+/// is bounded by halving). Items are numbered as in the constructor's list; empty boxes are never
+/// met, infinite ones always.
 class PALPATE_EXPORT BoundsTree {
  public:
   BoundsTree() = default;
@@ -39,9 +40,9 @@ class PALPATE_EXPORT BoundsTree {
     walk([&](const Box3& each) { return meet(each, box); }, f);
   }
 
-  /// Calls f(item), about the nearest boxes first, for the items whose boxes come within a radius of `p` that
-  /// narrows down as the visit goes on: `radius` [m] at first, then what f returned last. A negative
-  /// radius meets the boxes that hold `p`.
+  /// Calls f(item), about the nearest boxes first, for the items whose boxes come within a radius
+  /// of `p` that narrows down as the visit goes on: `radius` [m] at first, then what f returned
+  /// last. A negative radius meets the boxes that hold `p`.
   template <typename F>
   void visitNearest(const Vec3& p, double radius, F&& f) const noexcept {
     if (nodes_.empty()) return;

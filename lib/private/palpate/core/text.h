@@ -17,7 +17,8 @@ namespace palpate {
 /// `text` in single quotes, on one line and not too long.
 [[nodiscard]] PALPATE_EXPORT std::string inQuotes(std::string_view text);
 
-/// "a, b, c": shown(item) of each, or the member of each that it is. Those that show as nothing are left out.
+/// "a, b, c": shown(item) of each, or the member of each that it is. Those that show as nothing are
+/// left out.
 template <typename Items, typename Shown = std::identity>
 [[nodiscard]] std::string joined(const Items& items, std::string_view between = ", ",
                                  Shown shown = {}) {

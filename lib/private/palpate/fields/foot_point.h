@@ -16,12 +16,12 @@ struct FootPoint {
   double curvature_product = 0.0;
 };
 
-/// Newton's method on the conditions of the nearest point: x - p + lambda grad S(x) = 0 and S(x) = 0.
-/// For set-up and measurement: some ten evaluations and 14 values, but no allocation, and any thread.
-/// Nothing if it does not converge to rounding, if the foot is not a nearest point (p lies beyond the
-/// center of curvature), or if another part of the surface is nearer: the field is asked on the
-/// sphere around p that reaches almost to the foot, and has to have the sign of p there.
-/// The field must be twice differentiable between p and its foot.
+/// Newton's method on the conditions of the nearest point: x - p + lambda grad S(x) = 0 and S(x) =
+/// 0. For set-up and measurement: some ten evaluations and 14 values, but no allocation, and any
+/// thread. Nothing if it does not converge to rounding, if the foot is not a nearest point (p lies
+/// beyond the center of curvature), or if another part of the surface is nearer: the field is asked
+/// on the sphere around p that reaches almost to the foot, and has to have the sign of p there. The
+/// field must be twice differentiable between p and its foot.
 [[nodiscard]] std::optional<FootPoint> footPoint(const Field& field, const Vec3& p) noexcept;
 
 }  // namespace palpate

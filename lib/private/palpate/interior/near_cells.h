@@ -1,6 +1,6 @@
 #pragma once
-/// The convex pieces that a region is made of near a point: its expression over the few leaves whose
-/// surfaces are near, all other leaves being where they are.
+/// The convex pieces that a region is made of near a point: its expression over the few leaves
+/// whose surfaces are near, all other leaves being where they are.
 
 #include <array>
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace palpate {
 
-/// A conjunction of sides of near leaves, one bit for each of them. With no bit set it holds everywhere
-/// near the point.
+/// A conjunction of sides of near leaves, one bit for each of them. With no bit set it holds
+/// everywhere near the point.
 struct NearCell {
   std::uint32_t inside = 0;   ///< these near leaves' insides
   std::uint32_t outside = 0;  ///< these near leaves' outsides
@@ -26,7 +26,8 @@ struct NearCell {
   friend bool operator==(const NearCell&, const NearCell&) = default;
 };
 
-/// A leaf near the point, and on which sides of it the point may be taken to lie: both on its surface.
+/// A leaf near the point, and on which sides of it the point may be taken to lie: both on its
+/// surface.
 struct NearSide {
   LeafId leaf = 0;
   bool may_be_inside = true;
@@ -36,16 +37,15 @@ struct NearSide {
 /// Scratch of one solver. Real-time safe but for the constructor.
 class NearCells {
  public:
-  static constexpr std::size_t kMaxNear = 32;  ///< bits of NearCell
-  static constexpr std::size_t kMaxCells =
-      24;  ///< more are left out, which is safe: cells are where
-           ///< the point may go
+  static constexpr std::size_t kMaxNear = 32;   ///< bits of NearCell
+  static constexpr std::size_t kMaxCells = 24;  ///< more are left out, which is safe: cells are
+                                                ///< where the point may go
 
   NearCells(const Partition& partition, const Passages& passages);
 
   /// The cells of `region` that hold the point, of the disjunctive form of where the region and its
-  /// sheets let the point be: none contains another. `signs`: of all leaves, as the point knows them;
-  /// `near`: at most kMaxNear. Empty if no cell holds the point.
+  /// sheets let the point be: none contains another. `signs`: of all leaves, as the point knows
+  /// them; `near`: at most kMaxNear. Empty if no cell holds the point.
   [[nodiscard]] std::span<const NearCell> find(RegionId region, const Signs& signs,
                                                std::span<const NearSide> near) noexcept;
 

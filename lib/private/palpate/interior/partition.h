@@ -1,6 +1,6 @@
 #pragma once
-/// Space cut into regions. Each layer is a Boolean expression over smooth leaf fields; the leaves' signs
-/// at a point say which layers hold it, and the last of those is its region.
+/// Space cut into regions. Each layer is a Boolean expression over smooth leaf fields; the leaves'
+/// signs at a point say which layers hold it, and the last of those is its region.
 
 #include <array>
 #include <bit>
@@ -20,25 +20,27 @@ namespace palpate {
 struct Leaf {
   FieldPtr field;
   double lipschitz = 1.0;  ///< Field::lipschitz()
-  /// [m] the unit of tolerances at this leaf: Field::featureSize(); of a plane, that of the solid it is a face
-  /// of, or else the largest of the other leaves
+  /// [m] the unit of tolerances at this leaf: Field::featureSize(); of a plane, that of the solid
+  /// it is a face of, or else the largest of the other leaves
   double feature = 1.0;
   bool is_flat = false;  ///< Field::isFlat()
-  /// A leaf between two others means something only where both of them are inside; where just one is, it is
-  /// inside with the first of them and outside with the second.
+  /// A leaf between two others means something only where both of them are inside; where just one
+  /// is, it is inside with the first of them and outside with the second.
   bool is_between = false;
   std::array<LeafId, 2> ends{};
 };
 
-/// Tells that `wall` is a leaf between `first` and `second`: all three vanish in one line, and without this
-/// rounding could see cells there that do not exist. Ignored where one of the two is not a single leaf.
+/// Tells that `wall` is a leaf between `first` and `second`: all three vanish in one line, and
+/// without this rounding could see cells there that do not exist. Ignored where one of the two is
+/// not a single leaf.
 struct LeafBetween {
   FieldPtr wall;
   FieldPtr first;   ///< inside wherever the wall is inside and `second` is
   FieldPtr second;  ///< inside wherever the wall is outside and `first` is
 };
 
-/// One bit for each leaf: true is inside (negative). A value with room for as many leaves as a scene may have.
+/// One bit for each leaf: true is inside (negative). A value with room for as many leaves as a
+/// scene may have.
 class Signs {
  public:
   static constexpr std::size_t kMaxLeaves = 65535;
@@ -101,8 +103,8 @@ class Signs {
 
 static_assert(std::is_trivially_copyable_v<Signs>);
 
-/// One step of an expression whose negations stand at the leaves only, in postfix order: a leaf's side
-/// or what a run of leaves has in common is pushed; kAnd and kOr take two off the stack.
+/// One step of an expression whose negations stand at the leaves only, in postfix order: a leaf's
+/// side or what a run of leaves has in common is pushed; kAnd and kOr take two off the stack.
 struct SideStep {
   enum class Op : std::uint8_t { kAnyOf, kAllOf, kAnd, kOr } op = Op::kAnyOf;
   bool inside = true;       ///< of a run: which side of its leaves is meant
@@ -113,10 +115,10 @@ struct SideStep {
 /// Leaves and the layers' expressions over them. Immutable; every const member is real-time safe.
 class Partition {
  public:
-  /// Takes each layer's field apart along its CSG structure, and each mask's likewise. A mask is the
-  /// extent of a port or sheet: its leaves cut cells, but it holds no region. A leaf that several of
-  /// them use (the same field at the same place) is one leaf. A layer without field (null) holds nothing. @throws Error (kInput) for more
-  /// leaves or layers than the id types hold.
+  /// Takes each layer's field apart along its CSG structure, and each mask's likewise. A mask is
+  /// the extent of a port or sheet: its leaves cut cells, but it holds no region. A leaf that
+  /// several of them use (the same field at the same place) is one leaf. A layer without field
+  /// (null) holds nothing. @throws Error (kInput) for more leaves or layers than the id types hold.
   explicit Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr> masks = {},
                      std::span<const LeafBetween> between = {});
 
@@ -143,7 +145,8 @@ class Partition {
   /// Which leaves' insides may come near a point: items are leaf ids.
   [[nodiscard]] const BoundsTree& tree() const noexcept { return tree_; }
 
-  /// True if `region`'s own layer (later layers not looked at) holds the cell `signs`; true for outside.
+  /// True if `region`'s own layer (later layers not looked at) holds the cell `signs`; true for
+  /// outside.
   [[nodiscard]] bool layerHolds(RegionId region, const Signs& signs) const noexcept;
 
   /// True if the cell `signs` lies within mask `index` (of the constructor's list).
@@ -167,8 +170,8 @@ class Partition {
   void signsAt(const Vec3& p, Signs& out) const noexcept;
 
  private:
-  /// Postfix: leaves push their sign, or the union or intersection of a run of them; kAnd and kOr take two
-  /// off the stack.
+  /// Postfix: leaves push their sign, or the union or intersection of a run of them; kAnd and kOr
+  /// take two off the stack.
   struct Step {
     enum class Op : std::uint8_t { kLeaf, kAnyOf, kAllOf, kAnd, kOr, kNot } op;
     LeafId leaf = 0;          ///< the leaf, or the first of a run

@@ -8,12 +8,13 @@
 
 namespace palpate {
 
-/// How often each port of interest was passed, and which way last: a value of fixed size, to be copied to
-/// rewind, that never fills up and never forgets by itself. Of interest are the ports that some `after`
-/// names; Passages gives each of them a slot. Real-time safe.
+/// How often each port of interest was passed, and which way last: a value of fixed size, to be
+/// copied to rewind, that never fills up and never forgets by itself. Of interest are the ports
+/// that some `after` names; Passages gives each of them a slot. Real-time safe.
 class PassedPorts {
  public:
-  /// Ports that the `after` of all ports together can name; a scene with more is refused when compiled.
+  /// Ports that the `after` of all ports together can name; a scene with more is refused when
+  /// compiled.
   static constexpr std::size_t kCapacity = 128;
 
   /// [times] that the port was passed, less the times it was passed back; 0 or more.
@@ -24,8 +25,8 @@ class PassedPorts {
   [[nodiscard]] int turn(std::size_t slot) const noexcept {
     return net_[slot] > 0 ? 1 : net_[slot] < 0 ? -1 : 0;
   }
-  /// The port was passed, inward or not. A passing against those that count takes one of them back; with
-  /// `keep` none is ever taken back, and passings count either way.
+  /// The port was passed, inward or not. A passing against those that count takes one of them back;
+  /// with `keep` none is ever taken back, and passings count either way.
   void pass(std::size_t slot, bool inward, bool keep) noexcept {
     net_[slot] += inward || keep ? 1 : -1;
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// The port machine: what a facet between two cells is for the proxy that stands in one of them, and
-/// what passing it does to the state.
+/// The port machine: what a facet between two cells is for the proxy that stands in one of them,
+/// and what passing it does to the state.
 
 #include <cstdint>
 #include <span>
@@ -20,7 +20,8 @@ struct Wall {
   int material = -1;  ///< index into the scene's materials
 };
 
-/// An open surface: part of a leaf's zero set that is a wall though the same region lies on both sides.
+/// An open surface: part of a leaf's zero set that is a wall though the same region lies on both
+/// sides.
 struct Sheet {
   std::string name;
   std::vector<LeafId> leaves;  ///< of the field whose zero set it is part of
@@ -54,7 +55,8 @@ struct Facet {
 class Passages {
  public:
   Passages() = default;
-  /// `walls[from * regions + to]`; `ports` in the author's order, which decides where several are open.
+  /// `walls[from * regions + to]`; `ports` in the author's order, which decides where several are
+  /// open.
   /// @throws Error (kInput) if `after` names more ports than PassedPorts has room for.
   Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Port> ports,
            std::vector<Sheet> sheets = {});
@@ -69,16 +71,16 @@ class Passages {
     return ports_of_[region];
   }
 
-  /// The facet at `at` [m] that is crossed when the leaves `crossed` (one, or several that coincide there)
-  /// change sign from `here`, a cell of region `from`, to `there`, a cell of region `beyond`. `holes` may make
-  /// it easier to pass; null: there are none.
+  /// The facet at `at` [m] that is crossed when the leaves `crossed` (one, or several that coincide
+  /// there) change sign from `here`, a cell of region `from`, to `there`, a cell of region
+  /// `beyond`. `holes` may make it easier to pass; null: there are none.
   [[nodiscard]] Facet facet(const Partition& partition, RegionId from, RegionId beyond,
                             const Signs& here, const Signs& there, std::span<const LeafId> crossed,
                             const PassedPorts& passed, const Vec3& at,
                             const Punctures* holes = nullptr) const noexcept;
 
-  /// The same where only the far cell is known: the near one differs from it in the leaves `crossed`, and
-  /// the region beyond is looked up. Copies signs: for set-up and pictures.
+  /// The same where only the far cell is known: the near one differs from it in the leaves
+  /// `crossed`, and the region beyond is looked up. Copies signs: for set-up and pictures.
   [[nodiscard]] Facet facet(const Partition& partition, RegionId from, const Signs& there,
                             std::span<const LeafId> crossed, const PassedPorts& passed,
                             const Vec3& at) const;
@@ -86,8 +88,8 @@ class Passages {
   /// True if all that comes before `port` was passed.
   [[nodiscard]] bool isDue(const Port& port, const PassedPorts& passed) const noexcept;
 
-  /// Records that `port` was passed from region `from` to `to` (the same for a port of a sheet), inward or not.
-  /// Reaching outside clears all, unless `keep`.
+  /// Records that `port` was passed from region `from` to `to` (the same for a port of a sheet),
+  /// inward or not. Reaching outside clears all, unless `keep`.
   void pass(PassedPorts& passed, PortId port, bool inward, RegionId from, RegionId to,
             bool keep) const noexcept;
   /// The same for a port of a wall: the regions tell which way.
@@ -95,9 +97,9 @@ class Passages {
             bool keep) const noexcept {
     pass(passed, port, ports_[port].countsInward(from, to), from, to, keep);
   }
-  /// Records that the proxy came from region `from` to `to` where there is no wall. That never counts as
-  /// passing a port, but it takes one passing back of each port that was passed from `to` to `from`, and
-  /// reaching outside clears all; with `keep` neither.
+  /// Records that the proxy came from region `from` to `to` where there is no wall. That never
+  /// counts as passing a port, but it takes one passing back of each port that was passed from `to`
+  /// to `from`, and reaching outside clears all; with `keep` neither.
   void arrive(PassedPorts& passed, RegionId from, RegionId to, bool keep) const noexcept;
 
  private:
@@ -106,8 +108,8 @@ class Passages {
     bool is_way_in;
     bool counts_inward;
   };
-  /// Whether `port`, which leads through the facet, has its mask and what comes before it; then what it
-  /// makes of the facet. True if it stands open: no other can do better.
+  /// Whether `port`, which leads through the facet, has its mask and what comes before it; then
+  /// what it makes of the facet. True if it stands open: no other can do better.
   bool consider(const Partition& partition, PortId id, Turn turn, const Signs& there,
                 const PassedPorts& passed, const Vec3& at, const Punctures* holes,
                 Facet& facet) const noexcept;

@@ -1,6 +1,6 @@
 #pragma once
-/// The contents of a scene's regions as one renderer feels them: what the scene says, but for what was
-/// changed while it runs.
+/// The contents of a scene's regions as one renderer feels them: what the scene says, but for what
+/// was changed while it runs.
 
 #include <cstdint>
 #include <vector>
@@ -55,8 +55,9 @@ class Contents {
   }
   /// Grows with every change.
   [[nodiscard]] std::uint32_t version() const noexcept { return version_; }
-  /// [m] Ways of a needle this close together are one: about its radius. 0.5 mm, or an eighth of the thickest tissue where
-  /// that is less, so that a scene in micrometers is the same scene. Ports that make holes say how wide these are.
+  /// [m] Ways of a needle this close together are one: about its radius. 0.5 mm, or an eighth of
+  /// the thickest tissue where that is less, so that a scene in micrometers is the same scene.
+  /// Ports that make holes say how wide these are.
   [[nodiscard]] double sameWay() const noexcept { return same_way_; }
   /// Whether any region does.
   [[nodiscard]] bool holdNeedles() const noexcept { return hold_needles_; }

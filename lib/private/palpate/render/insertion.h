@@ -1,6 +1,6 @@
 #pragma once
-/// A needle on its way through the tissues of a scene: which of them it pierced, where, how much of its
-/// shaft is in each, and what was cut.
+/// A needle on its way through the tissues of a scene: which of them it pierced, where, how much of
+/// its shaft is in each, and what was cut.
 
 #include <array>
 #include <cstdint>
@@ -14,23 +14,27 @@
 
 namespace palpate {
 
-/// The needle is straight and rigid, and its tip is the proxy: its shaft lies along the line from where it
-/// first went in, which is its fulcrum, to the tip. Tissues pierced one after another each hold the part of the shaft
-/// that is in them, along it and sideways; only the one that the tip is in is cut.
+/// The needle is straight and rigid, and its tip is the proxy: its shaft lies along the line from
+/// where it first went in, which is its fulcrum, to the tip. Tissues pierced one after another each
+/// hold the part of the shaft that is in them, along it and sideways; only the one that the tip is
+/// in is cut.
 ///
-/// A tick takes the tip through the walls one after the other, however far ahead the hand is: each wall is met with the
-/// tip at it, is pressed by as much as the hand is beyond it, and gives way to its own force or stops the tip. Each
-/// tissue gone through is cut all the way from where it was entered to where it was left, and holds that much of the
-/// shaft from then on. A tip on a wall that no force opens cuts nothing of what is before it.
+/// A tick takes the tip through the walls one after the other, however far ahead the hand is: each
+/// wall is met with the tip at it, is pressed by as much as the hand is beyond it, and gives way to
+/// its own force or stops the tip. Each tissue gone through is cut all the way from where it was
+/// entered to where it was left, and holds that much of the shaft from then on. A tip on a wall
+/// that no force opens cuts nothing of what is before it.
 ///
-/// Where a wall holds the tip, the hand goes on without it, and what friction and cutting push with is felt all that
-/// way. It must not change out there to what gives the hand more on its way back than it took on its way in: the part
-/// of it towards the wall then stays what it was, until the tip is at the hand again or goes through.
+/// Where a wall holds the tip, the hand goes on without it, and what friction and cutting push with
+/// is felt all that way. It must not change out there to what gives the hand more on its way back
+/// than it took on its way in: the part of it towards the wall then stays what it was, until the
+/// tip is at the hand again or goes through.
 ///
 /// A value of fixed size; real-time safe.
 class Insertion {
  public:
-  /// Tissues that the shaft is in at the same time. Pierced beyond that, all let go until the tip is out.
+  /// Tissues that the shaft is in at the same time. Pierced beyond that, all let go until the tip
+  /// is out.
   static constexpr std::size_t kMaxLayers = 64;
   /// Cuts that are remembered; the oldest is forgotten.
   static constexpr std::size_t kMaxCuts = 32;
@@ -51,8 +55,9 @@ class Insertion {
 
   [[nodiscard]] Force step(const Contents& contents, const Tick& tick) noexcept;
   void reset() noexcept { *this = {}; }
-  /// [J] At the last step, in what sticks to the shaft, holds it sideways, and is pressed by the tip before it is cut; and
-  /// what a hand that went on without the tip takes on its way back to it.
+  /// [J] At the last step, in what sticks to the shaft, holds it sideways, and is pressed by the
+  /// tip before it is cut; and what a hand that went on without the tip takes on its way back to
+  /// it.
   [[nodiscard]] double stored() const noexcept { return stored_ - glm::dot(felt_, beyond_); }
   /// Whether this can be an insertion in a scene of so many regions.
   [[nodiscard]] bool isOf(std::size_t regions) const noexcept;

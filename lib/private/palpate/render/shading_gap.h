@@ -7,8 +7,9 @@
 
 namespace palpate {
 
-/// A layer whose wall is shaded over more than its field knows: a grid has a band only, beyond which it tells a side
-/// and no distance. The wall is still shaded, as if all beyond the band were at its rim: less round than was asked for.
+/// A layer whose wall is shaded over more than its field knows: a grid has a band only, beyond
+/// which it tells a side and no distance. The wall is still shaded, as if all beyond the band were
+/// at its rim: less round than was asked for.
 struct ShadingGap {
   int material = -1;  ///< index into Scene::materials()
   RegionId region = kOutside;

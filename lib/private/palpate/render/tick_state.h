@@ -1,5 +1,6 @@
 #pragma once
-/// TickState: all that one tick of a renderer leaves for the next, as the renderers see it. Outside, it is a RendererState.
+/// TickState: all that one tick of a renderer leaves for the next, as the renderers see it.
+/// Outside, it is a RendererState.
 
 #include <algorithm>
 #include <array>
@@ -81,7 +82,8 @@ struct FeltLeaves {
   }
 };
 
-/// What the walls stored against the hand at the last tick, where walls may differ in what they push with.
+/// What the walls stored against the hand at the last tick, where walls may differ in what they
+/// push with.
 struct StoredState {
   FeltLeaves leaves;          ///< of the walls that held the proxy; none: nothing was stored
   double energy = 0.0;        ///< [J]
@@ -101,9 +103,9 @@ struct SourceState {
   double work = 0.0;  ///< [J] done on the hand since the first tick
 };
 
-/// A value of fixed size, about 24 kB: copied in about a microsecond. Each part says what happens when it is full. A scene
-/// that needs more leaves (Signs::kMaxLeaves) or counted ports (PassedPorts::kCapacity) than there is room for
-/// is refused when it is compiled.
+/// A value of fixed size, about 24 kB: copied in about a microsecond. Each part says what happens
+/// when it is full. A scene that needs more leaves (Signs::kMaxLeaves) or counted ports
+/// (PassedPorts::kCapacity) than there is room for is refused when it is compiled.
 struct TickState {
   RendererKind kind = RendererKind::kConstraint;  ///< of the renderer that it is of
   bool has_begun = false;                         ///< false: the next tick is a first one

@@ -16,9 +16,9 @@ struct Transition {
   Parameter force = 0.0;            ///< [N] at which the port opens this way; 0: it is open
 };
 
-/// All rows, by regions and then in the author's order of ports. Ports of sheets, which lead from a region to
-/// itself, are not among them. Which rows a probe can ever take, from the start and by ports after ports, say
-/// Region::reach and Scene::reachOf(). Set-up thread.
+/// All rows, by regions and then in the author's order of ports. Ports of sheets, which lead from a
+/// region to itself, are not among them. Which rows a probe can ever take, from the start and by
+/// ports after ports, say Region::reach and Scene::reachOf(). Set-up thread.
 [[nodiscard]] std::vector<Transition> transitions(const Scene& scene);
 
 }  // namespace palpate

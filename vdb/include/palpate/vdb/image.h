@@ -61,10 +61,11 @@ struct PALPATE_EXPORT Image {
 
 /// Which of a file's statements about its place in space counts.
 enum class AffineChoice {
-  kAuto,   ///< NIfTI: sform, else qform, and both must agree; else what the file says
-  kSform,  ///< NIfTI
-  kQform,  ///< NIfTI
-  kSpacing,  ///< NIfTI, NRRD: spacings only; axes along R, A, S, the first voxel's center at the origin
+  kAuto,     ///< NIfTI: sform, else qform, and both must agree; else what the file says
+  kSform,    ///< NIfTI
+  kQform,    ///< NIfTI
+  kSpacing,  ///< NIfTI, NRRD: spacings only; axes along R, A, S, the first voxel's center at the
+             ///< origin
 };
 
 /// What a caller says where files leave room.
@@ -75,8 +76,8 @@ struct ImageOptions {
   std::string series;            ///< DICOM: UID of the series, if a folder holds several
   /// Further files: each of them and the first is a mask, a structure of its own.
   std::vector<std::string> with = {};
-  /// Structures that were segmented one by one: where some overlap, the first of these names has the
-  /// voxel. Where none of these is, the one of fewer voxels has it.
+  /// Structures that were segmented one by one: where some overlap, the first of these names has
+  /// the voxel. Where none of these is, the one of fewer voxels has it.
   std::vector<std::string> priority = {};
 };
 
@@ -94,30 +95,31 @@ struct ImageInfo {
   bool is_labels = false;        ///< the file says, or has a table of names
 };
 
-/// Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM series (a
-/// folder, or any file of it), DICOM segmentations and structure sets, and masks that together are a label
-/// image (a folder of the first three). What a file leaves open is asked for, by an error that names the option, or
-/// told in `notes`; what it contradicts itself in, and what is cut short or damaged, is refused. Each format's
-/// rules are in vdb/README.md.
-/// @throws Error (kInput, codes "nifti.*", "nrrd.*", "metaimage.*", "dicom.*", "masks.*", "image.*").
+/// Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM
+/// series (a folder, or any file of it), DICOM segmentations and structure sets, and masks that
+/// together are a label image (a folder of the first three). What a file leaves open is asked for,
+/// by an error that names the option, or told in `notes`; what it contradicts itself in, and what
+/// is cut short or damaged, is refused. Each format's rules are in vdb/README.md.
+/// @throws Error (kInput, codes "nifti.*", "nrrd.*", "metaimage.*", "dicom.*", "masks.*",
+/// "image.*").
 [[nodiscard]] PALPATE_EXPORT Image readImage(const std::string& path,
                                              const ImageOptions& options = {});
 
-/// Header only: no voxel is read, so that only what the header and the file's size tell is checked. Throws as
-/// readImage() does.
+/// Header only: no voxel is read, so that only what the header and the file's size tell is checked.
+/// Throws as readImage() does.
 [[nodiscard]] PALPATE_EXPORT ImageInfo readImageInfo(const std::string& path,
                                                      const ImageOptions& options = {});
 
-/// True if readImage() takes `path` for an image by its extension, in any case; of folders and files without
-/// one, if it holds or is DICOM.
+/// True if readImage() takes `path` for an image by its extension, in any case; of folders and
+/// files without one, if it holds or is DICOM.
 [[nodiscard]] PALPATE_EXPORT bool isImageFile(const std::string& path);
 
 /// NIfTI-1 and -2, .nii and .nii.gz, either byte order, every integer and float type of 8 to 64
 /// bits, scaled by scl_slope and scl_inter (libnifti reads the header). The place is the sform if
 /// its code is above 0, else the qform; if both are set they must agree within 0.1 voxel at the
-/// image's corners, unless `affine` chooses. Units scale spacing and origin; without a unit (code 0) mm is
-/// taken, with a note. NaN voxels stay NaN, with a note; surfaces take them as outside. Names come from an
-/// extension with a LabelTable (Caret, TotalSegmentator).
+/// image's corners, unless `affine` chooses. Units scale spacing and origin; without a unit (code
+/// 0) mm is taken, with a note. NaN voxels stay NaN, with a note; surfaces take them as outside.
+/// Names come from an extension with a LabelTable (Caret, TotalSegmentator).
 /// @throws Error (kInput, codes "nifti.*"): missing, empty, not NIfTI, cut short, wrong gzip
 /// checksum, 4-D or 2-D, color or complex voxels, neither form set or both in conflict, singular
 /// affine, a detached .hdr / .img pair, ...
@@ -136,15 +138,16 @@ struct ImageInfo {
 [[nodiscard]] PALPATE_EXPORT std::string encodeLabels(const Image& image, bool gzip);
 
 /// A table of label names, and colors if it has some:
-///   `index name [code]`, `index name R G B [A]` (Slicer .ctbl and .txt, FreeSurfer LUT; 0 to 255), separated by
+///   `index name [code]`, `index name R G B [A]` (Slicer .ctbl and .txt, FreeSurfer LUT; 0 to 255),
+///   separated by
 ///       blanks, or by tabs if names hold blanks
 ///   `index R G B A visible mesh "name"` (ITK-SNAP)
 ///   CSV `value,name` with or without a header line, with Color_R, Color_G, Color_B (Slicer .csv)
 ///   an image with a table of its own (.seg.nrrd, .nii.gz)
 /// LF or CR LF; a byte order mark, blank lines and lines from # on are skipped. Lines that are not
 /// UTF-8 are taken for Latin-1.
-/// @throws Error (kInput, codes "labels.*") naming file and line: a value that is not an integer or has
-/// two names, a missing name, a column that does not belong, a color out of range.
+/// @throws Error (kInput, codes "labels.*") naming file and line: a value that is not an integer or
+/// has two names, a missing name, a column that does not belong, a color out of range.
 [[nodiscard]] PALPATE_EXPORT LabelTable readLabelTable(const std::string& path);
 
 /// Assimp (glTF, GLB and what else it reads) and GDCM's unpackers (compressed DICOM pixels) are

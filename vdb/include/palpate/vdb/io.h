@@ -11,8 +11,9 @@
 
 namespace palpate::vdb {
 
-/// Writes beside `path` and renames; nothing is left behind on failure. Replaces an existing file only if
-/// `overwrite`. The grids of materials come after the others, with the voxels as their maps store them.
+/// Writes beside `path` and renames; nothing is left behind on failure. Replaces an existing file
+/// only if `overwrite`. The grids of materials come after the others, with the voxels as their maps
+/// store them.
 /// @throws Error (kOperation).
 PALPATE_EXPORT void writeVdb(const std::string& path, std::span<const LevelSet> grids,
                              bool overwrite, std::span<const NamedMaterialGrid> materials = {});
@@ -32,8 +33,9 @@ enum class UnknownClass {
   kLevelSet  ///< signed distances, negative inside: for those who know
 };
 
-/// Reads a float level set; `name` may be empty if the file holds exactly one. A file without a length
-/// unit in its metadata needs `unit_if_missing`. @throws Error (kInput) with the reason and remedy.
+/// Reads a float level set; `name` may be empty if the file holds exactly one. A file without a
+/// length unit in its metadata needs `unit_if_missing`. @throws Error (kInput) with the reason and
+/// remedy.
 [[nodiscard]] PALPATE_EXPORT LevelSet readVdb(const std::string& path, const std::string& name,
                                               const std::string& unit_if_missing,
                                               UnknownClass unknown_class = UnknownClass::kRefuse);

@@ -17,8 +17,9 @@ struct LabelCode {
 };
 using LabelCodes = std::map<int, LabelCode>;
 
-/// The type of each segment of a .seg.nrrd file, a DICOM segmentation or structure set, by the label values of
-/// readImage(), where the file has one; empty for other files. @throws Error (kInput) as readImage().
+/// The type of each segment of a .seg.nrrd file, a DICOM segmentation or structure set, by the
+/// label values of readImage(), where the file has one; empty for other files. @throws Error
+/// (kInput) as readImage().
 [[nodiscard]] PALPATE_EXPORT LabelCodes readLabelCodes(const std::string& path,
                                                        const ImageOptions& options = {});
 

@@ -23,7 +23,7 @@ struct LevelSetInfo {
   std::uint64_t memory = 0;                     ///< [bytes]
   Box3 bounds;                                  ///< [m] of the active voxels
   std::string length_unit;                      ///< of the file: "mm", "m", ...
-  double metres_per_unit = 1.0;                 ///< [m]
+  double meters_per_unit = 1.0;                 ///< [m]
   std::map<std::string, std::string> metadata;  ///< frame, layer, source, tolerance, ... as text
 };
 
@@ -53,12 +53,12 @@ enum class Sampler {
   kAccessor,   ///< trilinear by a plain OpenVDB accessor on the grid itself: no memory of its own
 };
 
-/// [voxels] The half width below which a band is too narrow for Sampler::kCubic: within a voxel of the
-/// surface the spline and its prefilter reach voxels up to 4.9 further off.
+/// [voxels] The half width below which a band is too narrow for Sampler::kCubic: within a voxel of
+/// the surface the spline and its prefilter reach voxels up to 4.9 further off.
 inline constexpr double kCubicHalfWidth = 6.0;
 
-/// Whether a grid must be widened() before kCubic can read it. gridField() does so itself; ask, to tell
-/// the user.
+/// Whether a grid must be widened() before kCubic can read it. gridField() does so itself; ask, to
+/// tell the user.
 [[nodiscard]] inline bool isTooNarrow(const LevelSetInfo& info) noexcept {
   // The background is a float, and may be a little below the width that was asked for.
   return info.half_width < kCubicHalfWidth - 1e-3;
@@ -69,24 +69,24 @@ inline constexpr double kCubicHalfWidth = 6.0;
 /// widened first for kCubic.
 ///
 /// A sample is in the band if all voxels it depends on are active. Outside the band it says so: the
-/// sign is right, the gradient zero, and |value| a lower bound of the distance that never exceeds the
-/// band's half width by more than the way to the nearest voxel; where the band is joined it may exceed
-/// the distance by the error that the band has there. The function is continuous everywhere (kCubic:
-/// C2).
+/// sign is right, the gradient zero, and |value| a lower bound of the distance that never exceeds
+/// the band's half width by more than the way to the nearest voxel; where the band is joined it may
+/// exceed the distance by the error that the band has there. The function is continuous everywhere
+/// (kCubic: C2).
 ///
 /// metric() is kImplicit: between exact voxels the interpolant is off (trilinear: by voxel^2 / 8 of
 /// the curvatures; cubic: by the fourth power of voxel times curvature), and its gradient's length
 /// differs from 1. lipschitz() is measured from the voxels, and holds everywhere, across the band's
 /// rim too.
 ///
-/// Of a grid that reaches out of the bounded box `within` [m] only the bricks that samples there need are made, and the field
-/// is knownWithin() it; kAccessor keeps the grid as it is.
+/// Of a grid that reaches out of the bounded box `within` [m] only the bricks that samples there
+/// need are made, and the field is knownWithin() it; kAccessor keeps the grid as it is.
 [[nodiscard]] PALPATE_EXPORT FieldPtr gridField(const LevelSet& grid,
                                                 Sampler sampler = Sampler::kCubic,
                                                 const Box3& within = Box3::everything());
 
-/// [bytes] What the samples of a field by gridField() are read from: its bricks with their tables, or
-/// the grid for kAccessor. 0 for any other field.
+/// [bytes] What the samples of a field by gridField() are read from: its bricks with their tables,
+/// or the grid for kAccessor. 0 for any other field.
 [[nodiscard]] PALPATE_EXPORT std::uint64_t memoryOf(const Field& grid_field) noexcept;
 
 /// The same grid with a band of `half_width` [voxels]; `grid` itself if it is as wide already. The

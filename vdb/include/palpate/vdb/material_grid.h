@@ -1,6 +1,6 @@
 #pragma once
-/// MaterialGrid: a parameter of a material that differs from voxel to voxel; from a .vdb file, or from an
-/// image behind a transfer function.
+/// MaterialGrid: a parameter of a material that differs from voxel to voxel; from a .vdb file, or
+/// from an image behind a transfer function.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,8 @@
 
 namespace palpate::vdb {
 
-/// How voxels were put into fewer bits: a voxel is least + step * count, count from 0 to 2^bits - 1.
+/// How voxels were put into fewer bits: a voxel is least + step * count, count from 0 to 2^bits
+/// - 1.
 struct Quantisation {
   int bits = 32;       ///< 8 or 16; 32: floats, as they were given
   double least = 0.0;  ///< [SI unit]
@@ -37,19 +38,21 @@ struct MaterialGridInfo {
   std::uint64_t memory = 0;  ///< [bytes]
 };
 
-/// A map out of voxels: a quadratic B-spline whose coefficients are the voxels themselves, so that its values
-/// stay between those of the nearest 27 voxels, value and gradient are continuous everywhere, and what is
-/// linear from voxel to voxel is met exactly. It does not pass through the voxels: over a curved run it is
-/// off by up to an eighth of the second difference. From half a voxel beyond the outermost centers on it is
-/// constant. Reading allocates nothing and takes some 90 ns.
+/// A map out of voxels: a quadratic B-spline whose coefficients are the voxels themselves, so that
+/// its values stay between those of the nearest 27 voxels, value and gradient are continuous
+/// everywhere, and what is linear from voxel to voxel is met exactly. It does not pass through the
+/// voxels: over a curved run it is off by up to an eighth of the second difference. From half a
+/// voxel beyond the outermost centers on it is constant. Reading allocates nothing and takes some
+/// 90 ns.
 class PALPATE_EXPORT MaterialGrid final : public MaterialMap {
  public:
-  /// Values in an image's order and place [SI unit]. What is NaN takes the mean of its neighbors, from the
-  /// known voxels outwards. Stored in as few bits as put no voxel off by more than `tolerance` [SI unit]; 0: as
-  /// floats. `max_memory` [bytes], 0: no limit.
+  /// Values in an image's order and place [SI unit]. What is NaN takes the mean of its neighbors,
+  /// from the known voxels outwards. Stored in as few bits as put no voxel off by more than
+  /// `tolerance` [SI unit]; 0: as floats. `max_memory` [bytes], 0: no limit.
   /// @throws Error (kInput) for no voxel that is a number; kOperation for memory.
   MaterialGrid(Image voxels, double tolerance, std::uint64_t max_memory = 0);
-  /// As they were stored before: if every voxel is just one of `known`'s steps, they are stored so again.
+  /// As they were stored before: if every voxel is just one of `known`'s steps, they are stored so
+  /// again.
   MaterialGrid(Image voxels, double tolerance, const Quantisation& known,
                std::uint64_t max_memory = 0);
   ~MaterialGrid() override;
@@ -81,8 +84,8 @@ class PALPATE_EXPORT MaterialGrid final : public MaterialMap {
 };
 using MaterialGridPtr = std::shared_ptr<const MaterialGrid>;
 
-/// Piecewise linear, constant beyond its ends: pairs of an image's value and the parameter's [SI unit], by
-/// rising image value.
+/// Piecewise linear, constant beyond its ends: pairs of an image's value and the parameter's [SI
+/// unit], by rising image value.
 using Transfer = std::vector<std::pair<double, double>>;
 
 /// The image's voxels behind `transfer`, at the image's place.
@@ -102,9 +105,10 @@ struct MaterialGridRequest {
   std::uint64_t max_memory = 0;  ///< [bytes]
 };
 
-/// A fog volume of floats; any linear transform. Where it has no active voxel the nearest ones count.
-/// @throws Error (kInput, "vdb.*"): no such grid, another type or class, no unit or one of another dimension,
-/// values that are not numbers, a transform that is not linear, ...
+/// A fog volume of floats; any linear transform. Where it has no active voxel the nearest ones
+/// count.
+/// @throws Error (kInput, "vdb.*"): no such grid, another type or class, no unit or one of another
+/// dimension, values that are not numbers, a transform that is not linear, ...
 [[nodiscard]] PALPATE_EXPORT MaterialGridPtr readMaterialGrid(const std::string& path,
                                                               const MaterialGridRequest& request);
 

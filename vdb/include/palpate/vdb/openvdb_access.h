@@ -25,8 +25,8 @@ PALPATE_EXPORT void initializeOpenVdb();
 /// `metadata` into it, and looks at it once. Values and world coordinates must be in `length_unit`;
 /// inactive voxels must hold +background outside and -background inside. Nobody else may write to
 /// the grid's tree afterwards.
-/// @throws Error (kInput): unknown unit, background not positive, a transform that is not a positive
-/// uniform scale and a translation.
+/// @throws Error (kInput): unknown unit, background not positive, a transform that is not a
+/// positive uniform scale and a translation.
 [[nodiscard]] PALPATE_EXPORT LevelSet
 makeLevelSet(openvdb::FloatGrid::Ptr grid, const std::string& length_unit,
              const std::map<std::string, std::string>& metadata = {});

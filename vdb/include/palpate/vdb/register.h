@@ -36,21 +36,22 @@ struct RegisterOptions {
       {};  ///< told of each image as the scene is read
   /// [bytes] of each grid that is made or read, its bricks included; 0: 80 % of the machine's
   std::uint64_t max_memory = 0;
-  /// Where grids of files are kept that took long to widen or rebuild (CertifyOptions); empty: nowhere.
+  /// Where grids of files are kept that took long to widen or rebuild (CertifyOptions); empty:
+  /// nowhere.
   std::string cache_folder = {};
 };
 
 /// `of`, and what a scene may say of meshes, grids and images.
 [[nodiscard]] PALPATE_EXPORT VocabularyPtr vocabulary(const Vocabulary& of = *sceneVocabulary());
 
-/// Adds vocabulary() and what makes it: fields `mesh`, `grid`, `mask` and `baked`; images; layers `labels` and
-/// `threshold`; maps of parameters `grid` and `image`; `grids`. `palpate help scene` tells their keys. Paths are
-/// relative to the scene file, lengths in its unit. Notes tell of a band too narrow for the cubic sampler, and of
-/// thin parts that a grid has lost.
-/// Reading a scene looks at files only as far as it is quick: that they are there, image headers,
-/// name tables. Grids are made when their field is first asked for; an image is then read once for
-/// all its layers. Errors of either point at the scene's file, line and column. The functions in
-/// `options` must stay callable as long as the registry and the fields it made are used.
+/// Adds vocabulary() and what makes it: fields `mesh`, `grid`, `mask` and `baked`; images; layers
+/// `labels` and `threshold`; maps of parameters `grid` and `image`; `grids`. `palpate help scene`
+/// tells their keys. Paths are relative to the scene file, lengths in its unit. Notes tell of a
+/// band too narrow for the cubic sampler, and of thin parts that a grid has lost. Reading a scene
+/// looks at files only as far as it is quick: that they are there, image headers, name tables.
+/// Grids are made when their field is first asked for; an image is then read once for all its
+/// layers. Errors of either point at the scene's file, line and column. The functions in `options`
+/// must stay callable as long as the registry and the fields it made are used.
 PALPATE_EXPORT void registerKinds(SceneRegistry& registry, const RegisterOptions& options = {});
 
 }  // namespace palpate::vdb

@@ -13,8 +13,8 @@
 
 namespace palpate::vdb {
 
-/// |gradient| by central differences at the active voxels whose six neighbors are active; 1 everywhere
-/// where values are distances, less at edges and medial axes.
+/// |gradient| by central differences at the active voxels whose six neighbors are active; 1
+/// everywhere where values are distances, less at edges and medial axes.
 struct GradientStatistics {
   std::uint64_t voxels = 0;  ///< looked at
   double mean = 0.0;
@@ -37,11 +37,12 @@ struct GridCheck {
   VoxelDefect not_finite;
   GradientStatistics gradient;
   std::uint64_t inside_voxels = 0;  ///< active and negative
-  /// Where inside and outside meet without a band in between: next to a negative voxel is a positive
-  /// one, and one of the two is not active. So ends a band whose inside holds the outside's background,
-  /// and one that was cut off.
+  /// Where inside and outside meet without a band in between: next to a negative voxel is a
+  /// positive one, and one of the two is not active. So ends a band whose inside holds the
+  /// outside's background, and one that was cut off.
   VoxelDefect sign_breaks;
-  /// Active voxels more than a voxel and a half within the band, with a neighbor that is not active.
+  /// Active voxels more than a voxel and a half within the band, with a neighbor that is not
+  /// active.
   VoxelDefect band_holes;
   double volume = 0.0;  ///< [m^3] of what is negative, voxels on the surface by their share
   /// As the cubic sampler reads it, if it is not refused: why contact would not take it,
@@ -60,14 +61,14 @@ struct MarkedInside {
   std::uint64_t voxels = 0;  ///< not active, and now on the other side than before
 };
 
-/// Mends the sign breaks of GridCheck: every voxel that is not active takes the side of the band that it is enclosed
-/// by. The band itself is kept, bit by bit. Without sign breaks, `grid` itself.
-/// @throws Error (kInput, vdb.torn) naming a place where the band has a hole, or was cut off, so that inside and
-/// outside are one space; `path` is the file to name.
+/// Mends the sign breaks of GridCheck: every voxel that is not active takes the side of the band
+/// that it is enclosed by. The band itself is kept, bit by bit. Without sign breaks, `grid` itself.
+/// @throws Error (kInput, vdb.torn) naming a place where the band has a hole, or was cut off, so
+/// that inside and outside are one space; `path` is the file to name.
 [[nodiscard]] MarkedInside withInsideMarked(const LevelSet& grid, const std::string& path = {});
 
-/// Every grid of the file; or only `name`, if it is not empty. Lengths of a grid without a unit are in
-/// `unit_if_missing`, or taken as [m] if that is empty too.
+/// Every grid of the file; or only `name`, if it is not empty. Lengths of a grid without a unit are
+/// in `unit_if_missing`, or taken as [m] if that is empty too.
 /// @throws Error (kInput): a file that cannot be read, or has no such grid; kCancelled.
 [[nodiscard]] std::vector<GridCheck> checkVdb(const std::string& path, const std::string& name = {},
                                               const std::string& unit_if_missing = {},

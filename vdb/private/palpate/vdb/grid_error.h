@@ -14,15 +14,16 @@ struct GridError {
   Vec3 where{0.0};    ///< [m] where the angle is largest
 };
 
-/// Looks at one point of `field`'s surface for each voxel of `grid` next to it, within `box` [m]. `made` is
-/// the grid as a field. Of more than `most_blocks` blocks of 8^3 voxels, that many are looked at.
+/// Looks at one point of `field`'s surface for each voxel of `grid` next to it, within `box` [m].
+/// `made` is the grid as a field. Of more than `most_blocks` blocks of 8^3 voxels, that many are
+/// looked at.
 [[nodiscard]] GridError gridError(
     const Field& field, const LevelSet& grid, const Field& made,
     const Box3& box = Box3::everything(),
     std::size_t most_blocks = std::numeric_limits<std::size_t>::max());
 
-/// What a sampler stays within where the surface bends over some four voxels or more: 0.02 voxel and 1 degree
-/// for the cubic one, 0.1 and 10 for the others. An edge is off by far more.
+/// What a sampler stays within where the surface bends over some four voxels or more: 0.02 voxel
+/// and 1 degree for the cubic one, 0.1 and 10 for the others. An edge is off by far more.
 [[nodiscard]] GridError smoothGridError(Sampler sampler, double voxel_size) noexcept;
 
 }  // namespace palpate::vdb

@@ -15,11 +15,12 @@ namespace palpate::vdb {
 /// voxels (4 GB).
 [[nodiscard]] Image gridImage(const LevelSet& grid);
 
-/// Any grid of one number a voxel (float, double, int, bool, mask) in a .vdb file, whatever its class: values
-/// as they are, over the box of the active voxels and one voxel more on every side, placed by the
-/// grid's transform, which may turn, shear, mirror and stretch. `name` and `unit_if_missing` as for readVdb().
-/// @throws Error: kInput as readVdb() does, vdb.type for grids of vectors and points, vdb.transform for one
-/// that is not linear; kOperation as gridImage() does.
+/// Any grid of one number a voxel (float, double, int, bool, mask) in a .vdb file, whatever its
+/// class: values as they are, over the box of the active voxels and one voxel more on every side,
+/// placed by the grid's transform, which may turn, shear, mirror and stretch. `name` and
+/// `unit_if_missing` as for readVdb().
+/// @throws Error: kInput as readVdb() does, vdb.type for grids of vectors and points, vdb.transform
+/// for one that is not linear; kOperation as gridImage() does.
 [[nodiscard]] Image readVdbImage(const std::string& path, const std::string& name,
                                  const std::string& unit_if_missing);
 

@@ -9,13 +9,13 @@
 
 namespace palpate::vdb {
 
-/// gridField(), with a bound. @throws Error (kOperation, bricks.memory) if grid and bricks together would take more than
-/// `max_memory` [bytes]; 0: 80 % of the machine's.
+/// gridField(), with a bound. @throws Error (kOperation, bricks.memory) if grid and bricks together
+/// would take more than `max_memory` [bytes]; 0: 80 % of the machine's.
 [[nodiscard]] FieldPtr gridField(const LevelSet& grid, Sampler sampler, const Box3& within,
                                  std::uint64_t max_memory);
 
-/// readVdb(), with a bound: the size is known before any voxel is read. @throws Error (kOperation, vdb.memory) if the
-/// grid would take more than `max_memory` [bytes]; 0: 80 % of the machine's.
+/// readVdb(), with a bound: the size is known before any voxel is read. @throws Error (kOperation,
+/// vdb.memory) if the grid would take more than `max_memory` [bytes]; 0: 80 % of the machine's.
 [[nodiscard]] LevelSet readVdb(const std::string& path, const std::string& name,
                                const std::string& unit_if_missing, UnknownClass unknown_class,
                                std::uint64_t max_memory);

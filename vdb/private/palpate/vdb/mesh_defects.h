@@ -24,8 +24,9 @@ struct MeshDefects {
   std::vector<MeshHole> holes;           ///< the longest first
   std::size_t non_manifold_edges = 0;    ///< with three triangles or more
   std::size_t turned_triangles = 0;      ///< against most of the area that hangs together with them
-  /// Pairs of triangles that have points in common beyond the corners and the side they share: exact
-  /// for the coordinates as they are, so that touching counts. Degenerate triangles are left out.
+  /// Pairs of triangles that have points in common beyond the corners and the side they share:
+  /// exact for the coordinates as they are, so that touching counts. Degenerate triangles are left
+  /// out.
   std::size_t crossings = 0;
   Vec3 first_crossing{0.0, 0.0, 0.0};  ///< [m] a place of one of them
   std::size_t parts = 0;               ///< of triangles that hang together by corners
@@ -38,8 +39,8 @@ struct MeshDefects {
   Box3 bounds;  ///< [m] of the triangles
 };
 
-/// Every index must be in range and every vertex finite, as readMesh() has it. Needs some 200 bytes for each
-/// triangle; in parallel (TBB), with the same result for any number of threads.
+/// Every index must be in range and every vertex finite, as readMesh() has it. Needs some 200 bytes
+/// for each triangle; in parallel (TBB), with the same result for any number of threads.
 /// @throws Error (kCancelled).
 [[nodiscard]] MeshDefects findDefects(const Mesh& mesh, const Progress& progress = {});
 

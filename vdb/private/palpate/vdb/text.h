@@ -1,5 +1,6 @@
 #pragma once
-/// Numbers, places and lists as messages show them, and words of files and paths as readers take them.
+/// Numbers, places and lists as messages show them, and words of files and paths as readers take
+/// them.
 
 #include <string>
 #include <string_view>
@@ -12,11 +13,11 @@ namespace palpate::vdb {
 /// "1.234 GB"
 [[nodiscard]] std::string inGigabytes(double bytes);
 /// "1.5 mm"
-[[nodiscard]] std::string inMillimetres(double metres, int digits = 6);
+[[nodiscard]] std::string inMillimeters(double meters, int digits = 6);
 /// "(1.5, 2, 0) mm"
-[[nodiscard]] std::string inMillimetres(const Vec3& metres, int digits = 6);
+[[nodiscard]] std::string inMillimeters(const Vec3& meters, int digits = 6);
 /// "(1.5 mm, 2 mm, 0 mm)"
-[[nodiscard]] std::string eachInMillimetres(const Vec3& metres, int digits = 6);
+[[nodiscard]] std::string eachInMillimeters(const Vec3& meters, int digits = 6);
 /// "1, 5, 7"
 [[nodiscard]] std::string listOf(const std::vector<int>& labels);
 
