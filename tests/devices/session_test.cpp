@@ -208,6 +208,17 @@ TEST(Session, RunGoesThroughTheWholePathAndStepNeverAllocates) {
   EXPECT_EQ(guard.violations(), 0);
 }
 
+TEST(Session, EachTickButTheFirstMayBeACheckpoint) {
+  SessionSettings settings;
+  settings.checkpoint_every = 1;
+  Session session(sceneOf(""), settings);
+  for (int n = 0; n < 4; ++n) {
+    const SessionTick tick =
+        session.step({.time = kTick * n, .position = Vec3(0.0, 0.0, 0.01)}, DeviceFrame::kWorld);
+    EXPECT_EQ(tick.is_checkpoint, n > 0) << n;
+  }
+}
+
 TEST(Session, SettingsThatCannotBeAreRefused) {
   const ScenePtr scene = compile(parseScene(
       "{palpate: 1, length: mm, materials: {g: {stiffness: 1 N/mm}}, layers: [{name: ball, inside: "

@@ -235,6 +235,8 @@ TEST(Stability, ATapIsQuietUpToTheSpeedThatFrictionCovers) {
   LoopModel quiet;
   quiet.device = devicePreset("excalibur").model();
   EXPECT_EQ(quietSpeed(quiet, {1000.0, 0.0}), kInfinity);
+  quiet.device.friction = 0.0;  // damping alone does
+  EXPECT_EQ(quietSpeed(quiet, {1000.0, 0.0}), kInfinity);
 }
 
 TEST(Stability, WhatDampingLacksMakesTheLoopJustStable) {

@@ -106,6 +106,28 @@ TEST(VirtualCoupling, ItNeverPulls) {
   }
 }
 
+TEST(VirtualCoupling, ItIsTheSameWhereverTheWallIs) {
+  // A hand that taps on a flat wall, 1 km up and 1 km down: also at the ticks at which it lets go,
+  // the scene is asked at the same places beside the wall.
+  constexpr double kFar = 1024.0;     // [m]
+  constexpr double kRounding = 1e-9;  // [m] some ticks of 2e-13 each, that the spring adds up
+  for (const double moved : {-kFar, kFar}) {
+    VirtualCoupling here({800.0, 5.0});
+    VirtualCoupling there({800.0, 5.0});
+    const Vec3 shift(0.0, 0.0, moved);
+    for (int k = 0; k < 2000; ++k) {
+      const Vec3 hand(0.0, 0.0, 0.003 * std::sin(0.05 * k));
+      const ToolMotion tool = here.reach(hand, kTick);
+      ToolMotion other = there.reach(hand + shift, kTick);
+      other.position -= shift;
+      ASSERT_LT(glm::length(other.position - tool.position), kRounding) << k;
+      const Vec3 force = here.push(wall(tool, 3000.0, 2.0));
+      // 3000 N/m of the rounding, and as much of the coupling's spring and damper.
+      ASSERT_LT(glm::length(there.push(wall(other, 3000.0, 2.0)) - force), 1e4 * kRounding) << k;
+    }
+  }
+}
+
 TEST(VirtualCoupling, DragThicknessDoesNotMatter) {
   // A steady motion through something thick: of the device's velocity the drag is in series with
   // the coupling's damper at first, and all of it once the spring has stretched.

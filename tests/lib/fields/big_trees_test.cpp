@@ -145,6 +145,21 @@ TEST_P(BigTrees, EqualOperandsAreDecidedByTheFirst) {
   }
 }
 
+TEST_P(BigTrees, AHalfSpaceThatIsEquallyNearDoesNotHideAnEarlierOperand) {
+  // Balls in a row above a plane, and points as far from a ball's lowest point as from the plane.
+  std::vector<FieldPtr> operands;
+  for (std::size_t i = 0; i < GetParam(); ++i) {
+    operands.push_back(sphere(Vec3(static_cast<double>(i), 0.0, 0.0), 0.25));
+  }
+  operands.push_back(halfSpace(Vec3(0.0, 0.0, -1.0), Vec3(0.0, 0.0, 1.0)));
+  const FieldPtr field = unite(operands);
+  for (std::size_t i = 0; i < GetParam(); i += 1 + GetParam() / 50) {
+    const Vec3 p(static_cast<double>(i), 0.0, -0.625);
+    ASSERT_EQ(operands[i]->value(p), operands.back()->value(p));
+    ASSERT_EQ(field->sample(p).gradient, operands[i]->sample(p).gradient) << i;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Counts, BigTrees, ::testing::Values(1U, 2U, 11U, 12U, 13U, 300U, 10000U),
                          ::testing::PrintToStringParamName());
 

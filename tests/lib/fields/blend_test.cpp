@@ -168,6 +168,31 @@ TEST(Bands, MustReachAsFarAsWhatIsMadeOfThem) {
   EXPECT_EQ(code([&] { return offset(scale(grid, 2.0), 0.009); }), "field.band_too_narrow");
 }
 
+/// A ball whose band is too narrow beyond a plane z [m] only.
+class BandedCap final : public Field {
+ public:
+  explicit BandedCap(double z) : z_(z) {}
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    const FieldSample s = ball_->sample(p);
+    if (p.z < z_ && ball_->bounds().contains(p)) return s;
+    return {std::copysign(1e-3, s.value), Vec3(0.0), false};
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return ball_->bounds(); }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kBound; }
+  [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
+  [[nodiscard]] double featureSize() const noexcept override { return 1e-3; }
+
+ private:
+  FieldPtr ball_ = sphere(Vec3(0.0), 0.016);
+  double z_;
+};
+
+TEST(Bands, AreLookedAtUpToTheLastLayerOfTheBox) {
+  // 33 layers of places, 1 mm apart: the last one lies on the box.
+  EXPECT_NO_THROW((void)offset(std::make_shared<BandedCap>(0.0161), 0.005));
+  EXPECT_THROW((void)offset(std::make_shared<BandedCap>(0.0155), 0.005), Error);
+}
+
 TEST(Bands, OfABlendOnlyWhatHasAShareMustBeInItsBand) {
   constexpr double kRadius = 0.003;
   const FieldPtr grid = std::make_shared<BandedBall>(0.004);

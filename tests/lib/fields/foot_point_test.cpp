@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "palpate/fields/csg.h"
 #include "palpate/fields/implicit.h"
@@ -57,6 +58,63 @@ TEST(FootPoint, HasTheSurfacesCurvatures) {
     EXPECT_NEAR(foot->curvature_sum, first + second, 1e-9 * (first + second)) << axis;
     EXPECT_NEAR(foot->curvature_product, first * second, 1e-9 * first * second) << axis;
     EXPECT_NEAR(foot->distance, 1e-3, 1e-15) << axis;
+  }
+}
+
+TEST(FootPoint, HasAnEllipsoidsCurvaturesAnywhere) {
+  // With S = x^2 / a^4 + y^2 / b^4 + z^2 / c^4 and P = a b c: sum (a^2 + b^2 + c^2 - |x|^2) / (P^2
+  // S^1.5), product 1 / (P S)^2.
+  const Vec3 radii(9e-3, 6e-3, 7e-3);
+  const FieldPtr field = implicitEllipsoid(kCenter, radii);
+  const Vec3 squares = radii * radii;
+  const double volume = radii.x * radii.y * radii.z;
+  Random random(12);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 x = radii * random.direction();
+    const Vec3 slope = x / squares;
+    const double s = glm::dot(slope, slope);
+    const auto foot = footPoint(*field, kCenter + x + 1e-3 * slope / std::sqrt(s));
+    ASSERT_TRUE(foot);
+    ASSERT_LT(glm::length(foot->point - kCenter - x), 1e-14);
+    const double sum =
+        (squares.x + squares.y + squares.z - glm::dot(x, x)) / (volume * volume * s * std::sqrt(s));
+    const double product = 1.0 / (volume * s * volume * s);
+    ASSERT_NEAR(foot->curvature_sum, sum, 1e-8 * sum);
+    ASSERT_NEAR(foot->curvature_product, product, 1e-8 * product);
+  }
+}
+
+/// A plane whose values rise slowly, and a ball: from a point between them the plane looks nearer
+/// than it is.
+class SlowPlaneAndBall final : public Field {
+ public:
+  SlowPlaneAndBall(const Vec3& normal, FieldPtr ball) : normal_(normal), ball_(std::move(ball)) {}
+  [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
+    const FieldSample plane{0.2 * glm::dot(normal_, p), 0.2 * normal_};
+    const FieldSample ball = ball_ ? ball_->sample(p) : plane;
+    return ball.value < plane.value ? ball : plane;
+  }
+  [[nodiscard]] Box3 bounds() const noexcept override { return Box3::everything(); }
+  [[nodiscard]] Metric metric() const noexcept override { return Metric::kBound; }
+  [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
+  [[nodiscard]] double featureSize() const noexcept override { return 1e-3; }
+
+ private:
+  Vec3 normal_;
+  FieldPtr ball_;
+};
+
+TEST(FootPoint, ANearerPartIsSeenInEachDirectionOfACube) {
+  constexpr double kAway = 1e-3;
+  for (int n = 0; n < 27; ++n) {
+    const Vec3 way(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+    const double steps = glm::dot(way, way);
+    if (steps != 1.0 && steps != 3.0) continue;  // neither a face's middle nor a corner
+    const Vec3 out = way / std::sqrt(steps);
+    const Vec3 p = kAway * out;
+    const FieldPtr ball = sphere(2.1 * kAway * out, 0.6 * kAway);  // 0.5 mm from p
+    EXPECT_TRUE(footPoint(SlowPlaneAndBall(out, nullptr), p)) << n;
+    EXPECT_FALSE(footPoint(SlowPlaneAndBall(out, ball), p)) << n;
   }
 }
 

@@ -143,9 +143,10 @@ TEST(ForceGuard, TheLimitsOfASceneHoldWhereTheSettingsGiveNone) {
     EXPECT_NEAR(forceIn({}, {}, kind), 4.0, 1e-9);
     EXPECT_NEAR(forceIn({.max = 1.5}, {}, kind), 1.5, 1e-12);
     EXPECT_NEAR(forceIn({.max = 1.5}, {.max_force = 2.5}, kind), 2.5, 1e-12);
-    // 40 ticks in contact, of 0.01 N each.
-    EXPECT_NEAR(forceIn({.slew = 10.0}, {}, kind), 0.4, 1e-9);
-    EXPECT_NEAR(forceIn({.slew = 10.0}, {.max_growth = 20.0}, kind), 0.8, 1e-9);
+    // 40 ticks in contact, of 0.01 N each; before them a tick in which the hand is on the surface.
+    // There the paper's renderer finds the contact point within its epsilon of 1 um: 1 mN.
+    EXPECT_NEAR(forceIn({.slew = 10.0}, {}, kind), 0.4, 1e-3);
+    EXPECT_NEAR(forceIn({.slew = 10.0}, {.max_growth = 20.0}, kind), 0.8, 1e-3);
     // Half of the ramp is over after 50 of 100 ticks.
     EXPECT_NEAR(forceIn({.ramp = 0.1}, {}, kind), 2.0, 1e-9);
     EXPECT_NEAR(forceIn({.ramp = 0.1}, {.ramp = 0.2}, kind), 1.0, 1e-9);
