@@ -120,7 +120,7 @@ bool ProxySolver::addCuts(const CellProblem& problem) noexcept {
   for (std::size_t i = 0; i < problem.planes && cuts_ < limits::kMaxCuts; ++i) {
     Cut cut;
     if (!isCut(problem, i, cut)) continue;
-    // Met again from nearer by, the same wall is better known; met as it was, there is nothing new.
+    // If the same wall was met from nearer by, replace the old cut; if nothing is new, skip it.
     std::size_t slot = cuts_;
     bool is_new = true;
     for (std::size_t c = 0; c < cuts_; ++c) {
