@@ -74,7 +74,7 @@ class Parameter {
 };
 
 /// The force curve of a wall's spring where it is not linear: at depth d the wall pushes with
-/// stiffness * reference * (d / reference)^exponent + stiffening * d^2.
+///   stiffness * reference * (d / reference)^exponent + stiffening * d^2.
 /// exponent 1: a1 d + a2 d^2 (Okamura, Simone and O'Leary 2004); 1.5: a Hertz contact with a
 /// sphere.
 struct SpringCurve {
