@@ -115,7 +115,7 @@ class Extremum final : public Field {
   }
 
  private:
-  /// The boxes are no help at points so far away that squares of their distances overflow.
+  /// The boxes do not help at points so far away that squares of their distances overflow.
   [[nodiscard]] bool isSearched(const Vec3& p) const noexcept {
     constexpr double kFarthest = 1e100;
     return tree_.isUseful() && std::fabs(p.x) < kFarthest && std::fabs(p.y) < kFarthest &&

@@ -12,7 +12,7 @@ namespace palpate {
 struct Transition {
   RegionId from = kOutside;
   RegionId to = kOutside;
-  std::optional<PortId> port = {};  ///< none: no wall is there
+  std::optional<PortId> port = {};  ///< none: there is no wall
   Parameter force = 0.0;            ///< [N] at which the port opens this way; 0: it is open
 };
 
