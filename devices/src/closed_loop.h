@@ -25,8 +25,7 @@ class ClosedLoop {
   [[nodiscard]] double unitOfDamping() const noexcept { return mass_ / period_; }
 
  private:
-  Eigen::MatrixXd
-      plant_;  ///< state transition from tick to tick; the device's position is the first component
+  Eigen::MatrixXd plant_;        ///< state transition in a tick; the device's position comes first
   Eigen::VectorXd input_;        ///< effect of a force held for a tick
   std::vector<double> weights_;  ///< of positions in the velocity estimate
   double mass_;                  ///< [kg]

@@ -24,8 +24,7 @@ void checkServo(const ServoSettings& settings, bool has_rate) {
                 {"servo.elevate", "the servo loop cannot be elevated by " +
                                       std::to_string(static_cast<int>(settings.elevate))});
   }
-  constexpr double kLongest =
-      1e6;  // [s] far longer than any use, well within a clock's nanoseconds
+  constexpr double kLongest = 1e6;  // [s] far beyond use, well within a clock's nanoseconds
   if (!(settings.watchdog > 0.0 && settings.watchdog <= kLongest)) {
     throw Error(ErrorKind::kUsage,
                 {"servo.watchdog", "the servo watchdog must be above 0 s and at most 1e6 s, not " +

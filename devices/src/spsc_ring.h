@@ -50,8 +50,7 @@ class SpscRing {
   }
 
  private:
-  static constexpr std::size_t kCacheLine =
-      64;  // keeps the indices of the two sides on separate cache lines
+  static constexpr std::size_t kCacheLine = 64;  // separates the two sides' indices
   alignas(kCacheLine) std::atomic<std::size_t> put_{0};
   alignas(kCacheLine) std::atomic<std::size_t> taken_{0};
   std::vector<Item> items_;

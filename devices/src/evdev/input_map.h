@@ -33,9 +33,8 @@ struct AxisMap {
   AxisUse use = AxisUse::kSpeed;
   int axis = 0;  ///< 0 to 2, axis of the frame
   double sign = 1.0;
-  double rest = 0.0;  ///< [counts] value without deflection
-  double reach =
-      0.0;  ///< [counts] from there to full deflection; 0 or less: the kernel does not state it
+  double rest = 0.0;      ///< [counts] value without deflection
+  double reach = 0.0;     ///< [counts] from there to full deflection; 0 or less: not known
   double flat = 0.0;      ///< [counts] zone around `rest` without effect, stated by the kernel
   bool is_wheel = false;  ///< kMove: counts are notches
 };

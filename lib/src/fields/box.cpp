@@ -38,8 +38,7 @@ class Box final : public Field {
   }
 
   void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    const Vec3 center =
-        center_;  // copies, so that the compiler knows that no store below changes them
+    const Vec3 center = center_;  // copies: the stores below cannot change them
     const Vec3 half = half_;
     const double rounding = rounding_;
     const auto positive = [](double a) { return a < 0.0 ? 0.0 : a; };

@@ -113,8 +113,7 @@ class Rebuild {
  public:
   struct Change {
     std::function<FieldPtr(const FieldPtr&)> leaf;
-    std::function<FieldPtr(const FieldPtr&)>
-        complemented;  ///< applied to the operand of a complement
+    std::function<FieldPtr(const FieldPtr&)> complemented;  ///< for a complement's operand
     double translation_factor = 1.0;
     bool opens_faces = true;    ///< a solid with faces may be rebuilt by its faces
     bool keeps_levels = false;  ///< ... but only where the values of the faces are distances

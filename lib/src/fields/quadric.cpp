@@ -16,8 +16,7 @@ struct Form {
   double c = 0.0;
 };
 
-constexpr double kFarthest =
-    1e100;  ///< [m] points beyond this are treated as if they were at this distance
+constexpr double kFarthest = 1e100;  ///< [m] points farther away are treated as if they were here
 
 class Quadric final : public Field {
  public:

@@ -100,8 +100,7 @@ class Revolved final : public Field {
   }
 
   void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    const Vec3 center =
-        center_;  // copies, so that the compiler knows that no store below changes them
+    const Vec3 center = center_;  // copies: the stores below cannot change them
     const Vec3 axis = axis_;
     const P profile = profile_;
     const auto larger = [](double a, double b) { return a < b ? b : a; };

@@ -82,8 +82,7 @@ class FeltWalls final : public SoftKinds {
     int own = 0;          ///< number of the part behind the walls, where their feel depends on it
     bool shares = false;  ///< the group is one surface on which other walls take part of the press
     std::array<Near, kMaxProjectionWalls> wall{};
-    std::array<HeldWall, kMaxProjectionWalls>
-        held{};  ///< the same walls at the depth at which they are pressed
+    std::array<HeldWall, kMaxProjectionWalls> held{};     ///< the same, at the depth of the press
     std::array<FlattenedWall, kMaxProjectionWalls> flat;  ///< replacement fields of some of them
     std::size_t count = 0;
     SharedWalls law;  ///< at the place of the proxy

@@ -45,8 +45,7 @@ class PaperRenderer final : public RendererBase {
   struct Layer {
     PaperWall wall;
     PaperSurface surface;  ///< of its walls, from outside
-    double beneath =
-        0.0;  ///< [m] a point this far below the contact point is in the region behind it
+    double beneath = 0.0;  ///< [m] this far below the contact point is the region behind it
   };
 
   void start(const HipState& hip) noexcept;
@@ -71,9 +70,8 @@ class PaperRenderer final : public RendererBase {
   [[nodiscard]] RegionId regionBehind(std::size_t layer, double side) noexcept;
 
   PaperParameters parameters_;
-  std::vector<Layer> layers_;  ///< by layer, outermost first
-  std::vector<std::vector<RegionId>>
-      free_ways_of_;  ///< by region: regions that no wall separates from it
+  std::vector<Layer> layers_;                        ///< by layer, outermost first
+  std::vector<std::vector<RegionId>> free_ways_of_;  ///< by region: those without a wall between
 
   // Values of this tick.
   std::array<PortCrossing, TickResult::kMaxEvents> crossings_{};

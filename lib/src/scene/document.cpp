@@ -16,8 +16,7 @@ const Node* Node::find(std::string_view key) const noexcept {
 }
 
 SourcePlace Document::place(Mark mark) const {
-  constexpr std::size_t kLongestExcerpt =
-      200;  // [characters] a longer line would not help the reader
+  constexpr std::size_t kLongestExcerpt = 200;  // [characters] a longer line helps nobody
   SourcePlace place{file, mark.line, mark.column};
   if (mark.line < 1 || static_cast<std::size_t>(mark.line) > lines.size()) return place;
   const std::string& line = lines[static_cast<std::size_t>(mark.line) - 1];

@@ -42,8 +42,7 @@ class FieldReader {
 
   struct Built {
     FieldSourcePtr source;
-    std::size_t leaves =
-        1;  // of its tree; a shared part counts each time, as it is evaluated each time
+    std::size_t leaves = 1;  // of its tree; shared parts count each time, as they are evaluated
     int height = 1;
   };
   struct Named {

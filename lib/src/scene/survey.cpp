@@ -12,8 +12,7 @@ namespace {
 
 constexpr int kStepsPerLine = 128;
 constexpr std::size_t kMaxLines = 20000;  // in total, so that many layers do not take minutes
-constexpr int kHalvings =
-    40;  // a step shrinks to 1e-12 of itself, which finds the wall to double precision
+constexpr int kHalvings = 40;  // a step shrinks to 1e-12 of itself, about double precision
 
 /// Whether the straight way from `from` to `to` meets `box`.
 bool crosses(const Box3& box, const Vec3& from, const Vec3& to) {

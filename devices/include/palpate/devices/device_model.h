@@ -26,12 +26,11 @@ struct DeviceModel {
 /// take. It holds the device by a grip (another spring and damper), or is rigidly connected to it.
 struct HandModel {
   std::string name = {};
-  double mass = 0.0;       ///< [kg] 0 or more; with a grip more than 0
-  double damping = 0.0;    ///< [N s/m] to the path, 0 or more
-  double stiffness = 0.0;  ///< [N/m] to the path, 0 or more
-  double grip_stiffness =
-      0.0;  ///< [N/m] 0 or more; if both are 0, the hand is rigidly connected to the device
-  double grip_damping = 0.0;  ///< [N s/m] 0 or more
+  double mass = 0.0;            ///< [kg] 0 or more; with a grip more than 0
+  double damping = 0.0;         ///< [N s/m] to the path, 0 or more
+  double stiffness = 0.0;       ///< [N/m] to the path, 0 or more
+  double grip_stiffness = 0.0;  ///< [N/m] 0 or more; both 0: the hand is fixed to the device
+  double grip_damping = 0.0;    ///< [N s/m] 0 or more
 
   [[nodiscard]] bool hasGrip() const noexcept { return grip_stiffness > 0.0 || grip_damping > 0.0; }
 };

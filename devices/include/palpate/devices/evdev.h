@@ -27,8 +27,7 @@ enum class InputKind : std::uint8_t {
 [[nodiscard]] PALPATE_EXPORT std::string_view nameOf(InputKind kind) noexcept;
 
 struct EvdevSettings {
-  std::string node =
-      {};  ///< such as /dev/input/event5; empty: the first that fits, in the order of InputKind
+  std::string node = {};   ///< such as /dev/input/event5; empty: the first that fits, by InputKind
   double max_speed = 0.1;  ///< [m/s] along each axis, at full deflection
   double max_turn = 1.0;   ///< [rad/s] about each axis, at full deflection
   double dead_zone = 0.1;  ///< [-] share of full deflection that has no effect; 0 to below 1

@@ -24,10 +24,9 @@ struct FalconCalibration {
   double radians_per_count = 0.000635905;  ///< [rad] angle of a thigh per encoder count
   Vec3 zero_angles{0.610865, 0.610865,
                    0.610865};  ///< [rad] angle of the thighs where the encoders read 0: 35 degrees
-  Vec3 origin{0.0, 0.0, 0.125};  ///< [m] origin of the device's frame, in the frame of its base
-  double max_force = 8.0;        ///< [N] the largest that is asked of the motors
-  double continuous_force =
-      4.0;  ///< [N] that they can hold forever: an assumption, since none is published
+  Vec3 origin{0.0, 0.0, 0.125};   ///< [m] origin of the device's frame, in the frame of its base
+  double max_force = 8.0;         ///< [N] the largest that is asked of the motors
+  double continuous_force = 4.0;  ///< [N] that they can hold forever: assumed, none is published
 };
 
 /// @throws Error (kInput) if the file cannot be read, a name is unknown or a value is out of range.
@@ -39,8 +38,7 @@ struct FalconSettings {
   /// 0 or more: an open file descriptor of its node. After that, libusb no longer finds devices by
   /// itself in this process.
   int descriptor = -1;
-  std::string
-      firmware;  ///< image for a device that runs no firmware; empty: such a device is refused
+  std::string firmware;  ///< image for a device that runs none; empty: such a device is refused
   FalconCalibration calibration = {};
 };
 

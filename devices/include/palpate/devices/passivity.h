@@ -86,8 +86,7 @@ class PALPATE_EXPORT PassivityObserver {
   double max_force_ = 0.0;
   int delay_ = 0;
 
-  std::array<Vec3, kMostDelay + 1>
-      written_{};  ///< [N] a ring of delay + 1 entries, the oldest at next_
+  std::array<Vec3, kMostDelay + 1> written_{};  ///< [N] a ring of delay + 1, the oldest at next_
   std::size_t next_ = 0;
   Vec3 held_{0.0, 0.0, 0.0};
   Vec3 position_{0.0, 0.0, 0.0};

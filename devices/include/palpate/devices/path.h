@@ -78,10 +78,9 @@ struct PressPath {
   Vec3 surface{0.0, 0.0, 0.0};  ///< [m] where to press
   Vec3 normal{0.0, 0.0, 1.0};   ///< [-] outward, any length but zero
   double depth = 0.002;         ///< [m] 0 or more
-  double clearance =
-      0.005;  ///< [m] of start and end above the surface, 0 or more; not both `depth` and this zero
-  double speed = 0.05;  ///< [m/s] above 0
-  double hold = 0.2;    ///< [s] 0 or more
+  double clearance = 0.005;  ///< [m] of both ends above the surface, 0 or more; not 0 if depth is
+  double speed = 0.05;       ///< [m/s] above 0
+  double hold = 0.2;         ///< [s] 0 or more
 };
 [[nodiscard]] PALPATE_EXPORT PathFormula formula(const PressPath& shape,
                                                  double rate);  ///< rate [Hz]
@@ -106,7 +105,7 @@ struct TapPath {
   Vec3 surface{0.0, 0.0, 0.0};  ///< [m]
   Vec3 normal{0.0, 0.0, 1.0};   ///< [-] outward, any length but zero
   double depth = 0.002;         ///< [m] 0 or more
-  double clearance = 0.005;     ///< [m] 0 or more; not both `depth` and this zero
+  double clearance = 0.005;     ///< [m] 0 or more; not 0 if depth is
   double frequency = 4.0;       ///< [Hz] above 0
   int taps = 4;                 ///< 1 or more
 };

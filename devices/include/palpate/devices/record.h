@@ -263,10 +263,9 @@ struct ReplayReport {
   std::uint64_t most_force_tick = 0;
   double most_proxy = 0.0;  ///< [m] largest difference between proxies
   std::uint64_t most_proxy_tick = 0;
-  std::uint64_t regions = 0;   ///< ticks that end in different regions
-  std::uint64_t contacts = 0;  ///< ticks in which only one of the two touches
-  std::optional<std::uint64_t>
-      gap;  ///< a tick that is missing from the record: the replay ended before it
+  std::uint64_t regions = 0;         ///< ticks that end in different regions
+  std::uint64_t contacts = 0;        ///< ticks in which only one of the two touches
+  std::optional<std::uint64_t> gap;  ///< a tick missing from the record: the replay ended before it
 };
 
 /// The names of the regions and ports of a record, by their numbers in it.

@@ -52,9 +52,8 @@ struct BudgetItem {
   double rate = kInfinity;  ///< [Hz] smallest rate that permits it; infinite: none up to 100 kHz
   /// [-] Factor on the scene's `device: {force: ...}`, or on the shaft's length; 0: none helps.
   double force = 0.0;
-  std::vector<std::string>
-      hands;  ///< presets of hands, other than the loop's own, with which it is stable
-  double missing_damping = 0.0;  ///< [N s/m] missingDamping()
+  std::vector<std::string> hands;  ///< presets with which it is stable, other than the loop's own
+  double missing_damping = 0.0;    ///< [N s/m] missingDamping()
 
   [[nodiscard]] bool isAbove() const noexcept { return share > 1.0; }
 };

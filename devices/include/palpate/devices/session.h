@@ -106,11 +106,10 @@ struct SessionState {
   Clutch clutch;
   std::optional<VirtualCoupling> coupling;
   std::optional<PassivityController> passivity;
-  double source_work = 0.0;  ///< [J] sourceWork() of the renderer, up to the last tick
-  std::uint64_t ticks = 0;   ///< number that were made
-  std::uint64_t next_change =
-      0;                   ///< index in SessionSettings::changes of the first that is not yet due
-  double last_time = 0.0;  ///< [s]
+  double source_work = 0.0;       ///< [J] sourceWork() of the renderer, up to the last tick
+  std::uint64_t ticks = 0;        ///< number that were made
+  std::uint64_t next_change = 0;  ///< index of the first of SessionSettings::changes not yet due
+  double last_time = 0.0;         ///< [s]
   bool has_begun = false;
 };
 static_assert(std::is_trivially_copyable_v<SessionState>);

@@ -20,8 +20,7 @@ struct SimulationSettings {
   /// [samples] from writing a force until the motors exert it; 0 to SimulatedDevice::kMostDelay.
   /// With 0 they exert it from the reading on that it answers.
   int delay = 0;
-  bool realtime =
-      false;  ///< a reading is taken when read() is called, not 1 / rate after the last one
+  bool realtime = false;     ///< read() takes a reading now, not 1 / rate after the last one
   Vec3 push{0.0, 0.0, 0.0};  ///< [N] constant force on the tip: a weight, or a preload of a contact
 };
 

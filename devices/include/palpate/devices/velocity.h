@@ -29,8 +29,7 @@ enum class VelocityEstimator : std::uint8_t {
 
 struct VelocitySettings {
   VelocityEstimator estimator = VelocityEstimator::kBackwardDifference;
-  double window =
-      0.01;  ///< [s] kLeastSquares: length of the window; kAdaptiveWindow: its largest length
+  double window = 0.01;  ///< [s] length of the window; for kAdaptiveWindow its largest length
   /// [m] kAdaptiveWindow: largest distance of readings of a uniform motion from their chord; 0 or
   /// more. For an encoder it is a whole step: each end of the chord is wrong by up to half a step,
   /// and so are the readings in between.

@@ -18,13 +18,12 @@ struct CouplingSettings {
 /// not known may be 0: the coupling then needs more ticks to settle, and settles as long as the
 /// true slope is below K_c + B_c / T.
 struct ToolForce {
-  Vec3 force{0.0, 0.0, 0.0};  ///< [N] with all dampers
-  Vec3 normal{0.0, 0.0,
-              0.0};        ///< [-] unit, out of the wall that holds the tool; zero: no wall does
-  double stiffness = 0.0;  ///< [N/m] against a motion along `normal`
-  double sideways = 0.0;   ///< [N/m] against a motion across `normal`, from a wall that sticks
-  double damping = 0.0;    ///< [N s/m] along `normal`
-  double drag = 0.0;       ///< [N s/m] along any direction
+  Vec3 force{0.0, 0.0, 0.0};   ///< [N] with all dampers
+  Vec3 normal{0.0, 0.0, 0.0};  ///< [-] unit, out of the wall that holds the tool; zero: none
+  double stiffness = 0.0;      ///< [N/m] against a motion along `normal`
+  double sideways = 0.0;       ///< [N/m] against a motion across `normal`, from a wall that sticks
+  double damping = 0.0;        ///< [N s/m] along `normal`
+  double drag = 0.0;           ///< [N s/m] along any direction
 };
 
 /// Where the tool is.

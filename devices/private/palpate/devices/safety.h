@@ -90,8 +90,7 @@ class Safety {
   int finite_strikes_ = 0;
   bool needs_ramp_ = false;  ///< a ramp begins with the next force
   double heat_ = 0.0;
-  double load_ =
-      0.0;  ///< [-] of the last force: its square over the square of the continuous force
+  double load_ = 0.0;  ///< [-] square of the last force over that of the continuous force
 };
 
 }  // namespace palpate::devices

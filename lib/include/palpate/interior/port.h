@@ -58,13 +58,11 @@ struct PALPATE_EXPORT Port {
   PortDirection direction = PortDirection::kBoth;
   std::vector<PassedBefore> after;  ///< ports that must have been passed before
   int slot = -1;  ///< index in PassedPorts, assigned by Passages; -1: no `after` names this port
-  Parameter
-      opens_at;      ///< [N] elastic normal force at which it opens; 0: always open. A map is read
-                     /// < at the point touched; where the map is 0, the lightest touch opens
-  Parameter back;    ///< [N] the same for coming back
-  RuptureRate rate;  ///< how `opens_at` and `back` depend on the speed that presses the wall
-  double hole_radius =
-      0.0;  ///< [m] of the hole that is left when force opens the port; 0: no hole is left
+  Parameter opens_at;  ///< [N] elastic normal force that opens it; 0: always open. A map is read
+                       /// < at the point touched; where the map is 0, the lightest touch opens
+  Parameter back;      ///< [N] the same for coming back
+  RuptureRate rate;    ///< how `opens_at` and `back` depend on the speed that presses the wall
+  double hole_radius = 0.0;  ///< [m] of the hole left when force opens the port; 0: no hole
   /// [N] Within such a hole the port opens at this force, in place of opens_at and back where these
   /// are larger. A map is read at the point where the wall gave way.
   Parameter reopens_at;

@@ -123,12 +123,10 @@ struct ShaftFriction {
                               ///< exceeds that
     Parameter damping;        ///< [N s/m^2] b: while it slides, on top, times the speed
   };
-  Way in;   ///< while the needle goes in
-  Way out;  ///< while it is drawn out
-  double stiffness =
-      0.0;  ///< [N/m^2] of the tissue while it sticks to the shaft, per length; 0: no friction
-  double stick_speed =
-      0.0;  ///< [m/s] below this speed a sliding shaft sticks again, as does one that turns around
+  Way in;                  ///< while the needle goes in
+  Way out;                 ///< while it is drawn out
+  double stiffness = 0.0;  ///< [N/m^2] of the tissue that sticks to it, per length; 0: no friction
+  double stick_speed = 0.0;  ///< [m/s] a slower shaft sticks again, as does one that turns around
 
   /// Resistance of the tissue to sideways motion of that part of the shaft: a Winkler foundation,
   /// as for beams in an elastic medium (Vesic 1961).

@@ -50,11 +50,10 @@ struct CouplingRequest {
 /// can reach.
 struct DeviceMapping {
   Vec3 offset{0.0, 0.0, 0.0};  ///< [m, world] where the device's origin is
-  Mat3 rotation{1.0};  ///< [-] from the device's axes to the world's; proper (determinant +1)
-  double scale = 1.0;  ///< [-] world per device, more than 0
-  double force = 1.0;  ///< [-] force at the hand per force in the world, more than 0
-  bool clutch =
-      false;  ///< the hand can let go and take hold elsewhere: the whole world is in reach
+  Mat3 rotation{1.0};   ///< [-] from the device's axes to the world's; proper (determinant +1)
+  double scale = 1.0;   ///< [-] world per device, more than 0
+  double force = 1.0;   ///< [-] force at the hand per force in the world, more than 0
+  bool clutch = false;  ///< the hand can take hold elsewhere: the whole world is in reach
   Box3 workspace{Vec3(-kInfinity), Vec3(kInfinity)};  ///< [m, device] box around it
   std::optional<PassivityRequest> passivity = {};     ///< no value: off
   std::optional<CouplingRequest> coupling = {};       ///< no value: off
@@ -286,8 +285,7 @@ struct SceneDescription {
   std::vector<SheetDescription> sheets = {};
   std::string start_region = "outside";
   SourcePlace start_place = {};
-  bool keep_memory =
-      false;  ///< `memory: keep`: the record of ports passed is never taken back nor cleared
+  bool keep_memory = false;  ///< `memory: keep`: ports passed are never taken back nor cleared
   RendererKind renderer = RendererKind::kConstraint;
   ForceRequest force = {};
   PaperParameters paper = {};

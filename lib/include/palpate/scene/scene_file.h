@@ -37,8 +37,7 @@ struct PALPATE_EXPORT Node {
   std::string text = {};  ///< scalar: as written
   bool quoted = false;    ///< scalar: "..." or '...': text, never a number
   std::vector<Node> items = {};
-  std::vector<Entry>
-      entries;  ///< map: in the order of the file (not "= {}", since Entry is incomplete here)
+  std::vector<Entry> entries;  ///< map: in the file's order (no "= {}": Entry is incomplete here)
 
   [[nodiscard]] const Node* find(std::string_view key) const noexcept;
 };

@@ -6,9 +6,8 @@
 namespace palpate {
 
 struct LatticePush {
-  Vec3 force{0.0, 0.0,
-             0.0};      ///< [N] minus the gradient of `energy`, also where the amplitude varies
-  double energy = 0.0;  ///< [J] 0 or more; 0 at the origin
+  Vec3 force{0.0, 0.0, 0.0};  ///< [N] minus the gradient of `energy`, its amplitude's included
+  double energy = 0.0;        ///< [J] 0 or more; 0 at the origin
 };
 
 /// At `p` [m, world]; `amplitude` is the lattice's force parameter there, or a replacement for it.

@@ -9,8 +9,7 @@ namespace palpate {
 
 /// A layer of a stack, the topmost first.
 struct StackLayer {
-  double stiffness =
-      0.0;  ///< [N/m] of a half-space made of this layer alone, under the patch; more than 0
+  double stiffness = 0.0;  ///< [N/m] of a half-space of this layer under the patch; more than 0
   double thickness = 0.0;  ///< [m] ignored for the last layer, which has no lower end
 };
 

@@ -39,9 +39,8 @@ inline constexpr std::size_t kMaxPlanes = 48;
 struct CurvedStep {
   Vec3 step{0.0, 0.0, 0.0};  ///< [m]
   double lowest = 1.0;       ///< [-] the smallest eigenvalue of B along the planes
-  Vec3 downhill{
-      0.0, 0.0,
-      0.0};  ///< [-] unit eigenvector of `lowest`; zero where the planes leave no free motion
+  Vec3 downhill{0.0, 0.0,
+                0.0};  ///< [-] its unit eigenvector; zero where the planes leave no free motion
 };
 [[nodiscard]] CurvedStep curvedStep(const Vec3& wish, std::span<const Plane> planes,
                                     const PlaneSolution& first, const Mat3& bend,

@@ -44,8 +44,7 @@ class PassedPorts {
   friend bool operator==(const PassedPorts&, const PassedPorts&) = default;
 
  private:
-  std::array<std::int64_t, kCapacity>
-      net_{};  ///< by slot: times passed inward minus times passed outward
+  std::array<std::int64_t, kCapacity> net_{};  ///< by slot: passed inward minus outward
 };
 
 static_assert(std::is_trivially_copyable_v<PassedPorts>);

@@ -67,10 +67,8 @@ class Insertion {
   struct Layer {
     RegionId from = kOutside;
     RegionId region = kOutside;
-    Vec3 normal{
-        0.0, 0.0,
-        0.0};  ///< [-] of the wall where it was entered, pointing to `from`; zero if not known
-    Cut cut;   ///< it begins where the layer was entered
+    Vec3 normal{0.0, 0.0, 0.0};  ///< [-] where it was entered, towards `from`; zero if not known
+    Cut cut;                     ///< it begins where the layer was entered
     ShaftSlip slip;
     ShaftChannel channel;
   };

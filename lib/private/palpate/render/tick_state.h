@@ -27,8 +27,7 @@ struct PlaceState {
   int mouth = -1;  ///< leaf whose facet the region was last entered through; -1: it was not entered
   PassedPorts passed;
   Punctures punctures;
-  std::uint32_t audited =
-      0;  ///< counts the leaves that were evaluated although they were out of reach
+  std::uint32_t audited = 0;  ///< counts leaves evaluated although they were out of reach
 };
 
 /// The friction state carried from one tick to the next.
