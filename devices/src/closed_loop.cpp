@@ -11,7 +11,7 @@
 namespace palpate::devices {
 namespace {
 
-constexpr int kMostDelay = 1000;  // [samples] a matrix of so many rows takes seconds
+constexpr int kMostDelay = 1000;  // [samples] a matrix with that many rows takes seconds
 
 void check(const LoopModel& loop) {
   check(loop.device);
@@ -27,7 +27,7 @@ void check(const LoopModel& loop) {
   }
 }
 
-/// The same with the moving mass and the period as units.
+/// The same matrix with the moving mass and the period as units.
 plant::Matrix scaledMatrix(const LoopModel& loop, double mass) {
   const double t = loop.period;
   DeviceModel device = loop.device;
@@ -80,7 +80,8 @@ double ClosedLoop::growth(const WallModel& wall) const {
   const Eigen::Index own = plant_.rows();
   const Eigen::Index memory = damping > 0.0 ? static_cast<Eigen::Index>(weights_.size()) - 1 : 0;
   const Eigen::Index size = own + memory + delay_;
-  // The force now, of all that is known now: the plant, its positions before, the forces before.
+  // The present force as a function of the present state: the plant, its earlier positions, the
+  // earlier forces.
   Eigen::RowVectorXd force = Eigen::RowVectorXd::Zero(size);
   force(0) = -stiffness;
   if (damping > 0.0) {
@@ -103,7 +104,7 @@ double ClosedLoop::growth(const WallModel& wall) const {
 }
 
 bool ClosedLoop::isStable(const WallModel& wall) const {
-  // Without a spring the place itself neither grows nor dies, and a mass without damping is a
+  // Without a spring the position itself neither grows nor decays, and a mass without damping is a
   // double root.
   const double rounding = wall.stiffness > 0.0 ? 1e-12 : 1e-9;
   return growth(wall) <= 1.0 + rounding;

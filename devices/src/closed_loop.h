@@ -8,8 +8,8 @@
 
 namespace palpate::devices {
 
-/// In units of the moving mass and the period, so that all entries are of the same size whatever
-/// the device.
+/// Units are the moving mass and the period, so that all entries are of similar size whatever the
+/// device.
 class ClosedLoop {
  public:
   /// @throws Error as the functions of stability.h.
@@ -17,16 +17,17 @@ class ClosedLoop {
 
   /// The spectral radius.
   [[nodiscard]] double growth(const WallModel& wall) const;
-  /// Beyond what rounding makes of a loop that neither grows nor dies.
+  /// True if the growth is at most 1, allowing for the rounding of a loop that neither grows nor
+  /// decays.
   [[nodiscard]] bool isStable(const WallModel& wall) const;
 
   [[nodiscard]] double unitOfStiffness() const noexcept { return mass_ / (period_ * period_); }
   [[nodiscard]] double unitOfDamping() const noexcept { return mass_ / period_; }
 
  private:
-  Eigen::MatrixXd plant_;        ///< from tick to tick; the device's position first
-  Eigen::VectorXd input_;        ///< of a force held for a tick
-  std::vector<double> weights_;  ///< of positions in a velocity
+  Eigen::MatrixXd plant_;        ///< state transition in a tick; the device's position comes first
+  Eigen::VectorXd input_;        ///< effect of a force held for a tick
+  std::vector<double> weights_;  ///< of positions in the velocity estimate
   double mass_;                  ///< [kg]
   double period_;                ///< [s]
   int delay_;                    ///< [samples]

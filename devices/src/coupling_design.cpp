@@ -21,13 +21,13 @@ void checkLoop(const LoopModel& loop) {
                "no coupling is stable with a device without damping: it takes no energy"});
 }
 
-/// [s/kg] How far the coupling is from what a device may meet, at the worst frequency; below 0: too
-/// stiff.
+/// [s/kg] The margin between the coupling and what the device can hold, at the worst frequency;
+/// negative: too stiff.
 double marginOf(const LoopModel& loop, double ticks, double stiffness, double damping) {
   constexpr int kSteps = 400;
   double least = kInfinity;
   for (int i = 1; i <= kSteps; ++i) {
-    // Finer where the angle is small: with a delay the worst is there.
+    // Steps are finer at small angles: with a delay the worst frequency is there.
     const double share = static_cast<double>(i) / kSteps;
     const double angle = std::numbers::pi * share * share;
     const double real = damping + 0.5 * stiffness * loop.period;

@@ -15,8 +15,8 @@ const Material* materialOf(const Scene& scene, int index) {
 
 double mostOf(const Parameter& parameter) { return parameter.range().most; }
 
-/// [N/m] The steepest that a wall's spring gets up to `force` [N] (SpringCurve in material.h): an
-/// exponent is 1 or more.
+/// [N/m] The largest slope of a wall's spring up to `force` [N] (SpringCurve in material.h); its
+/// exponent is at least 1.
 double steepest(const Material& wall, double force) {
   const double stiffness = mostOf(wall.stiffness);
   const double stiffening = mostOf(wall.curve.stiffening);
@@ -38,7 +38,7 @@ double steepest(const Material& wall, double force) {
          2.0 * stiffening * depth;
 }
 
-/// Collects items: the same parameter of the same material once, with all of its places.
+/// Collects items; each parameter of a material appears once, with all its places.
 class Items {
  public:
   Items(const Scene& scene, const DeviceModel& device) : scene_(scene), device_(device) {}
@@ -90,8 +90,8 @@ class Items {
     const double drag = mostOf(content.viscosity);
     add(itemOf(FeltAs::kContent, content, "viscosity", {0.0, drag}), region.name);
     if (content.lattice.hasWaves() && mostOf(content.lattice.force) > 0.0) {
-      // Of K [N/m] highestForce() is K wavelength / (2 pi): where its force changes fastest it is a
-      // spring.
+      // highestForce(K) is K wavelength / (2 pi), so this is the stiffness of the spring that a
+      // lattice is where its force changes fastest.
       const double stiffness = mostOf(content.lattice.force) / content.lattice.highestForce(1.0);
       FeltItem item = itemOf(FeltAs::kContent, content, "lattice", {stiffness, drag});
       item.note = "2 pi force / wavelength";
@@ -141,7 +141,7 @@ class Items {
     }
     return most;
   }
-  /// [m] The longest shaft that can be in the region: the diagonal of its box, or of the workspace.
+  /// [m] The longest shaft that fits into the region: the diagonal of its box, or of the workspace.
   [[nodiscard]] double extentOf(const Region& region) const {
     Box3 workspace = device_.workspace;
     if (!workspace.isBounded()) workspace = scene_.device().workspace;

@@ -1,5 +1,6 @@
 #pragma once
-// Where a hand wants to be at any time: by rows, by a formula, or as somebody says meanwhile.
+// The place where a hand wants to be at any time: from rows, from a formula, or as given while it
+// runs.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,7 +12,8 @@
 
 namespace palpate::devices {
 
-/// Straight from row to row. Real-time safe, as long as the times that it is asked for do not fall.
+/// Interpolates linearly between rows. Real-time safe, as long as the times asked for do not
+/// decrease.
 class HandPath {
  public:
   explicit HandPath(Path rows) : rows_(std::move(rows)) {}
@@ -29,7 +31,7 @@ class HandPath {
   [[nodiscard]] double begin() const { return live_ ? 0.0 : row(0).t; }
   [[nodiscard]] double end() const { return live_ ? live_->end : row(size() - 1).t; }
 
-  /// The next time is anywhere.
+  /// The next time may be any.
   void rewind() {
     next_ = 0;
     from_ = to_ = row(0);
@@ -52,9 +54,9 @@ class HandPath {
 
  private:
   Path rows_;
-  std::optional<PathFormula> formula_;  ///< none: rows_
-  std::optional<LiveHand> live_;        ///< none: the path is known beforehand
-  std::size_t next_ = 0;                ///< row of to_
+  std::optional<PathFormula> formula_;  ///< no value: rows_ are used
+  std::optional<LiveHand> live_;        ///< no value: the path is known beforehand
+  std::size_t next_ = 0;                ///< index of the row that is to_
   PathPoint from_;
   PathPoint to_;
 };

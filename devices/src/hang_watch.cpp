@@ -13,7 +13,7 @@
 namespace palpate::devices {
 namespace {
 
-/// Short against the 20 ms that a hand may be left alone.
+/// Short compared with the 20 ms for which a hand may be left alone.
 constexpr std::int64_t kPause = 2'000'000;  // [ns]
 
 }  // namespace
@@ -41,13 +41,13 @@ void HangWatch::run(int priority) noexcept {
   if (priority > 0) {
     sched_param wanted{};
     wanted.sched_priority = priority;
-    // Refused: it watches all the same, from another core.
+    // If this is refused, the thread still watches, from another core.
     (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
   }
   while (!is_over_.load(std::memory_order_relaxed)) {
     const std::int64_t beat = beat_.load(std::memory_order_acquire);
     if (isHung(monotonicNs(), beat, longest_)) {
-      // Counted first: a loop that wakes up now must not write a force after the cut.
+      // Counted before the cut: a loop that wakes up now must not write a force after it.
       cuts_.fetch_add(1, std::memory_order_acq_rel);
       device_.cut();
     }

@@ -1,5 +1,5 @@
 #pragma once
-// A thread that lets go of the hand when the servo thread stands still.
+// A thread that releases the hand when the servo thread hangs.
 
 #include <atomic>
 #include <cstdint>
@@ -15,13 +15,13 @@ namespace palpate::devices {
   return now - beat >= longest;
 }
 
-/// While it lives, and while the last beat() is too old, cut()s the device again and again: a
-/// device may forget. One thread calls beat() and cuts().
+/// While it exists, and while the last beat() is too old, it calls the device's cut() again and
+/// again, since a device may not remember it. One thread calls beat() and cuts().
 class HangWatch {
  public:
-  /// `longest` [ns] between two beats; the largest number there is: no thread is started. The
-  /// device must be open and stay so. `above` is a real-time priority that the thread tries for, 0
-  /// for none: a loop that spins must not starve it.
+  /// `longest` [ns] is permitted between two beats; with the largest possible number no thread is
+  /// started. The device must be open and stay so. `above` is a real-time priority that the thread
+  /// tries to get, or 0 for none: a loop that spins must not starve it.
   /// @throws Error (kOperation) if the thread cannot be started.
   HangWatch(Device& device, std::int64_t longest, int above);
   ~HangWatch();
@@ -35,7 +35,7 @@ class HangWatch {
   [[nodiscard]] std::int64_t lastBeat() const noexcept {
     return beat_.load(std::memory_order_relaxed);
   }
-  /// How often the device was cut.
+  /// Number of cuts of the device.
   [[nodiscard]] std::uint64_t cuts() const noexcept {
     return cuts_.load(std::memory_order_acquire);
   }

@@ -10,15 +10,15 @@
 namespace palpate::devices {
 namespace {
 
-/// Between the ends of a diagonal step in space both of which are off by half an encoder step along
-/// each axis.
+/// The largest error of a step in space, in encoder steps: both its ends may be wrong by half a
+/// step along each axis.
 const double kEncoderDiagonal = std::sqrt(3.0);
 
 constexpr double kAtRest = 1e-6;  // [m/s]
 
-/// [-] Times mass / T: half of what a sampled and held damper on a mass is stable below. There, at
-/// z = exp(j a) of its characteristic equation z^(d+1) (z - 1) / (z + 1) = -alpha T / (2 m), is a =
-/// pi / (2 (d + 1)).
+/// [-] In units of mass / T: half of the damping below which a sampled and held damper on a mass is
+/// stable. At that limit the solution z = exp(j a) of the characteristic equation z^(d+1) (z - 1) /
+/// (z + 1) = -alpha T / (2 m) has a = pi / (2 (d + 1)).
 double halfOfStableDamping(int delay) { return std::tan(std::numbers::pi / (4.0 * (delay + 1))); }
 
 Error usageError(const char* name, const std::string& message) {
@@ -95,12 +95,12 @@ void PassivityObserver::add(const Vec3& position, double dt, double source) noex
   given_ += work;
   reserve_ += income - work;
   lowest_ = std::min(lowest_, reserve_);
-  // What free motion has earned is not there for the next contact.
+  // Energy that was earned in free motion must not be spent in the next contact.
   if (held_.x == 0.0 && held_.y == 0.0 && held_.z == 0.0) reserve_ = std::min(reserve_, kSeed);
 }
 
 void PassivityObserver::hold(const Vec3& force) noexcept {
-  // Of forces whose square overflows the length is infinite too, and what is held is zero.
+  // If the square of a force overflows, its length is infinite too, and zero is held.
   written_[next_] = glm::dot(force, force) > max_force_ * max_force_
                         ? force * (max_force_ / glm::length(force))
                         : force;
@@ -169,12 +169,12 @@ Vec3 PassivityController::bounded(const Vec3& force) const noexcept {
   const double size = std::sqrt(square);
   const double along = glm::dot(force, observer_.moved() + travel_ * observer_.held());
   const double reserve = std::max(0.0, observer_.reserve());
-  // What the force gives by the next tick at most. Most forces give no more than there is, and need
-  // no root.
+  // The most that the force can give until the next tick. Most forces give no more than the
+  // reserve, and need no root.
   if (along + margin_ * size + travel_ * square <= reserve) return force;
   const double ahead = along / size + margin_;
   const double root = std::sqrt(ahead * ahead + 4.0 * travel_ * reserve);
-  // The same root in the form that does not subtract what is nearly equal.
+  // The same root, in the form that does not subtract nearly equal numbers.
   const double most =
       ahead > 0.0 ? 2.0 * reserve / (ahead + root) : (root - ahead) / (2.0 * travel_);
   return size > most ? most / size * force : force;

@@ -19,7 +19,8 @@ constexpr std::string_view kDeviceHeader = "t,device_x,device_y,device_z";
 constexpr std::size_t kColumns = 4;
 constexpr std::array<const char*, kColumns> kNames{"t", "x", "y", "z"};
 
-/// Reads lines out of pieces of a file, so that a file of any length takes little memory.
+/// Reads lines from a file that is read in pieces, so that a file of any length takes little
+/// memory.
 class LineReader {
  public:
   explicit LineReader(const std::string& file)
@@ -51,7 +52,7 @@ class LineReader {
     return true;
   }
 
-  /// An error in the line that next() gave last.
+  /// An error in the line that next() returned last.
   [[nodiscard]] Error error(std::string code, std::string message, std::string hint,
                             std::string_view line, std::size_t column) const {
     Problem problem{std::move(code), std::move(message), std::move(hint), file_, number_};
@@ -60,7 +61,7 @@ class LineReader {
     return {ErrorKind::kInput, std::move(problem)};
   }
 
-  /// What a terminal may be given of a file that can be anything.
+  /// A text that can safely be printed on a terminal, since the file can contain anything.
   static std::string printable(std::string_view text) {
     constexpr std::size_t kLongest = 160;
     std::string out(text.substr(0, kLongest));
@@ -79,7 +80,7 @@ class LineReader {
     end_ -= begin_;
     begin_ = 0;
     if (end_ == buffer_.size()) {
-      // A line that fills the whole buffer is not a row of four numbers: hand it out as it is.
+      // A line that fills the whole buffer cannot be a row of four numbers: return it as it is.
       at_end_ = true;
       return;
     }
@@ -97,7 +98,7 @@ class LineReader {
   bool at_end_ = false;
 };
 
-/// True if `line` is four numbers between commas and nothing else; by kSound finite ones.
+/// True if `line` is exactly four numbers between commas, which must be finite for kSound.
 bool parseRow(std::string_view line, PathRules rules, std::array<double, kColumns>& out) {
   const char* at = line.data();
   const char* end = at + line.size();
@@ -113,7 +114,7 @@ bool parseRow(std::string_view line, PathRules rules, std::array<double, kColumn
   return false;
 }
 
-/// Says what is wrong with a line that parseRow() refused.
+/// Finds out why parseRow() refused a line.
 Error badRow(const LineReader& reader, std::string_view line) {
   const std::string hint = "a row is four plain numbers between commas: t [s], x, y, z [m]";
   if (line.empty()) return reader.error("path.blank", "blank line", hint, line, 0);

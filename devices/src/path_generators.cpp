@@ -48,12 +48,12 @@ Vec3 between(const Vec3& a, const Vec3& b, double u) {
   return u < 0.5 ? a + u * (b - a) : b - (1.0 - u) * (b - a);
 }
 
-/// Samples `position(t)` for t = i / rate until `duration` has passed; the last row is at `end`.
+/// Samples `position(t)` at t = i / rate until `duration` has passed; the last row is `end`.
 PathFormula sampled(double duration, double rate, const Vec3& end,
                     std::function<Vec3(double)> position) {
   requirePositive("rate", rate);
   const double exact = duration * rate;
-  // A duration that is a whole number of ticks must not get one more by rounding.
+  // Rounding must not add a tick to a duration that is a whole number of ticks.
   const double last = std::max(1.0, std::ceil(exact * (1.0 - 1e-12)));
   if (!(last < kMostRows)) {
     throw inputError("path.parameter",
@@ -97,7 +97,7 @@ class Polyline {
   std::vector<double> arc_;
 };
 
-/// There, hold, and back if asked.
+/// A path there, with a hold, and back if `back`.
 PathFormula traverse(const Polyline& line, double speed, double hold, bool back, double rate) {
   requirePositive("speed", speed);
   requireNotNegative("hold", hold);

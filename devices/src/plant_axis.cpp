@@ -11,16 +11,18 @@ namespace {
 
 constexpr std::size_t kSize = plant::kSize;
 
-/// What is slower stands still: 1e-12 m/s is 1e-15 m in a millisecond. Without it a device that
-/// rounding takes for sliding back and forth would never get on.
+/// A slower speed counts as rest: 1e-12 m/s is 1e-15 m in a millisecond. Without this limit a
+/// device that, by rounding, seems to slide back and forth would never make progress.
 constexpr double kStill = 1e-12;
-/// The same of a force, as a share of the friction.
+/// The same for a force, as a share of the friction.
 constexpr double kLetsGo = 1e-12;
-/// In one call. Physics has a few; beyond that friction holds until the next call.
+/// The most events in one call. Real motion has a few; beyond this friction holds until the next
+/// call.
 constexpr int kMostEvents = 64;
-/// Between two events as many looks that halve a step lead to one. Where friction and force are
-/// equal but for rounding more of them lead nowhere: then each lets one halving less pass, down to
-/// kLeastDepth, and what still seems to be an event is one.
+/// The most searches (each halves a step repeatedly) that are expected between two events. If
+/// friction and force are equal except for rounding, more may occur and find nothing: then each
+/// further search lowers the finest level by one, down to kLeastDepth, and what still seems to be
+/// an event at that level counts as one.
 constexpr int kMostLooks = 96;
 constexpr int kLeastDepth = 8;
 
@@ -51,13 +53,13 @@ PlantState after(const PlantStep& step, const PlantState& state, double length) 
   return next;
 }
 
-/// Whether a function with these values and slopes at the ends of `length` comes below zero: at the
-/// end, or before it where the slope changes its sign. Assumes that this happens at most once.
+/// Whether a function with these values and slopes at the ends of `length` goes below zero: at the
+/// end, or before it if the slope changes sign. It is assumed to do so at most once.
 bool mayCross(double after, double before, double slope_before, double slope_after,
               double length) noexcept {
   if (after < 0.0) return true;
   if (slope_before >= 0.0 || slope_after <= 0.0) return false;
-  // Convex: above both tangents.
+  // If it is convex, it lies above both tangents.
   return before + slope_before * length < 0.0 && after - slope_after * length < 0.0;
 }
 
@@ -83,7 +85,7 @@ void PlantAxis::slide(const PlantTables& tables, int way) noexcept {
   state_[plant::kConstant] = push_ - way * tables.friction;
 }
 
-/// At rest: sticks, or which way it slides.
+/// At rest: decides whether it sticks, or in which direction it slides.
 void PlantAxis::setWay(const PlantTables& tables) noexcept {
   const double force = netForce(tables);
   const bool lets_go = std::fabs(force) > tables.friction * (1.0 + kLetsGo);
@@ -97,7 +99,7 @@ bool PlantAxis::hasEvent(const PlantTables& tables, const PlantState& next,
                     way_ * dot(tables.acceleration, state_), way_ * dot(tables.acceleration, next),
                     length);
   }
-  // The constant is the push alone while it sticks.
+  // While it sticks, the constant is the push alone, without friction.
   const double force = tables.mass * dot(tables.acceleration, state_);
   const double force_after = tables.mass * dot(tables.acceleration, next);
   const double most = tables.friction * (1.0 + kLetsGo);
@@ -128,7 +130,7 @@ void PlantAxis::advance(const PlantTables& tables, const Inputs& inputs,
 
   int events = 0;
   int looks_in_vain = 0;  // since the last event
-  int finest = 0;  // level of the longest step that is worth a try: a longer one had an event in it
+  int finest = 0;         // level of the longest step worth trying: a longer one contained an event
   while (quanta > 0) {
     int level = finest;
     while (PlantTables::kLongest >> level > quanta) ++level;

@@ -1,5 +1,5 @@
 #pragma once
-// One axis of a device with a hand, as it moves.
+// The motion of one axis of a device with a hand.
 
 #include <cstdint>
 
@@ -7,7 +7,7 @@
 
 namespace palpate::devices {
 
-/// What went where since the start, along one axis [J]. Exact up to rounding.
+/// The energy balance since the start, along one axis [J]. Exact except for rounding.
 struct PlantWork {
   double motor = 0.0;     ///< done by the motor on the device
   double friction = 0.0;  ///< lost to Coulomb friction
@@ -15,18 +15,18 @@ struct PlantWork {
   double push = 0.0;      ///< done by the constant push
 };
 
-/// A value; real-time safe.
+/// A value type; real-time safe.
 class PlantAxis {
  public:
-  /// At rest at `x` [m], the hand too.
+  /// Sets device and hand at rest at `x` [m].
   void start(double x, double push, double damping) noexcept;
 
   struct Inputs {
     double force = 0.0;      ///< [N] the motor's command
-    double path = 0.0;       ///< [m] where the hand wants to be now,
-    double path_rate = 0.0;  ///< [m/s] and how that goes on
+    double path = 0.0;       ///< [m] where the hand wants to be now
+    double path_rate = 0.0;  ///< [m/s] the constant rate of `path`
   };
-  /// Goes on for `quanta` of `tables`, 0 or more.
+  /// Advances by `quanta` quanta of `tables`, 0 or more.
   void advance(const PlantTables& tables, const Inputs& inputs, std::int64_t quanta) noexcept;
 
   [[nodiscard]] double position() const noexcept { return state_[0]; }
@@ -39,7 +39,7 @@ class PlantAxis {
   [[nodiscard]] const PlantWork& work() const noexcept { return work_; }
 
  private:
-  /// Whether friction lets go, or the device stops, somewhere within the step to `next`.
+  /// Whether friction lets go, or the device stops, during the step to `next`.
   [[nodiscard]] bool hasEvent(const PlantTables& tables, const PlantState& next,
                               double length) const noexcept;
   [[nodiscard]] double netForce(const PlantTables& tables) const noexcept;
@@ -51,7 +51,7 @@ class PlantAxis {
   PlantWork work_;
   double push_ = 0.0;     ///< [N]
   double damping_ = 0.0;  ///< [N s/m] the device's own
-  int way_ = 0;           ///< of sliding, -1 or 1; 0: sticks. Without friction not used.
+  int way_ = 0;  ///< direction of sliding, -1 or 1; 0: it sticks. Not used without friction.
 };
 
 }  // namespace palpate::devices

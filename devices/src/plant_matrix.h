@@ -8,29 +8,29 @@
 
 namespace palpate::devices::plant {
 
-/// The entries of z, by index. What is not there (a grip, a lag) has rows of zeros.
+/// The entries of z, by index. Entries that do not apply (no grip, no lag) have rows of zeros.
 enum : int {
   kX,         ///< [m] of the device
   kV,         ///< [m/s]
-  kHandX,     ///< [m] of the hand, where it has a grip
+  kHandX,     ///< [m] of the hand, if it has a grip
   kHandV,     ///< [m/s]
   kForce,     ///< [N] of the motor
   kPath,      ///< [m] where the hand wants to be
   kPathRate,  ///< [m/s] constant
-  kConstant,  ///< [N] constant on the device: a push, less the friction that acts
-  kCommand,   ///< [N] constant: what the amplifier is to give; without a lag kForce is that
+  kConstant,  ///< [N] constant force on the device: the push minus the friction that acts
+  kCommand,   ///< [N] constant command to the amplifier; without a lag kForce equals it
   kSize
 };
 
 using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
-/// [kg] that moves with the device: its own mass, and that of a hand that is one with it.
+/// [kg] the mass that moves with the device: its own, and that of a hand that is rigidly connected.
 [[nodiscard]] inline double movingMass(const DeviceModel& device,
                                        const std::optional<HandModel>& hand) {
   return device.mass + (hand && !hand->hasGrip() ? hand->mass : 0.0);
 }
 
-/// While the device moves; `sticks`: while friction holds it.
+/// M while the device moves; if `sticks`, M while friction holds it.
 [[nodiscard]] inline Matrix matrixOf(const DeviceModel& device,
                                      const std::optional<HandModel>& hand, bool sticks = false) {
   Matrix m = Matrix::Zero();

@@ -13,8 +13,8 @@ namespace {
 using plant::kSize;
 using plant::Matrix;
 
-/// With friction, events are looked for between the ends of a step. There a speed or a force must
-/// not turn twice: the fastest mode goes through at most this [rad].
+/// With friction, events are searched between the ends of a step. Speed and force must not reverse
+/// twice within it: the phase of the fastest mode changes by at most this [rad].
 constexpr double kMostTurn = 0.25;
 
 using Form = Eigen::Matrix<double, kSize, kSize>;

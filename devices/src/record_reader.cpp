@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kRemedy = "a record is written by palpate touch SCENE ... --record FILE.npy";
 
-/// The digits of a count; false if there is anything else, or more than fits.
+/// Parses the digits of a count; false if there is anything else, or if the number is too large.
 bool parseCount(const std::string& digits, std::uint64_t& count) {
   const std::size_t first = digits.find_first_not_of(' ');
   if (first == std::string::npos) return false;

@@ -14,7 +14,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How long a side sleeps that finds nothing to do: short against the time that a ring lasts.
+// The sleep of a thread that finds nothing to do: short compared with the time that a full ring
+// covers.
 constexpr std::chrono::milliseconds kWriterNap{1};
 constexpr std::chrono::microseconds kWaiterNap{100};
 
@@ -68,7 +69,7 @@ class Recorder::Work {
         dropped_states_.fetch_add(1, std::memory_order_relaxed);
       }
     }
-    ticks_.put(made);  // last: what belongs to it is there
+    ticks_.put(made);  // last, so that everything that belongs to it is there already
   }
 
   const RecorderReport& finish() {
@@ -144,11 +145,11 @@ class Recorder::Work {
   }
 
   RecorderSettings settings_;
-  std::vector<RecordSink*> sinks_;  ///< null: it has failed
+  std::vector<RecordSink*> sinks_;  ///< null: the sink has failed
   SpscRing<RecordedTick> ticks_;
   SpscRing<RegionEntry> entries_;
   SpscRing<SessionState> states_;
-  std::vector<RegionEntry> taken_entries_;  ///< of the tick that is handed on
+  std::vector<RegionEntry> taken_entries_;  ///< of the tick that is being handed on
   std::atomic<bool> is_closing_{false};
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::uint64_t> dropped_entries_{0};

@@ -22,7 +22,8 @@ bool isSame(const Other& a, const Other& b) noexcept {
   return a == b;
 }
 
-/// All of what decides and what comes out of a tick; not what a clock or the loop's writing adds.
+/// Compares everything that determines or results from a tick, but not what a clock or the loop's
+/// writing adds.
 std::string differences(const TickRecord& a, const TickRecord& b) {
   std::string names;
   const auto look = [&](const auto& left, const auto& right, const char* name) {
@@ -47,14 +48,14 @@ std::string differences(const TickRecord& a, const TickRecord& b) {
   return names;
 }
 
-/// Infinite if they differ and one of them is not a number.
+/// The distance; infinite if they differ and one of them is not a number.
 double apart(const TickRecord::Vector& a, const TickRecord::Vector& b) {
   if (isSame(a, b)) return 0.0;
   const double length = glm::length(vectorOf(a) - vectorOf(b));
   return std::isfinite(length) ? length : std::numeric_limits<double>::infinity();
 }
 
-/// Numbers of a record in the terms of a scene.
+/// Translates numbers of a record to those of a scene.
 class Numbers {
  public:
   Numbers(const std::optional<RecordNames>& names, const Scene& scene) {
@@ -73,7 +74,7 @@ class Numbers {
 
  private:
   using List = std::vector<std::uint16_t>;
-  /// That of nothing: compile() refuses so many.
+  /// The number of nothing: compile() refuses so many regions and ports.
   static constexpr std::uint16_t kNone = 0xffff;
 
   template <typename Named>

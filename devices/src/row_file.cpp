@@ -56,7 +56,7 @@ constexpr std::array kColumns = {
 #undef PALPATE_COLUMN
 #undef PALPATE_COLUMNS
 
-/// [bytes] of one value of a column, which the last character of its type says.
+/// [bytes] of one value of a column: the last character of its type states it.
 constexpr std::size_t widthOf(const Column& column) {
   return static_cast<std::size_t>(column.type[2] - '0') * column.count;
 }
@@ -80,7 +80,7 @@ RowHeader makeHeader() {
   }
   dictionary += "], 'fortran_order': False, 'shape': (";
   RowHeader header;
-  constexpr std::size_t kPrefix = 10;  // magic, version, length
+  constexpr std::size_t kPrefix = 10;  // magic, version and length of the header
   header.count_at = kPrefix + dictionary.size();
   dictionary += countDigits(0) + ",), }";
   constexpr std::size_t kAlignment = 64;
@@ -128,7 +128,7 @@ void RowFile::flush() {
   try {
     out_.append(rows_.data(), rows_.size() * sizeof(TickRecord), sizeof(TickRecord));
   } catch (const Error&) {
-    promise();  // of those that there was room for
+    promise();  // of the rows for which there was room
     throw;
   }
   rows_.clear();

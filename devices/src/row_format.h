@@ -1,5 +1,5 @@
 #pragma once
-// The header of a record's array file, and what its rows are made of.
+// The header of a record's array file, and the format of its rows.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,17 +13,17 @@ namespace palpate::devices {
   return {a[0], a[1], a[2]};
 }
 
-/// Where the number of rows stands in the header, right-aligned.
+/// Number of digits of the row count in the header, right-aligned.
 inline constexpr std::size_t kCountDigits = 20;
 
 struct RowHeader {
-  std::string text;          ///< all of it, from the magic to the line's end
-  std::size_t count_at = 0;  ///< of the first of kCountDigits
+  std::string text;          ///< the whole header, from the magic to the end of the line
+  std::size_t count_at = 0;  ///< offset of the first of the kCountDigits digits
 };
 
-/// Of an array of `count` TickRecords, by the format 1.0 of NumPy.
+/// The header for an array of 0 TickRecords, in NumPy's format 1.0.
 [[nodiscard]] const RowHeader& emptyRowHeader();
-/// The digits that say so.
+/// The digits of `count`, padded to kCountDigits.
 [[nodiscard]] std::string countDigits(std::uint64_t count);
 
 }  // namespace palpate::devices

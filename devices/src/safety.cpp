@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kNanosecond = 1e-9;  // [s]
 
-/// [ns], the largest number if that is too long to count. NaN and times below 0 count as 0.
+/// Converts to [ns]; a time that is too long becomes the largest number. NaN and negative times
+/// count as 0.
 std::int64_t nanoseconds(double seconds) noexcept {
   constexpr double kLongest = 9e9;  // [s] 285 years
   if (seconds >= kLongest) return std::numeric_limits<std::int64_t>::max();
@@ -18,7 +19,7 @@ std::int64_t nanoseconds(double seconds) noexcept {
 
 double seconds(std::int64_t ns) noexcept { return kNanosecond * static_cast<double>(ns); }
 
-/// NaN and numbers below 0 permit nothing.
+/// The limit itself, or 0 if it is NaN or negative: such a limit permits nothing.
 double permitted(double limit) noexcept { return limit > 0.0 ? limit : 0.0; }
 
 }  // namespace
@@ -95,7 +96,7 @@ ReadingVerdict Safety::read(std::int64_t now, DeviceStatus status,
     last_reply_ = now_;
     verdict = ReadingVerdict::kSound;
     const bool is_finite = isFinite(fresh.position) && isFinite(fresh.velocity);
-    // Before an origin is known positions mean nothing.
+    // Before an origin is known, positions have no meaning.
     const bool is_place = is_finite && fresh.is_homed;
     if (is_place && jumps(fresh.position)) {
       verdict = ReadingVerdict::kDropped;
@@ -125,7 +126,7 @@ bool Safety::ticks() const noexcept {
 
 void Safety::warm(double dt) noexcept {
   if (limits_.continuous_force == kInfinity) return;
-  // The last force was held since then.
+  // The last force was held during `dt`.
   const double share = limits_.thermal_time > 0.0 ? -std::expm1(-dt / limits_.thermal_time) : 1.0;
   heat_ += (load_ - heat_) * share;
   counts_.heat = std::max(counts_.heat, heat_);
@@ -136,7 +137,7 @@ Vec3 Safety::cooled(const Vec3& force) noexcept {
   if (limits_.continuous_force == kInfinity) return force;
   const double forever = permitted(limits_.continuous_force);
   const double length = glm::length(force);
-  // From warm to hot, what is permitted goes from the maximum to what is held forever.
+  // From warm to hot, the permitted force falls from the maximum to the continuous force.
   const double cold = std::clamp((1.0 - heat_) / (1.0 - SafetyLimits::kWarm), 0.0, 1.0);
   const double most = forever + (std::max(max_force_, forever) - forever) * cold;
   if (length <= most) return force;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kHighestRate = 1e5;  // [Hz]
 
-/// Whether a loop can hold it with what the budget keeps to spare.
+/// Whether a loop can hold the wall with the margin of the budget.
 bool fits(const LoopModel& loop, const WallModel& wall) {
   const double spare = 1.0 / StabilityBudget::kShare;
   if (wall.stiffness == 0.0) return ClosedLoop(loop).isStable({0.0, spare * wall.damping});
@@ -21,7 +21,7 @@ bool fits(const LoopModel& loop, const WallModel& wall) {
 }
 
 /// The value between `bad`, where `holds` is false, and `good`, where it is true, at which it
-/// begins to hold; to 0.1 %.
+/// becomes true; to 0.1 %.
 double between(double bad, double good, const std::function<bool(double)>& holds) {
   while (std::fabs(good - bad) > 1e-3 * std::fmax(good, bad)) {
     const double middle = std::sqrt(good * bad);
@@ -36,8 +36,8 @@ double rateFor(const LoopModel& loop, const WallModel& wall) {
     faster.period = 1.0 / rate;
     return fits(faster, wall);
   };
-  // A rate above one that suffices need not suffice: the device damps less in each tick, and may
-  // hold less drag.
+  // A rate above a sufficient one need not be sufficient: the device dissipates less in each tick,
+  // and may hold less drag.
   const double now = 1.0 / loop.period;
   double last = now;
   for (double rate = now; rate < kHighestRate;) {

@@ -14,11 +14,11 @@
 namespace palpate::devices {
 namespace {
 
-/// Longer than most wake-ups are late on a stock kernel: 80 us, or 8 % of a 1 kHz tick.
+/// [ns] Longer than the delay of most wake-ups on a stock kernel: 80 us, or 8 % of a 1 kHz tick.
 constexpr std::int64_t kSpin = 80'000;  // [ns]
 
-/// A stop that another thread asks for does not wake a sleeper: of a slow loop, the device would
-/// hold its force until the next tick is due.
+/// [ns] A stop requested by another thread does not wake a sleeping loop: in a slow loop the device
+/// would hold its force until the next tick is due.
 constexpr std::int64_t kLongestSleep = 10'000'000;  // [ns]
 
 }  // namespace
@@ -37,7 +37,7 @@ void sleepUntil(std::int64_t due, const std::atomic<bool>& stop) noexcept {
     timespec until{};
     until.tv_sec = next / 1'000'000'000;
     until.tv_nsec = next % 1'000'000'000;
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);  // EINTR: look at stop again
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);  // EINTR: check `stop` again
   }
   while (monotonicNs() < due) {
   }
@@ -57,8 +57,8 @@ Elevation::Elevation(bool elevate, bool timers) noexcept {
     priority_error_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
     has_priority_ = priority_error_ == 0;
   }
-  // What is mapped now is all the loop uses. MCL_FUTURE would make other threads' allocations fail
-  // wherever the limit on locked memory is finite.
+  // The memory mapped now is all that the loop uses. MCL_FUTURE would make other threads'
+  // allocations fail wherever the limit on locked memory is finite.
   has_locked_memory_ = mlockall(MCL_CURRENT) == 0;
   if (!has_locked_memory_) memory_error_ = errno;
 }

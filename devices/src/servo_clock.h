@@ -1,22 +1,23 @@
 #pragma once
-// What the servo loop asks of the operating system.
+// What the servo loop requests from the operating system.
 
 #include <atomic>
 #include <cstdint>
 
 namespace palpate::devices {
 
-/// Monotonic clock [ns].
+/// Time of the monotonic clock [ns].
 [[nodiscard]] std::int64_t monotonicNs() noexcept;
 
 /// Sleeps until `due` [ns, monotonic], spinning over the last stretch, because a sleeping thread
-/// wakes tens of microseconds late. Returns within 10 ms once `stop` is set, whoever sets it.
+/// wakes tens of microseconds late. Returns within 10 ms after any thread sets `stop`.
 void sleepUntil(std::int64_t due, const std::atomic<bool>& stop) noexcept;
 
-/// Real-time priority, locked memory and exact timers for the calling thread while this lives.
+/// Gives the calling thread a real-time priority, locked memory and exact timers while this object
+/// exists.
 class Elevation {
  public:
-  /// `elevate`: try for priority and memory. `timers`: let the thread's sleeps end on time.
+  /// `elevate`: try to get priority and memory. `timers`: make the thread's sleeps end on time.
   Elevation(bool elevate, bool timers) noexcept;
   ~Elevation();
   Elevation(const Elevation&) = delete;
@@ -35,7 +36,7 @@ class Elevation {
   int memory_error_ = 0;
   int old_policy_ = 0;
   int old_priority_ = 0;
-  int old_slack_ = -1;  // [ns]; below 0: not changed
+  int old_slack_ = -1;  // [ns]; negative: not changed
 };
 
 }  // namespace palpate::devices

@@ -39,12 +39,12 @@ void checkServo(const ServoSettings& settings, bool has_rate) {
 
 namespace {
 
-/// Zero force, then closed, however the loop is left.
+/// Writes zero force and closes the device, however the loop ends.
 class OpenDevice {
  public:
   explicit OpenDevice(Device& device) : device_(device) { device_.open(); }
   ~OpenDevice() {
-    // A device that is gone takes no command; one that only timed out may still hold its motors.
+    // A device that is gone accepts no command; one that only timed out may still exert a force.
     static_cast<void>(device_.write(Vec3(0.0)));
     device_.close();
   }
@@ -55,7 +55,7 @@ class OpenDevice {
   Device& device_;
 };
 
-/// True if `status` ends the loop; says how.
+/// True if `status` ends the loop; sets `exit` to the reason.
 bool ends(DeviceStatus status, ServoExit& exit) noexcept {
   switch (status) {
     case DeviceStatus::kOk:
@@ -80,7 +80,8 @@ bool ends(DeviceStatus status, ServoExit& exit) noexcept {
 /// [ns]
 std::int64_t nanoseconds(double seconds) noexcept { return std::llround(1e9 * seconds); }
 
-/// [ns] of a turn of the loop; without a clock and without a sound rate, of one at 1 kHz.
+/// [ns] The length of a turn of the loop; if there is no clock and the rate is invalid, that of a
+/// loop at 1 kHz.
 std::int64_t turnOf(const ServoSettings& settings) noexcept {
   const bool is_sound = settings.rate >= 1.0 && settings.rate <= 1e5;
   return nanoseconds(1.0 / (is_sound ? settings.rate : 1000.0));
@@ -88,7 +89,7 @@ std::int64_t turnOf(const ServoSettings& settings) noexcept {
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
-/// [ns] after which the loop counts as hung: at least two turns, however slow it is.
+/// [ns] The time after which the loop counts as hung: at least two turns, however slow it is.
 std::int64_t longestTurn(const SafetyLimits& limits, std::int64_t turn) noexcept {
   if (!(limits.hang < 1e6)) return kNever;
   return std::max(nanoseconds(limits.hang), 2 * turn);
@@ -152,7 +153,7 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
     }
     DeviceState fresh = last;
     const DeviceStatus read = device.read(fresh);
-    // A reading is as old as its reply.
+    // The age of a reading counts from the device's reply.
     if (settings.realtime && info.is_clock) now = monotonicNs();
     if (settings.realtime) report.interval.add(now - before);
     const ReadingVerdict verdict = safety.read(now, read, fresh);
@@ -173,7 +174,7 @@ ServoReport runServo(Device& device, const ServoTick& tick, const ServoSettings&
       done.is_shortened = safe.is_shortened;
       done.share = safe.share;
     } else {
-      (void)safety.ask(Vec3(0.0), last);  // the motors cool
+      (void)safety.ask(Vec3(0.0), last);  // lets the motors cool
     }
     if (const std::uint64_t count = hangs.cuts(); count != cuts) {
       cuts = count;

@@ -18,7 +18,7 @@
 namespace palpate::devices {
 namespace {
 
-/// [world] What a coupling needs to know of the renderer's tick.
+/// [world] The result of the renderer's tick in the form that a coupling needs.
 ToolForce toolForce(const HapticRenderer& renderer, const SessionTick& tick) noexcept {
   const ForceSlope slope = renderer.slope(tick.hip);
   return {tick.result.force, slope.normal,  slope.stiffness,
@@ -65,13 +65,13 @@ void check(const Scene& scene, const SessionSettings& settings) {
 
 }  // namespace
 
-/// What other threads touch.
+/// Data shared between threads.
 struct Session::Shared {
-  /// The renderer's state between two ticks, for one who asked for it.
+  /// The renderer's state between two ticks, for a thread that asked for it.
   struct Snapshot {
     std::uint64_t request = 0;
-    std::uint64_t scene = 0;    ///< its number
-    std::uint64_t entries = 0;  ///< regions that the probe came into so far
+    std::uint64_t scene = 0;    ///< number of the scene
+    std::uint64_t entries = 0;  ///< regions that the probe has entered so far
     RendererState state;
   };
   struct Known {
@@ -83,32 +83,32 @@ struct Session::Shared {
   SceneSwap swap;
   SeqLock<SessionView> view;
   SeqLock<Snapshot> snapshot;
-  std::atomic<std::uint64_t> asked{0};    ///< the last request for a snapshot
+  std::atomic<std::uint64_t> asked{0};    ///< number of the last request for a snapshot
   std::atomic<std::uint64_t> handled{0};  ///< number of the last scene that was taken or put away
-  std::atomic<bool> was_old{false};       ///< it was put away
+  std::atomic<bool> was_old{false};       ///< that scene was put away
 
-  // The servo thread's own.
-  std::uint64_t answered = 0;  ///< the last request
-  std::uint64_t scene = 0;     ///< number of the scene that is felt
+  // Used by the servo thread only.
+  std::uint64_t answered = 0;  ///< number of the last request that was answered
+  std::uint64_t scene = 0;     ///< number of the present scene
   std::uint64_t entries = 0;
 
-  // The offering thread's own.
-  std::vector<Known> known;  ///< scenes of which a snapshot may be
+  // Used by the offering thread only.
+  std::vector<Known> known;  ///< scenes that a snapshot may belong to
   std::uint64_t offered = 0;
 
-  /// For the offering thread: the state as it is now. None if the servo thread does not run.
+  /// For the offering thread: the present state. No value if the servo thread does not run.
   [[nodiscard]] std::optional<Snapshot> ask();
 };
 
 namespace {
 
-/// [s] in which a servo thread that runs has made a tick, even one of a busy machine.
+/// [s] In this time a running servo thread makes a tick, even on a busy machine.
 constexpr double kAnswer = 0.1;
-/// Offers, each upon a state in which the probe went on into another region before the scene was
-/// taken.
+/// The most attempts to offer a scene: an attempt fails if the probe goes on into another region
+/// before the scene is taken.
 constexpr int kMostOffers = 5;
 
-/// False if `holds()` did not become true in kAnswer.
+/// Waits for `holds()`; false if it did not become true within kAnswer.
 template <typename Holds>
 bool waitFor(const Holds& holds) {
   using Clock = std::chrono::steady_clock;
@@ -180,15 +180,15 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
   const DeviceMapping& mapping = scene_->device();
   const bool is_mapped = frame == DeviceFrame::kDevice;
   const Vec3 position = is_mapped ? mapping.toWorld(reading.position) : reading.position;
-  // Of the device's positions: a clutch that is let go must not look like a leap of the hand. Nor
-  // must a broken reading.
+  // The velocity is computed from the device's positions, since a released clutch must not look
+  // like a jump of the hand; nor must a broken reading.
   const Vec3 velocity =
       tracker_.add(reading.time, HapticRenderer::isInReach(position) ? reading.position : kBroken)
           .value;
   tick.is_held = mapping.clutch &&
                  (reading.buttons >> static_cast<unsigned>(settings_.clutch_button) & 1U) != 0;
   const bool is_sound = HapticRenderer::isInReach(position) && isFinite(velocity);
-  // A broken reading neither engages the clutch nor lets it go.
+  // A broken reading neither engages nor releases the clutch.
   const Clutched now =
       is_sound ? clutch_.step(position, is_mapped ? mapping.velocityToWorld(velocity) : velocity,
                               tick.is_held, tick.dt)
@@ -217,7 +217,7 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
 Session::Felt Session::feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept {
   const bool is_coupled =
       coupling_ && HapticRenderer::isInReach(probe.position) && isFinite(probe.velocity);
-  // The coupling is as stiff as it says at the hand, and works in the hand's own measure.
+  // The coupling's stiffness is defined at the hand, so it works in the hand's scale.
   const DeviceMapping& mapping = scene_->device();
   const bool is_mapped = frame == DeviceFrame::kDevice;
   const double scale = is_mapped ? mapping.scale : 1.0;
@@ -259,15 +259,15 @@ void Session::offer(ScenePtr scene, const RendererSettings& settings) {
   };
   for (int i = 0; i < kMostOffers; ++i) {
     const auto snapshot = shared.ask();
-    if (!snapshot) break;  // nobody feels anything that could go on
-    // Scenes from before the one that is felt are not met again.
+    if (!snapshot) break;  // the servo thread does not run, so there is no state to carry over
+    // Scenes older than the present one are not needed any more.
     std::erase_if(shared.known, [&](const Shared::Known& k) { return k.number < snapshot->scene; });
     const Shared::Known& from = shared.known.front();
     const CarriedState carried = carryState(snapshot->state, from.kind, *from.scene, *scene);
     if (!renderer) renderer = makeRenderer(scene, settings);
     const bool is_carried = renderer->setState(carried.state);
-    // A hand that goes in and out all the time gets the last state however old it is: the proxy
-    // goes on from there.
+    // If the hand keeps going in and out, the last attempt uses the state however old it is: the
+    // proxy goes on from there.
     const bool is_last = i + 1 == kMostOffers;
     const std::uint64_t number =
         give(is_carried && !is_last ? std::optional(snapshot->entries) : std::nullopt);
@@ -305,7 +305,7 @@ void Session::changeUntil(double time) noexcept {
   for (; next_change_ < settings_.changes.size() && settings_.changes[next_change_].time <= time;
        ++next_change_) {
     const ContentEvent& event = settings_.changes[next_change_];
-    (void)renderer_->setContent(event.region, event.change);  // each was tried before
+    (void)renderer_->setContent(event.region, event.change);  // each change was tried beforehand
   }
 }
 
@@ -342,7 +342,7 @@ bool Session::resume(const SessionState& state) noexcept {
   ticks_ = state.ticks;
   last_time_ = state.last_time;
   has_begun_ = state.has_begun;
-  // The tick that the state was taken before begins with taking it again, as it did there.
+  // The state was taken before a tick that begins with taking it again: so does the next tick here.
   return true;
 }
 

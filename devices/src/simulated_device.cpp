@@ -14,8 +14,8 @@
 namespace palpate::devices {
 namespace {
 
-/// [s] A machine that slept longer than this between two readings did not simulate: what was held
-/// is not held on for hours.
+/// [s] If the machine slept longer than this between two readings, that time is not simulated:
+/// forces are not held for hours.
 constexpr double kLongestGap = 1.0;
 
 Error usageError(const char* code, std::string message) {
@@ -96,7 +96,7 @@ class SimulatedDevice::Plant {
       const double now = settings_.realtime
                              ? path_.begin() + 1e-9 * static_cast<double>(monotonicNs() - opened_)
                              : path_.begin() + static_cast<double>(readings_) / settings_.rate;
-      // The path's last row is felt, though its time be rounded down.
+      // The path's last row must be felt even if its time is rounded down.
       if (now > path_.end() + 1e-6 / settings_.rate) return DeviceStatus::kEnd;
       advanceTo(now);
     }
@@ -166,7 +166,7 @@ class SimulatedDevice::Plant {
     time_ = now;
   }
 
-  /// [m] By the encoders.
+  /// [m] The position as the encoders report it.
   [[nodiscard]] Vec3 measured() const noexcept {
     const double step = settings_.device.encoder;
     Vec3 out = position();
@@ -180,13 +180,13 @@ class SimulatedDevice::Plant {
   PlantTables tables_;
   DeviceInfo info_;
   std::array<PlantAxis, 3> axes_;
-  std::array<Vec3, kMostDelay + 1> delayed_{};  ///< [N] as written, a ring
+  std::array<Vec3, kMostDelay + 1> delayed_{};  ///< [N] forces as written, in a ring
   std::size_t newest_ = 0;
   Vec3 held_{0.0, 0.0, 0.0};     ///< [N]
-  Vec3 reading_{0.0, 0.0, 0.0};  ///< [m] the last
+  Vec3 reading_{0.0, 0.0, 0.0};  ///< [m] the last one
   double read_at_ = 0.0;         ///< [s]
   double time_ = 0.0;            ///< [s] of the path
-  std::int64_t opened_ = 0;      ///< [ns] the first reading
+  std::int64_t opened_ = 0;      ///< [ns] time of the first reading
   std::uint64_t readings_ = 0;
   bool is_open_ = false;
 };

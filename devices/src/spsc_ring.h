@@ -1,5 +1,5 @@
 #pragma once
-// A ring buffer between two threads: one puts in, the other takes out.
+// A ring buffer between two threads: one puts items in, the other takes them out.
 
 #include <atomic>
 #include <cstddef>
@@ -23,25 +23,25 @@ class SpscRing {
 
   [[nodiscard]] std::size_t capacity() const noexcept { return items_.size(); }
 
-  // The side that puts in.
+  // For the thread that puts in.
 
   [[nodiscard]] std::size_t room() const noexcept {
     return items_.size() -
            (put_.load(std::memory_order_relaxed) - taken_.load(std::memory_order_acquire));
   }
-  /// There must be room.
+  /// Call this only if there is room.
   void put(const Item& item) noexcept {
     const std::size_t at = put_.load(std::memory_order_relaxed);
     items_[at & (items_.size() - 1)] = item;
     put_.store(at + 1, std::memory_order_release);
   }
 
-  // The side that takes out.
+  // For the thread that takes out.
 
   [[nodiscard]] std::size_t count() const noexcept {
     return put_.load(std::memory_order_acquire) - taken_.load(std::memory_order_relaxed);
   }
-  /// There must be one; valid until pop().
+  /// Call this only if there is an item; valid until pop().
   [[nodiscard]] const Item& front() const noexcept {
     return items_[taken_.load(std::memory_order_relaxed) & (items_.size() - 1)];
   }
@@ -50,7 +50,7 @@ class SpscRing {
   }
 
  private:
-  static constexpr std::size_t kCacheLine = 64;  // so that the sides do not share one
+  static constexpr std::size_t kCacheLine = 64;  // separates the two sides' indices
   alignas(kCacheLine) std::atomic<std::size_t> put_{0};
   alignas(kCacheLine) std::atomic<std::size_t> taken_{0};
   std::vector<Item> items_;

@@ -10,8 +10,8 @@
 namespace palpate::devices {
 namespace {
 
-/// The first value of a row of even ratios from `least` on at which `is_good` fails, made exact by
-/// halving; infinite if it holds all the way to `most`, 0 if it never does.
+/// The first value of a geometric sequence from `least` on at which `is_good` fails, refined by
+/// bisection; infinite if it is true all the way to `most`, 0 if it never is.
 template <typename Test>
 double firstFailure(double least, double most, const Test& is_good) {
   constexpr int kSteps = 400;  // 5 % each, over the nine decades of a stiffness
@@ -38,7 +38,7 @@ std::vector<double> velocityWeights(const VelocitySettings& settings, double per
   if (settings.estimator == VelocityEstimator::kBackwardDifference) {
     return {1.0 / period, -1.0 / period};
   }
-  // As the tracker counts: readings within the window, and no more than it keeps.
+  // As in the tracker: the readings within the window, but no more than it keeps.
   const double fit = std::floor(settings.window * (1.0 + 1e-9) / period);
   const double most = static_cast<double>(VelocityTracker::kCapacity) - 1.0;
   const double n = std::clamp(fit, 1.0, most);

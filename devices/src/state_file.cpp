@@ -12,19 +12,19 @@
 namespace palpate::devices {
 namespace {
 
-// A header, then states of one size: little-endian, as they lie in memory.
+// A header, followed by states of one size: little-endian, as they are in memory.
 struct Header {
   std::array<char, 8> magic{'P', 'A', 'L', 'P', 'S', 'T', '0', '1'};
-  std::array<char, 184> build{};  ///< stateBuild(), the rest zeros
+  std::array<char, 184> build{};  ///< stateBuild(), padded with zeros
   std::uint64_t state_bytes = sizeof(SessionState);
-  std::uint64_t about = 0;  ///< checksum of what the record was made with
-  std::uint64_t sum = 0;    ///< checksum of all above
+  std::uint64_t about = 0;  ///< checksum of the description of the record
+  std::uint64_t sum = 0;    ///< checksum of everything above
 };
 static_assert(sizeof(Header) == 216);
 
 struct StateHeader {
   std::uint64_t tick = 0;
-  std::uint64_t sum = 0;  ///< checksum of the state's bytes, begun with that of the tick
+  std::uint64_t sum = 0;  ///< checksum of the tick number followed by the state's bytes
 };
 
 constexpr std::size_t kStride = sizeof(StateHeader) + sizeof(SessionState);
@@ -59,7 +59,7 @@ std::uint64_t checksum(std::string_view bytes, std::uint64_t begin) noexcept {
 }
 
 std::string stateBuild() {
-  // Where the parts lie tells most changes of the layout that leave the size as it was.
+  // Most changes of the layout that keep the total size change the offset of some part.
   const std::array<std::uint64_t, 4> layout = {RendererState::layout(), sizeof(RendererState),
                                                sizeof(VelocityTracker), sizeof(Clutch)};
   return std::string("palpate " PALPATE_VERSION_STRING ", " __VERSION__ ", ") +

@@ -57,7 +57,8 @@ Velocity VelocityTracker::add(double time, const Vec3& position) noexcept {
 }
 
 std::size_t VelocityTracker::reach() const noexcept {
-  // Times are sums of periods: a reading that is a rounding error beyond the window belongs to it.
+  // Times are sums of periods, so a reading that is beyond the window only by rounding belongs to
+  // it.
   const double window = settings_.window * (1.0 + 1e-9);
   std::size_t back = 1;
   while (back + 1 < count_ && at(0).time - at(back + 1).time <= window) ++back;

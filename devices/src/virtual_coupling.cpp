@@ -45,8 +45,8 @@ ToolMotion VirtualCoupling::reach(const Vec3& hand, double dt) noexcept {
   free_ = hand + share_ * (tool_ - hand_);
   hand_ = hand;
 
-  // Solves with the answer of the last tick: its springs go on as they were there, its dampers act
-  // on what moves now.
+  // Solves with the answer of the last tick: its springs continue linearly, its dampers act on the
+  // present motion.
   const double drag = answer_.drag * per_time_;
   const double across = answer_.sideways;
   Vec3 x = free_ + give_ * answer_.force;
@@ -62,7 +62,7 @@ ToolMotion VirtualCoupling::reach(const Vec3& hand, double dt) noexcept {
     const double spring = glm::dot(n, answer_.force) + along * glm::dot(n, asked_.position);
     const double away = glm::dot(n, free_);
     const double there = (slope_ * away + spring + damper * glm::dot(n, tool_)) * inverse;
-    // The hand lets go: a wall does not hold the tool back.
+    // When the hand moves away, a wall does not hold the tool back.
     const bool lets_go = spring < along * there;
     x += ((lets_go ? away : there) - glm::dot(n, x)) * n;
   }
@@ -85,7 +85,7 @@ Vec3 VirtualCoupling::push(const ToolForce& answer) noexcept {
     way += (std::max(0.0, there + inverse * left) - (there + give * left)) * n;
     answer_.force += (answer.damping * glm::dot(n, asked_.velocity)) * n;
   }
-  // The springs' own force is kept; drag is added for this answer only.
+  // The springs' own force is kept for the next tick; the drag is added for this answer only.
   answer_.force += answer.drag * asked_.velocity;
   tool_ = free_ + way;
   return slope_ * way;

@@ -14,7 +14,7 @@
 namespace palpate::devices {
 namespace {
 
-/// Those of a turn: 2048 events, more than the kernel keeps of a device.
+/// The most reads in one turn: 2048 events, more than the kernel buffers for a device.
 constexpr int kMostReads = 32;
 constexpr std::size_t kEvents = 64;
 
@@ -40,7 +40,7 @@ Error cannotOpen(const std::string& node, int error) {
            is_denied ? inputAccessRemedy() : "`palpate devices` lists the input devices that fit"}};
 }
 
-/// The first that fits.
+/// The first node that fits.
 std::string findNode() {
   const std::vector<InputDevice> all = listInputDevices();
   const InputDevice* best = nullptr;
@@ -83,7 +83,7 @@ class EvdevDevice final : public Device {
   }
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] DeviceStatus read(DeviceState& out) noexcept override;
-  /// It has no motors: max_force is 0.
+  /// The device has no motors: max_force is 0.
   [[nodiscard]] DeviceStatus write(const Vec3& /*force*/) noexcept override {
     return hand_ ? DeviceStatus::kOk : DeviceStatus::kDisconnected;
   }
@@ -98,7 +98,7 @@ class EvdevDevice final : public Device {
   EvdevSettings settings_;
   DeviceInfo info_;
   evdev::EventNode node_;
-  std::optional<evdev::InputHand> hand_;  // while it is open, and plugged in
+  std::optional<evdev::InputHand> hand_;  // has a value while it is open and plugged in
   std::array<std::uint16_t, evdev::kMostAxes> absolute_{};
   std::size_t absolute_count_ = 0;
   bool has_times_ = false;
@@ -134,7 +134,7 @@ void EvdevDevice::openNode(const std::string& path) {
   }
 }
 
-/// What it is at now.
+/// Reads the present state of all axes and keys.
 bool EvdevDevice::askAll() noexcept {
   std::bitset<KEY_CNT> keys;
   if (!node_.keys(keys)) return false;
@@ -161,7 +161,7 @@ bool EvdevDevice::takeAll(const input_event* events, std::size_t count, std::int
   return true;
 }
 
-/// All events that wait; false if it is gone.
+/// Takes all waiting events; false if the device is gone.
 bool EvdevDevice::drain(std::int64_t now) noexcept {
   std::array<input_event, kEvents> events;
   for (int reads = 0; reads < kMostReads; ++reads) {

@@ -11,8 +11,8 @@
 namespace palpate::devices::evdev {
 namespace {
 
-/// The first bits of an answer of the kernel, whose bytes are rows of a machine's words:
-/// little-endian ones, as on all that this is built for.
+/// The first bits of a kernel's answer, which is an array of machine words; they are little-endian
+/// on all machines that this is built for.
 template <std::size_t kSize>
 bool bitsOf(int descriptor, unsigned long request, std::bitset<kSize>& out,
             std::array<unsigned char, (kSize + 7) / 8>& bytes) noexcept {

@@ -11,7 +11,7 @@
 
 namespace palpate::devices::evdev {
 
-/// A file descriptor; closed at the end. No call here blocks.
+/// Owns a file descriptor, which the destructor closes. No call here blocks.
 class EventNode {
  public:
   EventNode() = default;
@@ -19,21 +19,21 @@ class EventNode {
   EventNode(const EventNode&) = delete;
   EventNode& operator=(const EventNode&) = delete;
 
-  /// 0, or the errno of what went wrong.
+  /// Returns 0, or the errno of the failure.
   [[nodiscard]] int open(const std::string& path) noexcept;
   void close() noexcept;
   [[nodiscard]] bool isOpen() const noexcept { return descriptor_ >= 0; }
 
-  [[nodiscard]] std::string name() const;  ///< empty: it has none
-  /// None: this is not an event node.
+  [[nodiscard]] std::string name() const;  ///< empty: it has no name
+  /// No value if this is not an event node.
   [[nodiscard]] std::optional<Capabilities> capabilities() const;
-  /// From now on its events have times of the monotonic clock; false: refused.
+  /// Makes its events carry times of the monotonic clock; false if the kernel refuses.
   [[nodiscard]] bool setMonotonic() const noexcept;
 
   // Real time.
   [[nodiscard]] bool value(std::uint16_t absolute_code, std::int32_t& out) const noexcept;
   [[nodiscard]] bool keys(std::bitset<KEY_CNT>& out) const noexcept;
-  /// As read(): the bytes of whole events, or -1 and errno.
+  /// Like read(): returns the bytes of whole events, or -1 with errno.
   [[nodiscard]] ssize_t read(input_event* out, std::size_t count) const noexcept;
 
  private:

@@ -6,10 +6,10 @@
 namespace palpate::devices::evdev {
 namespace {
 
-/// Of a deflection: kSpeed or kTurn.
+/// The group of a deflection's use: kSpeed or kTurn.
 std::size_t groupOf(AxisUse use) noexcept { return use == AxisUse::kTurn ? 1 : 0; }
 
-/// By Rodrigues' formula, the rotation about `turn` by its length [rad].
+/// The rotation about the vector `turn` by its length [rad], by Rodrigues' formula.
 Mat3 rotationBy(const Vec3& turn) noexcept {
   const double angle = glm::length(turn);
   if (!(angle > 0.0)) return Mat3(1.0);
@@ -18,7 +18,7 @@ Mat3 rotationBy(const Vec3& turn) noexcept {
   return Mat3(1.0) + std::sin(angle) * cross + (1.0 - std::cos(angle)) * (cross * cross);
 }
 
-/// What rounding did to a rotation in many turns is taken back.
+/// Removes the rounding errors that a rotation collects over many turns.
 Mat3 orthonormal(const Mat3& m) noexcept {
   const Vec3 x = glm::normalize(m[0]);
   const Vec3 y = glm::normalize(m[1] - glm::dot(m[1], x) * x);
@@ -59,7 +59,7 @@ void InputHand::takeAxis(std::uint16_t type, std::uint16_t code, std::int32_t va
     }
     const std::size_t group = groupOf(map.use);
     if (type == EV_REL && !told_[group]) {
-      // The kernel leaves out the zeros among the axes of a report.
+      // The kernel leaves out zeros from the axes in a report.
       told_[group] = true;
       for (std::size_t k = 0; k < count_; ++k) {
         if (groupOf(axes_[k].use) == group) next_.deflection[k] = 0.0;
@@ -105,8 +105,8 @@ bool InputHand::take(std::uint16_t type, std::uint16_t code, std::int32_t value,
       finish(at);
       return false;
     }
-    // Up to here it is unknown what was dropped. Relative axes report again if they are still
-    // deflected.
+    // From the first dropped event to here the events are lost. Relative axes report again if they
+    // are still deflected.
     is_dropping_ = false;
     advance(at);
     if (is_relative_) now_.deflection = {};

@@ -1,6 +1,6 @@
 #pragma once
-// A position out of an input device's events. Real time: nothing here allocates, locks, throws or
-// blocks.
+// Integrates a position from an input device's events. Real time: nothing here allocates, locks,
+// throws or blocks.
 
 #include <array>
 #include <bitset>
@@ -10,29 +10,30 @@
 
 namespace palpate::devices::evdev {
 
-/// A value with the time of its own that it is given. Times [ns] are monotonic.
+/// A value type that does not read a clock: it is given all times [ns], which are monotonic.
 class InputHand {
  public:
-  /// Axes beyond kMostAxes have no use.
+  /// Axes beyond kMostAxes are ignored.
   InputHand(const InputMap& map, const EvdevSettings& settings, std::int64_t now);
 
-  /// An event of the time `at`. Events count from the SYN_REPORT on that ends them. True if the
-  /// kernel has dropped events: what the device is at now has to be asked for, and given by
-  /// setAxis() and setKeys().
+  /// Takes an event with the time `at`. Events take effect with the SYN_REPORT that ends them.
+  /// Returns true if the kernel has dropped events: the caller then has to query the present state
+  /// and pass it to setAxis() and setKeys().
   [[nodiscard]] bool take(std::uint16_t type, std::uint16_t code, std::int32_t value,
                           std::int64_t at) noexcept;
-  void setAxis(std::uint16_t code, std::int32_t value) noexcept;  ///< an absolute one
+  void setAxis(std::uint16_t code, std::int32_t value) noexcept;  ///< an absolute axis
   void setKeys(const std::bitset<KEY_CNT>& keys) noexcept;
 
-  /// Goes on with the velocities that it has; times that lie before its own one do nothing.
+  /// Moves on with the present velocities up to time `to`; an earlier time than the current one has
+  /// no effect.
   void advance(std::int64_t to) noexcept;
 
   [[nodiscard]] const Vec3& position() const noexcept { return position_; }        ///< [m]
   [[nodiscard]] const Mat3& orientation() const noexcept { return orientation_; }  ///< a rotation
   [[nodiscard]] std::uint32_t buttons() const noexcept { return now_.buttons; }
 
-  /// [ns] for which a relative axis keeps its deflection without being told it again. Assumed: such
-  /// devices repeat it every 8 to 16 ms while they are deflected.
+  /// [ns] for which a relative axis keeps its deflection without a new report. It is assumed that
+  /// such devices repeat it every 8 to 16 ms while they are deflected.
   static constexpr std::int64_t kHold = 50'000'000;
 
  private:
@@ -57,11 +58,11 @@ class InputHand {
   EvdevSettings settings_;
   std::int64_t time_;  // [ns]
   Inputs now_;
-  Inputs next_;                            // now_, with the events since the last SYN_REPORT
-  Vec3 way_{0.0, 0.0, 0.0};                // [m] that these have moved it
-  std::array<bool, 2> told_{};             // by these: kSpeed, kTurn, of relative axes
-  std::array<std::int64_t, 2> told_at_{};  // [ns] the last time
-  bool is_relative_ = false;               // its deflections are
+  Inputs next_;                 // now_ updated by the events since the last SYN_REPORT
+  Vec3 way_{0.0, 0.0, 0.0};     // [m] displacement by these events
+  std::array<bool, 2> told_{};  // whether these events reported kSpeed, kTurn of relative axes
+  std::array<std::int64_t, 2> told_at_{};  // [ns] time of the last such report
+  bool is_relative_ = false;               // its deflections come from relative axes
   bool is_dropping_ = false;
   Vec3 position_{0.0, 0.0, 0.0};
   Mat3 orientation_{1.0};

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kFolder = "/dev/input";
 
-/// The numbers of the event nodes, rising.
+/// The numbers of the event nodes, ascending.
 std::vector<int> eventNumbers() {
   std::vector<int> out;
   DIR* folder = opendir(kFolder);
@@ -45,7 +45,7 @@ std::vector<InputDevice> listInputDevices() {
     device.node = std::string(kFolder) + "/event" + std::to_string(number);
     evdev::EventNode node;
     const int error = node.open(device.node);
-    // Unplugged since the folder was read.
+    // Other errors mean that it was unplugged since the folder was read.
     if (error != 0 && error != EACCES && error != EPERM) continue;
     device.is_accessible = error == 0;
     if (device.is_accessible) {

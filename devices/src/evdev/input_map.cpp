@@ -5,21 +5,21 @@
 namespace palpate::devices::evdev {
 namespace {
 
-/// [counts] A SpaceMouse's full deflection, where the kernel reports relative axes, which have no
+/// [counts] A SpaceMouse's full deflection where the kernel reports relative axes, which have no
 /// range.
 constexpr double kSpaceMouseReach = 350.0;
 
-/// One of an input device's axes, and the frame's that it moves along or turns about.
+/// One of an input device's axes, and the axis of the frame that it moves along or turns about.
 struct Row {
   std::uint16_t code;
   AxisUse use;
   int axis;
   double sign;
-  bool is_trigger = false;  // rests at its least value
+  bool is_trigger = false;  // rests at its lowest value
 };
 
-/// X to the right, Y towards the hand, Z down; the rotations about the same. REL_X to REL_RZ have
-/// the same numbers.
+/// X points to the right, Y towards the hand, Z down; the rotations are about the same axes. REL_X
+/// to REL_RZ have the same numbers.
 constexpr std::array<Row, 6> kSpaceMouse = {{{ABS_X, AxisUse::kSpeed, 0, 1.0},
                                              {ABS_Y, AxisUse::kSpeed, 2, 1.0},
                                              {ABS_Z, AxisUse::kSpeed, 1, -1.0},
@@ -28,14 +28,14 @@ constexpr std::array<Row, 6> kSpaceMouse = {{{ABS_X, AxisUse::kSpeed, 0, 1.0},
                                              {ABS_RZ, AxisUse::kTurn, 1, -1.0}}};
 static_assert(REL_X == ABS_X && REL_RX == ABS_RX && REL_RZ == ABS_RZ);
 
-/// As the kernel's gamepad specification has it: sticks to the right and towards the hand.
+/// As in the kernel's gamepad specification: sticks to the right and towards the hand are positive.
 constexpr std::array<Row, 6> kGamepad = {{{ABS_X, AxisUse::kSpeed, 0, 1.0},
                                           {ABS_Y, AxisUse::kSpeed, 2, 1.0},
                                           {ABS_RY, AxisUse::kSpeed, 1, -1.0},
                                           {ABS_RX, AxisUse::kTurn, 1, -1.0},
                                           {ABS_RZ, AxisUse::kSpeed, 1, 1.0, true},
                                           {ABS_Z, AxisUse::kSpeed, 1, -1.0, true}}};
-/// Those without ABS_RX and ABS_RY have their right stick at ABS_Z and ABS_RZ.
+/// Gamepads without ABS_RX and ABS_RY have their right stick at ABS_Z and ABS_RZ.
 constexpr std::array<Row, 6> kOlderGamepad = {{{ABS_X, AxisUse::kSpeed, 0, 1.0},
                                                {ABS_Y, AxisUse::kSpeed, 2, 1.0},
                                                {ABS_RZ, AxisUse::kSpeed, 1, -1.0},
@@ -78,7 +78,7 @@ std::vector<AxisMap> relatives() {
   return out;
 }
 
-/// Right, towards the hand, and the wheel up.
+/// Positive counts: to the right, towards the hand, and the wheel up.
 std::vector<AxisMap> mouseAxes() {
   std::vector<AxisMap> out(3);
   constexpr std::array<std::uint16_t, 3> kCodes = {REL_X, REL_WHEEL, REL_Y};
@@ -101,8 +101,8 @@ bool hasAll(const std::bitset<kSize>& axes) {
 std::vector<std::uint16_t> buttonsOf(const Capabilities& has) {
   constexpr std::size_t kMost = 32;
   std::vector<std::uint16_t> out;
-  // Of miscellaneous devices, mice, joysticks and gamepads: the kernel's codes for buttons that are
-  // not tools of a pen.
+  // The kernel's codes for buttons of miscellaneous devices, mice, joysticks and gamepads, but not
+  // of a pen's tools.
   for (std::uint16_t code = BTN_MISC; code < BTN_DIGI && out.size() < kMost; ++code) {
     if (has.keys[code]) out.push_back(code);
   }
@@ -119,7 +119,8 @@ std::optional<InputMap> mapOf(const Capabilities& has) {
     map.kind = InputKind::kSpaceMouse;
     map.axes = relatives();
   } else if (hasAll(has.absolute) && has.keys[BTN_0] && !is_pad) {
-    // The button tells it from the acceleration sensors of a gamepad, which have six axes as well.
+    // A button distinguishes it from the acceleration sensors of a gamepad, which have six axes as
+    // well.
     map.kind = InputKind::kSpaceMouse;
     map.axes = absolutes(kSpaceMouse, has);
   } else if (is_pad && has.absolute[ABS_X] && has.absolute[ABS_Y]) {

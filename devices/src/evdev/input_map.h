@@ -1,5 +1,5 @@
 #pragma once
-// What each axis and button of an input device is for.
+// Maps each axis and button of an input device to its use.
 
 #include <linux/input.h>
 
@@ -13,7 +13,7 @@
 
 namespace palpate::devices::evdev {
 
-/// What the kernel says that a device has.
+/// The capabilities that the kernel reports for a device.
 struct Capabilities {
   std::bitset<KEY_CNT> keys;
   std::bitset<REL_CNT> relative;
@@ -22,33 +22,33 @@ struct Capabilities {
 };
 
 enum class AxisUse : std::uint8_t {
-  kSpeed,  ///< deflection: velocity
-  kTurn,   ///< deflection: angular velocity
-  kMove,   ///< counts: a way
+  kSpeed,  ///< a deflection sets a velocity
+  kTurn,   ///< a deflection sets an angular velocity
+  kMove,   ///< counts are a distance
 };
 
 struct AxisMap {
   std::uint16_t type = EV_ABS;  ///< EV_REL or EV_ABS
   std::uint16_t code = 0;
   AxisUse use = AxisUse::kSpeed;
-  int axis = 0;  ///< 0 to 2, of the frame
+  int axis = 0;  ///< 0 to 2, axis of the frame
   double sign = 1.0;
-  double rest = 0.0;      ///< [counts] where it is not deflected
-  double reach = 0.0;     ///< [counts] from there to full deflection; 0 or less: it says nothing
-  double flat = 0.0;      ///< [counts] about the rest that mean nothing, by the kernel
+  double rest = 0.0;      ///< [counts] value without deflection
+  double reach = 0.0;     ///< [counts] from there to full deflection; 0 or less: not known
+  double flat = 0.0;      ///< [counts] zone around `rest` without effect, stated by the kernel
   bool is_wheel = false;  ///< kMove: counts are notches
 };
 
-/// At most so many axes have a use.
+/// The most axes that are used.
 constexpr std::size_t kMostAxes = 8;
 
 struct InputMap {
   InputKind kind = InputKind::kMouse;
   std::vector<AxisMap> axes;
-  std::vector<std::uint16_t> buttons;  ///< codes, rising; the first 32
+  std::vector<std::uint16_t> buttons;  ///< codes, ascending; the first 32
 };
 
-/// None if it is not a SpaceMouse, gamepad or mouse.
+/// No value if it is not a SpaceMouse, gamepad or mouse.
 [[nodiscard]] std::optional<InputMap> mapOf(const Capabilities& has);
 
 }  // namespace palpate::devices::evdev

@@ -1,5 +1,6 @@
 #pragma once
-// A firmware image as the boot ROM of a TI C28x processor takes it over its serial port.
+// A firmware image in the format that the boot ROM of a TI C28x processor accepts over its serial
+// port.
 
 #include <cstdint>
 #include <span>
@@ -8,7 +9,7 @@
 
 namespace palpate::devices::falcon {
 
-/// What an image says of itself.
+/// The contents of an image's header.
 struct BootTable {
   std::uint32_t entry = 0;  ///< address where the program begins
   int blocks = 0;
@@ -16,7 +17,7 @@ struct BootTable {
 };
 
 /// Reads the table without using it: key 0x08AA, 8 words, entry, blocks of {count, address, words},
-/// count 0, and nothing after.
+/// count 0, and nothing after that.
 /// @throws Error (kInput), naming `file`, if it is not a boot table.
 [[nodiscard]] BootTable readBootTable(std::span<const std::uint8_t> image, const std::string& file);
 

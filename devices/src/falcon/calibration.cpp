@@ -14,8 +14,8 @@ namespace {
 
 struct Entry {
   const char* name;
-  double FalconCalibration::*number;  ///< or
-  Vec3 FalconCalibration::*vector;    ///< the component of one
+  double FalconCalibration::*number;  ///< null for a component of a vector
+  Vec3 FalconCalibration::*vector;    ///< the vector; null for a plain number
   int axis;
   double least, most;
   const char* unit;

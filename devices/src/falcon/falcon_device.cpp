@@ -15,15 +15,15 @@ namespace {
 using usb::Status;
 namespace ftdi = usb::ftdi;
 
-constexpr int kStarts = 3;          // times that all of open() is tried
-constexpr int kHellos = 100;        // times that the boot loader is called
-constexpr int kPolls = 20;          // packets that an answer at set-up may need
-constexpr int kSetUpWait = 20;      // [ms] for one of them
-constexpr int kReads = 4;           // packets that one reading may need
-constexpr int kReadWait = 1;        // [ms] for one of them: the chip's latency timer
-constexpr int kPatience = 2;        // readings without a reply before the command is said again
-constexpr std::size_t kChunk = 62;  // [bytes] of firmware between two looks at its echo
-constexpr int kZeros = 3;           // zero commands at the end: one may be lost
+constexpr int kStarts = 3;          // attempts at the whole of open()
+constexpr int kHellos = 100;        // calls to the boot loader
+constexpr int kPolls = 20;          // packets that an answer at set-up may take
+constexpr int kSetUpWait = 20;      // [ms] wait for each of them
+constexpr int kReads = 4;           // packets that one reading may take
+constexpr int kReadWait = 1;        // [ms] wait for each of them: the chip's latency timer
+constexpr int kPatience = 2;        // readings without a reply before the command is repeated
+constexpr std::size_t kChunk = 62;  // [bytes] of firmware between two checks of its echo
+constexpr int kZeros = 3;           // zero commands at the end, since one may be lost
 
 const Packet kIdle = encode({});
 
@@ -35,7 +35,7 @@ FalconDevice::FalconDevice(usb::Opener opener, std::vector<std::uint8_t> firmwar
       firmware_(std::move(firmware)),
       calibration_(calibration),
       clock_(std::move(clock)) {
-  constexpr double kReach = 0.05;  // [m] what of the workspace is usable about the origin
+  constexpr double kReach = 0.05;  // [m] usable part of the workspace, from the origin
   info_.name = "Novint Falcon";
   info_.max_force = calibration.max_force;
   info_.workspace = {Vec3(-kReach), Vec3(kReach)};
@@ -58,8 +58,8 @@ void FalconDevice::open() {
       start();
     } catch (const Error& error) {
       transport_.reset();
-      // Loading the firmware is known to fail now and then; an absent device, or one without
-      // permission, stays so.
+      // Loading the firmware is known to fail now and then, so try again; a device that is absent
+      // or without permission stays so.
       const std::string& code = error.problem().code;
       const bool may_help = code == "falcon.boot" || code == "device.usb";
       if (!may_help || attempt == kStarts) throw;
@@ -132,7 +132,7 @@ void FalconDevice::exchange(std::span<const std::uint8_t> out, std::span<const s
     if (status == Status::kTimeout) continue;
     need(status, step);
     for (const std::uint8_t byte : usb::payload(std::span(packet).first(got))) {
-      if (at == 0 && byte == 0 && wanted[0] != 0) continue;  // of the line, before the first answer
+      if (at == 0 && byte == 0 && wanted[0] != 0) continue;  // noise before the first answer
       if (at >= wanted.size() || byte != wanted[at]) {
         throw Error(ErrorKind::kDevice,
                     {"falcon.boot", std::string(step) + ": the Falcon answered something else",
@@ -193,7 +193,8 @@ void FalconDevice::cut() noexcept {
 
 DeviceStatus FalconDevice::take(const Reply& reply, DeviceState& out) noexcept {
   const bool is_homed = reply.isHomed();
-  // An origin that was found or lost moves every angle: look for the pose from the middle again.
+  // When the origin is found or lost, every angle changes: search for the pose from the middle
+  // again.
   if (is_homed != is_homed_) is_placed_ = false;
   is_homed_ = is_homed;
   Vec3 angles(0.0);
@@ -203,8 +204,8 @@ DeviceStatus FalconDevice::take(const Reply& reply, DeviceState& out) noexcept {
   }
   auto grip = gripAt(angles, is_placed_ ? grip_ : middle());
   if (!grip && is_placed_) grip = gripAt(angles, middle());
-  // Before homing the angles mean nothing, and may fit no pose; the reply still shows that it
-  // lives.
+  // Before homing the angles have no meaning, and may not fit any pose; the reply still shows that
+  // the device is alive.
   if (!grip && is_homed) return DeviceStatus::kStale;
   is_placed_ = grip.has_value() && is_homed;
   if (grip) grip_ = grip->position;
@@ -227,7 +228,8 @@ DeviceStatus FalconDevice::read(DeviceState& out) noexcept {
   for (int i = 0; i < kReads && !reply; ++i) {
     const Status status = receive(reply, kReadWait);
     if (status == Status::kGone) return DeviceStatus::kDisconnected;
-    // Any other failure is one packet less; if they go on, no reply comes and the loop lets go.
+    // Any other failure counts as a lost packet; if they go on, no reply comes and the loop
+    // releases the force.
   }
   if (!reply) {
     ++silent_reads_;
@@ -246,7 +248,7 @@ std::array<int, 3> FalconDevice::motorsFor(const Vec3& force) const noexcept {
   Vec3 counts = calibration_.counts_per_torque * *torques;
   const double most = std::max({std::abs(counts.x), std::abs(counts.y), std::abs(counts.z)});
   if (!std::isfinite(most)) return {};
-  // All three together, so that the direction stays.
+  // Scale all three together, so that the direction stays the same.
   if (most > kMotorMost) counts *= kMotorMost / most;
   return {static_cast<int>(std::lround(counts.x)), static_cast<int>(std::lround(counts.y)),
           static_cast<int>(std::lround(counts.z))};
@@ -257,8 +259,8 @@ DeviceStatus FalconDevice::write(const Vec3& force) noexcept {
   Command command;
   command.motors = motorsFor(force);
   const bool is_zero = command.motors == std::array<int, 3>{};
-  // One command for each reply; without one for a while the command is said again. Letting go waits
-  // for nothing.
+  // One command for each reply; if there was no reply for a while, the command is repeated. A zero
+  // force is sent without waiting.
   const bool says_again = silent_reads_ > 0 && silent_reads_ % kPatience == 0;
   const bool lets_go = is_zero && !is_let_go_;
   if (is_owed_ && !says_again && !lets_go) return DeviceStatus::kOk;

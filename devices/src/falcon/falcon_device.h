@@ -1,5 +1,5 @@
 #pragma once
-// The driver: how a Falcon is started, read and written, over whatever leads to it.
+// The Falcon driver: how it is started, read and written, independent of the connection to it.
 
 #include <array>
 #include <atomic>
@@ -18,7 +18,7 @@ class FalconDevice final : public Device {
  public:
   using Clock = std::function<std::int64_t()>;  ///< [ns], never going back; real-time safe
 
-  /// `firmware` was checked. `clock` stamps the readings.
+  /// `firmware` must have been checked. `clock` stamps the readings.
   FalconDevice(usb::Opener opener, std::vector<std::uint8_t> firmware,
                const FalconCalibration& calibration, Clock clock);
   ~FalconDevice() override;
@@ -54,7 +54,7 @@ class FalconDevice final : public Device {
   Parser parser_;
   Vec3 grip_{0.0, 0.0, 0.0};    ///< [m] the last pose, in the base's frame
   Vec3 before_{0.0, 0.0, 0.0};  ///< [m] position of the last reading
-  double last_time_ = -1.0;     ///< [s] of it; below 0: none
+  double last_time_ = -1.0;     ///< [s] time of that reading; negative: none
   std::int64_t opened_at_ = 0;  ///< [ns]
   bool is_homed_ = false;
   bool is_placed_ = false;  ///< grip_ is a pose that was found

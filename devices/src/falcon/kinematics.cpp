@@ -12,20 +12,21 @@ constexpr std::array<double, 3> kAzimuths = {90.0, -30.0, -150.0};  // [degrees]
 
 struct Arm {
   double angle = 0.0;  ///< [rad]
-  Vec3 slope{0.0};     ///< [rad/m] of it, in the base's frame
+  Vec3 slope{0.0};     ///< [rad/m] gradient of the angle, in the base's frame
 };
 
 std::optional<Arm> armAt(const Vec3& position, double azimuth, const Geometry& g) noexcept {
   const double cosine = std::cos(azimuth);
   const double sine = std::sin(azimuth);
-  // In the leg's frame: u away from the axis, v sideways, w up.
+  // In the leg's frame: u points away from the axis, v sideways, w up.
   const double u = cosine * position.x + sine * position.y - g.radius;
   const double v = -sine * position.x + cosine * position.y - g.shift;
   const double w = position.z;
   const double tilt_cosine = (v + g.sideways) / g.shin;
   if (!(std::abs(tilt_cosine) < 1.0)) return std::nullopt;
   const double tilt_sine = std::sqrt(1.0 - tilt_cosine * tilt_cosine);
-  const double reach = g.hinge + g.shin * tilt_sine;  // of the lower leg in the plane of the thigh
+  const double reach =
+      g.hinge + g.shin * tilt_sine;  // reach of the lower leg in the plane of the thigh
   const double across = u + g.grip;
   const double square = w * w + across * across;
   const double knee =
@@ -37,7 +38,7 @@ std::optional<Arm> armAt(const Vec3& position, double azimuth, const Geometry& g
       std::atan2(w - g.thigh * std::sin(out.angle), across - g.thigh * std::cos(out.angle));
   const double bend = g.thigh * tilt_sine * std::sin(shin_angle - out.angle);
   if (bend == 0.0) return std::nullopt;
-  // The parallelogram's direction: only motion along it turns the thigh.
+  // The component along the parallelogram: only motion along it turns the thigh.
   const double along_u = std::cos(shin_angle) * tilt_sine;
   const double along_w = std::sin(shin_angle) * tilt_sine;
   out.slope =
@@ -62,12 +63,12 @@ std::optional<Arms> armsAt(const Vec3& position, const Geometry& geometry) noexc
 
 namespace {
 
-/// Newton's method, none if it does not get there.
+/// Newton's method; no value if it does not converge.
 std::optional<Grip> newton(const Vec3& angles, const Vec3& near,
                            const Geometry& geometry) noexcept {
-  // Newton's method converges by squares: after a step this short the rest is below 1e-12 m.
+  // Newton's method converges quadratically: after a step this short the error is below 1e-12 m.
   constexpr double kShort = 1e-8;  // [m]
-  constexpr double kLong = 0.02;   // [m] further than that the arms are not straight enough
+  constexpr double kLong = 0.02;   // [m] beyond this distance the arms are too nonlinear
   Grip out{near, 0};
   auto arms = armsAt(out.position, geometry);
   if (!arms) return std::nullopt;
@@ -79,7 +80,7 @@ std::optional<Grip> newton(const Vec3& angles, const Vec3& near,
     const Vec3 from = out.position;
     out.position = from + step;
     arms = armsAt(out.position, geometry);
-    for (int half = 0; !arms && half < 8; ++half) {  // out of reach: not so far
+    for (int half = 0; !arms && half < 8; ++half) {  // out of reach: halve the step
       step *= 0.5;
       out.position = from + step;
       arms = armsAt(out.position, geometry);
@@ -95,7 +96,8 @@ std::optional<Grip> newton(const Vec3& angles, const Vec3& near,
 std::optional<Grip> gripAt(const Vec3& angles, const Vec3& near,
                            const Geometry& geometry) noexcept {
   if (const auto found = newton(angles, near, geometry)) return found;
-  // Too far, or close to a stretched arm: in small steps from where the arms are at `near`.
+  // The target is too far, or close to a stretched arm: go in small steps from the arms' pose at
+  // `near`.
   constexpr int kSteps = 16;
   const auto begin = armsAt(near, geometry);
   if (!begin) return std::nullopt;

@@ -8,10 +8,10 @@ namespace {
 constexpr std::uint8_t kBegin = '<';
 constexpr std::uint8_t kEnd = '>';
 constexpr std::uint8_t kZero = 'A';  // a nibble n is the letter kZero + n
-constexpr std::size_t kFlags = 13;   // the byte of lights, buttons and homing
+constexpr std::size_t kFlags = 13;   // the byte with lights, buttons and homing
 constexpr unsigned kMostFlags = 0x7F;
 
-// Lights and homing, as libnifalcon's code sends them (its comments have other bits).
+// Bits for lights and homing, as libnifalcon's code sends them (its comments state other bits).
 constexpr unsigned kHomes = 1;
 constexpr unsigned kGreen = 2;
 constexpr unsigned kBlue = 4;
@@ -62,7 +62,7 @@ Reply Parser::decode() const noexcept {
 
 std::optional<Reply> Parser::push(std::uint8_t byte) noexcept {
   if (!fits(byte)) {
-    // The bytes so far are garbage; a packet may begin with this very byte.
+    // The bytes so far are not a packet, but a packet may begin with this byte.
     dropped_ += size_;
     size_ = 0;
     if (byte != kBegin) {

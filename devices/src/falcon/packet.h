@@ -9,30 +9,30 @@
 
 namespace palpate::devices::falcon {
 
-constexpr std::size_t kPacket = 16;  // [bytes] each way
-constexpr int kMotorMost = 4096;     // [counts] that a motor takes
+constexpr std::size_t kPacket = 16;  // [bytes] in each direction
+constexpr int kMotorMost = 4096;     // [counts] the most that a motor accepts
 
 using Packet = std::array<std::uint8_t, kPacket>;
 
-/// What the host says.
+/// A command from the host.
 struct Command {
-  std::array<int, 3> motors{};  ///< [counts] beyond kMotorMost: clamped
-  bool homes = false;           ///< look for the origin
+  std::array<int, 3> motors{};  ///< [counts] clamped to kMotorMost
+  bool homes = false;           ///< search for the origin
   bool red = false, green = false, blue = false;
 };
 
-/// What the device answers to one command.
+/// The device's answer to one command.
 struct Reply {
   std::array<int, 3> counts{};  ///< of the encoders
-  unsigned buttons = 0;         ///< a bit each: 1 plus, 2 forward, 4 center, 8 minus
-  unsigned homed = 0;           ///< a bit for each encoder; 7: all
+  unsigned buttons = 0;         ///< one bit each: 1 plus, 2 forward, 4 center, 8 minus
+  unsigned homed = 0;           ///< one bit for each encoder; 7: all
 
   [[nodiscard]] bool isHomed() const noexcept { return homed == 7; }
 };
 
 [[nodiscard]] Packet encode(const Command& command) noexcept;
 
-/// Bytes in, replies out. Whatever stands between two sound packets is dropped. A value; real-time
+/// Turns bytes into replies. Bytes between two sound packets are dropped. A value type; real-time
 /// safe.
 class Parser {
  public:

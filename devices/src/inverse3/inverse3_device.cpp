@@ -11,7 +11,7 @@ namespace {
 class Inverse3Device final : public Device {
  public:
   explicit Inverse3Device(Inverse3Settings settings) : settings_(std::move(settings)) {
-    // A reseller's specification.
+    // From a reseller's specification.
     info_.name = "Haply Inverse3";
     info_.max_force = 10.0;
     info_.workspace = {Vec3(-0.255, -0.23, -0.115), Vec3(0.255, 0.23, 0.115)};
@@ -48,7 +48,7 @@ class Inverse3Device final : public Device {
     link_->wake();
     return DeviceStatus::kOk;
   }
-  // cut(): a force that is not sent again is forgotten.
+  // cut() is not needed: the service forgets a force that is not sent again.
 
  private:
   Inverse3Settings settings_;

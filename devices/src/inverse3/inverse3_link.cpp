@@ -30,13 +30,13 @@ using boost::system::error_code;
 
 constexpr auto kConnectTime =
     std::chrono::seconds(2);               // for connection, handshake and the first message
-constexpr std::size_t kLongest = 1 << 20;  // [bytes] of a message
+constexpr std::size_t kLongest = 1 << 20;  // [bytes] in a message
 constexpr int kPatience =
-    std::numeric_limits<int>::max();  // a force is sent when it is written only
+    std::numeric_limits<int>::max();  // unlimited, since a force is sent only when it is written
 
 }  // namespace
 
-/// Everything but wake() happens in its thread.
+/// Everything but wake() happens in its own thread.
 class Link::Work {
  public:
   Work(const Inverse3Settings& settings, plugin::Mailbox& mail)
@@ -60,7 +60,7 @@ class Link::Work {
     began_ = monotonicNs();
     connect();
     thread_ = std::thread([this] { run(); });
-    first.get();  // throws what went wrong
+    first.get();  // throws if the thread failed
   }
 
   void stop() noexcept {
@@ -70,7 +70,7 @@ class Link::Work {
 
   void wake() const noexcept {
     const std::uint64_t one = 1;
-    // Full: a wake-up is under way already.
+    // If the pipe is full, a wake-up is on its way already.
     [[maybe_unused]] const auto written = write(event_, &one, sizeof one);
   }
 
@@ -107,8 +107,8 @@ class Link::Work {
     beast::get_lowest_layer(socket_).socket().close(ignored);
   }
 
-  /// Hangs up in kConnectTime, unless it is set again or canceled. It is a timer of its own: the
-  /// stream's may not be set while the stream reads or writes.
+  /// Disconnects after kConnectTime, unless it is set again or canceled. It is a separate timer:
+  /// that of the stream must not be set while the stream reads or writes.
   void setDeadline() {
     deadline_.expires_after(kConnectTime);
     deadline_.async_wait([this](const error_code& canceled) {
@@ -151,7 +151,8 @@ class Link::Work {
   void take(const std::string& text) {
     auto message = readMessage(text, id_);
     if (!message) {
-      // Not of our device, or damaged: while it goes on no reading comes, and the loop lets go.
+      // A message that is damaged or about another device: if this goes on, no reading comes, and
+      // the loop releases the force.
       if (!is_up_) fail("it names no such device");
       return;
     }
@@ -215,7 +216,7 @@ class Link::Work {
   std::string out_;
   std::promise<void> first_;
   std::int64_t began_ = 0;  // [ns]
-  bool is_up_ = false;      // first_ was answered
+  bool is_up_ = false;      // first_ was fulfilled
   bool is_sending_ = false;
   bool has_more_ = false;
   bool is_ending_ = false;

@@ -11,8 +11,8 @@ namespace palpate::devices::inverse3 {
 
 class Link {
  public:
-  /// Connects, and waits until the service has said where the device is. `mail` must outlive the
-  /// link.
+  /// Connects, and waits until the service has reported the device's position. `mail` must outlive
+  /// the link.
   /// @throws Error (kDevice).
   Link(const Inverse3Settings& settings, plugin::Mailbox& mail);
   /// Sends zero force and ends.
@@ -20,7 +20,8 @@ class Link {
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
-  /// The mailbox has a new force. Real time: one write to the kernel, which never blocks.
+  /// Call this after the mailbox got a new force. Real time: one write to the kernel, which never
+  /// blocks.
   void wake() noexcept;
 
  private:

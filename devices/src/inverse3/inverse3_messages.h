@@ -1,5 +1,5 @@
 #pragma once
-// What the Inverse Service says and wants to hear. Needs PALPATE_INVERSE3.
+// The messages from and to the Inverse Service. Needs PALPATE_INVERSE3.
 
 #include <optional>
 #include <string>
@@ -14,11 +14,11 @@ struct Message {
   DeviceState state;  ///< its position and velocity
 };
 
-/// The device `id` (empty: the first) in a message of the service. None if the message is not of
-/// its kind, or not sound.
+/// Reads the device `id` (empty: the first) from a message of the service. No value if the message
+/// is of another kind, or not sound.
 [[nodiscard]] std::optional<Message> readMessage(std::string_view text, const std::string& id);
 
-/// Asks for `force` [N] at the cursor.
+/// The message that requests `force` [N] at the cursor.
 [[nodiscard]] std::string forceMessage(const std::string& id, const Vec3& force);
 
 }  // namespace palpate::devices::inverse3

@@ -11,8 +11,8 @@ namespace {
 
 using plugin::SharedLibrary;
 
-// Force Dimension's DHD interface, as programs that use it call it. Each call ends with the number
-// of the device; below 0: error.
+// Force Dimension's DHD interface, as programs that use it call it. The last argument of each call
+// is the number of the device; a negative result is an error.
 struct Functions {
   int (*open)();
   int (*close)(char);
@@ -40,8 +40,8 @@ struct Functions {
   Functions() = default;
 };
 
-/// [N] Of the weakest of the family that CHAI3D lists (omega.3): the library limits to what the
-/// device has.
+/// [N] That of the weakest of the family that CHAI3D lists (omega.3); the library limits the force
+/// to that of the device.
 constexpr double kMaxForce = 12.0;
 
 constexpr const char* kHint = "install Force Dimension's SDK, or give the path of its library";
@@ -100,7 +100,7 @@ class ForceDimensionDevice final : public Device {
     double z = 0.0;
     const int got = dhd_->get_position(&x, &y, &z, device_);
     if (got < 0) return DeviceStatus::kFault;
-    if (got > 0) return DeviceStatus::kStale;  // the library's own pace: nothing new yet
+    if (got > 0) return DeviceStatus::kStale;  // the library has its own pace: no new reading yet
     out.position = {x, y, z};
     if (dhd_->get_velocity(&x, &y, &z, device_) < 0) return DeviceStatus::kFault;
     out.velocity = {x, y, z};
@@ -111,7 +111,7 @@ class ForceDimensionDevice final : public Device {
 
   [[nodiscard]] DeviceStatus write(const Vec3& force) noexcept override {
     if (!dhd_) return DeviceStatus::kDisconnected;
-    // Above 0: the motors are at their limit, which is not a fault.
+    // A positive result means that the motors are at their limit, which is not a fault.
     return dhd_->set_force(force.x, force.y, force.z, device_) < 0 ? DeviceStatus::kFault
                                                                    : DeviceStatus::kOk;
   }

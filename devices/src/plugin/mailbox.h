@@ -1,6 +1,6 @@
 #pragma once
-// Between the servo thread and a thread that talks to a device: the last reading one way, the last
-// force the other.
+// Exchanges values between the servo thread and a thread that talks to a device: the last reading
+// in one direction, the last force in the other.
 
 #include <cstdint>
 
@@ -9,14 +9,14 @@
 
 namespace palpate::devices::plugin {
 
-/// What the device's thread says.
+/// A message from the device's thread.
 struct Letter {
   std::uint64_t number = 0;  ///< of the reading, from 1
   DeviceStatus status = DeviceStatus::kStale;
   DeviceState state;
 };
 
-/// What the servo thread says.
+/// A message from the servo thread.
 struct Order {
   std::uint64_t number = 0;   ///< of the write, from 1
   Vec3 force{0.0, 0.0, 0.0};  ///< [N]
@@ -24,12 +24,12 @@ struct Order {
 
 class Mailbox {
  public:
-  // Servo thread; real time.
+  // For the servo thread; real time.
 
   [[nodiscard]] DeviceStatus read(DeviceState& out) noexcept {
     const auto letter = readings_.load();
     if (!letter) return DeviceStatus::kStale;
-    // Anything but a reading stays as it is until the device is opened again.
+    // A status other than a reading stays until the device is opened again.
     if (letter->status != DeviceStatus::kOk) return letter->status;
     if (letter->number == seen_) return DeviceStatus::kStale;
     seen_ = letter->number;
@@ -38,7 +38,7 @@ class Mailbox {
   }
   void write(const Vec3& force) noexcept { orders_.store({++written_, force}); }
 
-  // The device's thread.
+  // For the device's thread.
 
   void say(DeviceStatus status, const DeviceState& state) noexcept {
     readings_.store({++said_, status, state});

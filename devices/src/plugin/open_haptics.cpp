@@ -70,7 +70,7 @@ struct Functions {
   Functions() = default;
 };
 
-constexpr int kPatience = 20;         // turns of 1 ms without a new force
+constexpr int kPatience = 20;         // turns of 1 ms without a new force before it becomes zero
 constexpr double kMillimeter = 1e-3;  // [m]
 
 /// Runs in the library's thread.
@@ -124,7 +124,7 @@ class OpenHapticsDevice final : public Device {
     info_.name = "OpenHaptics device";
     info_.limits = handLimits();
     info_.buttons = 2;
-    info_.max_force = 0.0;  // until the library says it
+    info_.max_force = 0.0;  // until the library reports it
   }
   ~OpenHapticsDevice() override { close(); }
   OpenHapticsDevice(const OpenHapticsDevice&) = delete;
@@ -162,7 +162,7 @@ class OpenHapticsDevice final : public Device {
     work_->mail.write(Vec3(0.0));
     hd_->stop();
     hd_->unschedule(task_);
-    // The library's thread is over: the last force is ours to write.
+    // The library's thread has ended: this thread may write the last force.
     const std::array<double, 3> zero{};
     hd_->begin_frame(work_->device);
     hd_->set_doubles(kForce, zero.data());
@@ -182,7 +182,7 @@ class OpenHapticsDevice final : public Device {
     work_->mail.write(force);
     return DeviceStatus::kOk;
   }
-  // cut(): the library's thread lets go by itself.
+  // cut() is not needed: the library's thread sets the force to zero by itself.
 
  private:
   PluginSettings settings_;

@@ -1,12 +1,12 @@
 #pragma once
-// A library that is looked for when it is needed.
+// A library that is loaded when it is needed.
 
 #include <string>
 #include <vector>
 
 namespace palpate::devices::plugin {
 
-/// Stays loaded while this lives.
+/// The library stays loaded while this object exists.
 class SharedLibrary {
  public:
   /// Loads the first of `names` that is found. @throws Error (kDevice), with `hint`, if none is.
@@ -18,7 +18,8 @@ class SharedLibrary {
   /// Whether one of `names` can be loaded.
   [[nodiscard]] static bool isThere(const std::vector<std::string>& names);
 
-  /// Fills in the function's address. @throws Error (kDevice) if the library has none of that name.
+  /// Sets `out` to the function's address. @throws Error (kDevice) if the library has no function
+  /// of that name.
   template <typename Function>
   void find(const char* name, Function*& function) const {
     function = reinterpret_cast<Function*>(addressOf(name));

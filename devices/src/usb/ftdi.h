@@ -1,5 +1,5 @@
 #pragma once
-// What an FTDI FT232R wants to hear, and what it puts before the bytes of the device. Facts of
+// The requests of an FTDI FT232R, and the bytes that it puts before those of the device. Facts from
 // libftdi and libnifalcon.
 
 #include <algorithm>
@@ -30,11 +30,11 @@ constexpr FtdiRequest k8N1 = {4, 0x0008};
 constexpr FtdiRequest kLatency16ms = {9, 16};
 constexpr FtdiRequest kLatency1ms = {9, 1};
 
-/// Each packet of the chip begins with the state of its modem lines.
+/// Each packet from the chip begins with the state of its modem lines.
 constexpr std::size_t kStatusBytes = 2;
 }  // namespace ftdi
 
-/// One after the other until one fails.
+/// Sends the requests one after the other until one fails.
 [[nodiscard]] inline Status control(Transport& transport,
                                     std::initializer_list<FtdiRequest> requests) noexcept {
   for (const FtdiRequest& r : requests) {
@@ -43,7 +43,7 @@ constexpr std::size_t kStatusBytes = 2;
   return Status::kOk;
 }
 
-/// The device's bytes of one packet.
+/// The device's bytes in one packet.
 [[nodiscard]] inline std::span<const std::uint8_t> payload(
     std::span<const std::uint8_t> packet) noexcept {
   return packet.subspan(std::min(packet.size(), ftdi::kStatusBytes));

@@ -27,7 +27,7 @@ std::string hex(std::uint16_t vendor, std::uint16_t product) {
   return text.data();
 }
 
-/// The list that libusb made, and its end.
+/// Owns a list made by libusb.
 class List {
  public:
   explicit List(libusb_context* context) : size_(libusb_get_device_list(context, &devices_)) {}
@@ -48,7 +48,7 @@ class List {
 }  // namespace
 
 Context::Context(bool is_blind) {
-  // libusb has no other way to say so than for all contexts that come after.
+  // libusb can only be told this for all later contexts.
   if (is_blind) (void)libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
   if (const int error = libusb_init(&context_); error != 0) {
     throw openError(error, "start libusb");

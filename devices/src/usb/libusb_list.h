@@ -1,5 +1,5 @@
 #pragma once
-// What libusb finds, and how one of it is opened. Needs PALPATE_LIBUSB.
+// The devices that libusb finds, and how one of them is opened. Needs PALPATE_LIBUSB.
 
 #include <string>
 
@@ -11,11 +11,11 @@ struct libusb_device_handle;
 
 namespace palpate::devices::usb {
 
-/// libusb's own state.
+/// Owns a context of libusb.
 class Context {
  public:
-  /// `is_blind`: does not look for devices, for one that is opened by its descriptor. @throws Error
-  /// (kDevice).
+  /// `is_blind`: it does not search for devices, which suits a device opened by its descriptor.
+  /// @throws Error (kDevice).
   explicit Context(bool is_blind);
   ~Context();
   Context(const Context&) = delete;
@@ -29,7 +29,7 @@ class Context {
 /// @throws Error (kDevice).
 [[nodiscard]] libusb_device_handle* openHandle(libusb_context* context, const Choice& choice);
 
-/// What to tell of an error of libusb at set-up, with its remedy.
+/// The message for an error of libusb at set-up, with a remedy.
 [[nodiscard]] Error openError(int error, const std::string& step);
 
 }  // namespace palpate::devices::usb

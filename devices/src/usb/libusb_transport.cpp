@@ -19,7 +19,7 @@ constexpr unsigned char kOut = 0x02;
 constexpr int kInterface = 0;
 constexpr unsigned kControlWait = 500;  // [ms]
 constexpr unsigned kCutWait = 5;        // [ms]
-constexpr int kSendWait = 3;            // [ms] for the transfer before
+constexpr int kSendWait = 3;            // [ms] for the previous transfer
 constexpr int kCloseWait = 500;         // [ms] for transfers to end
 
 Status statusOf(int error) noexcept {
@@ -58,8 +58,8 @@ Status statusOf(libusb_transfer_status status) noexcept {
   return Status::kError;
 }
 
-/// One direction: a transfer with its buffer, made once. The callback may run in another thread,
-/// while that one is in cut().
+/// One direction: a transfer with its buffer, made once. The callback may run in one thread while
+/// another thread is in cut().
 struct Line {
   libusb_transfer* transfer = nullptr;
   std::array<unsigned char, Transport::kPacket> buffer{};
@@ -67,7 +67,7 @@ struct Line {
 
   Line() : transfer(libusb_alloc_transfer(0)) {}
   ~Line() {
-    // One that would not end is still the library's.
+    // A transfer that did not end still belongs to the library.
     if (!is_pending.load(std::memory_order_acquire)) libusb_free_transfer(transfer);
   }
   Line(const Line&) = delete;
@@ -114,7 +114,7 @@ class LibusbTransport final : public Transport {
   LibusbTransport& operator=(const LibusbTransport&) = delete;
 
   Status control(std::uint8_t request, std::uint16_t value) noexcept override {
-    // 0x40: vendor, host to device.
+    // 0x40: vendor request, host to device.
     const int n =
         libusb_control_transfer(handle_, 0x40, request, value, 0, nullptr, 0, kControlWait);
     return n >= 0 ? Status::kOk : statusOf(n);
@@ -122,7 +122,7 @@ class LibusbTransport final : public Transport {
 
   Status send(std::span<const std::uint8_t> bytes) noexcept override {
     if (const Status s = waitFor(out_, kSendWait); s != Status::kOk) return s;
-    // How the one before ended is known only now.
+    // The result of the previous transfer is known only now.
     if (has_sent_) {
       const Status before = statusOf(out_.transfer->status);
       if (before == Status::kStall) (void)libusb_clear_halt(handle_, kOut);
@@ -174,7 +174,7 @@ class LibusbTransport final : public Transport {
     return s;
   }
 
-  /// Until the line's transfer has ended, at most `wait` [ms].
+  /// Waits until the line's transfer has ended, at most `wait` [ms].
   Status waitFor(const Line& line, int wait) noexcept {
     const auto until = Clock::now() + std::chrono::milliseconds(wait);
     while (line.is_pending.load(std::memory_order_acquire)) {
@@ -188,7 +188,7 @@ class LibusbTransport final : public Transport {
     return Status::kOk;
   }
 
-  Context context_;  // first made, last gone
+  Context context_;  // constructed first, destroyed last
   libusb_device_handle* handle_ = nullptr;
   Line in_;
   Line out_;

@@ -1,5 +1,6 @@
 #pragma once
-// The way to a device behind an FTDI chip: control requests, one stream of bytes each way.
+// The connection to a device behind an FTDI chip: control requests, and one stream of bytes in each
+// direction.
 
 #include <cstddef>
 #include <cstdint>
@@ -24,10 +25,11 @@ enum class Status : std::uint8_t {
 
 [[nodiscard]] std::string_view textOf(Status status) noexcept;
 
-/// One device, opened; the destructor closes it. One thread, but cut() may come from another.
+/// One opened device; the destructor closes it. For one thread, except that cut() may come from
+/// another.
 class Transport {
  public:
-  static constexpr std::size_t kPacket = 64;  // [bytes] the longest there is at full speed
+  static constexpr std::size_t kPacket = 64;  // [bytes] the longest packet at full speed
 
   virtual ~Transport() = default;
   Transport(const Transport&) = delete;
@@ -36,15 +38,15 @@ class Transport {
   /// A vendor's request without data (set-up only: may take long and allocate).
   [[nodiscard]] virtual Status control(std::uint8_t request, std::uint16_t value) noexcept = 0;
 
-  /// Sends up to kPacket bytes; waits at most a few ms for those before them.
+  /// Sends up to kPacket bytes; waits at most a few ms for the previous ones.
   [[nodiscard]] virtual Status send(std::span<const std::uint8_t> bytes) noexcept = 0;
 
-  /// One packet as it came, at most `wait` [ms] from now; the next is asked for at once. `into` has
-  /// room for kPacket bytes.
+  /// Receives one packet, waiting at most `wait` [ms]; the next one is requested at once. `into`
+  /// has room for kPacket bytes.
   [[nodiscard]] virtual Status receive(std::span<std::uint8_t> into, std::size_t& got,
                                        int wait) noexcept = 0;
 
-  /// Sends `bytes` past whatever the servo thread is doing.
+  /// Sends `bytes` at once, whatever the servo thread is doing.
   virtual void cut(std::span<const std::uint8_t> bytes) noexcept = 0;
 
  protected:
@@ -55,16 +57,16 @@ class Transport {
 struct Choice {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
-  std::string serial = {};  ///< empty: the first there is
-  int descriptor =
-      -1;  ///< 0 or more: an open file descriptor of the device's node; the rest is not used
+  std::string serial = {};  ///< empty: the first device
+  int descriptor = -1;      ///< 0 or more: an open file descriptor of the device's node; the other
+                            ///< members are then ignored
 };
 
-/// Opens a device anew. @throws Error (kDevice).
+/// A function that opens a device. @throws Error (kDevice).
 using Opener = std::function<std::unique_ptr<Transport>()>;
 
-/// Through libusb. @throws Error (kDevice) with a remedy: none there, no access, in use; or built
-/// without libusb.
+/// Opens a device through libusb. @throws Error (kDevice) with a remedy: it is missing, cannot be
+/// accessed, or is in use; or the build has no libusb.
 [[nodiscard]] std::unique_ptr<Transport> openUsb(const Choice& choice);
 
 /// The error of a set-up step that ended with `status`.

@@ -9,7 +9,7 @@ namespace {
 
 using Place = std::array<double, 3>;
 
-/// One of each two opposite places on a sphere, as far from each other as they get.
+/// Points on a sphere, one of each pair of opposite ones, as far from each other as possible.
 constexpr std::array kFew{
     std::array{-0.655094139, -0.674724839, 0.339997148},
     std::array{-0.916885915, -0.329714473, -0.224963521},
@@ -74,13 +74,13 @@ constexpr std::array kMany{
     std::array{-0.681724038, 0.718635647, 0.137168302},
     std::array{0.448836110, 0.611958838, 0.651193156},
 };
-/// Contrasts in the radius: up to here a step of the map is felt evenly in few places; from twice
-/// that on in many.
+/// Patch radius in units of the contrast: up to here few places resolve a step of the map evenly;
+/// from twice this radius on, many places are needed.
 constexpr double kEvenInFew = 8.0;
 
 struct Radius {
   double value = 0.0;  // [m]
-  double slope = 0.0;  // [-] by the depth
+  double slope = 0.0;  // [-] derivative by the depth
 };
 
 Radius radiusAt(double depth, double contrast) noexcept {
@@ -91,7 +91,8 @@ Radius radiusAt(double depth, double contrast) noexcept {
   return {more * more / depth, more * (more + 2.0 * point) / (depth * depth)};
 }
 
-/// Of the map over some places, with the press as direction and depth.
+/// Mean of the map over some places, with derivatives by the middle, by the direction of the press
+/// and by the radius.
 struct Mean {
   double value = 0.0;
   Vec3 by_place{0.0, 0.0, 0.0};
@@ -119,7 +120,7 @@ Mean meanOver(std::span<const Place> places, const Parameter& map, const Vec3& m
           share * out.by_radius};
 }
 
-/// `a`, and the share `of_b` of `b` instead.
+/// The mix of `a` and `b` with the share `of_b` of `b`.
 Mean blend(const Mean& a, const Mean& b, double of_b) noexcept {
   const double of_a = 1.0 - of_b;
   return {of_a * a.value + of_b * b.value, of_a * a.by_place + of_b * b.by_place,

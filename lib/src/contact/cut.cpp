@@ -9,14 +9,14 @@ Cut::Near Cut::nearest(const Vec3& tip) const noexcept {
   near.way = end_ - entry_;
   near.length = glm::length(near.way);
   const double along = near.length > 0.0 ? glm::dot(tip - entry_, near.way) / near.length : 0.0;
-  // Before the entry it goes on as it began: the shaft was there.
+  // Before the entry the cut is taken to continue straight backward, since the shaft lay there.
   near.share = near.length > 0.0 ? std::min(along / near.length, 1.0) : 1.0;
   near.point = near.share < 1.0 ? entry_ + near.share * near.way : end_;
   return near;
 }
 
-/// The end moves on with the tip; a side takes the whole straight cut along, about where it was
-/// entered.
+/// The end moves on with the tip. If the side of the cut tears instead, the whole straight cut
+/// turns about its entry.
 void Cut::moveTo(const Near& near, const Vec3& torn) noexcept {
   end_ = near.share < 1.0 ? entry_ + near.length * unitOr(torn - entry_, near.way / near.length)
                           : torn;

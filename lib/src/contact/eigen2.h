@@ -1,5 +1,5 @@
 #pragma once
-/// Eigenvalues and eigenvectors of a symmetric matrix in a plane.
+/// Eigenvalues and eigenvectors of a symmetric 2 x 2 matrix.
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// Of [[a, b], [b, c]] in the frame (t1, t2).
+/// Those of [[a, b], [b, c]] in the frame (t1, t2).
 struct Eigen2 {
   double low, high;
   Vec3 e_low, e_high;
@@ -20,7 +20,7 @@ struct Eigen2 {
   const double radius = std::sqrt(half * half + b * b);
   Eigen2 out{mean - radius, mean + radius, t2, t1};
   if (radius > 1e-15 * (std::fabs(mean) + radius)) {
-    // The frame turns by half the angle of (half, b).
+    // The eigenvectors are the frame turned by half the angle of the vector (half, b).
     const double large = std::sqrt(0.5 * (1.0 + std::fabs(half) / radius));
     const double small = 0.5 * std::fabs(b) / (radius * large);
     const double cosine = half >= 0.0 ? large : small;

@@ -7,9 +7,9 @@
 namespace palpate {
 namespace {
 
-/// Nodes over the radius: the spline of each reaches one and a half of them.
+/// Node spacing over the radius: the spline reaches one and a half spacings to each side.
 constexpr double kSpacing = 2.0 / 3.0;
-/// [nodes] Distances are cut here: no node that matters is farther from the surface.
+/// [nodes] Distances are clamped here: no node that matters is farther from the surface.
 constexpr double kFarthest = 3.0;
 
 struct Weights {
@@ -17,7 +17,7 @@ struct Weights {
   std::array<double, 3> slope{};
 };
 
-/// Of the quadratic B-spline, `t` from -1/2 to 1/2 from the middle node.
+/// Weights of the quadratic B-spline at `t`, -1/2 to 1/2 from the middle node.
 Weights weightsAt(double t) noexcept {
   return {{0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)},
           {t - 0.5, -2.0 * t, t + 0.5}};
@@ -54,8 +54,8 @@ FeltHeight textureHeight(const Texture& texture, const Vec3& p) noexcept {
 double textureReach(const Texture& texture) noexcept {
   const double amplitude = texture.amplitude.range().most;
   if (!(amplitude > 0.0)) return kInfinity;
-  // Sideways a bump is a spring of stiffness * amplitude * k^2 / 3 times the depth that counts, one
-  // and a half times this.
+  // Sideways a bump acts as a spring of stiffness * amplitude * k^2 / 3 times the effective depth,
+  // at most one and a half times this reach. So it is at most half as stiff as the wall.
   const double k = 2.0 * std::numbers::pi / texture.wavelength;
   return std::max(2.0 * amplitude, 1.0 / (amplitude * k * k));
 }

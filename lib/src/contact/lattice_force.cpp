@@ -14,7 +14,7 @@ LatticePush latticePush(const Lattice& lattice, const MaterialMap::Sample& ampli
     const double k = 2.0 * std::numbers::pi / lattice.wavelength[i];
     const double phase = k * (p[i] - lattice.origin[i]);
     out.force[i] = -amplitude.value * std::sin(phase);
-    // 1 - cos, without losing what is small.
+    // 1 - cos(phase), written so that small values keep their digits.
     const double half = std::sin(0.5 * phase);
     lengths += 2.0 * half * half / k;
   }

@@ -9,36 +9,37 @@
 namespace palpate {
 namespace {
 
-// In an incompressible layer every field of wave number k is one that dies out downwards and one
-// that dies out upwards. With u = (radial, vertical) displacement and t = (shear, normal) stress on
-// a level plane, the first has t = -2 mu k u, the second t = +2 mu k u. A distance s / k further on
-// the first is
-//   D u,  D = e^-s [[1 - s, s], [-s, 1 + s]] = e^(s M),  M = [[-2, 1], [-1, 0]],
-// the second, upwards, D^T u. At the lower side of layer i the first is reflected: it comes back as
-// r u, at its top as q u, q = D^T r D, both symmetric. With rho = (mu_i - mu_j) / (mu_i + mu_j), j
-// the layer below, whose q is q_j,
+// In an incompressible layer every field of wave number k is the sum of one that decays downwards
+// and one that decays upwards. With u = (radial, vertical) displacement and t = (shear, normal)
+// stress on a horizontal plane, the first has t = -2 mu k u, the second t = +2 mu k u. A distance s
+// / k further down the first is
+//   D u,  D = e^-s [[1 - s, s], [-s, 1 + s]] = e^(s M),  M = [[-2, 1], [-1, 0]];
+// the same distance further up the second is D^T u. At the lower side of layer i the first is
+// reflected: it comes back as r u there, and as q u at the layer's top, q = D^T r D; both are
+// symmetric. With rho = (mu_i - mu_j) / (mu_i + mu_j), where j is the layer below, whose reflection
+// at its top is q_j,
 //   r = (q_j + rho) (1 + rho q_j)^-1;
-// what lies lowest reflects nothing, q_j = 0. A half-space gives way by 1 / mu, the top by (1 + q)
-// (1 - q)^-1 of that.
+// the lowest layer reflects nothing, q_j = 0. The compliance of a half-space is 1 / mu, and that of
+// the stack is (1 + q) (1 - q)^-1 times that of its top layer.
 
-/// Waves that are worked on together: the loops over them become vector instructions.
+/// Waves that are computed together: the loops over them become vector instructions.
 constexpr std::size_t kLanes = 8;
 using Lanes = std::array<double, kLanes>;
 
-/// [[xx, xy], [xy, yy]] for each wave.
+/// The symmetric matrix [[xx, xy], [xy, yy]] for each wave.
 struct Symmetric {
   Lanes xx, xy, yy;
 };
 
-/// What one layer does to each wave.
+/// The matrix D of one layer for each wave.
 struct Pass {
   Lanes a, b, c, d;  // D = [[a, b], [c, d]]
   Symmetric r, q;
 };
 
-/// e^-s for s >= 0, to 1e-14 of it; 0 is near enough where it is below 1e-30.
+/// e^-s for s >= 0, with a relative error of 1e-14; 0 may be returned where it is below 1e-30.
 double decay(double s) noexcept {
-  constexpr double kRound = 0x1.8p52;  // added, it leaves a whole number in the last bits
+  constexpr double kRound = 0x1.8p52;  // adding it leaves a whole number in the last bits
   s = std::min(s, 70.0);
   const double shifted = s * std::numbers::log2e + kRound;
   const double whole = shifted - kRound;
@@ -55,11 +56,11 @@ double decay(double s) noexcept {
 
 struct Waves {
   Lanes k;       // [1/m]
-  Lanes weight;  // [-] of each in the integral
+  Lanes weight;  // [-] weight of each wave in the integral
 };
 
-/// The sum over some waves of how much further the stack gives way than its top layer alone, as a
-/// share of that, and its derivatives by the thickness of each layer and by each rho.
+/// The sum over some waves of the compliance that the stack has beyond that of its top layer alone,
+/// as a share of the latter, and its derivatives by the thickness of each layer and by each rho.
 struct Sum {
   double excess = 0.0;
   std::array<double, kMostStackLayers> by_thickness{};
@@ -144,7 +145,7 @@ void add(std::span<const StackLayer> layers, std::span<const double> rho, const 
       h.yy[n] = c * xc + d * yc;
     }
     for (const double v : by_s) sum.by_thickness[i] += v;
-    // By rho: tr(h (1 - r^2)) / (1 - rho^2).
+    // Derivative by rho: tr(h (1 - r^2)) / (1 - rho^2).
     const double f = rho[i];
     Lanes by_rho;
     for (std::size_t n = 0; n < kLanes; ++n) {
@@ -175,11 +176,12 @@ void add(std::span<const StackLayer> layers, std::span<const double> rho, const 
   }
 }
 
-// The rule for the integral of (sin x / x)^2 f(x) from 0 on, f like what layers do to waves, x = k
-// * radius: nodes that grow by one factor, and weights that fit best, of all f = (c x)^n e^(-c x),
-// n = 0, 1, 2 and c from 0.02 to 250, in the least squares, and exactly for f = 1. So the sine's
-// swing is in the weights, and no thickness moves a node: what is felt has no step anywhere, and
-// its derivatives are those of the sum. Next to the integral it is off by 3e-3 at most.
+// Quadrature of (sin x / x)^2 f(x) from 0 to infinity, x = k * radius, for functions f like those
+// of layers. The nodes form a geometric sequence. The weights are a least-squares fit over all f =
+// (c x)^n e^(-c x) with n = 0, 1, 2 and c from 0.02 to 250, and exact for f = 1. So the sine's
+// oscillation is in the weights, and the nodes do not depend on a thickness: the compliance is
+// smooth, and its derivatives are exactly those of the sum. The error of the integral is 3e-3 at
+// most.
 constexpr std::size_t kNodeCount = 2 * kLanes;
 constexpr std::array<double, kNodeCount> kNodes = {
     0.003363120349, 0.01386292296, 0.03261273394, 0.06609483117,

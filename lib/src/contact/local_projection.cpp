@@ -11,11 +11,11 @@ namespace {
 constexpr int kMostLooks = 40;
 constexpr double kLeastEigenvalue = 0.02;
 constexpr double kLargestTurn = 0.5;  // [rad]
-/// Of the way to the target, and of the coordinates: a step this short does not count as one.
+/// Relative to the way to the target and to the coordinates: a step this short means convergence.
 constexpr double kSettled = 1e-12;
 constexpr double kRounding = 1e-14;
-/// A share of the way: where steps no longer get shorter, one as short as this is the last. A wall
-/// whose shape is given about a far place rounds more than the coordinates do.
+/// Relative to the way: where steps no longer get shorter, one this short is the last. A wall whose
+/// shape is given about a far place has larger rounding errors than the coordinates.
 constexpr double kSettledAtLast = 1e-8;
 
 }  // namespace
@@ -69,8 +69,8 @@ LocalProjection projectLocally(const Vec3& from, const Vec3& target,
       out.settled = true;
       return out;
     }
-    // Between two faces of one kind a whole step may go to and fro for ever; a turn that was cut
-    // short says nothing of that.
+    // Between two faces of one kind full steps may alternate for ever, so the step is damped; a
+    // step that was shortened because it turned too far is not evidence of that.
     if (turns <= kLargestTurn) {
       share = length > 0.9 * last ? std::max(0.25, 0.5 * share) : std::min(1.0, 2.0 * share);
       last = length;

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMaxDescent = 32;
 
-/// -alpha S N / |N| or -alpha S N / (N.N); nothing where there is no gradient.
+/// -alpha S N / |N| or -alpha S N / (N.N); zero where there is no gradient.
 Vec3 nudge(const PaperSurface& surface, const FieldSample& s) noexcept {
   const double square = glm::dot(s.gradient, s.gradient);
   if (!(square > 0.0)) return Vec3(0.0);
@@ -32,7 +32,7 @@ Vec3 bisect(const PaperSurface& surface, Vec3 outside, Vec3 inside) noexcept {
   return middle;
 }
 
-/// Steps 2 and 3 of Algorithm I from the point on the surface.
+/// Steps 2 and 3 of Algorithm I, starting at the point on the surface.
 PaperContact contactAt(const PaperSurface& surface, const Vec3& point, const Vec3& probe) noexcept {
   const FieldSample s = surface.at(point);
   PaperContact out{point, ontoNormalLine(point, s.gradient, probe)};

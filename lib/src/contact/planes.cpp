@@ -7,12 +7,12 @@
 namespace palpate {
 namespace {
 
-/// Of the lengths that enter: what a plane may be broken by, for rounding.
+/// Relative to the lengths involved: by how much rounding may violate a plane.
 constexpr double kSlack = 1e-12;
 /// Square of the sine below which two normals are parallel, to rounding.
 constexpr double kParallel = 1e-24;
 
-/// Planes through one point whose sets are searched for multipliers.
+/// The most planes through one point whose subsets are searched for multipliers.
 constexpr std::size_t kMostTouched = 12;
 
 class Search {
@@ -47,8 +47,8 @@ class Search {
     return left(i, step) < -slack_;
   }
 
-  /// The best step on plane `i` that respects the planes before it. Returns how many planes hold
-  /// it.
+  /// The best step on plane `i` that respects the planes before it. Returns the number of planes
+  /// that determine it.
   int onPlane(int i, Vec3& step, std::array<int, 3>& set) noexcept {
     step = wish_ - left(i, wish_) * at(i).normal;
     step -= left(i, step) * at(i).normal;
@@ -62,7 +62,7 @@ class Search {
     return count;
   }
 
-  /// The same on the line of planes `i` and `j`; 0, and nothing changes, where they are parallel.
+  /// The same on the line where planes `i` and `j` meet; 0, and no change, where they are parallel.
   int onLine(int i, int j, Vec3& step, std::array<int, 3>& set) noexcept {
     const Vec3& a = at(i).normal;
     const Vec3& b = at(j).normal;
@@ -72,7 +72,7 @@ class Search {
     const double cosine = glm::dot(a, b);
     Vec3 on = wish_;
     for (int pass = 0; pass < 3;
-         ++pass) {  // the second and third take the first one's rounding out
+         ++pass) {  // the second and third pass remove the rounding of the first
       const double r = left(i, on);
       const double s = left(j, on);
       on -= ((r - cosine * s) * a + (s - cosine * r) * b) / square;
@@ -85,7 +85,7 @@ class Search {
     for (int k = 0; k < j; ++k) {
       const double rise = glm::dot(at(k).normal, t);
       const double have = left(k, on);
-      // Along a line almost in the plane, the plane was looked at by the two others.
+      // The line lies almost in this plane, which was handled together with the two others.
       if (std::fabs(rise) < 1e-12) continue;
       const double where = -have / rise;
       if (rise > 0.0 && where > lo) {
@@ -105,8 +105,8 @@ class Search {
     return 3;
   }
 
-  /// Of the planes that the step lies on, those that push it there. The set that the search ended
-  /// with is tried first; where more than three planes meet, another one may be it.
+  /// Multipliers of the planes that push the step to where it is. The set that the search ended
+  /// with is tried first; where more than three planes meet, another set may be the right one.
   [[nodiscard]] PlaneSolution withMultipliers(const Vec3& step, const std::array<int, 3>& set,
                                               int count) noexcept {
     PlaneSolution out;
@@ -138,8 +138,8 @@ class Search {
     return out;
   }
 
-  /// Whether `push` is a sum of the set's normals with weights of no less than zero; keeps the best
-  /// so far.
+  /// Whether `push` is a combination of the set's normals with weights not below zero; keeps the
+  /// best set so far.
   bool fits(const Vec3& push, const std::array<int, 3>& set, int count, double length,
             PlaneSolution& best) noexcept {
     std::array<double, 3> m{};
@@ -190,7 +190,7 @@ class Search {
   double least_off_ = kInfinity;
 };
 
-/// One plane, as most often: the same as the search, without its bookkeeping.
+/// One plane, the most frequent case: the same result as the search, without its bookkeeping.
 PlaneSolution closestStepBy(const Vec3& wish, const Plane& plane) noexcept {
   const double push = -plane.gap - glm::dot(plane.normal, wish);
   const double size = std::max(glm::dot(wish, wish), plane.gap * plane.gap);
@@ -198,13 +198,14 @@ PlaneSolution closestStepBy(const Vec3& wish, const Plane& plane) noexcept {
   return {wish + push * plane.normal, 1, {0}, {push}};
 }
 
-/// x * u + y * v >= at. Made often, and by the dozen: not zero at first.
+/// The half-plane x * u + y * v >= at. Not initialized, since dozens are made in every search.
 struct Line2 {
   double x, y;
   double at;
 };
 
-/// The nearest (u, v) to the given one that respects the lines; as it is where none does.
+/// Moves (u, v) to the nearest point that respects the lines; leaves it unchanged where there is
+/// none.
 void closestInPlane(double& u, double& v, std::span<const Line2> lines) noexcept {
   const double wish_u = u;
   const double wish_v = v;
@@ -290,18 +291,18 @@ CurvedStep curvedStep(const Vec3& wish, std::span<const Plane> planes, const Pla
   const Vec3 base = glm::dot(a.normal, first.step) * a.normal;
   const double det = m11 * m22 - m12 * m12;
   const double trace = m11 + m22;
-  // Far from the centers of curvature, and with nothing else near, the matrix is solved as it is.
+  // Far from the centers of curvature, and with no other plane near, the system is solved directly.
   if (planes.size() == 1 && trace > 0.0 && det > least * (trace - least)) {
     const double p1 = glm::dot(t1, wish);
     const double p2 = glm::dot(t2, wish);
     out.step = base + t1 * ((m22 * p1 - m12 * p2) / det) + t2 * ((m11 * p2 - m12 * p1) / det);
-    out.lowest = det / trace;  // below both eigenvalues, and positive as they are
+    out.lowest = det / trace;  // below both eigenvalues, and positive when they are
     return out;
   }
   const Eigen2 e = eigen(m11, m12, m22, t1, t2);
   out.lowest = e.low;
   out.downhill = e.e_low;
-  // In coordinates stretched by the roots of the eigenvalues the aim is a plain distance again.
+  // In coordinates scaled by the square roots of the eigenvalues the objective is a plain distance.
   const double root_low = std::sqrt(clamped(e.low));
   const double root_high = std::sqrt(clamped(e.high));
   std::array<Line2, kMaxPlanes> lines;

@@ -9,17 +9,18 @@ namespace palpate {
 namespace {
 
 constexpr int kMostCuts = 64;
-/// Of the way to the target, and of the coordinates: so near to a wall is on it.
+/// Relative to the way to the target and to the coordinates: within this distance a point is on a
+/// wall.
 constexpr double kSettled = 1e-13;
 constexpr double kRounding = 1e-15;
-/// Of the way to the target: a tangent plane that cuts off the start by more is of a wall that
-/// bulges.
+/// Relative to the way to the target: a tangent plane that cuts off the start by more than this
+/// belongs to a wall that bulges.
 constexpr double kBulges = 1e-9;
 
 struct Cuts {
-  std::array<Plane, kMaxPlanes> plane{};       ///< for steps from the target
-  std::array<std::size_t, kMaxPlanes> wall{};  ///< by plane
-  std::array<FieldJet, kMaxPlanes> jet{};      ///< by plane: of its wall, where that was cut
+  std::array<Plane, kMaxPlanes> plane{};       ///< as constraints on steps from the target
+  std::array<std::size_t, kMaxPlanes> wall{};  ///< by plane: the wall that it belongs to
+  std::array<FieldJet, kMaxPlanes> jet{};      ///< by plane: of its wall, at the place of the cut
   std::size_t count = 0;
 
   void keepOnly(const PlaneSolution& solution) noexcept {

@@ -7,27 +7,27 @@ namespace palpate {
 namespace {
 
 constexpr int kMostSteps = 32;
-/// Of the force: what may be left of the sum of all forces on the point.
+/// Relative to the force: how large the remaining sum of all forces on the point may be.
 constexpr double kSettled = 1e-12;
-/// Of it: what is left where rounding of the walls' own points ends the steps.
+/// The same, accepted where rounding of the walls' own points stops the iteration.
 constexpr double kSettledAtLast = 1e-7;
-/// Over the stop's stiffness: what is added to the derivative, one after the other, until a step
-/// leads on.
+/// Multiples of the stop's stiffness that are added to the derivative, one after the other, until a
+/// step makes progress.
 constexpr double kAdded[] = {0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, 256.0};
-/// Of the energy: what of it is rounding.
+/// Relative to the energy: its rounding.
 constexpr double kEnergyRounding = 1e-13;
-/// The way from the proxy to the hand, over that to the first place: the stop is not much stiffer
-/// than the stiffest wall.
+/// Position of the first iterate, as a share of the way from the proxy to the hand; it is small
+/// because the stop is not much stiffer than the stiffest wall.
 constexpr double kFirst = 0.05;
-/// Of the coordinates: a shorter way to a wall has no direction.
+/// Relative to the coordinates: a way to a wall that is shorter than this has no direction.
 constexpr double kRounding = 1e-15;
 
 struct Look {
-  std::array<LocalProjection, SoftKinds::kMost> on{};  ///< by kind: the point of its walls
-  std::array<double, SoftKinds::kMost> depth{};        ///< [m] by kind: how deep its law is pressed
-  Vec3 sum{0.0, 0.0, 0.0};                             ///< [N] the energy's gradient
-  Mat3 rate{0.0};                                      ///< [N/m] its derivative
-  double energy = 0.0;                                 ///< [J]
+  std::array<LocalProjection, SoftKinds::kMost> on{};  ///< by kind: the point on its walls
+  std::array<double, SoftKinds::kMost> depth{};  ///< [m] by kind: depth at which its law is pressed
+  Vec3 sum{0.0, 0.0, 0.0};                       ///< [N] the energy's gradient
+  Mat3 rate{0.0};                                ///< [N/m] its derivative
+  double energy = 0.0;                           ///< [J]
 };
 
 Look lookFrom(const Vec3& place, const Vec3& hand, double stop, SoftKinds& kinds,
@@ -49,7 +49,7 @@ Look lookFrom(const Vec3& place, const Vec3& hand, double stop, SoftKinds& kinds
     const SoftWall soft = softWall(law, stop, give);
     out.depth[m] = soft.depth;
     out.sum += soft.force * u;
-    // The law's energy less what the stop would hold of it.
+    // The law's energy minus the share of it that the stop would store.
     out.energy += law.energy(soft.depth) - 0.5 * soft.force * soft.force / stop;
     const Mat3 along = outer(u, u);
     Mat3 follows(0.0);
@@ -71,8 +71,8 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
   std::array<LocalProjection, SoftKinds::kMost> from;
   for (LocalProjection& each : from) each.at = proxy;
   SeriesForce out;
-  // From beside the walls, where their bends count little: from the hand on the steps may lead
-  // anywhere.
+  // Start close to the walls, where their curvature has little effect: if the steps started at the
+  // hand they might lead anywhere.
   out.place = glm::mix(proxy, hand, kFirst);
   const double farthest = glm::length(hand - proxy);
   Look here = lookFrom(out.place, hand, stop, kinds, {from.data(), count});
@@ -87,7 +87,8 @@ SeriesForce seriesForce(const Vec3& proxy, const Vec3& hand, double stop,
     bool is_better = false;
     for (const double added : kAdded) {
       const Vec3 step = -(glm::inverse(here.rate + Mat3(added * stop)) * here.sum);
-      // Where a wall bulges towards the point the plain derivative may lead uphill, or far away.
+      // Where a wall bulges towards the point, the unmodified derivative may lead uphill, or far
+      // away.
       if (!(glm::dot(step, here.sum) < 0.0) || glm::length(step) > farthest) continue;
       const Vec3 next = out.place + step;
       const Look there = lookFrom(next, hand, stop, kinds, {here.on.data(), count});

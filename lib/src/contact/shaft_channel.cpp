@@ -16,7 +16,8 @@ Vec3 ShaftChannel::step(const ChannelLaw& law, double begin, double end,
     return Vec3(0.0);
   }
   Vec3 aside = direction_ - direction;
-  const double load = law.stiffness * 0.5 * (begin + end) * glm::length(aside);  // [N/m] mean
+  const double load =
+      law.stiffness * 0.5 * (begin + end) * glm::length(aside);  // [N/m] mean load per length
   if (load > law.strength) {
     aside *= law.strength / load;
     direction_ = direction + aside;

@@ -19,7 +19,7 @@ double ShaftSlip::step(const ShaftLaw& law, double length, double advance, doubl
   const ShaftLaw::Way& way = inward ? law.in : law.out;
   const double kinetic_force = std::min(way.kinetic_force, way.static_force);
   const double turned = inward ? speed : -speed;
-  // The hand that rests, creeps or turns around lets the tissue take hold again.
+  // When the hand rests, creeps or turns around, the tissue sticks to the shaft again.
   if (is_sliding_ && (turned <= 0.0 || turned < law.stick_speed)) is_sliding_ = false;
   if (!is_sliding_ && law.stiffness * std::fabs(stretch_) > way.static_force) is_sliding_ = true;
   if (is_sliding_) {

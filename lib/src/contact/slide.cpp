@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSmallestEigenvalue = 1e-3;
 
-/// sum of multiplier * side * Hessian / |gradient| over the walls.
+/// The sum of multiplier * side * Hessian / |gradient| over the walls.
 Mat3 bending(std::span<const HeldWall> walls) noexcept {
   Mat3 sum(0.0);
   for (const HeldWall& wall : walls) {
@@ -33,7 +33,7 @@ Vec3 onSurface(const Vec3& pull, const Vec3& normal, const Mat3& bend) noexcept 
   const double a = 1.0 - glm::dot(t1, bend * t1);
   const double b = -glm::dot(t2, bend * t1);
   const double c = 1.0 - glm::dot(t2, bend * t2);
-  // Far from the centers of curvature the matrix is safely positive: solve it as it is.
+  // Far from the centers of curvature the matrix is safely positive: solve it directly.
   const double det = a * c - b * b;
   const double trace = a + c;
   if (trace > 0.0 && det > kSmallestEigenvalue * (trace - kSmallestEigenvalue)) {

@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// As a share of the stop's stiffness: a law of at most that stiffness is followed unchanged.
+/// As a share of the stop's stiffness: a law that is nowhere stiffer than this is used unchanged.
 inline constexpr double kFollowed = 1.0 / 1.02;
 inline constexpr int kMostSoftSteps = 60;
 
@@ -17,7 +17,8 @@ template <typename Law>
   SoftWall out;
   if (!(give > 0.0)) return out;
   const double most = kFollowed * stop;
-  // The law is as stiff as the stop allows from `bend` on; it grows stiffer with the depth only.
+  // From depth `bend` on the law is as stiff as the stop allows; its stiffness only grows with the
+  // depth.
   const auto give_at = [&](double depth) { return depth - law.force(depth) / stop; };
   double low = give;
   double high = give;
@@ -29,7 +30,8 @@ template <typename Law>
     out.tangent = stop * own / (stop - own);
     return out;
   }
-  // give <= d, and beyond it each piece of depth gives way by a share of 1 - most / stop at least.
+  // The depth is at least `give`, and give_at() grows by at least the share 1 - most / stop of it:
+  // so the depth is at most `high`.
   high = give * stop / (stop - most);
   if (law.tangent(high) > most) {
     double below = 0.0;

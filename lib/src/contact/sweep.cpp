@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-/// Sine of the angle to the surface below which a motion counts as along it.
+/// Sine of the angle to the surface below which a motion counts as parallel to it.
 constexpr double kAlong = 1e-12;
 
 /// The motion along one segment.
@@ -22,10 +22,10 @@ struct Motion {
   }
 };
 
-/// Narrows a change of side down to the tolerance. Secant steps aim at half of the tolerance, on
-/// the near side, so that one good step ends the search; the value of an end that stays twice is
-/// halved (the Illinois rule), and every fourth step halves the bracket, so that no shape of S
-/// stalls it. Returns the near end.
+/// Narrows the bracket of a sign change down to the tolerance. Secant steps aim at half of the
+/// tolerance on the near side, so that one good step ends the search. If the same end stays twice,
+/// its value is halved (the Illinois rule), and every fourth step halves the bracket, so that the
+/// search makes progress for any shape of S. Returns the near end.
 double narrow(Motion& motion, double near, double near_value, double far,
               double far_value) noexcept {
   const double tolerance = motion.surface.tolerance;
@@ -71,8 +71,8 @@ SweepResult sweep(const SweepSurface& surface, const Vec3& a, const Vec3& b, dou
     return out;
   }
   const double end = motion.valueAt(1.0);
-  // Two ends that together outreach the segment leave no room for a passage between them, nor do
-  // two before a plane.
+  // If the values at both ends together exceed the Lipschitz bound of the whole segment, there is
+  // no crossing between them; nor is there one if both ends are on the same side of a plane.
   if (start > surface.tolerance && end > surface.tolerance &&
       (surface.is_flat || start + end >= reach)) {
     out.end_value = end;
@@ -85,10 +85,11 @@ SweepResult sweep(const SweepSurface& surface, const Vec3& a, const Vec3& b, dou
   if (start <= surface.tolerance) {
     const double slope = surface.side * glm::dot(surface.field->sample(a).gradient, motion.by);
     --motion.budget;
-    // Along the surface, to rounding, is not through it: the steps below tell.
+    // A motion along the surface, within rounding, does not count as a hit here: the steps below
+    // decide.
     if (slope < -kAlong * reach) return {SweepResult::Kind::kHit, 0.0, start};
     if (surface.is_flat && end > surface.tolerance) return {SweepResult::Kind::kFree, 1.0, end};
-    // Leaving the surface: tiny steps at first, so that a fold close by is not jumped.
+    // The motion leaves the surface: begin with tiny steps, so that a fold close by is not skipped.
     stride = std::min(surface.graze, 8.0 * surface.tolerance / surface.lipschitz);
   }
   const double shortest_share = 1.0 / motion.length;
@@ -97,7 +98,8 @@ SweepResult sweep(const SweepSurface& surface, const Vec3& a, const Vec3& b, dou
     stride = std::min(2.0 * stride, surface.graze);
     const double next = std::min(1.0, t + step);
     const double ahead = next >= 1.0 ? end : motion.valueAt(next);
-    // A start slightly beyond the surface is on its way back: only going deeper is a hit there.
+    // A start slightly beyond the surface is on its way back; there only a motion that goes deeper
+    // is a hit.
     const double deeper = std::min(0.0, value) - surface.tolerance;
     if (ahead <= 0.0 && (value > surface.tolerance || ahead < deeper)) {
       out.kind = SweepResult::Kind::kHit;

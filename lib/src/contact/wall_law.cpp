@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-/// [N] The integral of the secant over the depth.
+/// [N] The integral of the secant stiffness over the depth.
 double secantIntegral(const WallSpring& s, double depth) noexcept {
   if (!(depth > 0.0)) return 0.0;
   const double straight =
@@ -18,7 +18,7 @@ double secantIntegral(const WallSpring& s, double depth) noexcept {
   return straight + 0.5 * s.stiffening * depth * depth;
 }
 
-/// [J] The integral of the secant times the depth: the spring's own energy.
+/// [J] The integral of the secant stiffness times the depth: the spring's own energy.
 double springEnergy(const WallSpring& s, double depth) noexcept {
   return s.stiffness * s.energyPerStiffness(depth) +
          s.stiffening * WallSpring::energyPerStiffening(depth);
@@ -31,7 +31,7 @@ double springTangent(const WallSpring& s, double depth) noexcept {
   return s.exponent * power + 2.0 * s.stiffening * depth;
 }
 
-/// The derivative of the secant by the depth.
+/// The derivative of the secant stiffness by the depth.
 double secantTangent(const WallSpring& s, double depth) noexcept {
   if (s.exponent == 1.0) return s.stiffening;
   return (s.exponent - 1.0) * s.stiffness * std::pow(depth / s.reference, s.exponent - 1.0) /

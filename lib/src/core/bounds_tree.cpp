@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint32_t kItemsPerLeaf = 4;
 
-/// Where a box counts when items are sorted; infinite boxes gather in the middle.
+/// The coordinate by which boxes are sorted; infinite boxes gather in the middle.
 double middle(const Box3& box, int axis) {
   const double m = 0.5 * (box.lo[axis] + box.hi[axis]);
   return std::isfinite(m) ? m : 0.0;
@@ -21,7 +21,7 @@ BoundsTree::BoundsTree(std::span<const Box3> boxes) {
     if (!boxes[i].isEmpty()) items_.push_back(static_cast<std::uint32_t>(i));
   }
   if (items_.empty()) return;
-  boxes_.assign(boxes.begin(), boxes.end());  // by item number while splitting
+  boxes_.assign(boxes.begin(), boxes.end());  // indexed by item number while splitting
   nodes_.emplace_back();
   split(0, 0, static_cast<std::uint32_t>(items_.size()));
   std::vector<Box3> ordered;
@@ -47,7 +47,7 @@ void BoundsTree::split(std::uint32_t node, std::uint32_t begin, std::uint32_t en
   const Vec3 extent = middles.size();
   const int axis =
       extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
-  // Halving by count bounds the depth, whatever the boxes are.
+  // Splitting into halves by count limits the tree's depth, whatever the boxes are.
   const std::uint32_t half = begin + (end - begin) / 2;
   std::nth_element(items_.begin() + begin, items_.begin() + half, items_.begin() + end,
                    [&](std::uint32_t a, std::uint32_t b) {

@@ -15,7 +15,8 @@ std::string formatProblem(const Problem& problem) {
     text += "\n  " + problem.excerpt;
     if (problem.column > 0) {
       text += "\n  ";
-      // Tabs are repeated so that the caret stands under the column in any terminal.
+      // Tabs of the source line are repeated, so that the caret stands under the column in any
+      // terminal.
       for (int i = 0; i + 1 < problem.column; ++i) {
         const auto at = static_cast<std::size_t>(i);
         text += at < problem.excerpt.size() && problem.excerpt[at] == '\t' ? '\t' : ' ';

@@ -43,7 +43,7 @@ Mat3 rotationAbout(const Vec3& axis, double radians) noexcept {
   const Vec3 u = unitOr(axis, Vec3(0.0, 0.0, 1.0));
   const double c = std::cos(radians);
   const double s = std::sin(radians);
-  Mat3 cross(0.0);  // cross * v = u x v
+  Mat3 cross(0.0);  // the matrix with cross * v = u x v
   cross[1][0] = -u.z;
   cross[2][0] = u.y;
   cross[0][1] = u.z;

@@ -22,7 +22,7 @@ std::string exactNumber(double value) {
 std::string inQuotes(std::string_view text) {
   constexpr std::size_t kShown = 60;
   std::size_t end = std::min(text.size(), kShown);
-  // Not in the middle of a character.
+  // Do not cut in the middle of a UTF-8 character.
   while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) {
     --end;
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// How fields answer for a whole batch: loops without branches, which the compiler turns into
-/// vector code, and what these leave out once more, one by one. Private to fields.
+/// How fields answer a whole batch: branch-free loops, which the compiler turns into vector code,
+/// and then one by one those points that the loops cannot handle. Private to fields.
 
 #include <cmath>
 #include <cstdint>
@@ -11,15 +11,15 @@
 namespace palpate::fields {
 
 /// One number for each point of a batch. Loops over these are right only for plain squares
-/// (isPlainSquare()); the others are left to the caller.
+/// (isPlainSquare()); the caller handles the others.
 struct alignas(64) Squares : std::array<double, PointBatch::kCount> {};
 
-/// Whether all are plain, and not close to leaving the range of double together. Two at a time,
-/// which compilers do not see by themselves.
+/// Whether all are plain, and their sum is not close to the limit of double. It works on two at a
+/// time, a vectorization that compilers do not find by themselves.
 [[nodiscard]] inline bool arePlain(const Squares& squares) noexcept {
   using Two [[gnu::vector_size(16)]] = double;
   Two least{1.0, 1.0};
-  Two total{0.0, 0.0};  // what is not a number makes it one that is not
+  Two total{0.0, 0.0};  // any NaN makes the total NaN
   for (std::size_t n = 0; n < PointBatch::kCount; n += 2) {
     const Two square{squares[n], squares[n + 1]};
     least = square < least ? square : least;
@@ -28,7 +28,7 @@ struct alignas(64) Squares : std::array<double, PointBatch::kCount> {};
   return isPlainSquare(least[0]) && isPlainSquare(least[1]) && total[0] < 1e300 && total[1] < 1e300;
 }
 
-/// The field's own value() for what a loop left over.
+/// The field's own value() for the points that a loop could not handle.
 template <class F>
 void valuesOfLeftovers(const F& field, const PointBatch& points, const Squares& squares,
                        ValueBatch& out) noexcept {

@@ -8,15 +8,15 @@
 namespace palpate {
 namespace {
 
-/// Which sides are turned about, so that one smooth minimum serves all three.
+/// The signs that turn one smooth minimum into union, intersection and difference.
 struct Sides {
   double first = 1.0;
   double second = 1.0;
   double result = 1.0;
 };
 
-/// From the first operand on, result * smin(first * so far, second * next) with the cubic smooth
-/// minimum
+/// Starting with the first operand, each further one `next` is combined with the result `so far`:
+/// result * smin(first * so far, second * next), with the cubic smooth minimum
 ///   smin(A, B) = min(A, B) - h^3 k / 6,  h = max(0, 1 - |A - B| / k),
 /// whose partial derivatives are never negative and add up to 1.
 class Blend final : public Field, public fields::LevelBounded {
@@ -90,7 +90,7 @@ class Blend final : public Field, public fields::LevelBounded {
     double value = 0.0;
     double of_a = 0.0;  ///< derivative by the value of a
     double of_b = 0.0;
-    double bend = 0.0;  ///< [1/m] second derivative by their difference
+    double bend = 0.0;  ///< [1/m] second derivative by the difference of a and b
   };
 
   [[nodiscard]] Mix mixOf(double a, double b) const noexcept {
@@ -99,20 +99,20 @@ class Blend final : public Field, public fields::LevelBounded {
     const double gap = std::fabs(first - second);
     const double h = gap < radius_ ? 1.0 - gap / radius_ : 0.0;
     const double least = second < first ? second : first;
-    const double lesser = 0.5 * h * h;  // the share of the larger one
+    const double lesser = 0.5 * h * h;  // the weight of the larger one
     const double share_of_second = second < first ? 1.0 - lesser : lesser;
     return {signs_.result * (least - h * h * h * radius_ / 6.0),
             signs_.result * signs_.first * (1.0 - share_of_second),
             signs_.result * signs_.second * share_of_second, h / radius_};
   }
 
-  /// What has no share may be out of its band.
+  /// An operand with weight zero may be outside its band.
   static bool isInBand(const Mix& mix, bool a, bool b) noexcept {
     return (a || mix.of_a == 0.0) && (b || mix.of_b == 0.0);
   }
 
   /// Each step of a smooth union is at most radius / 6 below the smaller operand; intersections and
-  /// differences are never below what they are made of.
+  /// differences are never below the plain ones.
   [[nodiscard]] Box3 below(double level) const {
     if (signs_.first > 0.0) {
       Box3 box;

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// The points nearer than `rounding` to a box: with 0 the box itself.
+/// The points nearer than `rounding` to a box; the box itself if that is 0.
 class Box final : public Field {
  public:
   Box(const Vec3& center, const Vec3& half_size, double rounding)
@@ -38,7 +38,7 @@ class Box final : public Field {
   }
 
   void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    const Vec3 center = center_;  // copies: nothing that is written can be they
+    const Vec3 center = center_;  // copies: the stores below cannot change them
     const Vec3 half = half_;
     const double rounding = rounding_;
     const auto positive = [](double a) { return a < 0.0 ? 0.0 : a; };
@@ -54,7 +54,8 @@ class Box final : public Field {
       const double c = positive(z);
       const double square = a * a + b * b + c * c;
       const double away = std::sqrt(square);
-      squares[n] = nearest <= 0.0 ? square + 1.0 : square;  // inside it is 0, and does not count
+      squares[n] =
+          nearest <= 0.0 ? square + 1.0 : square;  // inside, the square is 0 and is not used
       distances[n] = (nearest <= 0.0 ? nearest : away) - rounding;
     }
     out = distances;
@@ -67,8 +68,8 @@ class Box final : public Field {
     const Vec3 q = glm::abs(p - center_) - half_;
     const double distance = fields::length(glm::max(q, Vec3(0.0)));
     if (isInside(q) || !(distance > 1e-100)) return out;
-    // Beyond a face nothing bends; beyond an edge or corner the distance grows from a line or
-    // point.
+    // Beyond a face the distance has no curvature; beyond an edge or corner it is the distance from
+    // a line or point.
     const double curvature = 1.0 / distance;
     out.hessian = outer(here.gradient, here.gradient) * -curvature;
     for (int axis = 0; axis < 3; ++axis) {

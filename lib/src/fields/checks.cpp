@@ -75,7 +75,8 @@ Vec3 checkedDirection(std::string_view shape, std::string_view parameter, const 
   checkPoint(shape, parameter, value);
   const Polar direction = polar(value, Vec3(0.0, 0.0, 0.0));
   if (direction.length > 0.0) {
-    // Once more: the first quotient is off by an ulp or two, and every query would inherit it.
+    // Normalize once more: the first quotient is off by an ulp or two, and every query would
+    // inherit that.
     return direction.direction / glm::length(direction.direction);
   }
   throw inputError("field.zero_direction",
@@ -109,7 +110,8 @@ void checkBand(std::string_view shape, const Field& field, double reach) {
   for (const FieldPtr& operand : structure.operands) checkBand(shape, *operand, reach);
   const Box3 bounds = field.bounds();
   if (!structure.operands.empty() || !bounds.isBounded() || !hasBand(field, bounds)) return;
-  // Deep inside and between the surface and its box are places enough to notice.
+  // A band narrower than `reach` shows at some of these points, deep inside and between the surface
+  // and its box.
   constexpr int kSteps = 32;
   for (int i = 0; i < (kSteps + 1) * (kSteps + 1) * (kSteps + 1); ++i) {
     const Vec3 share(i % (kSteps + 1), i / (kSteps + 1) % (kSteps + 1),

@@ -8,8 +8,8 @@
 
 namespace palpate::fields {
 
-/// Lengths outside this range are not a haptic object but a unit gone wrong, and their squares and
-/// cubes start to leave the range of double.
+/// Lengths outside this range do not come from a haptic object but from a wrong unit, and their
+/// squares and cubes start to leave the range of double.
 inline constexpr double kSmallestLength = 1e-12;  ///< [m]
 inline constexpr double kLargestLength = 1e12;    ///< [m]
 
@@ -30,7 +30,7 @@ void checkLengths(std::string_view shape, std::string_view parameter, const Vec3
 void checkOperands(std::string_view shape, const std::vector<FieldPtr>& operands,
                    std::size_t fewest);
 /// Throws if `field` has a band (a grid) that ends nearer than `reach` [m] to its surface: a value
-/// outside the band must not be taken for a distance.
+/// outside the band is not a distance.
 void checkBand(std::string_view shape, const Field& field, double reach);
 
 }  // namespace palpate::fields

@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 /// A right triangle: the base on h = 0 from the axis to the rim at `radius`, the tip at (0,
-/// height). Without a base it goes on downward for ever.
+/// height). If it has no base it extends downward without end.
 struct ConeProfile {
   double radius = 0.0;
   double height = 0.0;

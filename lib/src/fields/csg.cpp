@@ -12,7 +12,7 @@ namespace {
 
 using Kind = FieldStructure::Kind;
 
-/// Properties that min and max of fields have alike.
+/// Properties that are computed alike for the min and the max of fields.
 struct Shared {
   Metric metric = Metric::kBound;
   double lipschitz = 0.0;
@@ -31,7 +31,8 @@ Shared sharedBy(std::span<const FieldPtr> operands) {
   return out;
 }
 
-/// Disjoint boxes meet in a box turned inside out; a plain empty one can safely be united again.
+/// The intersection of disjoint boxes has negative size; a plain empty box can safely be united
+/// with others.
 Box3 tidy(const Box3& box) { return box.isEmpty() ? Box3{} : box; }
 
 /// Box around S >= 0, as small as the structure of the field tells.
@@ -63,7 +64,8 @@ Box3 boundsOfComplement(const Field& field) {
   return Box3::everything();
 }
 
-/// min (union) or max (intersection) of the operands; where several are equal the first one counts.
+/// The min (union) or max (intersection) of the operands; if several are equal, the first one
+/// decides.
 template <Kind kKind>
 class Extremum final : public Field {
  public:
@@ -113,7 +115,7 @@ class Extremum final : public Field {
   }
 
  private:
-  /// Boxes tell nothing of points so far away that squares of their distances overflow.
+  /// The boxes do not help at points so far away that squares of their distances overflow.
   [[nodiscard]] bool isSearched(const Vec3& p) const noexcept {
     constexpr double kFarthest = 1e100;
     return tree_.isUseful() && std::fabs(p.x) < kFarthest && std::fabs(p.y) < kFarthest &&

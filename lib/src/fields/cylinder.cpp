@@ -50,7 +50,7 @@ struct CylinderProfile {
   [[nodiscard]] double featureSize() const noexcept { return std::min(radius, 2.0 * half_height); }
 };
 
-/// The wall alone, without end.
+/// The curved wall alone, infinitely long.
 struct TubeProfile {
   double radius = 0.0;
 

@@ -56,11 +56,11 @@ class Ellipsoid final : public Field {
   }
 
  private:
-  /// `normal_length`: |w|, or 0 where curvature does not matter any more (very far away).
+  /// `normal_length`: |w|, or 0 where the curvature no longer matters (very far away).
   [[nodiscard]] FieldSample sampleAt(const Vec3& d, double& normal_length) const noexcept {
     const Vec3 size = glm::abs(d);
-    // So far away that the ellipsoid is a point to all sixteen digits (also catches what is not
-    // finite).
+    // At this distance the ellipsoid is a point to all sixteen digits (this also catches points
+    // that are not finite).
     if (!(std::max({size.x, size.y, size.z}) <= 1e20 * axes_[0])) {
       const fields::Polar q = fields::polar(d, Vec3(1.0, 0.0, 0.0));
       return {q.length, q.direction};
@@ -77,7 +77,7 @@ class Ellipsoid final : public Field {
   }
 
   /// Root of G(t) = sum (c_i / (t + excess_i))^2 = 1 by Newton's method on 1/sqrt(G) - 1, which is
-  /// increasing and concave: from any point on the left the steps never pass the root.
+  /// increasing and concave: steps that start left of the root never pass it.
   [[nodiscard]] Closest closestTo(const Vec3& y) const noexcept {
     Vec3 c = scale_ * y;  // r_i y_i / e_i
     bool has_pole = false;
@@ -96,7 +96,7 @@ class Ellipsoid final : public Field {
     const double from_left = std::max(
         {c.x - excess_.x, c.y - excess_.y, c.z - excess_.z, glm::length(c) - excess_.x, 0.0});
     double t = from_left;
-    // Mostly 3 to 6 steps. The bound only guards against a cycle in the last digit.
+    // Usually 3 to 6 steps. The limit only guards against a cycle in the last digit.
     for (int iteration = 0; iteration < 100; ++iteration) {
       double sum = 0.0;
       double slope = 0.0;
@@ -157,8 +157,8 @@ class Ellipsoid final : public Field {
 };
 
 /// least (|p / radii| - 1), least the smallest semi-axis: the surface of the ellipsoid as a field
-/// that costs a tenth of the distance and is smooth but for the center. Its slope is at most 1
-/// everywhere.
+/// that costs a tenth of what the distance does and is smooth except at the center. Its slope is at
+/// most 1 everywhere.
 class EllipsoidFace final : public Field {
  public:
   EllipsoidFace(const Vec3& center, const Vec3& radii, double feature)
@@ -186,7 +186,7 @@ class EllipsoidFace final : public Field {
   [[nodiscard]] Box3 bounds() const noexcept override {
     return {center_ - radii_, center_ + radii_};
   }
-  /// A bound on the distance, but its slope is not 1.
+  /// The value is a bound on the distance, but the slope on the surface is not 1.
   [[nodiscard]] Metric metric() const noexcept override { return Metric::kImplicit; }
   [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
   [[nodiscard]] double featureSize() const noexcept override { return feature_; }

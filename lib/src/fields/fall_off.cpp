@@ -8,16 +8,16 @@
 namespace palpate::fields {
 namespace {
 
-/// The worst of boxes that are halved, the worst one first, until it is tight to a twentieth or
-/// enough work was done.
+/// Branch and bound over boxes: the box with the largest bound is halved, until the bound is tight
+/// to a twentieth or enough work was done.
 class SteepestSum {
  public:
   SteepestSum(const std::vector<Metaball>& balls, FallOff fall_off)
       : balls_(balls), fall_off_(fall_off) {}
 
   double find() {
-    // Farther than a radius from every ball all slopes go down with distance, so the worst point
-    // lies in the box around the balls.
+    // Farther than a radius from every ball all slopes decrease with distance, so the steepest
+    // point lies in the box around the balls.
     Part start;
     for (std::uint32_t i = 0; i < balls_.size(); ++i) {
       const Vec3 half(balls_[i].radius);
@@ -48,13 +48,14 @@ class SteepestSum {
   struct Part {
     double bound = 0.0;
     Box3 box = {};
-    std::vector<std::uint32_t> balls = {};  ///< those that matter here
-    double rest = 0.0;                      ///< at most what all others add
+    std::vector<std::uint32_t> balls = {};  ///< those that matter in this box
+    double rest = 0.0;                      ///< an upper bound on the slope of all others together
     bool operator<(const Part& other) const { return bound < other.bound; }
   };
 
   Part within(const Box3& box, const Part& whole) {
-    // So little that leaving out all balls at every halving stays far below a twentieth.
+    // So small that the error of leaving out all balls at every halving stays far below a
+    // twentieth.
     const double least = 1e-5 * whole.bound / static_cast<double>(balls_.size());
     Part part;
     part.box = box;
@@ -97,7 +98,7 @@ double reachOf(FallOff fall_off, double value) {
   return std::sqrt(1.0 / value - 1.0);
 }
 
-// Each kernel is steepest at one q and less on both sides of it.
+// Each kernel is steepest at one q; its slope decreases on both sides of it.
 double steepest(FallOff fall_off, double lo, double hi) {
   if (fall_off == FallOff::kWyvill) {
     const double q = std::clamp(std::sqrt(0.2), lo, hi);

@@ -7,7 +7,7 @@
 
 namespace palpate::fields {
 
-/// A fall-off as a function of t = q^2, with derivatives by t.
+/// A fall-off as a function of t = q^2, with its derivatives by t.
 struct Kernel {
   double value = 0.0;
   double first = 0.0;
@@ -28,10 +28,10 @@ template <FallOff kFallOff>
   }
 }
 
-/// q at which the fall-off has come down to `value`, 0 < value < 1.
+/// The q at which the fall-off has come down to `value`, 0 < value < 1.
 [[nodiscard]] double reachOf(FallOff fall_off, double value);
 
-/// The steepest slope by q between `lo` and `hi`.
+/// The steepest slope, as a derivative by q, between `lo` and `hi`.
 [[nodiscard]] double steepest(FallOff fall_off, double lo, double hi);
 
 /// An upper bound on the slope of the sum of strength * fall-off anywhere [1/m].

@@ -24,7 +24,7 @@ FieldJet Field::jet(const Vec3& p) const noexcept {
     behind[axis] -= step;
     FieldSample after = sample(ahead);
     FieldSample before = sample(behind);
-    // At the rim of a narrow band one side has no gradient: take the one-sided difference.
+    // At the edge of a narrow band one side has no gradient: take the one-sided difference.
     if (!after.in_band) {
       after = here;
       ahead = p;
@@ -33,7 +33,7 @@ FieldJet Field::jet(const Vec3& p) const noexcept {
       before = here;
       behind = p;
     }
-    const double span = ahead[axis] - behind[axis];  // what the rounded positions really differ by
+    const double span = ahead[axis] - behind[axis];  // the true difference of the rounded positions
     if (span > 0.0) hessian[axis] = (after.gradient - before.gradient) / span;
   }
   jet.hessian = 0.5 * (hessian + glm::transpose(hessian));

@@ -12,7 +12,7 @@ constexpr int kFreeSteps = 4;  ///< after these each step must be less than half
 
 /// Whether another part of the surface is nearer to `p` than `distance` [m].
 bool isNearerElsewhere(const Field& field, const Vec3& p, double distance) noexcept {
-  // Nothing fits between the surface and a point on it, but rounding would see something there.
+  // Nothing fits between the surface and a point on it, but rounding would find something there.
   if (std::fabs(distance) < 1e-9 * field.featureSize()) return false;
   const auto is_beyond = [&](const Vec3& direction) {
     return field.value(p + 0.99 * std::fabs(distance) * direction) * distance < 0.0;
@@ -31,14 +31,14 @@ bool isNearerElsewhere(const Field& field, const Vec3& p, double distance) noexc
   return false;
 }
 
-/// The foot's normal and curvatures, from the field there.
+/// The foot's normal and curvatures, from the field's jet at the foot.
 FootPoint describe(const Vec3& p, const Vec3& foot, const FieldJet& jet) noexcept {
   FootPoint out;
   out.point = foot;
   const double slope = glm::length(jet.gradient);
   out.normal = jet.gradient / slope;
   out.distance = glm::dot(p - foot, out.normal);
-  // The shape operator: the Hessian across the normal, by the slope.
+  // The shape operator: the tangential part of the Hessian, divided by the slope.
   const Mat3 across = Mat3(1.0) - outer(out.normal, out.normal);
   const Mat3 shape = across * (jet.hessian / slope) * across;
   const Mat3 squared = shape * shape;
@@ -48,8 +48,9 @@ FootPoint describe(const Vec3& p, const Vec3& foot, const FieldJet& jet) noexcep
   return out;
 }
 
-/// Moving from the foot along the normal scales the surface's two directions by 1 + curvature *
-/// distance; at p both are still positive.
+/// Moving from the foot along the normal scales the surface's two principal directions by 1 +
+/// curvature * distance; p lies before the center of curvature if both factors are still positive
+/// at p.
 bool isBeforeTheCenter(const FootPoint& foot) noexcept {
   const double sum = foot.curvature_sum * foot.distance;
   const double product = foot.curvature_product * foot.distance * foot.distance;
@@ -64,9 +65,9 @@ std::optional<FootPoint> footPoint(const Field& field, const Vec3& p) noexcept {
   if (!here.in_band || !(slope2 > 0.0)) return std::nullopt;
   double lambda = here.value / slope2;
   Vec3 x = p - lambda * here.gradient;
-  // Steps no longer than this, so that a bad start does not leap onto another part.
+  // The longest step, so that a bad start does not jump to another part of the surface.
   const double leash = 2.0 * std::fabs(here.value) / std::sqrt(slope2);
-  // The step after one this short is rounding only: convergence is quadratic.
+  // Convergence is quadratic: after a step this short the next one is only rounding.
   const double enough =
       1e-13 * std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), field.featureSize()});
   double last_length = kInfinity;

@@ -8,8 +8,8 @@
 namespace palpate {
 namespace {
 
-/// On the surface the slope of the gyroid function by X, Y, Z lies between sqrt(2) and sqrt(3), its
-/// largest anywhere.
+/// On the surface the gradient of the gyroid function by (X, Y, Z) has a length between sqrt(2) and
+/// sqrt(3), which is the largest anywhere.
 constexpr double kSteepest = 1.7320508075688774;
 
 /// side * (g / (k sqrt(3))) - shift, g the gyroid function, k = 2 pi / period.
@@ -52,7 +52,7 @@ class Gyroid final : public Field {
     Waves w;
     for (int i = 0; i < 3; ++i) {
       double d = p[i] - center_[i];
-      // So far away the phase is rounding only; it must still not overflow.
+      // At this distance the phase is only rounding; it must still not overflow.
       if (!(std::fabs(d) < 1e12 * period_)) [[unlikely]]
         d = std::remainder(d, period_);
       w.sin[i] = std::sin(wave_ * d);
@@ -90,7 +90,7 @@ FieldPtr gyroidWall(const Vec3& center, double period, double thickness) {
   fields::checkPoint("gyroid", "center", center);
   fields::checkLength("gyroid", "period", period);
   fields::checkRange("gyroid", "thickness", thickness, fields::kSmallestLength, 0.2 * period);
-  // The slope on the surface, as a share of the steepest, is 0.816 to 1: meet the middle.
+  // On the surface the slope is 0.816 to 1 times the steepest one: take the middle.
   const double shift = 0.5 * thickness * 0.9;
   const double feature = std::min(period / 8.0, thickness);
   return intersect({std::make_shared<Gyroid>(center, period, 1.0, shift, feature),

@@ -20,7 +20,7 @@ class HalfSpace final : public Field {
     return glm::dot(normal_, p - point_);
   }
   void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    const Vec3 point = point_;  // copies: nothing that is written can be they
+    const Vec3 point = point_;  // copies: the stores below cannot change them
     const Vec3 normal = normal_;
     for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
       out[n] = normal.x * (points.x[n] - point.x) + normal.y * (points.y[n] - point.y) +

@@ -8,15 +8,16 @@ namespace palpate {
 namespace {
 
 /// Taubin's heart u^3 = w z^3, with u = x^2 + 9/4 y^2 + z^2 - 1 and w = x^2 + 9/80 y^2, has the
-/// zero set of f = u - z cbrt(w). The slope of cbrt(w) is without bound on the axis w = 0, where
-/// the surface has its two cusps; w / (w + e)^(2/3) equals it but for a share 2 e / (3 w), and is
-/// smooth. f grows like a square, so the field is sqrt(2) (sqrt(2 + f) - sqrt(2)), which grows like
-/// a distance and has the gradient of f / 2 on the surface. f is never below -1.01.
-constexpr double kRounding = 1e-4;  // e: the cusps are round within 0.01
+/// zero set of f = u - z cbrt(w). The slope of cbrt(w) is unbounded on the axis w = 0, where the
+/// surface has its two cusps; w / (w + e)^(2/3) is smooth, and its relative difference from cbrt(w)
+/// is only 2 e / (3 w). f grows like a square, so the field is sqrt(2) (sqrt(2 + f) - sqrt(2)),
+/// which grows like a distance and has the gradient of f / 2 on the surface. f is never below
+/// -1.01.
+constexpr double kRounding = 1e-4;  // e: it rounds the cusps within 0.01
 constexpr double kHalfWidth = 1.13901;
-constexpr double kSteepest = 3.16;    // searched: 3.135
-constexpr double kTipRadius = 0.002;  // e^(2/3), of the tip in the plane y = 0
-constexpr double kLimit = 1e60;       // beyond this only the squares count
+constexpr double kSteepest = 3.16;    // by search: 3.135
+constexpr double kTipRadius = 0.002;  // e^(2/3), radius of the tip in the plane y = 0
+constexpr double kLimit = 1e60;       // beyond this only the squares matter
 
 class Heart final : public Field {
  public:
@@ -40,7 +41,7 @@ class Heart final : public Field {
     const Parts f = partsAt(q);
     const double root = std::sqrt(2.0 + f.value);
     FieldJet out{unit_ * valueOf(root), f.gradient * (std::sqrt(0.5) / root), Mat3(0.0)};
-    // u_i u_j, then -z g'' w_i w_j - z g' w_ij, then the mixed terms of -z g.
+    // The terms u_i u_j, then -z g'' w_i w_j - z g' w_ij, then the mixed terms of -z g.
     const Vec3 w_by(2.0 * q.x, 0.225 * q.y, 0.0);
     Mat3 h = outer(w_by, w_by) * (-q.z * f.g2);
     h[0][0] += 2.0 - q.z * f.g1 * 2.0;

@@ -12,7 +12,7 @@ class KnownWithin final : public Field {
  public:
   KnownWithin(FieldPtr field, const Box3& box)
       : field_(std::move(field)), box_(box), bounds_(field_->bounds()) {
-    // Where it is cut, it goes on for ever.
+    // Where the box cuts the solid, the solid continues without end.
     for (int axis = 0; axis < 3 && !bounds_.isEmpty(); ++axis) {
       if (bounds_.lo[axis] < box_.lo[axis]) bounds_.lo[axis] = -kInfinity;
       if (bounds_.hi[axis] > box_.hi[axis]) bounds_.hi[axis] = kInfinity;
@@ -59,11 +59,11 @@ class KnownWithin final : public Field {
   [[nodiscard]] const Field& field() const noexcept { return *field_; }
 
  private:
-  /// In the box; what is not finite stays so.
+  /// The nearest point in the box; a point that is not finite stays so.
   [[nodiscard]] Vec3 nearest(const Vec3& p) const noexcept {
     return isFinite(p) ? glm::clamp(p, box_.lo, box_.hi) : p;
   }
-  /// 1 along the axes on which `p` is not beyond the box, 0 along the others.
+  /// 1 along the axes on which `p` is within the box's range, 0 along the others.
   [[nodiscard]] Vec3 free(const Vec3& p) const noexcept {
     Vec3 out(1.0);
     for (int axis = 0; axis < 3; ++axis) {

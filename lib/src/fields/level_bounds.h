@@ -5,7 +5,7 @@
 
 namespace palpate::fields {
 
-/// Implemented by leaves that know where their value can be low without being exact.
+/// Implemented by leaves that know where their value is low although they are not exact.
 class LevelBounded {
  public:
   /// Box around the points with value <= `level` [m], for level > 0.
@@ -15,7 +15,8 @@ class LevelBounded {
   ~LevelBounded() = default;
 };
 
-/// Box around the points where `field` <= `level`; everything where that is not known. Set-up only.
+/// Box around the points where `field` <= `level`; all space where no smaller box is known. Set-up
+/// only.
 [[nodiscard]] Box3 boundsBelow(const Field& field, double level);
 
 }  // namespace palpate::fields

@@ -14,8 +14,9 @@
 namespace palpate {
 namespace {
 
-/// How far from its center [radii] a ball still counts. A Gaussian ends where all of them together
-/// are below half a unit in the last place of `iso`; the inverse square never does.
+/// The distance from its center [radii] up to which a ball counts. A Gaussian is cut off where all
+/// of them together are below half a unit in the last place of `iso`; the inverse square is never
+/// cut off.
 double reachOfInfluence(const std::vector<Metaball>& balls, FallOff fall_off, double iso) {
   if (fall_off == FallOff::kWyvill) return 1.0;
   if (fall_off == FallOff::kInverseSquare) return kInfinity;
@@ -24,11 +25,11 @@ double reachOfInfluence(const std::vector<Metaball>& balls, FallOff fall_off, do
   return std::sqrt(std::log(std::max(total / iso, 1.0) * 1e17));
 }
 
-/// Finds the balls that count at a point. The order in which it visits them is always the same one,
-/// and the balls are kept in it, so that sums do not depend on what was left out.
+/// Finds the balls that count at a point. It always visits them in the same order, in which the
+/// balls are also stored, so that sums do not depend on which balls were left out.
 class BallTree {
  public:
-  /// Puts `balls` into the order of the tree; keeps none of them.
+  /// Sorts `balls` into the order of the tree; does not store them.
   BallTree(std::vector<Metaball>& balls, FallOff fall_off, double iso) {
     const double reach = reachOfInfluence(balls, fall_off, iso);
     if (balls.size() < kFewest || !std::isfinite(reach)) return;
@@ -47,7 +48,7 @@ class BallTree {
     balls = std::move(ordered);
   }
 
-  /// Calls f(index) for the balls that may count at `p`, of `count`.
+  /// Calls f(index) for those of the `count` balls that may count at `p`.
   template <typename F>
   void visit(const Vec3& p, std::size_t count, F&& f) const noexcept {
     if (tree_.isEmpty()) {
@@ -60,25 +61,26 @@ class BallTree {
  private:
   static constexpr std::size_t kFewest = 12;
   BoundsTree tree_;
-  std::vector<std::uint32_t> place_;  ///< of an item of the tree among the balls
+  std::vector<std::uint32_t> place_;  ///< by item of the tree: its index among the balls
 };
 
-/// What is added at a distance from the bounds, so that the field has a gradient everywhere: almost
-/// nothing next to them, as the surface may touch them, and far away as steep as the distance.
-/// Twice differentiable across the bounds, monotonous, and never steeper than 1: d - w atan(d / w).
+/// The term that is added outside the bounds, at distance d from them, so that the field has a
+/// gradient everywhere: almost nothing close to the bounds, as the surface may touch them, and as
+/// steep as the distance far away. d - w atan(d / w) is twice differentiable across the bounds,
+/// monotonic, and never steeper than 1.
 class Rise {
  public:
   explicit Rise(double width) : width_(width) {}
 
   [[nodiscard]] double value(double d) const noexcept { return d - width_ * std::atan(d / width_); }
   [[nodiscard]] double slope(double d) const noexcept {
-    const double q = width_ / d;  // may overflow, but never be 0 / 0 or infinite / infinite
+    const double q = width_ / d;  // may overflow, but is never 0 / 0 or infinite / infinite
     return d > 0.0 ? 1.0 / (1.0 + q * q) : 0.0;
   }
   [[nodiscard]] double bend(double d) const noexcept {
     return d > 0.0 ? 2.0 * slope(d) * (1.0 - slope(d)) / d : 0.0;
   }
-  /// The distance up to which no more than `level` is added, or a little more.
+  /// The largest distance at which the term is at most `level`, or a little more than that.
   [[nodiscard]] double reach(double level) const {
     double lo = 0.0;
     double hi = level + 2.0 * width_;  // atan stays below pi / 2
@@ -93,7 +95,7 @@ class Rise {
   double width_;  ///< [m]
 };
 
-/// scale * (iso - sum of strength * kernel) + the rise out of the bounds.
+/// scale * (iso - sum of strength * kernel) + the term outside the bounds.
 template <FallOff kFallOff>
 class Metaballs final : public Field, public fields::LevelBounded {
  public:
@@ -167,13 +169,13 @@ class Metaballs final : public Field, public fields::LevelBounded {
   [[nodiscard]] Metric metric() const noexcept override { return Metric::kImplicit; }
   [[nodiscard]] double lipschitz() const noexcept override { return lipschitz_; }
   [[nodiscard]] double featureSize() const noexcept override { return feature_; }
-  /// Out of the bounds the field is at least the rise.
+  /// Outside the bounds the field is at least the added term.
   [[nodiscard]] Box3 boundsBelow(double level) const override {
     return bounds_.grownBy(rise_.reach(level));
   }
 
  private:
-  /// Half the smallest radius: as smooth as the surface, and short beside the shape.
+  /// Half the smallest radius: as smooth as the surface, and small compared with the shape.
   static double riseWidth(const std::vector<Metaball>& balls) {
     double least = kInfinity;
     for (const Metaball& ball : balls) least = std::min(least, ball.radius);
@@ -195,7 +197,8 @@ class Metaballs final : public Field, public fields::LevelBounded {
   double feature_ = kInfinity;
 };
 
-/// Where one of the balls alone reaches its share of `iso`: the sum needs that of at least one.
+/// The union of boxes in each of which one ball alone reaches its share of `iso`: where the sum
+/// reaches `iso`, at least one ball does.
 Box3 boundsOf(const std::vector<Metaball>& balls, FallOff fall_off, double iso) {
   double count = 0.0;
   double most = 0.0;
@@ -233,7 +236,7 @@ FieldPtr metaballs(std::vector<Metaball> balls, FallOff fall_off, double iso) {
     fields::checkPoint("metaballs", "center", ball.center);
     fields::checkLength("metaballs", "radius", ball.radius);
     fields::checkRange("metaballs", "strength", ball.strength, -1e9, 1e9);
-    // So that the steepest ball alone has slope 1.
+    // Chosen so that the steepest ball alone has slope 1.
     const double slope = std::fabs(ball.strength) * fields::steepest(fall_off, 0.0, kInfinity);
     if (slope > 0.0) scale = std::min(scale, ball.radius / slope);
   }

@@ -107,15 +107,16 @@ class Offset final : public Field, public fields::LevelBounded {
   Box3 bounds_;
 };
 
-/// Rebuilds a tree of CSG with `change` made to each leaf, once for a leaf that occurs twice.
+/// Rebuilds a CSG tree with `change` applied to each leaf; a leaf that occurs twice is changed only
+/// once.
 class Rebuild {
  public:
   struct Change {
     std::function<FieldPtr(const FieldPtr&)> leaf;
-    std::function<FieldPtr(const FieldPtr&)> complemented;  ///< of what stands below a complement
+    std::function<FieldPtr(const FieldPtr&)> complemented;  ///< for a complement's operand
     double translation_factor = 1.0;
     bool opens_faces = true;    ///< a solid with faces may be rebuilt by its faces
-    bool keeps_levels = false;  ///< ... but only where their values are distances
+    bool keeps_levels = false;  ///< ... but only where the values of the faces are distances
   };
 
   static FieldPtr of(const FieldPtr& field, const Change& change) {
@@ -188,7 +189,7 @@ FieldPtr offset(FieldPtr field, double distance) {
                      fields::kLargestLength);
   if (std::fabs(distance) < fields::kSmallestLength) return operand;
   fields::checkBand("offset", *operand, std::fabs(distance));
-  // A box that shrinks stays a box; one that grows gets round edges and is smooth.
+  // A box that shrinks stays a box; one that grows gets rounded edges and is smooth.
   return Rebuild::of(
       operand, {.leaf = [=](const FieldPtr& f) { return std::make_shared<Offset>(f, distance); },
                 .complemented = [=](const FieldPtr& f) { return offset(f, -distance); },

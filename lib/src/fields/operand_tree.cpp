@@ -7,16 +7,16 @@ namespace {
 
 using Kind = FieldStructure::Kind;
 
-/// So few operands are asked as fast as a tree is searched.
+/// With fewer operands than this, asking all of them is as fast as searching a tree.
 constexpr std::size_t kFewest = 12;
-/// Boxes are grown by this share of their coordinates: far above the rounding of values and
-/// distances, so that rounding never leaves out the operand that decides.
+/// Boxes are grown by this share of their coordinates, far more than the rounding of values and
+/// distances, so that rounding never excludes the operand that decides.
 constexpr double kMargin = 1e-12;
 
 double diagonalOf(const Box3& box) { return box.isBounded() ? glm::length(box.size()) : kInfinity; }
 
-/// A box that the field is at least as far above zero as `p` is out of it; of minus the field if
-/// `negated`. Everything if no such box is known.
+/// A box such that the field at any point outside is at least the point's distance to the box; with
+/// `negated` the same for minus the field. All space if no such box is known.
 Box3 distanceBox(const Field& field, bool negated) {
   const FieldStructure structure = field.structure();
   switch (structure.kind) {
@@ -29,7 +29,7 @@ Box3 distanceBox(const Field& field, bool negated) {
     case Kind::kUnion:
     case Kind::kIntersection: {
       const bool is_minimum = (structure.kind == Kind::kUnion) != negated;
-      // The minimum is far above zero where all are, the maximum where one is.
+      // The minimum is large only where all operands are, the maximum wherever one is.
       Box3 out = is_minimum ? Box3{} : Box3::everything();
       for (const FieldPtr& operand : structure.operands) {
         const Box3 box = distanceBox(*operand, negated);

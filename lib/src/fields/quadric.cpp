@@ -9,14 +9,14 @@
 namespace palpate {
 namespace {
 
-/// d^T A d + b.d + c about the center, divided by its steepest slope in the domain.
+/// d^T A d + b.d + c, d the position from the center, divided by its steepest slope in the domain.
 struct Form {
   Mat3 a{0.0};
   Vec3 b{0.0};
   double c = 0.0;
 };
 
-constexpr double kFarthest = 1e100;  ///< [m] beyond this points are taken at this distance
+constexpr double kFarthest = 1e100;  ///< [m] points farther away are treated as if they were here
 
 class Quadric final : public Field {
  public:
@@ -72,11 +72,12 @@ Vec3 eigenvalues(Mat3 m, Mat3& axes) {
 }
 
 struct Shape {
-  Box3 bounds = Box3::everything();  ///< about the center
-  double feature = 0.0;              ///< [m] 0: not known from the form
+  Box3 bounds = Box3::everything();  ///< relative to the center
+  double feature = 0.0;              ///< [m] 0: the form does not determine it
 };
 
-/// What the normal form tells. `form` has been scaled so that its entries are about 1.
+/// Bounds and feature size that follow from the normal form. `form` has been scaled so that its
+/// entries are about 1.
 Shape shapeOf(const Form& form) {
   Mat3 axes(1.0);
   const Vec3 lambda = eigenvalues(form.a, axes);
@@ -109,8 +110,8 @@ Shape shapeOf(const Form& form) {
                      "coefficients with a zero set",
                      "inside is where it is negative; check the sign of the constant");
   }
-  // On the surface |gradient|^2 >= 4 |constant| smallest + flat_slope^2, and no curvature is above
-  // 2 largest / |gradient|.
+  // On the surface |gradient|^2 >= 4 |constant| smallest + flat_slope^2, and each curvature is at
+  // most 2 largest / |gradient|.
   shape.feature =
       std::sqrt(4.0 * std::fabs(constant) * smallest + flat_slope * flat_slope) / (2.0 * largest);
   if (curved == 3 && is_positive) {
@@ -125,7 +126,7 @@ Shape shapeOf(const Form& form) {
   return shape;
 }
 
-/// The gradient is linear, so its length is largest at a corner.
+/// The gradient is linear, so its length is largest at a corner of the box.
 double steepestIn(const Box3& box, const Form& form) {
   double steepest = 0.0;
   for (int i = 0; i < 8; ++i) {
@@ -147,7 +148,7 @@ FieldPtr quadric(const Vec3& center, const QuadricCoefficients& coefficients, do
     fields::checkFinite("quadric", "a coefficient", value);
     largest = std::max(largest, std::fabs(value));
   }
-  // Bring the size of the numbers near 1 before squares of them are taken.
+  // Scale the numbers to about 1 before they are squared.
   const double scale = largest > 0.0 ? 1.0 / largest : 1.0;
   Form form;
   form.a = Mat3(q.xx, 0.5 * q.xy, 0.5 * q.xz, 0.5 * q.xy, q.yy, 0.5 * q.yz, 0.5 * q.xz, 0.5 * q.yz,

@@ -19,12 +19,13 @@ struct ProfileSample {
 
 struct ProfileJet {
   ProfileSample at;
-  double rho_rho = 0.0;  ///< [1/m] second derivatives, as the two below
+  double rho_rho = 0.0;  ///< [1/m] second derivatives, like the two below
   double rho_height = 0.0;
   double height_height = 0.0;
 };
 
-/// The value of a profile from a square root of `square`, if that isPlain().
+/// The value of a profile, computed from the square root of `square`; valid if
+/// isPlainSquare(square).
 struct ProfileValue {
   double value = 0.0;  ///< [m]
   double square = 1.0;
@@ -41,8 +42,8 @@ struct Polar2 {
   return {p.length, p.direction.x, p.direction.y};
 }
 
-/// The jet of a profile whose value is the distance `q.length` from a point of the half-plane, less
-/// a constant.
+/// The jet of a profile whose value is a constant less than `q.length`, the distance from a point
+/// of the half-plane.
 [[nodiscard]] inline ProfileJet profileAround(const ProfileSample& at, const Polar2& q) noexcept {
   ProfileJet jet{at};
   if (!(q.length > 1e-100)) return jet;
@@ -53,27 +54,31 @@ struct Polar2 {
   return jet;
 }
 
-/// A profile gives the signed distance (or another field) in its half-plane.
+/// Requirement on a profile: it gives the signed distance (or another field) in its half-plane.
 template <typename T>
 concept Profile = requires(const T profile, double rho, double height) {
   { profile.sample(rho, height) }
   noexcept->std::same_as<ProfileSample>;
   { profile.jet(rho, height) }
   noexcept->std::same_as<ProfileJet>;
-  // The same value as sample(), in a loop over many.
+  // The same value as sample(), for use in a loop over many points.
   { profile.plain(rho, height) }
   noexcept->std::same_as<ProfileValue>;
-  { profile.bounds(Vec3(), Vec3()) } -> std::same_as<Box3>;  // of the solid, for center and axis
+  {
+    profile.bounds(Vec3(), Vec3())
+    } -> std::same_as<Box3>;  // bounds of the solid, for center and axis
   { profile.featureSize() } -> std::same_as<double>;
 };
 
-/// The part across the axis of a difference `d` from a point on it that is `height` along it is d
-/// less the axis, unless that is mostly rounding.
+/// Let `d` be a difference from the center and `height` its part along the axis. Subtracting that
+/// part gives the part across the axis accurately if this returns true; otherwise it is mostly
+/// rounding.
 [[nodiscard]] inline bool isClearOfAxis(double size, double height) noexcept {
   return size > 1e-3 * std::fabs(height);
 }
 
-/// The field of a profile turned about the line through `center` along the unit vector `axis`.
+/// The solid that a profile sweeps when it turns about the line through `center` along the unit
+/// vector `axis`.
 template <Profile P>
 class Revolved final : public Field {
  public:
@@ -95,7 +100,7 @@ class Revolved final : public Field {
   }
 
   void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    const Vec3 center = center_;  // copies: nothing that is written can be they
+    const Vec3 center = center_;  // copies: the stores below cannot change them
     const Vec3 axis = axis_;
     const P profile = profile_;
     const auto larger = [](double a, double b) { return a < b ? b : a; };
@@ -127,7 +132,7 @@ class Revolved final : public Field {
     const ProfileJet s = profile_.jet(radial.length, height);
     const Vec3& u = radial.direction;
     const Vec3 around = glm::cross(axis_, u);
-    // Turning about the axis bends by (df/drho) / rho, which tends to d2f/drho2 on the axis of a
+    // Revolution adds the curvature (df/drho) / rho, which tends to d2f/drho2 on the axis of a
     // smooth field and has no limit on the axis of a pointed one.
     double turning = 0.0;
     if (radial.length > 1e-100) {
@@ -147,9 +152,9 @@ class Revolved final : public Field {
   [[nodiscard]] double featureSize() const noexcept override { return profile_.featureSize(); }
 
  private:
-  /// The part of `d` across the axis. Close to the axis the first difference is partly rounding,
-  /// and not square to it: take the rest of the axis out once more. Closer still it is nothing
-  /// else.
+  /// The part of `d` across the axis. Close to the axis the first difference is partly rounding and
+  /// not perpendicular to the axis: subtract the remaining axial part once more. Still closer it is
+  /// nothing but rounding.
   [[nodiscard]] Vec3 acrossAxis(const Vec3& d, double height) const noexcept {
     const Vec3 radial = d - axis_ * height;
     const double size = std::max({std::fabs(radial.x), std::fabs(radial.y), std::fabs(radial.z)});
@@ -161,7 +166,7 @@ class Revolved final : public Field {
 
   Vec3 center_;
   Vec3 axis_;
-  Vec3 across_;  ///< radial direction of the points on the axis
+  Vec3 across_;  ///< radial direction used for points on the axis
   P profile_;
 };
 

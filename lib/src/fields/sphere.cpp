@@ -20,7 +20,7 @@ class Sphere final : public Field {
     return fields::length(p - center_) - radius_;
   }
   void values(const PointBatch& points, ValueBatch& out) const noexcept override {
-    const Vec3 center = center_;  // a copy: nothing that is written can be it
+    const Vec3 center = center_;  // a copy: the stores below cannot change it
     const double radius = radius_;
     fields::Squares squares;
     for (std::size_t n = 0; n < PointBatch::kCount; ++n) {

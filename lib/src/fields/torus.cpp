@@ -32,7 +32,7 @@ struct TorusProfile {
   [[nodiscard]] double featureSize() const noexcept { return std::min(tube, radius - tube); }
 };
 
-/// A disc of `radius` drawn along the axis from -half to half.
+/// A disc of `radius` swept along the axis from -half to half.
 struct CapsuleProfile {
   double half = 0.0;
   double radius = 0.0;
@@ -68,7 +68,8 @@ FieldPtr torus(const Vec3& center, const Vec3& axis, double radius, double tube)
   fields::checkPoint("torus", "center", center);
   const Vec3 unit = fields::checkedDirection("torus", "axis", axis);
   fields::checkLength("torus", "radius", radius);
-  // Nearer to the radius than this, the hole closes and the two walls no longer make a solid.
+  // If the tube is closer to the radius than this, the hole closes and the two walls no longer
+  // bound a solid.
   fields::checkRange("torus", "tube", tube, fields::kSmallestLength, radius * (1.0 - 1e-6));
   return std::make_shared<fields::Revolved<TorusProfile>>(center, unit, TorusProfile{radius, tube});
 }

@@ -57,8 +57,8 @@ class Placed final : public Field {
   [[nodiscard]] Vec3 toOperand(const Vec3& p) const noexcept {
     return back_ * (p - pose_.translation);
   }
-  /// A box of this frame that lies inside the operand's box, about its moved center: its corners,
-  /// seen from the operand, must not leave the operand's box.
+  /// A box in this frame that lies inside the moved box of the operand, about its moved center: its
+  /// corners, in the operand's frame, must not leave the operand's box.
   [[nodiscard]] Box3 boxWithin(const Box3& domain) const noexcept;
 
   std::array<FieldPtr, 1> operands_;
@@ -79,8 +79,8 @@ Box3 Placed::boxWithin(const Box3& domain) const noexcept {
   const Box3 everything = Box3::everything();
   if (domain.lo == everything.lo && domain.hi == everything.hi) return domain;
   if (isQuarterTurn(pose_.rotation)) return pose_.apply(domain);
-  if (!domain.isBounded()) return Box3{};  // half-infinite and turned: no box is left
-  // Shrink the box around the moved box until it fits into the moved box.
+  if (!domain.isBounded()) return Box3{};  // half-infinite and rotated: no box fits inside
+  // Shrink the bounding box of the moved box until it fits into the moved box.
   const Vec3 half = 0.5 * pose_.apply(domain).size();
   const Vec3 room = 0.5 * domain.size();
   double share = 1.0;
@@ -95,8 +95,8 @@ Box3 Placed::boxWithin(const Box3& domain) const noexcept {
   return {center - share * half, center + share * half};
 }
 
-/// The rotation nearest to `m`, which is one to about 1e-9: one Newton step of the polar
-/// decomposition squares the error.
+/// The rotation nearest to `m`, which is itself a rotation to about 1e-9: one Newton step of the
+/// polar decomposition squares the error.
 Mat3 nearestRotation(const Mat3& m) { return m * (0.5 * (Mat3(3.0) - glm::transpose(m) * m)); }
 
 bool isRotation(const Mat3& m) {

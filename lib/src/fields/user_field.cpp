@@ -17,7 +17,8 @@ class UserField final : public Field {
   }
   [[nodiscard]] double value(const Vec3& p) const noexcept override { return function_.value(p); }
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
-    // Second differences of the value: differences of differences would lose half the digits.
+    // Second differences of the value: differences of numerical gradients would lose half the
+    // digits.
     FieldJet out{value(p), gradientAt(p), Mat3(0.0)};
     const double h = stepAt(p, 3e-4, 1e-6);
     const auto at = [&](int i, double a, int j, double b) {
@@ -43,7 +44,7 @@ class UserField final : public Field {
   [[nodiscard]] double featureSize() const noexcept override { return function_.feature_size; }
 
  private:
-  /// A share of the feature, but many units in the last place of `p`.
+  /// A share of the feature size, but many units in the last place of `p`.
   [[nodiscard]] double stepAt(const Vec3& p, double share, double share_of_p) const noexcept {
     const double reach = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
     return std::max(share * function_.feature_size, share_of_p * reach);

@@ -15,7 +15,7 @@ struct Polar {
 [[nodiscard]] Polar polarScaled(const Vec3& v, const Vec3& fallback) noexcept;
 [[nodiscard]] double lengthScaled(const Vec3& v) noexcept;
 
-/// The squares for which the plain formula keeps every digit.
+/// Whether the square is in the range where the plain formula keeps every digit.
 [[nodiscard]] inline bool isPlainSquare(double square) noexcept {
   return square > 1e-280 && square < 1e300;
 }
@@ -40,14 +40,14 @@ struct Polar {
 /// Some unit vector perpendicular to the unit vector `n`.
 [[nodiscard]] Vec3 perpendicularTo(const Vec3& n) noexcept;
 
-/// Hessian of a distance that grows along `direction` from a point, `distance` away from it. At the
-/// point itself, where it has no limit, zero.
+/// Hessian of a distance from a point, `distance` away along `direction`. Zero at the point itself,
+/// where it has no limit.
 [[nodiscard]] inline Mat3 radialHessian(const Vec3& direction, double distance) noexcept {
   if (!(distance > 1e-100)) return Mat3(0.0);
   return (Mat3(1.0) - outer(direction, direction)) * (1.0 / distance);
 }
 
-/// -1 below zero, +1 otherwise: -0.0 counts as +0.0, so that both give the same gradient.
+/// -1 below zero, +1 otherwise: -0.0 counts as +0.0, so that both zeros give the same gradient.
 [[nodiscard]] inline double side(double x) noexcept { return x < 0.0 ? -1.0 : 1.0; }
 
 }  // namespace palpate::fields

@@ -9,7 +9,7 @@ NearCells::NearCells(const Partition& partition, const Passages& passages)
   later_.reserve(partition.regionCount());
 }
 
-/// Absorbs what the new cell contains, and drops it where it is contained itself.
+/// Removes the cells that the new one contains, and drops the new one if another contains it.
 void NearCells::List::add(const NearCell& added) noexcept {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -33,7 +33,8 @@ void NearCells::intersect(const List& a, const List& b, List& out) noexcept {
 
 void NearCells::run(const SideStep& step, const Signs& signs, std::span<const NearSide> near,
                     List& out) const noexcept {
-  // The near leaves are the point's choice; the far ones are counted together.
+  // The cells choose the sides of the near leaves; the far leaves keep their sides and are only
+  // counted.
   const bool is_any = step.op == SideStep::Op::kAnyOf;
   std::uint32_t members = 0;
   std::size_t far = step.count;
@@ -112,8 +113,8 @@ std::span<const NearCell> NearCells::find(RegionId region, const Signs& signs,
   } else {
     evaluate(partition_.layerSides(region, true), signs, near, cells_);
   }
-  // A later layer takes its own part of the region. A layer without a near leaf does not reach this
-  // place.
+  // A later layer cuts its own part out of the region. A layer without a near leaf does not reach
+  // here.
   later_.clear();
   for (const NearSide& side : near) {
     for (const RegionId other : partition_.regionsOf(side.leaf)) {
@@ -131,8 +132,8 @@ std::span<const NearCell> NearCells::find(RegionId region, const Signs& signs,
     evaluate(partition_.layerSides(other, false), signs, near, other_);
     keep(other_);
   }
-  // A sheet is passed beside it only: on the side of its solid where the point is, or beyond its
-  // edge.
+  // The way past a sheet leads beside it: on that side of its solid where the point is, or beyond
+  // its edge.
   for (const Sheet& sheet : passages_.sheets()) {
     const bool is_near = std::any_of(sheet.leaves.begin(), sheet.leaves.end(),
                                      [&](LeafId leaf) { return index_[leaf] >= 0; });

@@ -19,8 +19,8 @@ bool isIdentity(const Pose& pose) {
   return pose.rotation == Mat3(1.0) && pose.translation == Vec3(0.0);
 }
 
-/// True if f(word, mask) is for any of the words that hold `count` bits from `first` on, which are
-/// those of `mask`.
+/// True if f(word, mask) is true for one of the words that hold the `count` bits from `first` on;
+/// `mask` selects those bits within the word.
 template <typename F>
 bool anyWord(std::span<const std::uint64_t> words, std::size_t first, std::size_t count,
              const F& f) noexcept {
@@ -34,7 +34,7 @@ bool anyWord(std::span<const std::uint64_t> words, std::size_t first, std::size_
   return false;
 }
 
-/// A leaf's identity: the same field object at the same place is the same leaf.
+/// A leaf's identity: the same field object in the same pose is the same leaf.
 struct Placed {
   const Field* field;
   Pose pose;
@@ -63,7 +63,7 @@ struct Partition::Builder {
   Program build(const FieldPtr& root) {
     Program program;
     if (!root) {
-      program.steps.push_back({Step::Op::kAnyOf, 0, 0});  // any of none
+      program.steps.push_back({Step::Op::kAnyOf, 0, 0});  // the union of nothing
       return program;
     }
     append(program, root, Pose{}, 1, kInfinity);
@@ -73,7 +73,7 @@ struct Partition::Builder {
     return program;
   }
 
-  /// `size` [m]: of the smallest solid so far that the field is a face of.
+  /// `size` [m]: the smallest of the enclosing solids that the field is a face of.
   void append(Program& program, const FieldPtr& field, const Pose& pose, std::size_t depth,
               double size) {
     if (depth >= kMaxDepth) {
@@ -97,7 +97,8 @@ struct Partition::Builder {
       case FieldStructure::Kind::kUnion:
       case FieldStructure::Kind::kIntersection:
       case FieldStructure::Kind::kFaces: {
-        // Folding each operand in as it comes keeps the stack as deep as the tree, not as wide.
+        // Each operand is folded in as soon as it is added, so that the stack is as deep as the
+        // tree, not as wide.
         const auto op =
             structure.kind == FieldStructure::Kind::kUnion ? Step::Op::kOr : Step::Op::kAnd;
         const bool is_solid = structure.kind == FieldStructure::Kind::kFaces;
@@ -115,7 +116,7 @@ struct Partition::Builder {
              program.leaves.end());
   }
 
-  /// Combines the two topmost operands; a run of leaves with one more leaf stays one step.
+  /// Combines the two topmost operands; a run of leaves followed by one more leaf stays one step.
   static void fold(Program& program, Step::Op op) {
     const Step::Op run = op == Step::Op::kOr ? Step::Op::kAnyOf : Step::Op::kAllOf;
     std::vector<Step>& steps = program.steps;
@@ -154,8 +155,8 @@ struct Partition::Builder {
     return id;
   }
 
-  /// Planes that are not the face of a solid take the scale of the scene, so that a scene in
-  /// micrometers is the same scene.
+  /// Planes that are not faces of a solid take the scale of the scene, so that a scene behaves the
+  /// same when all its lengths are in micrometers.
   void sizePlanes() {
     double largest = 0.0;
     for (const Leaf& leaf : partition.leaves_) {
@@ -257,7 +258,7 @@ Partition::Sides Partition::sidesOf(const Program& program) {
 
 bool Signs::isOf(std::size_t leaves) const noexcept {
   if (leaves_ != leaves || leaves > kMaxLeaves || used_ != (leaves + 63) / 64) return false;
-  // Bits beyond the last leaf do not stand for leaves.
+  // The unused bits after the last leaf.
   const std::size_t rest = leaves % 64;
   return rest == 0 || words_[used_ - 1] >> rest == 0;
 }
@@ -294,7 +295,7 @@ std::span<const LeafId> Partition::leavesOfRegion(RegionId region) const noexcep
 }
 
 bool Partition::evaluate(const Program& program, const Signs& signs) noexcept {
-  // One bit a stack entry: kMaxDepth of them fit a word.
+  // One bit for each stack entry: kMaxDepth of them fit a word.
   std::uint64_t stack = 0;
   for (const Step& step : program.steps) {
     switch (step.op) {
@@ -336,7 +337,7 @@ RegionId Partition::regionOf(const Signs& signs) const noexcept {
     }
     return kOutside;
   }
-  // Only layers that use an inside leaf, or hold even without one, can hold the cell.
+  // A layer can hold the cell only if it uses an inside leaf, or holds even without one.
   RegionId best = kOutside;
   const auto consider = [&](RegionId region) {
     if (region > best && evaluate(programs_[region - 1U], signs)) best = region;

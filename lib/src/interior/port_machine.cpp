@@ -73,7 +73,7 @@ Passages::Passages(std::size_t regions, std::vector<Wall> walls, std::vector<Por
 void Passages::giveSlots() {
   for (const Port& port : ports_) {
     for (const PassedBefore& before : port.after) {
-      if (before.port >= ports_.size()) continue;  // never passed, and so never due
+      if (before.port >= ports_.size()) continue;  // never passed, so the port is not due
       int& slot = ports_[before.port].slot;
       if (slot >= 0) continue;
       slot = static_cast<int>(counted_.size());
@@ -124,7 +124,8 @@ bool Passages::consider(const Partition& partition, PortId id, Turn turn, const 
                         const PassedPorts& passed, const Vec3& at, const Punctures* holes,
                         Facet& facet) const noexcept {
   const Port& port = ports_[id];
-  // The mask's own leaves are not among those crossed, so the far cell tells its state as well.
+  // The mask's own leaves are not among those crossed, so the signs of the far cell decide the mask
+  // as well.
   if (port.mask >= 0 && !partition.maskHolds(static_cast<std::size_t>(port.mask), there)) {
     return false;
   }
@@ -134,8 +135,8 @@ bool Passages::consider(const Partition& partition, PortId id, Turn turn, const 
   const Hole* hole = holes == nullptr ? nullptr : holes->holeAt(id, at);
   const bool in_hole = hole != nullptr && hole->reopens_at < force;
   if (in_hole) force = hole->reopens_at;
-  // A place where a map is 0 is not a border of any cell: a port that has one is a wall until it is
-  // touched.
+  // A place where a map is 0 does not border on a cell of its own: a port with a map is a wall
+  // until it is touched.
   if (force <= 0.0 && (in_hole || given.isConstant())) {
     facet.kind = Facet::Kind::kOpen;
     facet.port = id;

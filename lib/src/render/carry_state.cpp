@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-/// The place of the one called `name` among `all`.
+/// The index in `all` of the element called `name`.
 template <typename Named>
 std::optional<std::size_t> placeOf(std::span<const Named> all, std::string_view name) {
   const auto at =
@@ -33,7 +33,7 @@ std::optional<PortId> portThere(PortId id, const Scene& from, const Scene& to,
   return std::nullopt;
 }
 
-/// -1 for none, and for one that is not there.
+/// -1 if there is none, or if `to` does not have it.
 int materialThere(int id, const Scene& from, const Scene& to) {
   if (id < 0) return -1;
   const auto there = placeOf(to.materials(), from.materials()[static_cast<std::size_t>(id)].name);
@@ -47,7 +47,7 @@ PassedPorts carried(const PassedPorts& passed, const Scene& from, const Scene& t
     const int slot = from.ports()[id].slot;
     if (slot < 0 || passed.turn(static_cast<std::size_t>(slot)) == 0) continue;
     const auto there = portThere(static_cast<PortId>(id), from, to, lost);
-    // One that no `after` names any more is not asked for.
+    // A port that no `after` names any more is not needed.
     if (!there || to.ports()[*there].slot < 0) continue;
     out.take(static_cast<std::size_t>(to.ports()[*there].slot), passed,
              static_cast<std::size_t>(slot));
@@ -61,7 +61,7 @@ Punctures carried(const Punctures& punctures, const Scene& from, const Scene& to
   for (const Hole& hole : punctures.holes()) {
     if (const auto there = portThere(hole.port, from, to, lost)) {
       Port port = to.ports()[*there];
-      port.rearm = 0.0;  // whether it rests is not known by its hole
+      port.rearm = 0.0;  // the list of resting ports, below, is carried separately
       out.puncture(*there, port, hole.point);
     }
   }
@@ -73,9 +73,9 @@ Punctures carried(const Punctures& punctures, const Scene& from, const Scene& to
   return out;
 }
 
-/// The leaf of `to` that is what `leaf` is in `from`, as far as it can be seen from `p` [m]; -1:
-/// there is none. Leaves have no names, but one that was not edited has the same value and slope
-/// there, and the same box.
+/// The leaf of `to` that corresponds to `leaf` of `from`, judged at `p` [m]; -1: there is none.
+/// Leaves have no names, but one that was not edited has the same value and gradient there, and the
+/// same box.
 int leafThere(LeafId leaf, const Vec3& p, const Scene& from, const Scene& to) {
   const Leaf& old = from.partition().leaves()[leaf];
   const FieldSample was = old.field->sample(p);
@@ -87,7 +87,7 @@ int leafThere(LeafId leaf, const Vec3& p, const Scene& from, const Scene& to) {
            box.lo == bounds.lo && box.hi == bounds.hi;
   };
   const auto leaves = to.partition().leaves();
-  // Where several look the same from there, the one that kept its number.
+  // If several look the same there, take the one that kept its number.
   if (leaf < leaves.size() && is_same(leaves[leaf])) return leaf;
   const auto at = std::find_if(leaves.begin(), leaves.end(), is_same);
   return at == leaves.end() ? -1 : static_cast<int>(at - leaves.begin());

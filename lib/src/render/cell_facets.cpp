@@ -1,4 +1,4 @@
-// CellWalker's facets: what the walls of its cell are, and how one is crossed.
+// CellWalker's facets: the walls around its cell, and how one is crossed.
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +28,8 @@ void CellWalker::gather(LeafId leaf) noexcept {
     }
     const Vec3 theirs =
         side(other) * unitOr(leaves_[other].field->sample(here_.point).gradient, Vec3(0.0));
-    // The walker goes against `normal`: it changes side of the other leaf too if that faces the
-    // same way.
+    // The walker crosses against `normal`: it changes the side of the other leaf too if that faces
+    // the same way.
     if (glm::dot(normal, theirs) > 1.0 - limits::kParallel) crossing_[crossing_count_++] = other;
   }
 }
@@ -58,8 +58,8 @@ Facet CellWalker::facetAt(LeafId leaf) noexcept {
                               beyond_, std::span(crossing_.data(), crossing_count_), here_.passed,
                               here_.point, in_hole ? &here_.punctures : nullptr);
   if (leaves_[leaf].is_between && facet.beyond == kOutside && here_.region != kOutside) {
-    // Where the walls between three labels meet, rounding sees a cell that is none of theirs. There
-    // is none.
+    // Where the walls between three labels meet, rounding produces a cell that belongs to none of
+    // the labels. No such cell exists, so the facet is closed.
     facet.kind = Facet::Kind::kClosed;
     facet.material = std::max(facet.material, 0);
     facet.opens = false;
@@ -129,7 +129,7 @@ RegionId CellWalker::regionBeyond() const noexcept {
   RegionId best = kOutside;
   for (const RegionId region : holding_) {
     if (!uses_crossed(region)) {
-      best = region;  // the innermost of those that stay as they are
+      best = region;  // the innermost of the layers that do not use a crossed leaf
       break;
     }
   }

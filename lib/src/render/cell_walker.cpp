@@ -58,7 +58,7 @@ void CellWalker::standWith(const CellWalker& other) noexcept {
 }
 
 void CellWalker::resume() noexcept {
-  // So far on that no leaf counts as one that held the point a slide ago.
+  // Far enough on that no leaf counts as one whose jet was asked for a slide ago.
   stay_ += limits::kStaysOfSlide + 1;
   ++state_;
   travel_ = 0.0;
@@ -77,13 +77,13 @@ void CellWalker::beginTick() noexcept {
   here_.punctures.visit(here_.point);
   crossings_left_ = limits::kCrossings;
   evaluations_left_ = limits::kEvaluationsPerTick;
-  // The odometer starts again now and then, so that its rounding stays below every tolerance.
+  // The odometer restarts now and then, so that its rounding stays below every tolerance.
   if (travel_ > 1.0) {
     travel_ = 0.0;
     cold_due_ = 0.0;
   }
-  // One leaf a tick is looked at whether it can have been met or not: a field whose bound is false
-  // may have let the point through, and a hand at rest would leave it there.
+  // One leaf a tick is evaluated even if it cannot have been reached: a field whose Lipschitz bound
+  // is false may have let the point through, and with a hand at rest nothing else would notice.
   if (hot_count_ == 0) return;
   const LeafId leaf = hot_[here_.audited++ % hot_count_];
   if (due_[leaf] > travel_) (void)measure(leaf);
@@ -91,8 +91,8 @@ void CellWalker::beginTick() noexcept {
 
 double CellWalker::measure(LeafId leaf) noexcept {
   const double value = valueHere(leaf);
-  // Beyond a surface that was never crossed (a field that lies about its bound) nothing is out of
-  // reach: the point is to be brought back.
+  // The point may be beyond a surface that was never crossed (if a field's Lipschitz bound is
+  // false). Then the leaf counts as within reach, so that the point is brought back.
   due_[leaf] = travel_ + reachOf(leaf, std::max(0.0, side(leaf) * value));
   return value;
 }
@@ -120,7 +120,8 @@ int CellWalker::metOnWay(std::span<const LeafId> leaves, const Vec3& target, dou
     const double here = side(other) * measure(other);
     if (due_[other] > reach) continue;
     if (!domain_[other].is_everywhere) return other;
-    // It is missed if it is so far from both ends that no point between them can be on it.
+    // The way misses the leaf if both ends are so far from it that no point between them can be on
+    // it.
     const double there = side(other) * leaves_[other].field->value(target);
     const double bound = leaves_[other].lipschitz;
     if (!(there > bound * (touch(other) + rest) &&
@@ -141,8 +142,9 @@ CellWalker::Stop CellWalker::move(const Vec3& target, bool stop_at_crossing) noe
     bool unsure = false;
     bool is_second = false;
     LeafId hit_leaf = 0;
-    // A sweep lets go of a short passage in and out again. Where another leaf stops the motion amid
-    // one, it is a hit after all: so long as there was a hit, all look at where it stops once more.
+    // A sweep ignores a short passage in and out again. If another leaf stops the motion inside
+    // such a passage, it is a hit after all: after every hit, all leaves are swept once more up to
+    // the new stop.
     for (bool again = true; again;) {
       again = false;
       for (std::size_t k = 0; k < hot_count_; ++k) {
@@ -208,7 +210,8 @@ SweepResult CellWalker::sweepLeaf(LeafId leaf, SweepSurface surface, const Vec3&
     return sweep(surface, a, b, start, budget);
   }
   if (!domain.holds_surface) {
-    // Nothing is promised out there; the slopes at both ends tell how steep it may be between them.
+    // The bound does not hold out there; the slopes at both ends estimate how steep the field may
+    // be between them.
     for (const Vec3& end : {a, b}) {
       const double slope = glm::length(surface.field->sample(end).gradient);
       surface.lipschitz = std::max(surface.lipschitz, 2.0 * slope);

@@ -1,7 +1,7 @@
 #pragma once
-/// CellWalker: moves a point through sign cells and never past a closed facet. Where the point is,
-/// on which side of every leaf, in which region and by which ports, is a PlaceState that the walker
-/// works on; all else here only saves evaluations.
+/// CellWalker: moves a point through sign cells and never past a closed facet. The point's
+/// position, its side of every leaf, its region and the ports it passed are a PlaceState, which the
+/// walker changes; all other members only save evaluations.
 
 #include <array>
 #include <cstdint>
@@ -26,22 +26,23 @@ class CellWalker {
     kSpent,    ///< out of budget, at the last point known to be free
   };
 
-  /// `state` outlives the walker. place() or resume() comes first.
+  /// `state` must outlive the walker. Call place() or resume() first.
   CellWalker(const Scene& scene, PlaceState& state);
 
-  /// Puts the point at `p` [m] as if it had always been there: signs and region are taken from `p`.
+  /// Puts the point at `p` [m] as if it had always been there: its sides and region are computed at
+  /// `p`.
   void place(const Vec3& p) noexcept;
-  /// Puts the point where `other`'s is, on the sides where that one is.
+  /// Puts the point where `other`'s point is, with the same sides.
   void standWith(const CellWalker& other) noexcept;
-  /// The state was replaced: goes on from there.
+  /// To be called after the state was replaced: goes on from there.
   void resume() noexcept;
-  /// While sealed, whatever leads out of the region is a wall.
+  /// While sealed, everything that leads out of the region is a wall.
   void seal(bool is_sealed) noexcept {
     is_sealed_ = is_sealed;
     ++state_;
   }
   [[nodiscard]] bool isSealed() const noexcept { return is_sealed_; }
-  /// A new tick: no events yet, fresh budgets.
+  /// Starts a new tick: no events yet, full budgets.
   void beginTick() noexcept;
 
   [[nodiscard]] const Vec3& position() const noexcept { return here_.point; }
@@ -53,19 +54,20 @@ class CellWalker {
   [[nodiscard]] const Leaf& leaf(LeafId id) const noexcept { return leaves_[id]; }
   [[nodiscard]] double tolerance(LeafId leaf) const noexcept { return tolerance_[leaf]; }
 
-  /// The leaf's field at the point; computed once as long as the point stays there.
+  /// The leaf's jet at the point; computed once as long as the point stays there.
   [[nodiscard]] const FieldJet& jetHere(LeafId leaf) noexcept {
     Jet& known = jets_[leaf];
     if (known.stay != stay_) known = {leaves_[leaf].field->jet(here_.point), stay_};
     return known.jet;
   }
 
-  /// Straight to `target` [m], through what is open; stops after a crossing if it is asked to.
+  /// Moves straight to `target` [m], through everything that is open; stops after a crossing if
+  /// `stop_at_crossing`.
   Stop move(const Vec3& target, bool stop_at_crossing) noexcept;
-  /// To `target` [m], along the walls `held`: the solver found that the way keeps to the sides
-  /// `cell` of `near` leaves. Other leaves change side on the way, in order; where that opens one
-  /// of the walls the walker stays, on the far side of that leaf already, and says which this was
-  /// and at about which share of the way; else it arrives.
+  /// Moves to `target` [m] along the walls `held`: the solver found that the way stays on the sides
+  /// `cell` of the `near` leaves. Other leaves change side on the way, in order. If that opens one
+  /// of the walls, the walker stops, already on the far side of that leaf, and reports which leaf
+  /// it was and at about which share of the way; otherwise it arrives.
   struct Slid {
     bool arrived = true;
     LeafId leaf = 0;
@@ -73,20 +75,20 @@ class CellWalker {
   };
   [[nodiscard]] Slid slideTo(const Vec3& target, const NearCell& cell, std::span<const LeafId> near,
                              std::span<const LeafId> held) noexcept;
-  /// To `x` [m], which slideTo() or a solver's way found.
+  /// Moves to `x` [m], which slideTo() or the solver found to be free.
   void jump(const Vec3& x) noexcept { jump(x, glm::length(x - here_.point)); }
-  /// The same, `length` [m] off.
+  /// The same, with the known `length` [m] of the way.
   void jump(const Vec3& x, double length) noexcept {
     travel_ += length;
     here_.point = x;
     ++stay_;
   }
-  /// The jet of `leaf` at the point is `jet`: it need not be asked for again.
+  /// States that the jet of `leaf` at the point is `jet`, so that it is not computed again.
   void know(LeafId leaf, const FieldJet& jet) noexcept { jets_[leaf] = {jet, stay_}; }
   [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }
 
-  /// Calls f(leaf) for each leaf whose surface may come within `radius` [m] of the point, a few of
-  /// its tolerances more, or lies beyond the point.
+  /// Calls f(leaf) for each leaf whose surface may come within `radius` [m], plus a few of its
+  /// tolerances, of the point, or that the point is beyond.
   template <typename F>
   void forWithin(double radius, F&& f) noexcept {
     refresh(radius);
@@ -98,104 +100,105 @@ class CellWalker {
       if (due_[leaf] <= reach) f(leaf);
     }
   }
-  /// A leaf that a way of `length` [m] to `target` may meet, or end less than `rest` [m] away from;
-  /// -1 if there is none but those of `leaves`.
+  /// A leaf that a way of `length` [m] to `target` may meet, or that may be less than `rest` [m]
+  /// from its end; -1 if there is none except those in `leaves`.
   [[nodiscard]] int metOnWay(std::span<const LeafId> leaves, const Vec3& target, double length,
                              double rest) noexcept;
   [[nodiscard]] const Signs& signs() const noexcept { return here_.sides; }
 
-  /// What the facet of `leaf` at the point is, seen from here.
+  /// The facet of `leaf` at the point, seen from the present cell.
   [[nodiscard]] Facet facetAt(LeafId leaf) noexcept;
-  /// True if across both `a` and `b` at once, two leaves that meet at the point, is the point's own
-  /// region again.
+  /// True if crossing both `a` and `b` at once, two leaves that meet at the point, leads to the
+  /// point's own region again.
   [[nodiscard]] bool isSameAcross(LeafId a, LeafId b) noexcept;
-  /// What the facet of the leaves `surface`, which coincide, is at a place [m] near the point that
-  /// lies on the other side of the leaves `turned`: as seen from what is there, if that is the
-  /// point's own region or one that it leads to freely; else one that is not closed. A hole that
-  /// gave way once is not looked for.
+  /// The facet of the coinciding leaves `surface` at a place [m] near the point that lies on the
+  /// other side of the leaves `turned`. It is seen from the region there, if that is the point's
+  /// own region or one that this leads to freely; otherwise the result is a facet that is not
+  /// closed. Holes are not considered.
   [[nodiscard]] Facet facetAside(std::span<const LeafId> turned, std::span<const LeafId> surface,
                                  const Vec3& place) noexcept;
-  /// Goes through the facet of `leaf` where the point stands, whatever it is; a port is recorded,
-  /// and the hole if the facet gave way to a `force` [N].
+  /// Goes through the facet of `leaf` at the point, whatever it is; records the port, and a hole if
+  /// the facet gave way to a `force` [N].
   void cross(LeafId leaf, const Facet& facet, double force = 0.0) noexcept;
   [[nodiscard]] const Punctures& punctures() const noexcept { return here_.punctures; }
 
-  /// False if this tick has crossed as many facets as one may.
+  /// False if this tick has crossed as many facets as is permitted.
   [[nodiscard]] bool mayCross() const noexcept { return crossings_left_ > 0; }
 
   [[nodiscard]] std::uint8_t eventCount() const noexcept { return event_count_; }
   [[nodiscard]] const std::array<PortId, TickResult::kMaxEvents>& events() const noexcept {
     return events_;
   }
-  /// The crossings of ports in this tick, in path order: what events() names.
+  /// The crossings of ports in this tick, in path order: one for each of events().
   [[nodiscard]] std::span<const PortCrossing> crossings() const noexcept {
     return {crossings_.data(), event_count_};
   }
-  /// The regions come into in this tick, in path order.
+  /// The regions that were entered in this tick, in path order.
   [[nodiscard]] std::span<RegionEntry> entries() noexcept {
     return {entries_.data(), entry_count_};
   }
   [[nodiscard]] std::span<const RegionEntry> entries() const noexcept {
     return {entries_.data(), entry_count_};
   }
-  /// The leaf whose facet the region was last entered through; -1 if it was not entered.
+  /// The leaf through whose facet the region was last entered; -1 if it was not entered.
   [[nodiscard]] int mouth() const noexcept { return here_.mouth; }
 
  private:
-  /// [m] So near to a leaf the point counts as touching it.
+  /// [m] Within this distance of a leaf the point counts as touching it.
   [[nodiscard]] double touch(LeafId leaf) const noexcept {
     return limits::kTouch * limits::kOnSurface * leaves_[leaf].feature;
   }
-  /// True if the leaf means nothing here (Leaf::is_between).
+  /// True if the leaf has no meaning here (Leaf::is_between).
   [[nodiscard]] bool isIdle(LeafId leaf) const noexcept {
     const Leaf& own = leaves_[leaf];
     return own.is_between && !(here_.sides.inside(own.ends[0]) && here_.sides.inside(own.ends[1]));
   }
-  /// Goes to the other side of `leaf` within the region.
+  /// Changes to the other side of `leaf` within the region.
   void turn(LeafId leaf) noexcept;
-  /// Changes the side of `leaf`, and of those between it and another.
+  /// Changes the side of `leaf`, and the sides of the walls between it and another layer.
   void flip(LeafId leaf, Signs& signs) const noexcept;
-  /// S of the leaf at the point, and until where that keeps it out of reach.
+  /// S of the leaf at the point; also updates up to which odometer reading it is out of reach.
   double measure(LeafId leaf) noexcept;
-  /// S of the leaf at the point, asked for once as long as the point stays there.
+  /// S of the leaf at the point, computed once as long as the point stays there.
   double valueHere(LeafId leaf) noexcept {
-    // A leaf that held the point a slide ago does so again: its jet will be asked for as well.
+    // A leaf whose jet was asked for a slide ago will be asked for it again: compute the whole jet.
     if (stay_ - jets_[leaf].stay <= limits::kStaysOfSlide) return jetHere(leaf).value;
     Measured& known = measured_[leaf];
     if (known.stay != stay_) known = {leaves_[leaf].field->value(here_.point), stay_};
     return known.value;
   }
-  /// Sees to it that every leaf that a motion of `length` could reach is in the hot list.
+  /// Makes sure that every leaf that a motion of `length` could reach is in the hot list.
   void refresh(double length) noexcept;
-  /// The region that the cell beyond_ lies in; only layers that use a crossed leaf are looked at
+  /// The region that contains the cell beyond_; only layers that use a crossed leaf are evaluated
   /// again.
   [[nodiscard]] RegionId regionBeyond() const noexcept;
   void updateHolding() noexcept;
-  /// The leaves that change side together with `leaf` where they coincide at the point.
+  /// Collects the leaves that coincide with `leaf` at the point, which change side together with
+  /// it.
   void gather(LeafId leaf) noexcept;
   [[nodiscard]] SweepSurface surfaceOf(LeafId leaf) const noexcept;
-  /// [m] the surface of `leaf`, to whose free side the point lies by `value` >= 0, is at least that
-  /// far away.
+  /// [m] A lower bound of the distance to the surface of `leaf`, where the point is on its free
+  /// side with the value `value` >= 0.
   [[nodiscard]] double reachOf(LeafId leaf, double value) const noexcept;
-  /// sweep(), with regard to where the Lipschitz bound of the leaf holds.
+  /// sweep(), restricted to where the Lipschitz bound of the leaf holds.
   [[nodiscard]] SweepResult sweepLeaf(LeafId leaf, SweepSurface surface, const Vec3& a,
                                       const Vec3& b, double start, int budget) const noexcept;
 
   const Scene& scene_;
   std::span<const Leaf> leaves_;
-  /// Where a leaf's Lipschitz bound holds, if not everywhere.
+  /// The box where a leaf's Lipschitz bound holds, if that is not all space.
   struct Domain {
     Box3 box;
     bool is_everywhere = true;
-    bool holds_surface = true;  ///< then there is nothing to meet beyond it
+    bool holds_surface = true;  ///< the surface lies within it: there is nothing to meet beyond
   };
   std::vector<Domain> domain_;
-  std::vector<bool> opens_;        ///< by leaf: part of the extent of a port
-  std::vector<double> tolerance_;  ///< of |S| by leaf: 1e-9 of the feature size, in units of S
+  std::vector<bool> opens_;        ///< by leaf: it is part of the extent of a port
+  std::vector<double> tolerance_;  ///< on |S|, by leaf: 1e-9 of the feature size, in units of S
   PlaceState& here_;
   Signs beyond_;                   ///< scratch of facetAt()
   Signs aside_;                    ///< scratch of facetAside()
-  std::vector<RegionId> holding_;  ///< layers that hold the cell, innermost (last) first
+  std::vector<RegionId> holding_;  ///< layers that contain the cell, innermost (last) first
   bool is_sealed_ = false;
   LeafId blocked_by_ = 0;
   std::uint8_t event_count_ = 0;
@@ -207,8 +210,8 @@ class CellWalker {
   int evaluations_left_ = 0;
 
   // A leaf whose |S| was measured cannot be met before the point has traveled |S| / L: `due_` is
-  // the odometer reading at which it could. Hot are the leaves whose boxes came near the point when
-  // the list was made; all others are further away than the point can go before cold_due_.
+  // the odometer reading at which it could. The hot leaves are those whose boxes were near the
+  // point when the list was made; all others are out of reach until the odometer reads cold_due_.
   double travel_ = 0.0;
   std::vector<double> due_;
   std::vector<LeafId> hot_;
@@ -226,10 +229,10 @@ class CellWalker {
   };
   std::vector<Measured> measured_;                  ///< by leaf
   std::vector<Jet> jets_;                           ///< by leaf
-  std::uint64_t stay_ = 1 + limits::kStaysOfSlide;  ///< counts the places where the point was
+  std::uint64_t stay_ = 1 + limits::kStaysOfSlide;  ///< counts the places where the point has been
 
-  /// A facet looked up in the present state, valid while nothing was crossed; one that varies from
-  /// place to place, as long as the point stays where it was.
+  /// A facet that was looked up in the present state, valid until a crossing; if it varies from
+  /// place to place, valid only while the point stays where it was.
   struct Known {
     Facet facet;
     std::uint32_t state = 0;
@@ -237,7 +240,7 @@ class CellWalker {
   };
   std::vector<Known> known_;  ///< by leaf, where no other leaf coincides
   std::uint32_t state_ = 1;   ///< counts crossings and placements
-  /// The last answer of isSameAcross(), valid while nothing was crossed.
+  /// The last answer of isSameAcross(), valid until a crossing.
   struct KnownPair {
     LeafId a = 0;
     LeafId b = 0;

@@ -3,7 +3,7 @@
 
 #include "feel.h"
 
-// What the hand feels of what is inside a region.
+// The force of the contents on the hand.
 
 namespace palpate {
 
@@ -15,15 +15,15 @@ double Feel::contentShare() noexcept {
   const double slope = s.in_band ? glm::length(s.gradient) : 1.0;
   const double behind = slope > 0.0 ? std::fabs(s.value) / slope : length;
   if (behind >= length) return 1.0;
-  // Only an opening is hovered in: behind a valve that has shut, and along the wall beside the
-  // mouth, the content is there in full.
+  // The content fades in only behind a mouth that is open: behind a valve that has shut, and along
+  // the wall beside the mouth, it is felt in full.
   const Facet::Kind kind = walker_.facetAt(mouth).kind;
   const bool is_open = kind == Facet::Kind::kOpen || kind == Facet::Kind::kAbsent;
   return is_open ? behind / length : 1.0;
 }
 
-/// The share of the content that is felt changes no faster than the hand moves, wherever an opening
-/// ends.
+/// The share of the content that is felt changes no faster than the hand moves, also where the
+/// opening ends.
 void Feel::fadeContent(const Vec3& hip) noexcept {
   const double share = contentShare();
   FadeState& fade = state_.fade;

@@ -4,32 +4,35 @@
 
 #include "feel.h"
 
-// What the hand feels of the walls that hold the proxy.
+// The force of the walls that hold the proxy.
 
 namespace palpate {
 
 namespace {
 
-/// Of the hand's way: where the proxy goes farther in a tick, it does not follow the hand but
-/// leaves the place that held it.
+/// In units of the hand's way in the tick: if the proxy moves farther than this, it does not follow
+/// the hand but jumps away from the place that held it.
 constexpr double kLeap = 4.0;
-/// Where the proxy is about to leave a bulge it runs ahead of the hand, and the planes of its walls
-/// turn with it. By that they push the hand by at most this share [-] of what they push anyway.
-/// What is left out of it is counted as a source.
+/// Shortly before the proxy leaves a bulge it runs ahead of the hand, and the planes of its walls
+/// turn with it. The force of this turning is limited to this share [-] of the force of the
+/// springs. The part that is cut off is counted as a source.
 constexpr double kMostTurn = 0.5;
 
-/// What relaxes alike is handed on from wall to wall: the tissue goes on behind them.
+/// A branch with the same parameters is handed on from wall to wall, since the tissue continues
+/// behind them.
 bool relaxAlike(const Maxwell& a, const Maxwell& b) noexcept {
   return a.time == b.time && a.stiffness == b.stiffness;
 }
 
 }  // namespace
 
-/// The Maxwell branch of the wall that is pressed most: stretched by how deep the hand presses now.
+/// The Maxwell branch of the wall that is pressed most: stretched by the depth that the hand
+/// presses it now.
 void Feel::relax(const ContactSet& c, const HipState& hip) noexcept {
   RelaxationState& branch = state_.relaxation;
   if (c.count == 0) {
-    // On its way to the hand, out of budget, the proxy is held by what it was held by.
+    // If the proxy ran out of budget on its way to the hand, the walls of the last tick still hold
+    // it.
     if (walker_.position() == hip.position) branch = {};
     return;
   }
@@ -45,8 +48,9 @@ void Feel::relax(const ContactSet& c, const HipState& hip) noexcept {
       branch.region == walker_.region() && branch.material >= 0 &&
       relaxAlike(scene_.materials()[static_cast<std::size_t>(branch.material)].maxwell,
                  wall.maxwell);
-  // Pressed from free space it is stretched by all of the depth. A wall that the proxy was handed
-  // on to was not pressed by the hand's motion of this tick: it is taken as relaxed.
+  // If the wall is pressed from free space, the branch is stretched by the whole depth. If the
+  // proxy was handed on from another wall, the hand's motion of this tick did not press this wall:
+  // it counts as relaxed.
   const double before = goes_on || branch.material < 0 ? branch.depth : depth;
   if (!goes_on) branch.branch.reset();
   branch.material = facet.material;
@@ -55,12 +59,12 @@ void Feel::relax(const ContactSet& c, const HipState& hip) noexcept {
   if (!has_branch) return;
   branch.branch.step(depth - before, hip.dt, wall.maxwell.time);
   const double stiffness = wall.maxwell.stiffness.at(walker_.position());
-  // It slackens rather than to pull the wall's own spring below zero.
+  // The branch slackens rather than make the force of the wall negative.
   if (stiffness > 0.0) branch.branch.keepAbove(-springOf(c.wall[most]).force(depth) / stiffness);
 }
 
-/// Walls of one kind: the whole way from the hand to the proxy stretches one spring, by whatever
-/// walls that is held.
+/// Walls of one kind: one spring is stretched by the whole way from the hand to the proxy,
+/// whichever walls hold the proxy.
 Feel::SpringForce Feel::evenForce(const ContactSet& c, const Vec3& apart) noexcept {
   SpringForce out;
   Vec3 by_press(0.0);
@@ -91,15 +95,15 @@ Feel::SpringForce Feel::evenForce(const ContactSet& c, const Vec3& apart) noexce
     total += each.held.multiplier;
   }
   out.stiffness /= total;
-  // What the walls do not hold of the displacement: by friction, or because the proxy is not there
-  // yet.
+  // Subtract the part of the displacement that is not held by the walls, but by friction, or
+  // because the proxy has not arrived yet.
   out.held = out.stiffness * c.left - by_press;
   return out;
 }
 
 /// Walls of several kinds. Where friction holds the proxy, the walls are pressed as if the whole
-/// displacement were towards them; what of the force was along them is its share along the walls.
-/// So what is stored depends on the displacement alone, as long as the proxy stays where it is.
+/// displacement were perpendicular to them; the force along the walls is the corresponding share.
+/// So the stored energy depends on the displacement alone, as long as the proxy stays where it is.
 Feel::SpringForce Feel::mixedForce(const ContactSet& c, const Vec3& apart,
                                    const Vec3& outward) noexcept {
   const Vec3 x = walker_.position() + c.snug;
@@ -138,13 +142,14 @@ double Feel::stored(const ContactSet& c, const Vec3& hip) noexcept {
   if (walls_.differ(c, glm::length(press))) {
     return seriesForce(x, hip, walls_.stop(), walls_).energy;
   }
-  // Not the spring alone: texture and shading are part of what is stored.
+  // Not the energy of the spring alone: texture and shading contribute to it.
   return walls_.shared(c.wall[0], walker_.position()).energy(c.load());
 }
 
-/// A wall behind a softer one is felt from where they meet on: where the proxy comes to their edge,
-/// at once, as deep as the hand is in it by then. What it stores more does not come from the hand.
-/// True if there was such a wall.
+/// A wall behind a softer one is felt from the edge where the two meet. When the proxy comes to
+/// that edge, the wall begins to push all at once, with the depth that the hand has by then. The
+/// energy that this adds does not come from the hand, and is counted as a source. Returns true if
+/// there was such a wall.
 bool Feel::countSudden(const ContactSet& c, const Vec3& hip) noexcept {
   SourceState& source = state_.source;
   const FeltLeaves now = walls_.leaves();
@@ -164,11 +169,11 @@ bool Feel::countSudden(const ContactSet& c, const Vec3& hip) noexcept {
   return true;
 }
 
-/// Where friction lets go, or the place that held the proxy is one no longer, the proxy leaps:
-/// maybe to stiffer walls, in which the hand is as deep as it is by then. What these store beyond
-/// what was stored, and what the hand did in this tick, does not come from the hand, and is counted
-/// but for the `counted` [J] of it that already is. Between walls of one stiffness a leap only
-/// loses, since it brings the proxy closer.
+/// When friction lets go, or the place that held the proxy ceases to be a minimum, the proxy jumps,
+/// perhaps to stiffer walls, into which the hand is already deep. The energy stored there, beyond
+/// the energy stored before and the work of the hand in this tick, does not come from the hand. It
+/// is counted as a source, except the part `counted` [J] that already is. Between walls of equal
+/// stiffness a jump only loses energy, since it brings the proxy closer.
 void Feel::countLeap(const ContactSet& c, const HipState& hip, const Elastic& elastic,
                      double counted) noexcept {
   StoredState& last = state_.source.stored;
@@ -199,8 +204,8 @@ void Feel::countLeap(const ContactSet& c, const HipState& hip, const Elastic& el
   last = now;
 }
 
-/// What the walls push with: the springs between the proxy and the hand. Whatever the walls were
-/// found to be, for one stiffness it is that times the way from the hand to the proxy.
+/// The force of the springs between the proxy and the hand. If all walls have one stiffness, it is
+/// that stiffness times the way from the hand to the proxy, whichever walls were found.
 Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   relax(c, hip);
   const Vec3& x = walker_.position();
@@ -215,7 +220,7 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
     return Vec3(0.0);
   }
   if (c.count == 0) {
-    // On its way, out of budget: it is drawn on by the wall that it was held by.
+    // The proxy ran out of budget on its way: the wall that held it last still pulls.
     if (state_.pressed < 0) return Vec3(0.0);
     return scene_.materials()[static_cast<std::size_t>(state_.pressed)].stiffness.at(x) * apart;
   }
@@ -227,7 +232,7 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
     total += each.held.multiplier;
   }
   const Vec3 n = unitOr(outward, Vec3(0.0));
-  // From the walls' surfaces, off which the proxy stands a little.
+  // Measured from the walls' surfaces; the proxy stands off them a little.
   const Vec3 press = apart + c.snug;
   walls_.press(press);
   bool differ = walls_.differ(c, glm::length(press));
@@ -242,8 +247,8 @@ Vec3 Feel::walls(const ContactSet& c, const HipState& hip) noexcept {
   damping /= total;
   Vec3 elastic = springs.force - springs.held;
   Vec3 relaxing(0.0);
-  // What parameters that vary add: the energy of the springs as they are, by the place of the
-  // proxy, is handed on to the hand.
+  // Where parameters vary, the springs' energy also changes with the proxy's place; the chain rule
+  // carries that gradient over to the hand.
   Vec3 rise = springs.rise;  // [N]
   bool varies = springs.varies;
   if (state_.relaxation.branch.stretch() != 0.0) {

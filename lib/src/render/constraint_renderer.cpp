@@ -37,8 +37,8 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
   out.contact = state_.pressed >= 0;
   out.force += contentForce(hip);
   if (has_given_way_) {
-    // A wall that lets go throws the tip on: against stiffer walls, and into tissue that sticks to
-    // the shaft.
+    // When a wall ruptures it throws the tip on, against stiffer walls and into tissue that sticks
+    // to the shaft. The energy gained is counted as a source.
     state_.source.work += std::max(0.0, in_walls + state_.needle.stored() - in_tissue - released_);
   }
   return out;
@@ -47,7 +47,8 @@ TickResult ConstraintRenderer::step(const HipState& hip) noexcept {
 void ConstraintRenderer::start(const Vec3& hip) noexcept {
   walker_.place(startPoint(*scene_, walker_, hip));
   if (walker_.position() == hip) return;
-  // From there the nearest point is found as any other: with all that leads out of the region shut.
+  // From there the nearest point is found as in any tick, but with everything that leads out of the
+  // region shut.
   walker_.seal(true);
   walker_.beginTick();
   (void)solver_.track(hip, state_.friction, *this);
@@ -60,7 +61,7 @@ bool ConstraintRenderer::open(const ContactSet& contact) noexcept {
   for (const WallContact& each : contact.walls()) {
     if (!each.facet.opens) continue;
     const double elastic = feel_.springOf(each).force(each.held.multiplier);
-    // In a hole nothing is torn.
+    // Nothing is torn in a hole, so the speed does not matter.
     const double share =
         each.facet.in_hole
             ? 1.0
@@ -85,8 +86,8 @@ Vec3 ConstraintRenderer::needleForce(const HipState& hip) noexcept {
   const Insertion::Force force =
       state_.needle.step(contents_, {walker_.position(), hip.position, hip.velocity,
                                      walker_.region(), walker_.entries(), hard.walls()});
-  // What is stored sideways is by the place of the tip, which on a wall goes along with the hand
-  // beside it only.
+  // The sideways energy depends on the place of the tip, which on a wall follows the hand only
+  // along the wall.
   return force.tip + (held.count > 0 ? gradientByHand(force.lateral, held.walls()) : force.lateral);
 }
 
@@ -96,7 +97,7 @@ Vec3 ConstraintRenderer::contentForce(const HipState& hip) noexcept {
   Vec3 force = dragForce(region, x, hip.velocity, state_.fade.share);
   if (contents_.hasLattice(region)) {
     const Vec3 push = latticeForce(region, x);
-    // On a wall the tip goes along with the hand's motion beside it only.
+    // On a wall the tip follows the hand's motion only along the wall.
     force +=
         solver_.contact().count > 0 ? gradientByHand(push, solver_.contact().held().walls()) : push;
   }

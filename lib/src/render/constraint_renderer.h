@@ -1,6 +1,6 @@
 #pragma once
-/// The `constraint` renderer: a solver brings the proxy to where |x - P|^2 is smallest in its
-/// region, along a connected path; a feel makes of that the force on the hand.
+/// The `constraint` renderer: ProxySolver brings the proxy to where |x - P|^2 is smallest in its
+/// region, along a connected path; Feel turns the result into the force on the hand.
 
 #include "cell_walker.h"
 #include "feel.h"
@@ -32,11 +32,11 @@ class ConstraintRenderer final : public RendererBase, private WallOpener {
   ProxySolver solver_;
   Feel feel_;
 
-  // Of this tick.
+  // Values of this tick.
   Vec3 hand_{0.0, 0.0, 0.0};      ///< [m]
   Vec3 velocity_{0.0, 0.0, 0.0};  ///< [m/s] of the hand
-  bool has_given_way_ = false;    ///< a wall did
-  double released_ = 0.0;         ///< [J] that was stored in the first one that did
+  bool has_given_way_ = false;    ///< a wall gave way
+  double released_ = 0.0;         ///< [J] energy that was stored in the first wall that gave way
 };
 
 }  // namespace palpate

@@ -8,8 +8,9 @@
 namespace palpate {
 namespace {
 
-/// Long enough that hovering in a mouth does not chatter, short against all that is in there: a
-/// quarter of a millimeter in a bowl of 40 mm that is cut at 15 mm, whose largest ball has 55 mm.
+/// Share of the thickness. It is large enough that hovering in a mouth does not chatter, and small
+/// compared with the region: a quarter of a millimeter in a bowl of 40 mm radius that is cut at 15
+/// mm, in which the largest ball has a diameter of 55 mm.
 constexpr double kShare = 1.0 / 220.0;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// How far behind an opening a content is felt in full.
+/// The distance behind an opening at which a content is felt in full.
 
 #include <vector>
 
@@ -7,19 +7,19 @@
 
 namespace palpate {
 
-/// Made when a renderer is; then real-time safe.
+/// Made together with a renderer; real-time safe afterwards.
 class ContentFade {
  public:
   explicit ContentFade(const Scene& scene);
 
-  /// [m] Behind the surface of `mouth` in `region`: a share of how thick the region is, or of the
-  /// surface's own feature size where the region has no end. So a scene in micrometers is the same
-  /// scene, and a film is felt as well as a bowl.
+  /// [m] Measured behind the surface of `mouth` in `region`: a share of the thickness of the
+  /// region, or of the surface's own feature size where the region has no end. So it scales with
+  /// the scene, and the content of a thin film is felt as well as that of a bowl.
   [[nodiscard]] double length(RegionId region, LeafId mouth) const noexcept;
 
  private:
   const Scene& scene_;
-  std::vector<double> thickness_;  ///< [m] by region: of the largest ball seen in it
+  std::vector<double> thickness_;  ///< [m] by region: diameter of the largest ball found in it
 };
 
 }  // namespace palpate

@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 constexpr double kWidestWay = 0.5e-3;  // [m]
-/// Of the thickest tissue.
+/// Share of the thickness of the thickest tissue.
 constexpr double kWayShare = 0.125;
 
 bool isFrom0(const std::optional<double>& value, double most = kInfinity) noexcept {
@@ -26,7 +26,7 @@ Contents::Contents(const Scene& scene) : regions_(scene.regions().size()) {
     }
     look(regions_[i]);
   }
-  // A content with a stiffness that does not hold a needle yet may hold one after a change.
+  // A content with a stiffness that does not hold a needle yet may hold one after setContent().
   double thickest = 0.0;
   for (std::size_t i = 0; i < regions_.size() && kWayShare * thickest < kWidestWay; ++i) {
     const Material* own = regions_[i].material;

@@ -11,11 +11,11 @@ namespace palpate {
 namespace {
 
 constexpr int kLines = 192;
-constexpr int kSteps = 256;  // of a line
+constexpr int kSteps = 256;  // samples along a line
 constexpr int kHalvings = 24;
-/// A step over which the map changes by a larger share of itself is halved.
+/// A step over which the relative change of the map is larger than this is halved.
 constexpr double kMuch = 0.05;
-/// Without bounds, this many units of the scene to each side.
+/// If there are no bounds, the lines extend this many units of the scene to each side.
 constexpr double kUnits = 100.0;
 constexpr int kDoublings = 5;
 
@@ -25,7 +25,7 @@ struct Steepest {
   Vec3 way{0.0, 0.0, 0.0};
 };
 
-/// The step from `a` to `b`, halved to where most of its change is.
+/// Looks at the step from `a` to `b`, halving it towards the part with most of its change.
 void lookAt(const MaterialMap& map, Vec3 a, Vec3 b, Steepest& out) {
   double from = map.value(a);
   double to = map.value(b);
@@ -55,7 +55,7 @@ Steepest steepestOf(const MaterialMap& map, const Box3& box) {
     Vec3 from = within();
     Vec3 to = within();
     if (line % 4 != 3) {
-      // Along an axis, from side to side.
+      // A line along an axis, from side to side.
       const int axis = line % 4;
       to = from;
       from[axis] = box.lo[axis];

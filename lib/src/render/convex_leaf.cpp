@@ -6,10 +6,12 @@ namespace palpate {
 namespace {
 
 constexpr int kPlaces = 400;
-/// Of what a field bends by: less than that the other way is rounding.
+/// Relative to the curvature of a field: a curvature of the other sign that is smaller than this is
+/// rounding.
 constexpr double kRounding = 1e-7;
 
-/// In [0, 1): van der Corput's sequence, whose places are spread evenly (Halton 1960).
+/// Element `index` of van der Corput's sequence in [0, 1), whose elements are spread evenly (Halton
+/// 1960).
 double spread(int index, int base) {
   double out = 0.0;
   double digit = 1.0;
@@ -20,7 +22,7 @@ double spread(int index, int base) {
   return out;
 }
 
-/// Sylvester's criterion, all principal minors.
+/// Positive semidefinite by Sylvester's criterion: no principal minor is negative.
 bool isNowhereNegative(const Mat3& m) {
   const double size = std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
   const double least = -kRounding * size;

@@ -1,5 +1,6 @@
 #pragma once
-/// Feel: which force the walls and the contents make of where the solver brought the proxy.
+/// Feel: turns the place to which the solver brought the proxy into the force of the walls and
+/// contents.
 
 #include "content_fade.h"
 #include "felt_walls.h"
@@ -9,7 +10,7 @@
 
 namespace palpate {
 
-/// Belongs to one renderer, whose state and walker outlive it. Real-time safe but for the
+/// Belongs to one renderer, whose state and walker must outlive it. Real-time safe except for the
 /// constructor.
 class Feel {
  public:
@@ -18,9 +19,10 @@ class Feel {
 
   /// The force [N] of the walls that hold the proxy.
   [[nodiscard]] Vec3 walls(const ContactSet& contact, const HipState& hip) noexcept;
-  /// [J] What the springs of the walls that hold the proxy store against the hand at `hip` [m].
+  /// [J] The energy that the springs of the walls that hold the proxy would store with the hand at
+  /// `hip` [m].
   [[nodiscard]] double stored(const ContactSet& contact, const Vec3& hip) noexcept;
-  /// Which share of the content is felt at the proxy now; once a tick.
+  /// Updates the share of the content that is felt at the proxy; to be called once a tick.
   void fadeContent(const Vec3& hip) noexcept;
   /// The spring of a held wall at the proxy.
   [[nodiscard]] WallSpring springOf(const WallContact& contact) noexcept {
@@ -31,22 +33,22 @@ class Feel {
   }
 
  private:
-  /// What the springs of walls come to.
+  /// Result of the springs of the walls.
   struct SpringForce {
     double energy = 0.0;        ///< [J]
     Vec3 force{0.0, 0.0, 0.0};  ///< [N]
-    Vec3 held{0.0, 0.0, 0.0};   ///< [N] to be taken off it: of what the walls do not hold
-    double stiffness = 0.0;     ///< [N/m] against what friction holds
-    Vec3 rise{0.0, 0.0, 0.0};   ///< [N] by the place of the proxy, what is stored changes by
-    bool varies = false;        ///< the rise may be other than zero, and is not in the force
-    Vec3 turn{0.0, 0.0, 0.0};   ///< [N] of it, by the planes that turn with the proxy
+    Vec3 held{0.0, 0.0, 0.0};   ///< [N] to be subtracted: the part that the walls do not hold
+    double stiffness = 0.0;     ///< [N/m] against a displacement that friction holds
+    Vec3 rise{0.0, 0.0, 0.0};   ///< [N] gradient of the stored energy by the place of the proxy
+    bool varies = false;        ///< `rise` may be nonzero, and is not in the force
+    Vec3 turn{0.0, 0.0, 0.0};  ///< [N] part of that gradient due to planes that turn with the proxy
   };
 
-  /// What the springs store and push with, all in all.
+  /// The energy and the total force of the springs.
   struct Elastic {
     double energy = 0.0;        ///< [J]
     Vec3 push{0.0, 0.0, 0.0};   ///< [N]
-    bool is_held_back = false;  ///< the push is less than what the energy falls by
+    bool is_held_back = false;  ///< the force is smaller than the gradient of the energy
   };
 
   void relax(const ContactSet& contact, const HipState& hip) noexcept;

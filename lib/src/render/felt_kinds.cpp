@@ -6,14 +6,15 @@
 #include "palpate/interior/port_machine.h"
 #include "palpate/render/contrast.h"
 
-// Which walls of a scene feel the same, found when a renderer is made.
+// Finds which walls of a scene feel the same, when a renderer is made.
 
 namespace palpate {
 namespace {
 
-/// The stop over the stiffest law: so near that walls of about one stiffness feel like one.
+/// The stop's stiffness over that of the stiffest law: low enough that walls of about one stiffness
+/// feel like one.
 constexpr double kStop = 1.05;
-/// A law counts only up to this many times the stiffest straight spring.
+/// The tangent of a law is limited to this many times the stiffest linear spring.
 constexpr double kStiffest = 1e3;
 
 double tangentOf(const WallSpring& spring, double depth) noexcept {
@@ -83,8 +84,9 @@ bool FeltWalls::mayDiffer(RegionId region) const {
   return out;
 }
 
-/// A wall that two regions share, with a way between the two beside it, may have one material seen
-/// from the one and another one seen from the other: what is before a seam changes as well.
+/// Two regions may share a neighbor, with an open way between the two beside its wall. That wall
+/// may have one material seen from one region and another seen from the other: then walls differ
+/// across the seam.
 void FeltWalls::sortSeams() {
   const std::size_t regions = scene_.regions().size();
   const Passages& passages = scene_.passages();
@@ -164,7 +166,7 @@ void FeltWalls::sortKinds() {
   contrast_.assign(materials.size(), kInfinity);
   for (const Contrast& each : contrastsOf(scene_)) {
     const auto i = static_cast<std::size_t>(each.material);
-    // What lies beneath is looked at over a patch of its own.
+    // A composite is probed over a patch of its own.
     if (used[i] && !(materials[i].composite.radius > 0.0)) contrast_[i] = each.length;
   }
   is_plain_.assign(materials.size(), false);

@@ -4,7 +4,7 @@
 #include "felt_walls.h"
 #include "palpate/contact/contact_patch.h"
 
-// What a wall pushes with at one place, alone and beside others on the same surface.
+// The force law of a wall at one place, alone and together with others on the same surface.
 
 namespace palpate {
 
@@ -42,7 +42,7 @@ SharedWall FeltWalls::felt(LeafId leaf, const Facet& facet, const HeldWall& held
     out.height_rise = bumps.gradient;
   }
   if (wall.shading > 0.0) {
-    // Over the whole solid that the wall bounds: its facets may be leaves.
+    // Smooth the whole solid that the wall bounds, not the leaf, which may be one of its facets.
     const RegionId here = walker_.region();
     const Field* solid = held.field;
     double side = held.side;
@@ -63,19 +63,19 @@ SharedWall FeltWalls::felt(LeafId leaf, const Facet& facet, const HeldWall& held
   return out;
 }
 
-/// What rises by `rise` a meter over a wall, a meter of the proxy's: the proxy's foot goes with it,
-/// but stays on the wall.
+/// Turns `rise`, a gradient over the place on a wall, into the gradient by the proxy's place: the
+/// proxy's foot point moves with the proxy, but stays on the wall.
 Vec3 FeltWalls::byProxy(const HeldWall& held, const Vec3& rise) const noexcept {
   if (rise == Vec3(0.0)) return rise;
   const Vec3 along = rise - glm::dot(rise, held.normal) * held.normal;
   const double slope = glm::length(held.jet.gradient);
   if (!(slope > 0.0)) return along;
-  // The derivative of footOn(): the normal turns as the proxy goes.
+  // The derivative of footOn(): the normal turns as the proxy moves.
   const Vec3 turn = (held.jet.value / (slope * slope)) * (held.jet.hessian * along);
   return along - (turn - glm::dot(turn, held.normal) * held.normal);
 }
 
-/// Walls of one kind feel the same but for what lies behind them.
+/// Walls of one kind feel the same unless the regions behind them matter and differ.
 bool FeltWalls::feelsAlike(const Facet& a, const Facet& b) const noexcept {
   const auto kind = [&](const Facet& facet) {
     return kind_[static_cast<std::size_t>(facet.material)];
@@ -111,7 +111,7 @@ SharedWalls FeltWalls::shared(LeafId leaf, const Facet& facet, const HeldWall& h
   return out;
 }
 
-/// Where the proxy would be pressed against a wall: it need not hold the proxy now.
+/// The point of the wall that the proxy would press: the wall need not hold the proxy now.
 Vec3 FeltWalls::footOn(const HeldWall& held) const noexcept {
   const double slope = glm::length(held.jet.gradient);
   const double off = slope > 0.0 ? held.side * held.jet.value / slope : 0.0;
@@ -123,7 +123,7 @@ void FeltWalls::setLaw(Group& group, SmoothedField& smoothed) noexcept {
   group.law = shared(wall.leaf, wall.facet, wall.held, footOn(wall.held), smoothed);
 }
 
-/// Whether other kinds of walls lie beside this one, within the patch of the press.
+/// Whether walls of other kinds lie beside this one, within the patch of the press.
 bool FeltWalls::isShared(const Near& wall) noexcept {
   const std::span<const Seams::Part> parts =
       seams_.at(wall.leaf, wall.held, footOn(wall.held), press_);

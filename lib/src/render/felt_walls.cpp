@@ -10,20 +10,21 @@
 namespace palpate {
 namespace {
 
-/// Of how deep the press is: walls that meet no nearer than this are felt one at a time.
+/// In units of the depth of the press: walls that meet farther away than this are felt one at a
+/// time.
 constexpr double kFarthestMeeting = 30.0;
 constexpr int kMeetingSteps = 12;
-/// Of the farthest: so near to both walls is where they meet. And the least square of the sine of
-/// their angle.
+/// The first is relative to that farthest distance: within it a point is on both walls. The second
+/// is the least square of the sine of the angle between them.
 constexpr double kMet = 1e-6;
 constexpr double kFlattest = 1e-3;
-/// Of a way to a wall, and of coordinates: what of it is rounding.
+/// Relative to the way to a wall and to the coordinates: rounding.
 constexpr double kNearest = 1e-12;
-/// How deep a press is, over a wall's feature size: up to here the wall is felt as it bends, and
-/// from there on as a plane.
+/// Depth of the press over a wall's feature size: up to kBentBelow the wall is felt with its
+/// curvature, above kFlatAbove as a plane.
 constexpr double kBentBelow = 0.25;
 constexpr double kFlatAbove = 1.0;
-/// Of the leaves between the proxy and where two walls meet, those that are looked through.
+/// The most leaves between the proxy and the meeting of two walls that are taken into account.
 constexpr std::size_t kMostTurned = 24;
 
 bool holds(const ContactSet& contact, LeafId leaf) noexcept {
@@ -32,8 +33,9 @@ bool holds(const ContactSet& contact, LeafId leaf) noexcept {
                      [&](const WallContact& each) { return each.leaf == leaf; });
 }
 
-/// Where two walls meet within `farthest` [m] of `x`: a wall that lies behind another one, as a
-/// bone does under skin, does not bound where the proxy may be. Newton's steps towards both.
+/// The point within `farthest` [m] of `x` where two walls meet, by Newton's steps towards both. A
+/// wall that lies wholly behind another one, as a bone does under skin, does not bound the proxy's
+/// region.
 std::optional<Vec3> meetingOf(const Vec3& x, const HeldWall& a, const HeldWall& b,
                               double farthest) noexcept {
   FieldSample at_a{a.jet.value, a.jet.gradient, a.jet.in_band};
@@ -59,8 +61,9 @@ std::optional<Vec3> meetingOf(const Vec3& x, const HeldWall& a, const HeldWall& 
   return std::nullopt;
 }
 
-/// At a tip any normal may be found, the one to `place` [m] too: then the point is not the nearest
-/// one. Within a wall whose field is the distance the field says so.
+/// At a tip the projection may find any normal, even one that points to `place` [m]: then the point
+/// found is not the nearest one. Inside a wall whose field is an exact distance the field's value
+/// reveals this.
 bool isNearest(const LocalProjection& on, const Vec3& place) noexcept {
   if (on.count != 1) return true;
   const HeldWall& held = on.held[0];
@@ -72,13 +75,14 @@ bool isNearest(const LocalProjection& on, const Vec3& place) noexcept {
 
 }  // namespace
 
-/// Whether the proxy's region may end at this facet. Whether it does, only the place tells: what
-/// the scene knows of regions that touch was found by looking here and there.
+/// Whether the proxy's region may end at this facet. Only the place itself decides whether it does:
+/// which regions touch in the scene was found by sampling.
 bool FeltWalls::isWall(const Facet& facet) noexcept {
   return facet.isClosed() && facet.material >= 0;
 }
 
-/// Walls of one material differ by what lies behind them, or by the solid whose shape is smoothed.
+/// Distinguishes walls of one material by what lies behind them, or by the solid whose shape is
+/// smoothed.
 int FeltWalls::ownOf(const Near& wall) const noexcept {
   const Material& own = material(wall.facet);
   const RegionId here = walker_.region();
@@ -87,7 +91,7 @@ int FeltWalls::ownOf(const Near& wall) const noexcept {
   return own.shading > 0.0 ? -1 - std::max(here, wall.facet.beyond) : 0;
 }
 
-/// Whether a wall on the surface that was asked for last is in a group.
+/// Whether a group already has a wall on the surface that was looked up last.
 bool FeltWalls::isFeltAlready() const noexcept {
   for (std::size_t g = 0; g < count_; ++g) {
     for (std::size_t i = 0; i < group_[g].count; ++i) {
@@ -144,9 +148,9 @@ bool FeltWalls::differ(const ContactSet& contact, double reach) noexcept {
   return true;
 }
 
-/// Whether a wall bounds the region, or one that it leads to freely, at the place where it meets
-/// that of the leaf `beside`. It does not where a third layer covers both, as skin covers a bone
-/// and a ridge that crosses it.
+/// Whether a wall bounds the region, or one that this leads to freely, at the place where it meets
+/// the wall of the leaf `beside`. It does not where a third layer covers both, as skin covers a
+/// bone and a ridge that crosses it.
 bool FeltWalls::isWallAt(const Near& wall, LeafId beside, const Vec3& place) noexcept {
   std::array<LeafId, kMostTurned> turned{};
   std::size_t count = 0;
@@ -169,22 +173,23 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
   has_seam_ = false;
   seams_.clear();
   if (!may_differ_[walker_.region()]) return;
-  // Most often there is nothing but what holds the proxy, and what lies beneath that.
+  // Usually nothing is near except the walls that hold the proxy, and what lies beneath them.
   bool is_alone = true;
   walker_.forWithin(reach, [&](LeafId id) {
     if (!holds(contact, id)) is_alone = false;
   });
   if (!is_alone || contact.count > 1) {
-    // One kind of walls alone would let the hand come no farther from the proxy than it is: so far
-    // a seam may matter.
+    // With walls of one kind the hand cannot be farther from the proxy than it is: a seam may
+    // matter up to this distance.
     walker_.forWithin(2.0 * reach, [&](LeafId id) { seams_.add(id); });
   }
   for (const WallContact& each : contact.walls()) add({each.leaf, each.facet, each.held});
   if (is_alone) return;
-  // By the sides that the walker knows: the proxy may be a little beyond what counts as on a wall.
+  // Trust the sides that the walker knows: the proxy may be slightly beyond a wall.
   if (!near_.look(reach, true)) return;
   const std::span<const NearWall> walls = near_.walls();
-  // The cell that the walls which hold the proxy bound: what else bounds it is felt as well.
+  // In the cell that is bounded by the walls that hold the proxy, all other bounding walls are felt
+  // too.
   for (const NearCell& cell : near_.cells()) {
     const auto bounds = [&](const WallContact& each) {
       for (std::size_t i = 0; i < walls.size(); ++i) {
@@ -207,7 +212,7 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
       near.held.side = inside ? -1.0 : 1.0;
       near.held.jet = walker_.jetHere(leaf);
       near.held.normal = inside ? -walls[i].normal : walls[i].normal;
-      // Of leaves in one plane the walker sees that they are one wall only where it touches them.
+      // The walker recognizes coplanar leaves as one wall only where it touches them.
       near.facet = seams_.isAlone(leaf, near.held)
                        ? walker_.facetAt(leaf)
                        : seams_.facetOf(leaf, near.held, footOn(near.held));
@@ -225,9 +230,9 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
   }
 }
 
-/// Deep beside its radius, a bulge would draw the hand's point round it to its other side, and let
-/// go of it there. Within a ball or a cone each place has one nearest point, and at a cone's tip
-/// there is no plane to lie in.
+/// If the hand is deep compared with a bulge's radius, the projected point would slide round the
+/// bulge to its other side, and contact would be lost there. Within a ball or a cone each place has
+/// one nearest point, and at a cone's tip there is no tangent plane.
 void FeltWalls::flatten(Group& group) const noexcept {
   const double length = glm::length(press_);
   for (std::size_t i = 0; i < group.count; ++i) {
@@ -244,7 +249,7 @@ void FeltWalls::flatten(Group& group) const noexcept {
   }
 }
 
-/// The nearest point follows a wall that changes under it by its multipliers.
+/// The distance to the nearest point changes by each wall's change times the wall's multiplier.
 SoftKinds::Change FeltWalls::change(std::size_t index, const LocalProjection& on) const noexcept {
   const Group& group = group_[index];
   Change out;
@@ -268,7 +273,8 @@ SoftKinds::Change FeltWalls::change(std::size_t index, const LocalProjection& on
   return out;
 }
 
-/// The walls as planes, as they are at the proxy: where they fold, or their fields end.
+/// Replaces the walls by their tangent planes at the proxy: for places where they fold, or their
+/// fields end.
 LocalProjection FeltWalls::ontoPlanes(const Group& group, const Vec3& place) const noexcept {
   LocalProjection out;
   std::array<Plane, kMaxProjectionWalls> planes{};
@@ -297,7 +303,7 @@ LocalProjection FeltWalls::nearest(std::size_t index, const Vec3& from,
   const std::span<const HeldWall> held(group.held.data(), group.count);
   LocalProjection on = projectLocally(from, place, held);
   if (on.settled && isNearest(on, place)) return on;
-  // At a tip, or beside one where the wall bends more than Newton's steps can follow.
+  // The place is at a tip, or so near one that the wall curves more than Newton's steps can follow.
   const LocalProjection cut = projectByCuts(walker_.position(), place, held);
   if (cut.settled || on.settled) return cut.settled ? cut : on;
   on = projectLocally(walker_.position(), place, held);

@@ -1,6 +1,5 @@
 #pragma once
-/// What the walls near the proxy push with at one place, and whether walls of several kinds are
-/// felt at once.
+/// The force laws of the walls near the proxy, and whether walls of several kinds are felt at once.
 
 #include <array>
 #include <vector>
@@ -16,46 +15,47 @@
 
 namespace palpate {
 
-/// Scratch of one renderer: nothing in it is left for the next tick.
+/// Scratch of one renderer: nothing in it carries over to the next tick.
 class FeltWalls final : public SoftKinds {
  public:
   FeltWalls(const Scene& scene, CellWalker& walker);
 
-  /// [N/m] The stiffness of a wall at `x` [m]: its material's, or that of the layers behind it.
+  /// [N/m] The stiffness of a wall at `x` [m]: that of its material, or of the layers behind it.
   [[nodiscard]] MaterialMap::Sample stiffness(LeafId leaf, const Facet& facet, const HeldWall& held,
                                               const Vec3& x) noexcept;
-  /// What that wall pushes with there.
+  /// The force law of that wall there.
   [[nodiscard]] SharedWall felt(LeafId leaf, const Facet& facet, const HeldWall& held,
                                 const Vec3& x, SmoothedField& smoothed) noexcept;
-  /// What that wall and those beside it on the same surface push with there; press() and differ()
-  /// come first.
+  /// The force laws there of that wall and of those beside it on the same surface; call press() and
+  /// differ() first.
   [[nodiscard]] SharedWalls shared(LeafId leaf, const Facet& facet, const HeldWall& held,
                                    const Vec3& x, SmoothedField& smoothed) noexcept;
   [[nodiscard]] SharedWalls shared(const WallContact& contact, const Vec3& x) noexcept {
     return shared(contact.leaf, contact.facet, contact.held, x, smoothed_[0]);
   }
-  /// True if a wall that holds the proxy shares the press with others: differ() found it.
+  /// True if differ() found that a wall that holds the proxy shares the press with others.
   [[nodiscard]] bool hasSeam() const noexcept { return has_seam_; }
 
-  /// True if a wall of this material is one straight spring, the same everywhere.
+  /// True if a wall of this material is one linear spring, the same everywhere.
   [[nodiscard]] bool isPlain(const Facet& facet) const noexcept {
     return is_plain_[static_cast<std::size_t>(facet.material)];
   }
 
   /// Finds the walls within `reach` [m] of the proxy, which `contact` holds; true if they are of
-  /// several kinds that meet at an angle. Then seriesForce() may be asked, until the walker moves.
+  /// several kinds that meet at an angle. Then seriesForce() may be called, until the walker moves.
   [[nodiscard]] bool differ(const ContactSet& contact, double reach) noexcept;
   /// Whether walls of the present region, or of those that it leads to freely, may push by
   /// different laws.
   [[nodiscard]] bool mayDiffer() const noexcept { return may_differ_[walker_.region()]; }
-  /// The leaves of the walls that differ() found, those of the contact among them.
+  /// The leaves of the walls that differ() found, including those of the contact.
   [[nodiscard]] FeltLeaves leaves() const noexcept;
-  /// Until it is called with null, differ() finds no walls beside the contact's but `known`.
+  /// Restricts differ() to the walls of the contact and `known`, until this is called with null.
   void findOnly(const FeltLeaves* known) noexcept { known_ = known; }
-  /// The way from the hand to the proxy [m]: how wide a patch is pressed. Call it first in each
-  /// tick.
+  /// Sets the way from the hand to the proxy [m], which determines the width of the patch that is
+  /// pressed. Call it first in each tick.
   void press(const Vec3& way) noexcept { press_ = way; }
-  /// [N/m] Stiffer than any wall of the scene, at any depth that its shapes have room for.
+  /// [N/m] A stiffness higher than that of any wall of the scene, at any depth for which its shapes
+  /// have room.
   [[nodiscard]] double stop() const noexcept { return stop_; }
 
   [[nodiscard]] std::size_t count() const noexcept override { return count_; }
@@ -67,7 +67,7 @@ class FeltWalls final : public SoftKinds {
   [[nodiscard]] Change change(std::size_t index, const LocalProjection& on) const noexcept override;
 
  private:
-  /// Share of the depth to which a height may bring a wall down, or up.
+  /// Share of the depth by which texture may at most lower or raise a wall.
   static constexpr double kHeldTexture = 0.5;
   static constexpr double kHeldShading = 0.9;
 
@@ -79,13 +79,13 @@ class FeltWalls final : public SoftKinds {
   /// Walls of one kind.
   struct Group {
     int kind = -1;
-    int own = 0;          ///< what it is that feels so, where it does by what lies behind it
-    bool shares = false;  ///< one surface, on which other walls bear part of the press
+    int own = 0;          ///< number of the part behind the walls, where their feel depends on it
+    bool shares = false;  ///< the group is one surface on which other walls take part of the press
     std::array<Near, kMaxProjectionWalls> wall{};
-    std::array<HeldWall, kMaxProjectionWalls> held{};     ///< the same, as deep as they are pressed
-    std::array<FlattenedWall, kMaxProjectionWalls> flat;  ///< fields of some of them
+    std::array<HeldWall, kMaxProjectionWalls> held{};     ///< the same, at the depth of the press
+    std::array<FlattenedWall, kMaxProjectionWalls> flat;  ///< replacement fields of some of them
     std::size_t count = 0;
-    SharedWalls law;  ///< where the proxy is
+    SharedWalls law;  ///< at the place of the proxy
   };
   void sortKinds();
   [[nodiscard]] bool mayDiffer(RegionId region) const;
@@ -113,12 +113,12 @@ class FeltWalls final : public SoftKinds {
   CellWalker& walker_;
   NearWalls near_;
   LayersBeneath beneath_;
-  std::vector<int> kind_;      ///< by material: those that feel the same have the same
-  std::vector<double> reach_;  ///< [m] by material: of its texture
+  std::vector<int> kind_;      ///< by material: equal for those that feel the same
+  std::vector<double> reach_;  ///< [m] by material: depth up to which its texture counts
   std::vector<double>
-      contrast_;  ///< [m] by material: infinite where its stiffness is felt at a point
+      contrast_;  ///< [m] by material: infinite where its stiffness is read at a point
   std::vector<bool> is_plain_;   ///< by material
-  std::vector<bool> is_convex_;  ///< by leaf: hollow all over, seen from within
+  std::vector<bool> is_convex_;  ///< by leaf: it is a convex solid
   std::vector<bool>
       may_differ_;  ///< by region: its walls, or those of regions that it leads to freely
   Seams seams_;

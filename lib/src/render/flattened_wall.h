@@ -1,19 +1,19 @@
 #pragma once
-/// A wall that lies, by a share, in the plane that it has at the proxy.
+/// A wall that is blended towards its tangent plane at the proxy.
 
 #include "palpate/fields/field.h"
 
 namespace palpate {
 
 /// (1 - share) S(p) + share (S(x) + grad S(x) . (p - x)), x the proxy. A ball becomes a body of
-/// revolution about the normal at the proxy, its section a conic with the ball's center as focus:
-/// an ellipse, with a share above one half a hyperbola, round which nothing leads. Real-time safe,
-/// all of it.
+/// revolution about the normal at the proxy. Its section is a conic with the ball's center as
+/// focus: an ellipse, or with a share above one half a hyperbola, which no path leads around. All
+/// members are real-time safe.
 class FlattenedWall final : public Field {
  public:
   FlattenedWall() = default;
   /// `jet` is that of `wall` at `proxy` [m]; `by_press` [1/m] is the gradient of the share by the
-  /// press.
+  /// press vector.
   FlattenedWall(const Field& wall, const FieldJet& jet, const Vec3& proxy, double share,
                 const Vec3& by_press) noexcept
       : wall_(&wall), jet_(jet), proxy_(proxy), share_(share), by_press_(by_press) {}
@@ -37,11 +37,11 @@ class FlattenedWall final : public Field {
   [[nodiscard]] double lipschitz() const noexcept override { return wall_->lipschitz(); }
   [[nodiscard]] double featureSize() const noexcept override { return wall_->featureSize(); }
 
-  /// What its value at `p` [m] changes by, a meter of the proxy's along the wall, ...
+  /// Derivative of its value at `p` [m] by the proxy's place along the wall.
   [[nodiscard]] Vec3 byProxy(const Vec3& p) const noexcept {
     return share_ * (jet_.hessian * (p - proxy_));
   }
-  /// ... and a meter of the press.
+  /// Derivative of its value at `p` [m] by the press vector.
   [[nodiscard]] Vec3 byPress(const Vec3& p) const noexcept {
     if (by_press_ == Vec3(0.0)) return by_press_;
     return (plane(p) - wall_->value(p)) * by_press_;

@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-/// NaN and what is below 0 permit nothing.
+/// The limit itself, or 0 if it is NaN or negative: such a limit permits nothing.
 double permitted(double limit) noexcept { return limit > 0.0 ? limit : 0.0; }
 
 }  // namespace
@@ -16,7 +16,8 @@ Vec3 ForceGuard::apply(const Vec3& force, double dt) noexcept {
   const double finite_step = std::isfinite(dt) ? step : 0.0;
   const double length = glm::length(force);
   Vec3 wanted = force;
-  // Components may be finite and only their squares too large; without a sure direction, let go.
+  // The components may be finite and only their squares overflow. Then the direction is not
+  // certain, so let go.
   if (!std::isfinite(length)) wanted = Vec3(0.0);
   const double most = permitted(limits_.max_force);
   if (std::isfinite(length) && length > most) wanted *= most / length;
@@ -30,7 +31,7 @@ Vec3 ForceGuard::apply(const Vec3& force, double dt) noexcept {
 Vec3 ForceGuard::slewed(const Vec3& wanted, double step) const noexcept {
   if (limits_.max_growth == kInfinity) return wanted;
   const double reach = permitted(limits_.max_growth) * step;
-  // The nearest of the shares of the last force.
+  // The share of the last force that is nearest to the wanted one.
   const double square = glm::dot(last_, last_);
   const double share = square > 0.0 ? std::clamp(glm::dot(wanted, last_) / square, 0.0, 1.0) : 0.0;
   const Vec3 kept = share * last_;

@@ -16,7 +16,7 @@ ShaftLaw shaftLaw(const Material& material, const Vec3& p) noexcept {
   return {way(shaft.in), way(shaft.out), shaft.stiffness, shaft.stick_speed};
 }
 
-/// What the content of `region` takes to be cut, [N] on a tip at `tip` [m].
+/// The cutting resistance [N] of the content of `region` on a tip at `tip` [m].
 Vec3 cutForce(const Contents& contents, RegionId region, Cut& cut, const Vec3& tip) noexcept {
   const Material* tissue = contents.material(region);
   if (tissue == nullptr || !contents.holdsNeedle(region)) return Vec3(0.0);
@@ -53,14 +53,14 @@ Insertion::Force Insertion::step(const Contents& contents, const Tick& tick) noe
   velocity_ = tick.velocity;
   for (RegionEntry& entry : tick.entries) cross(contents, entry);
   if (tick.region != region_) {
-    // More entries than a tick has room for.
+    // There were more entries than a tick has room for.
     RegionEntry rest{.from = region_, .to = tick.region, .point = tip_};
     cross(contents, rest);
   }
 
   if (count_ == 0 && !is_lost_ && contents.holdsNeedle(region_)) {
-    // It began in there, or the content holds needles since it was changed: as if it had just come
-    // in.
+    // The needle began inside, or the content was changed and holds needles now: treat it as just
+    // entered.
     push({.from = region_, .to = region_, .point = tick.tip}, contents.sameWay());
   }
 
@@ -91,20 +91,20 @@ Insertion::Force Insertion::step(const Contents& contents, const Tick& tick) noe
   return {felt_ - shaft.damping * shaft.axis, shaft.lateral};
 }
 
-/// What the hand feels of a `force` [N] on the tip. While the tip stays behind, by `beyond`, a
-/// change of the force by df gives the hand -beyond df over the way back.
+/// The force that the hand feels when `force` [N] acts on the tip. While the tip stays behind by
+/// `beyond`, a change of the force by df does the work -beyond df on the hand over the way back.
 Vec3 Insertion::feltBeyond(const Vec3& force, const Tick& tick) noexcept {
   const Vec3 beyond = tick.hand - tick.tip;
   const Vec3 before = std::exchange(beyond_, beyond);
-  // What changed while the tip went along with the hand, from wall to wall or through them, was
-  // felt as it did.
+  // A change that came while the tip moved with the hand, from wall to wall or through them, was
+  // felt at that time.
   if (glm::dot(before, beyond) <= 0.0 || !tick.entries.empty()) return force;
   const double taken = glm::dot(beyond, force - felt_);
   if (taken >= 0.0) return force;
   return force - taken / glm::dot(beyond, beyond) * beyond;
 }
 
-/// Of all tissues together.
+/// The sum over all tissues.
 Insertion::ShaftForce Insertion::shaftForce(const Contents& contents, const Tick& tick) noexcept {
   const Vec3& fulcrum = layers_[0].cut.entry();
   const double reach = glm::distance(fulcrum, tick.tip);
@@ -120,7 +120,7 @@ Insertion::ShaftForce Insertion::shaftForce(const Contents& contents, const Tick
     if (tissue == nullptr || !(tissue->shaft.stiffness > 0.0)) continue;
     const Vec3& begin = layer.cut.entry();
     const Vec3& end = i + 1 < count_ ? layers_[i + 1].cut.entry() : tick.tip;
-    // The mean of what varies evenly is what it is in the middle.
+    // The mean of a quantity that varies linearly is its value in the middle.
     const ShaftLaw law = shaftLaw(*tissue, 0.5 * (begin + end));
     const double length = glm::distance(begin, end);
     const double all = layer.slip.step(law, length, advance, speed);
@@ -141,7 +141,7 @@ Insertion::ShaftForce Insertion::shaftForce(const Contents& contents, const Tick
 
 void Insertion::cross(const Contents& contents, RegionEntry& step) noexcept {
   region_ = step.to;
-  // A needle that began inside came in nobody knows where: once it leaves, its shaft is free.
+  // A needle that began inside has no known entry point: once it leaves, its shaft is free.
   if (count_ == 1 && layers_[0].from == layers_[0].region) letGo(contents.sameWay());
   for (std::size_t i = count_; i > 0; --i) {
     const Layer& layer = layers_[i - 1];
@@ -167,7 +167,7 @@ void Insertion::cross(const Contents& contents, RegionEntry& step) noexcept {
   push(step, contents.sameWay());
 }
 
-/// Whether going on like this leaves `layer` by the side that it was entered through.
+/// Whether the step `step` leaves `layer` through the side by which it was entered.
 bool Insertion::isBackThrough(const Layer& layer, const RegionEntry& step,
                               double same_way) const noexcept {
   const double turn = glm::dot(layer.normal, step.normal);
@@ -199,7 +199,7 @@ void Insertion::pop(double same_way) noexcept {
   *slot = {layer.region, layer.cut};
 }
 
-/// The needle is out, though not by the way that it came.
+/// The needle is out, though not by the way it came.
 void Insertion::letGo(double same_way) noexcept {
   while (count_ > 0) pop(same_way);
 }

@@ -6,16 +6,16 @@
 namespace palpate {
 namespace {
 
-/// Of the depth: so near to the wall the ray counts as at it.
+/// Share of the depth: within this distance of the wall the ray counts as at the wall.
 constexpr double kAtWall = 1e-6;
-/// Of the depth, at its end: where what differs from the layer before fades out.
+/// Share of the depth, at its end, over which the difference from the layer before fades out.
 constexpr double kFade = 0.25;
-/// Cosine of two normals from which on two surfaces at one place are one.
+/// Cosine of the angle between two normals above which two surfaces at one place count as one.
 constexpr double kParallel = 1.0 - 1e-12;
-/// Facets that one ray crosses, sheets and openings included.
+/// The most facets that one ray crosses, sheets and openings included.
 constexpr int kMostCrossings = 12;
-/// Cosine of the ray and an interface's normal below which the interface's depth has no slope: the
-/// ray grazes it.
+/// Cosine of the angle between the ray and an interface's normal below which the slope of the
+/// interface's depth is ignored, because the ray grazes it.
 constexpr double kGrazing = 1e-3;
 
 /// The part of `v` along a wall.
@@ -23,14 +23,14 @@ Vec3 alongWall(const Vec3& v, const Vec3& normal) noexcept {
   return v - glm::dot(v, normal) * normal;
 }
 
-/// What the wall's normal times `v` changes by, by the place on the wall.
+/// Derivative of (the wall's normal times `v`) by the place on the wall.
 Vec3 turnOf(const Vec3& v, const HeldWall& held) noexcept {
   const Vec3 along = alongWall(v, held.normal);
   return held.side / glm::length(held.jet.gradient) * (held.jet.hessian * along);
 }
 
-/// A gradient at depth `s` along the ray, as one by the place on the wall where the ray begins: it
-/// turns with the wall's normal.
+/// Converts a gradient at depth `s` along the ray into one by the place on the wall where the ray
+/// begins: the ray turns with the wall's normal.
 Vec3 fromWall(const Vec3& gradient, double s, const HeldWall& held) noexcept {
   return alongWall(gradient - s * turnOf(gradient, held), held.normal);
 }
@@ -66,7 +66,7 @@ MaterialMap::Sample LayersBeneath::stiffness(LeafId leaf, const Vec3& x, const H
   return last_;
 }
 
-/// The ray begins at the proxy, so that what covers the wall is met as well.
+/// The ray begins at the proxy, so that layers that cover the wall are met as well.
 void LayersBeneath::look(const Vec3& x, const HeldWall& held, RegionId beyond,
                          double depth) noexcept {
   const Vec3 end = x - depth * held.normal;
@@ -92,7 +92,7 @@ void LayersBeneath::look(const Vec3& x, const HeldWall& held, RegionId beyond,
     is_behind = is_behind || glm::dot(x - probe_.position(), held.normal) > kAtWall * depth;
     const RegionId from = is_behind ? before : beyond;
     if (!is_behind) {
-      // Of what lies before the wall the last counts, which covers it.
+      // Of the layers before the wall the last one counts, since it covers the wall.
       found_.count = 1;
       is_behind = region == beyond || isFlush(leaf, x, held, depth);
       if (is_behind || region == front) continue;
@@ -102,8 +102,8 @@ void LayersBeneath::look(const Vec3& x, const HeldWall& held, RegionId beyond,
   }
 }
 
-/// Whether the leaf that the probe has just crossed goes on where the wall does: what lies behind
-/// it beside the wall is not seen through the wall.
+/// Whether the surface of the leaf that the probe has just crossed coincides with the wall here: a
+/// layer that lies behind it beside the wall is not seen through the wall.
 bool LayersBeneath::isFlush(LeafId leaf, const Vec3& x, const HeldWall& held,
                             double depth) noexcept {
   if (std::fabs(glm::dot(x - probe_.position(), held.normal)) > kAtWall * depth) return false;
@@ -111,8 +111,8 @@ bool LayersBeneath::isFlush(LeafId leaf, const Vec3& x, const HeldWall& held,
   return std::fabs(glm::dot(gradient, held.normal)) >= kParallel * glm::length(gradient);
 }
 
-/// The layer that the probe has just come to out of the region `from`, through a facet of `leaf`.
-/// One that covers the wall begins where the wall is.
+/// Adds the layer that the probe has just entered from the region `from`, through a facet of
+/// `leaf`. A layer that covers the wall begins where the wall is.
 void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWall& held,
                         double depth) noexcept {
   const RegionId region = probe_.region();
@@ -125,7 +125,8 @@ void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWal
   const double slant = glm::dot(jet.gradient, held.normal);
   Vec3 slope(0.0);
   if (std::fabs(slant) > kGrazing * steepness) slope = fromWall(jet.gradient, s, held) / slant;
-  // A gradient at the interface, whose depth changes as well.
+  // The gradient, by the place on the wall, of a quantity at the interface, whose depth changes as
+  // well.
   const auto by_place = [&](const Vec3& v) {
     return fromWall(v, s, held) - glm::dot(v, held.normal) * slope;
   };
@@ -137,8 +138,8 @@ void LayersBeneath::add(RegionId from, LeafId leaf, const Vec3& x, const HeldWal
   Vec3 share_rise = -6.0 * left * (1.0 - left) / (kFade * depth) * slope;
   const double cosine = steepness > 0.0 ? std::fabs(slant) / steepness : 1.0;
   if (region > from && cosine < 1.0) {
-    // A chord through a layer's rim begins with an endless slope. So what is entered counts the
-    // less the flatter it is met: by the quintic step of the cosine.
+    // The length of a chord near a layer's rim grows with infinite slope. So a layer counts less
+    // the flatter the ray meets it: its share is the quintic smoothstep of the cosine.
     const Vec3 normal = jet.gradient / (slant < 0.0 ? -steepness : steepness);
     const Vec3 row =
         jet.hessian * (held.normal - cosine * normal) / (slant < 0.0 ? -steepness : steepness);

@@ -1,5 +1,5 @@
 #pragma once
-/// What lies behind a wall along its inward normal, and how stiff all of it feels together.
+/// The layers behind a wall along its inward normal, and the stiffness that they have together.
 
 #include "cell_walker.h"
 #include "palpate/contact/layered.h"
@@ -7,36 +7,35 @@
 
 namespace palpate {
 
-/// Belongs to one renderer; const scene, scratch of its own.
+/// Belongs to one renderer; the scene is const, the scratch its own.
 class LayersBeneath {
  public:
-  /// `proxy` stands where the walls are felt from, and outlives this.
+  /// `proxy` stands at the place from which the walls are felt, and must outlive this object.
   LayersBeneath(const Scene& scene, const CellWalker& proxy)
       : scene_(scene), proxy_(proxy), probe_(scene, place_) {}
-  LayersBeneath(const LayersBeneath&) = delete;  // the probe works on this one's place
+  LayersBeneath(const LayersBeneath&) = delete;  // the probe refers to this object's place_
   LayersBeneath& operator=(const LayersBeneath&) = delete;
 
   /// The stiffness [N/m] of the layers behind the wall `held` of `leaf` at `x` [m], as `material`'s
-  /// composite asks, and its gradient along the wall. The last answer is kept for the next question
-  /// about the same place. Real-time safe: at most kMostStackLayers layers, and a tick's budget of
+  /// composite states, and its gradient along the wall. The last result is cached for the next call
+  /// with the same place. Real-time safe: at most kMostStackLayers layers, and a tick's budget of
   /// evaluations.
   ///
-  /// A layer is as stiff as its region's own wall; one without a wall, and what is outside, are not
-  /// looked into: there the layer before goes on. Towards the end of the depth what differs fades
-  /// out over its last quarter, and a layer counts the less the flatter the normal meets it, so
-  /// that nothing appears at once. A layer that covers the wall at `x`, as beside a crease, is felt
-  /// as one that begins right behind it.
+  /// A layer is as stiff as its region's own wall; a layer without a wall, and the outside, are
+  /// skipped, and the layer before continues there. Over the last quarter of the depth differences
+  /// fade out, and a layer counts less the flatter the normal meets it, so that no layer appears
+  /// abruptly. A layer that covers the wall at `x`, as beside a crease, is treated as one that
+  /// begins right behind it.
   [[nodiscard]] MaterialMap::Sample stiffness(LeafId leaf, const Vec3& x, const HeldWall& held,
                                               const Facet& facet,
                                               const Material& material) noexcept;
 
  private:
-  /// The stack found, with how each of its layers changes as the place pressed moves along the
-  /// wall.
+  /// The stack found, with the derivatives of each of its layers by the pressed place on the wall.
   struct Found {
     std::array<StackLayer, kMostStackLayers> layers{};
-    std::array<Vec3, kMostStackLayers> rise{};   // [N/m^2] of the stiffness
-    std::array<Vec3, kMostStackLayers> slope{};  // [-] of the depth of its top
+    std::array<Vec3, kMostStackLayers> rise{};   // [N/m^2] gradient of the stiffness
+    std::array<Vec3, kMostStackLayers> slope{};  // [-] gradient of the depth of its top
     std::array<double, kMostStackLayers> top{};  // [m] depth of its top
     std::size_t count = 0;
   };

@@ -37,7 +37,8 @@ bool NearWalls::isSliver(const NearCell& cell) const noexcept {
   if (count == 2 && glm::dot(normals[0], normals[1]) > -0.9) return false;
   std::array<Plane, kMax> planes{};
   for (std::size_t i = 0; i < count; ++i) planes[i] = {normals[i], -1.0};
-  // A way that leads away from all of these walls at once; there is none where they leave no room.
+  // A direction that leads away from all of these walls at once; it is zero where they leave no
+  // room.
   const Vec3 away = closestStep(Vec3(0.0), {planes.data(), count}).step;
   return std::any_of(planes.begin(), planes.begin() + static_cast<std::ptrdiff_t>(count),
                      [&](const Plane& plane) { return glm::dot(plane.normal, away) < 0.5; });

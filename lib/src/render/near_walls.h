@@ -1,6 +1,6 @@
 #pragma once
-/// NearWalls: the leaves near the proxy, what they are like there, and the cells that its region
-/// consists of around it. Scratch: made anew for each place.
+/// NearWalls: the leaves near the proxy, their shape there, and the cells that make up the proxy's
+/// region around it. Scratch: computed anew for each place.
 
 #include <array>
 #include <cmath>
@@ -18,15 +18,15 @@ namespace palpate {
 struct WallThere {
   LeafId leaf = 0;
   double distance = 0.0;       ///< [m] S / |grad S|, negative inside
-  double tolerance = 0.0;      ///< [m] how near is on the surface
+  double tolerance = 0.0;      ///< [m] within this distance the point is on the surface
   double slope = 0.0;          ///< [-] |grad S|; 0: the leaf has no normal here
   Vec3 normal{0.0, 0.0, 0.0};  ///< [-] outward
 
-  /// [m] what is left on the side that is asked for
+  /// [m] distance to the surface on the side that is asked for; negative beyond it
   [[nodiscard]] double gap(bool inside) const noexcept { return inside ? -distance : distance; }
 };
 
-/// The same, and how the leaf bends there.
+/// The same, with the curvature of the leaf there.
 struct NearWall : WallThere {
   Mat3 bend{0.0};          ///< [1/m] Hessian of S over the slope
   double bend_size = 0.0;  ///< [1/m] its norm
@@ -40,8 +40,8 @@ class NearWalls {
       : walker_(walker), cells_(scene.partition(), scene.passages()) {}
 
   /// Looks for leaves whose surface may come within `radius` [m] of the walker's point; false if
-  /// there are more than kMax (then nothing is known). With `trust_sides`, a leaf that the point is
-  /// beyond of counts as where the walker has it: the way back from where the point must not be.
+  /// there are more than kMax (then nothing is known). With `trust_sides`, the walker's side counts
+  /// even for a leaf that the point is slightly beyond, so that the point finds its way back.
   [[nodiscard]] bool look(double radius, bool trust_sides) noexcept;
 
   [[nodiscard]] std::span<const NearWall> walls() const noexcept { return {wall_.data(), count_}; }
@@ -62,10 +62,10 @@ class NearWalls {
   std::size_t cell_count_ = 0;
 };
 
-/// Where `leaf`'s distance bends more than its feature size lets it, its differences straddle a
-/// fold. Then its bend is asked for a little way further beyond the surface, seen from `side`,
-/// where only the wall with `normal` (outward) is felt; a cone near its tip, which does bend like
-/// that, keeps `bend`.
+/// Where `leaf`'s curvature is larger than its feature size permits, its finite differences
+/// straddle a fold. Then `bend` is taken a little further beyond the surface, seen from `side`,
+/// where only the wall with `normal` (outward) contributes; a cone near its tip, which really is
+/// curved like that, keeps `bend`.
 void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal,
                 Mat3& bend) noexcept;
 
@@ -77,13 +77,13 @@ void unfoldBend(const Leaf& leaf, double side, const Vec3& p, const Vec3& normal
 /// [1/m] The norm of a bend.
 [[nodiscard]] inline double sizeOf(const Mat3& m) noexcept { return std::sqrt(squareOf(m)); }
 
-/// The leaf `id` at a place where its field has the sample `s`.
+/// The leaf `id` at a place where its field's sample is `s`.
 [[nodiscard]] inline WallThere wallOf(LeafId id, const Leaf& leaf, const FieldSample& s) noexcept {
   WallThere out;
   out.leaf = id;
   out.slope = s.in_band ? glm::length(s.gradient) : 0.0;
-  // A slope beyond the bound, which is false then, would make the tolerance longer than it is
-  // meant.
+  // A slope beyond the Lipschitz bound, which then is false, would make the tolerance longer than
+  // intended.
   const double least = limits::kFlattest * leaf.lipschitz;
   const double length = 1.0 / std::max(out.slope, least);
   out.tolerance = limits::kOnSurface * leaf.feature;

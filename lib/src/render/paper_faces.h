@@ -1,5 +1,5 @@
 #pragma once
-/// The faces of one layer, as the paper's table of states sees them: A, the faces that are walls
+/// The faces of one layer, as the paper's table of states uses them: A, the faces that are walls
 /// now, and B, those that are open ports now.
 
 #include <vector>
@@ -10,28 +10,28 @@
 
 namespace palpate {
 
-/// A smooth part of a layer's border: one operand of the intersection that the layer is.
+/// A smooth part of a layer's border: one operand of the intersection that forms the layer.
 struct PaperFace {
   FieldPtr field;              ///< [world] negative on the layer's side
   std::vector<LeafId> leaves;  ///< of the partition
-  std::vector<PortId> ports;   ///< on all of this face, and everywhere on it
+  std::vector<PortId> ports;  ///< those that lie on all of this face, and are open everywhere on it
 };
 
-/// What of a layer are walls: the largest of the closed faces. Its faces are chosen between two
-/// ticks; while they stay it is a field like any other.
+/// The walls of a layer as one field: the max of its closed faces. The set of closed faces changes
+/// only between two ticks; in a tick it is a field like any other.
 class PaperWall final : public Field {
  public:
-  /// Takes the intersections of `whole` apart.
+  /// Splits `whole` into the operands of its intersections.
   PaperWall(const FieldPtr& whole, const Partition& partition);
 
   [[nodiscard]] std::vector<PaperFace>& faces() noexcept { return faces_; }
   [[nodiscard]] const std::vector<PaperFace>& faces() const noexcept { return faces_; }
 
-  /// Makes a face a wall, or an opening. Real-time safe.
+  /// Makes a face a wall or an opening. Real-time safe.
   void setOpen(std::size_t face, bool is_open) noexcept;
   [[nodiscard]] bool hasWalls() const noexcept { return open_count_ < faces_.size(); }
-  /// Whether `p` [m] is on the layer's side of all openings; on one is not, as for the cells of
-  /// ports.
+  /// Whether `p` [m] is on the layer's side of all openings. A point on an opening is not, as in
+  /// the cells of ports.
   [[nodiscard]] bool isWithinOpenings(const Vec3& p) const noexcept;
 
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override;

@@ -1,4 +1,4 @@
-// PaperRenderer's ports: which are passed, and which faces they leave open.
+// PaperRenderer's ports: which ones are passed, and which faces they leave open.
 
 #include <algorithm>
 
@@ -9,11 +9,11 @@
 namespace palpate {
 namespace {
 
-constexpr int kHalvings = 40;  // of a tick's way, to where a face is crossed
+constexpr int kHalvings = 40;  // bisections of a tick's way, to find where a face is crossed
 
 }  // namespace
 
-/// The ports of the present state are tried, and when one is passed those of the next: so the
+/// Tries the ports of the present state, and after each passage those of the next state: so the
 /// paper's conditions "can be tested iteratively".
 void PaperRenderer::advance(const Vec3& hip, TickResult& out) noexcept {
   const Partition& partition = scene_->partition();
@@ -44,8 +44,8 @@ bool PaperRenderer::turn(std::span<const LeafId> leaves) noexcept {
   return is_changed;
 }
 
-/// The faces of the region `to`, or of the one that is left for it, whichever lies further in.
-/// Where a face of the other lies at the same place, a tick comes through both at once.
+/// Crosses the faces of `to` or of the present region, whichever is the inner one of the two. If a
+/// face of the other lies at the same place, one tick crosses both at once.
 bool PaperRenderer::turnTo(RegionId to, const Vec3& hip) noexcept {
   const Partition& partition = scene_->partition();
   const RegionId inner = std::max(state_.place.region, to);
@@ -74,7 +74,7 @@ bool PaperRenderer::tryPort(PortId id, const Vec3& hip, TickResult& out) noexcep
       } else {
         if (!turn(port.on) || partition.regionOf(turned_) != to) continue;
         const RegionId inner = std::max(state_.place.region, to);
-        // The walls beside the face must have been passed neither before nor now.
+        // The HIP must not have crossed the walls beside the face, before or in this tick.
         scratch_.assign(now_);
         if (inner == state_.place.region) {
           for (const LeafId leaf : port.on) scratch_.set(leaf, cell_.inside(leaf));
@@ -113,7 +113,7 @@ bool PaperRenderer::tryAbsentWalls(const Vec3& hip) noexcept {
   return false;
 }
 
-/// Where the way of this tick comes through the face `leaf`, which it crosses.
+/// The point where this tick's way crosses the face `leaf`.
 Vec3 PaperRenderer::crossingPoint(LeafId leaf, const Vec3& hip) const noexcept {
   const Field& face = *scene_->partition().leaves()[leaf].field;
   const bool began_inside = cell_.inside(leaf);
@@ -129,13 +129,13 @@ Vec3 PaperRenderer::crossingPoint(LeafId leaf, const Vec3& hip) const noexcept {
 void PaperRenderer::enter(const RegionEntry& entry) noexcept {
   cell_.assign(turned_);
   state_.place.region = entry.to;
-  state_.paper.holds = false;  // what was felt may have been another surface
+  state_.paper.holds = false;  // the previous contact may have been with another surface
   if (entry_count_ < entries_.size()) entries_[entry_count_++] = entry;
   openFaces();
 }
 
-/// A face is open where a port on it lets through from the present state: out of the layer, or into
-/// it.
+/// A face is open if a port on it lets the probe through in the present state, out of the layer or
+/// into it.
 void PaperRenderer::openFaces() noexcept {
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     const auto self = static_cast<RegionId>(i + 1);

@@ -11,7 +11,7 @@ namespace {
 
 static_assert(PaperSurface{}.max_halvings == PaperParameters::kMaxHalvings);
 
-/// [m] So near to the surface the contact point counts as on it, unless told otherwise.
+/// [m] The default epsilon: within this distance of the surface the contact point counts as on it.
 double epsilonOf(const Field& field) { return std::min(1e-6, 1e-4 * field.featureSize()); }
 
 void refuseWhatThePaperHasNot(const Scene& scene) {
@@ -63,7 +63,7 @@ PaperRenderer::PaperRenderer(ScenePtr scene, const RendererSettings& settings)
     for (PaperFace& face : wall.faces()) {
       for (std::size_t id = 0; id < scene_->ports().size(); ++id) {
         const Port& port = scene_->ports()[id];
-        // A port that is open in a part of the face only leaves it a wall.
+        // A port that is open only in a part of the face leaves it a wall.
         if (port.mask >= 0 || !isOn(port, face)) continue;
         const auto joins = [&](const std::vector<RegionId>& side) {
           return std::find(side.begin(), side.end(), region) != side.end();
@@ -118,7 +118,8 @@ TickResult PaperRenderer::step(const HipState& hip) noexcept {
 void PaperRenderer::feel(const HipState& hip, TickResult& out) noexcept {
   const Vec3& p = hip.position;
   out.proxy = p;
-  if (out.event_count > 0) return;  // "ENTER_PORT, else if ...": who passes a port feels nothing
+  if (out.event_count > 0)
+    return;  // "ENTER_PORT, else if ...": no force in the tick that passes a port
   if (state_.place.region != kOutside) {
     const PaperWall& own = layers_[state_.place.region - 1U].wall;
     const bool in_openings = own.isWithinOpenings(p);
@@ -129,7 +130,7 @@ void PaperRenderer::feel(const HipState& hip, TickResult& out) noexcept {
       return;
     }
   }
-  // Only later layers take their place from the region of the state.
+  // Only later layers take space from the region of the state.
   for (std::size_t i = state_.place.region; i < layers_.size(); ++i) {
     const PaperWall& wall = layers_[i].wall;
     if (!wall.hasWalls() || !(wall.value(p) <= 0.0) || !wall.isWithinOpenings(p)) continue;
@@ -174,7 +175,7 @@ void PaperRenderer::touch(std::size_t layer, double side, const HipState& hip,
   }
 }
 
-/// The region that the wall touched keeps the probe out of.
+/// The region on the far side of the touched wall.
 RegionId PaperRenderer::regionBehind(std::size_t layer, double side) noexcept {
   const PaperSurface& surface = layers_[layer].surface;
   const Vec3& x = state_.paper.contact.surface_point;
@@ -186,7 +187,7 @@ RegionId PaperRenderer::regionBehind(std::size_t layer, double side) noexcept {
   };
   const RegionId behind = scene_->partition().regionOf(scratch_);
   if (is_wall(behind)) return behind;
-  // At a rim, beside which there is no wall: what the probe itself is in.
+  // At a rim there may be no wall: then the region that the probe itself is in.
   const RegionId here = scene_->partition().regionOf(now_);
   if (is_wall(here)) return here;
   return side > 0.0 ? static_cast<RegionId>(layer + 1) : kOutside;

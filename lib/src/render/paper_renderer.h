@@ -1,19 +1,21 @@
 #pragma once
 /// The `paper` renderer: the source paper's states and ports, driven by the HIP, with Algorithms I
-/// and II. Its Table I, for a container of a sphere A with an opening in a half-space B, is
-/// generalized to layers and ports thus (tools/docs/paper.md says why). Of every layer, A are the
-/// faces that are walls for a probe in the present state, and B those that a port leaves open for
-/// it.
+/// and II. Its Table I describes a container made of a sphere A with an opening in a half-space B.
+/// Here it is generalized to layers and ports (tools/docs/paper.md says why): for every layer, A
+/// are the faces that are walls for a probe in the present state, and B those that a port leaves
+/// open for it. The action depends on the state and on the side of A and B that the HIP is on:
 ///
-/// | the state | A   | B   | action | | a layer   | in  | in  | its content | | a layer   | in  |
-/// out | nothing: the way out was missed                                          | | a layer   |
-/// out | in  | A from within, reversed, and its content                                 | | a layer
-/// | out | out | nothing, and the state is kept: the leak of the table                    | |
-/// another   | in  | in  | A of the layer from outside, where a later layer was not entered |
+/// - State is the layer, in A, in B: its content.
+/// - State is the layer, in A, out of B: nothing; the way out was missed.
+/// - State is the layer, out of A, in B: A from within, reversed, and its content.
+/// - State is the layer, out of both: nothing, and the state is kept; this is the leak of the
+///   table.
+/// - State is another region, in both: A of the layer from outside, unless a later layer was
+///   entered.
 ///
-/// A tick that takes the HIP from one side of a port's face to the other, on the layer's side of
-/// its other faces before and after, passes the port, if the state is the region before it and the
-/// port lets through.
+/// A tick passes a port if it takes the HIP from one side of the port's face to the other, the HIP
+/// is on the layer's side of its other faces before and after, the state is the region before the
+/// face, and the port lets the probe through.
 
 #include <array>
 #include <vector>
@@ -26,8 +28,8 @@ namespace palpate {
 
 class PaperRenderer final : public RendererBase {
  public:
-  /// @throws Error (kInput) for ports with an opening force and for sheets, which the paper does
-  /// not have.
+  /// @throws Error (kInput) for ports with an opening force and for sheets, which are not in the
+  /// paper.
   PaperRenderer(ScenePtr scene, const RendererSettings& settings);
 
  private:
@@ -43,7 +45,7 @@ class PaperRenderer final : public RendererBase {
   struct Layer {
     PaperWall wall;
     PaperSurface surface;  ///< of its walls, from outside
-    double beneath = 0.0;  ///< [m] so far below the contact point one is in the region behind it
+    double beneath = 0.0;  ///< [m] this far below the contact point is the region behind it
   };
 
   void start(const HipState& hip) noexcept;
@@ -52,10 +54,10 @@ class PaperRenderer final : public RendererBase {
   void advance(const Vec3& hip, TickResult& out) noexcept;
   [[nodiscard]] bool tryPort(PortId id, const Vec3& hip, TickResult& out) noexcept;
   [[nodiscard]] bool tryAbsentWalls(const Vec3& hip) noexcept;
-  /// Gives the leaves that changed since cell_ their present signs there, into turned_. False if
-  /// none did.
+  /// Copies cell_ into turned_ and gives those of the `leaves` that changed their present sides.
+  /// False if none changed.
   [[nodiscard]] bool turn(std::span<const LeafId> leaves) noexcept;
-  /// The same for the faces between the present region and `to`. False if they do not lead there.
+  /// The same for the faces between the present region and `to`. False if they do not lead to `to`.
   [[nodiscard]] bool turnTo(RegionId to, const Vec3& hip) noexcept;
   [[nodiscard]] Vec3 crossingPoint(LeafId leaf, const Vec3& hip) const noexcept;
   void enter(const RegionEntry& entry) noexcept;
@@ -69,17 +71,17 @@ class PaperRenderer final : public RendererBase {
 
   PaperParameters parameters_;
   std::vector<Layer> layers_;                        ///< by layer, outermost first
-  std::vector<std::vector<RegionId>> free_ways_of_;  ///< by region: what no wall stands before
+  std::vector<std::vector<RegionId>> free_ways_of_;  ///< by region: those without a wall between
 
-  // Of this tick.
+  // Values of this tick.
   std::array<PortCrossing, TickResult::kMaxEvents> crossings_{};
   std::array<RegionEntry, TickResult::kMaxEvents> entries_{};
   std::size_t entry_count_ = 0;
-  Signs now_;     ///< the cell of the HIP
-  Signs cell_;    ///< the cell of the last tick, beyond the ports passed since
-  Signs turned_;  ///< the same behind a port that is looked at
+  Signs now_;     ///< cell of the HIP
+  Signs cell_;    ///< cell of the last tick, updated by the ports passed since
+  Signs turned_;  ///< the same, behind a port that is being tried
   Signs scratch_;
-  LeafId turned_leaf_ = 0;  ///< one of those that differ in turned_
+  LeafId turned_leaf_ = 0;  ///< one of the leaves that differ in turned_
 };
 
 }  // namespace palpate

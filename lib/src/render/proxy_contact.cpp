@@ -1,5 +1,5 @@
-// ProxySolver's contact: the walls that hold the proxy, each with its own material, and what
-// friction makes of them.
+// ProxySolver's contact: the walls that hold the proxy, each with its own material, and the effect
+// of friction on them.
 
 #include <algorithm>
 #include <array>
@@ -27,8 +27,8 @@ Vec3 tangentialStep(const Vec3& wish, const std::array<Plane, 3>& planes,
 
 }  // namespace
 
-/// The walls that hold the solution. How hard each is pressed is measured from its surface: the
-/// proxy stands off by half a tolerance.
+/// Takes the walls that hold the solution. The pressure on each is measured from its surface, since
+/// the proxy stands off by half a tolerance.
 void ProxySolver::takeContact(const CellProblem& problem) noexcept {
   const PlaneSolution& s = problem.solution;
   const int last = contact_.count > 0 ? contact_.wall[0].facet.material : -1;
@@ -48,7 +48,7 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
     most = std::max(most, limits::kNoise * wall.tolerance + planes[k].gap);
   }
   PlaneSolution exact = closestStep(wish_, {planes.data(), count});
-  // Walls that are almost parallel may meet far off: then they are taken to meet where the proxy
+  // Walls that are almost parallel may meet far away: then they are taken to meet where the proxy
   // stands.
   const Vec3 onto = exact.step - tangentialStep(wish_, planes, exact);
   if (glm::length(onto) > most) {
@@ -80,14 +80,14 @@ void ProxySolver::takeContact(const CellProblem& problem) noexcept {
 }
 
 /// On the rim of a union the facet of one part leads into the other, and the walker may be on
-/// either side of the leaves that meet there. Seen from the cell the facet is a wall on one side or
-/// the other of the leaves that the cell leaves open: the material of that wall; -1 if none was
-/// found.
+/// either side of the leaves that meet there. Seen from the cell, the facet is a wall on one of the
+/// sides of the leaves that the cell leaves undecided. Returns the material of that wall; -1 if
+/// none was found.
 int ProxySolver::materialAside(const CellProblem& problem, std::size_t near) noexcept {
   const std::span<const NearWall> walls = near_.walls();
   const LeafId surface = walls[near].leaf;
-  // First those that the cell has on the other side than the walker, then those that it leaves
-  // open.
+  // First the leaves whose side differs between the cell and the walker, then those that the cell
+  // leaves undecided.
   std::array<LeafId, kMaxNear> turned{};
   std::array<LeafId, kMaxNear> open{};
   std::size_t asked = 0;
@@ -112,8 +112,8 @@ int ProxySolver::materialAside(const CellProblem& problem, std::size_t near) noe
   return material < 0 ? material_beyond({open.data(), opens}) : material;
 }
 
-/// A wall of which that is not known is of the material of another that holds the proxy; else as in
-/// this tick's `last` contact; else as some wall that its region has.
+/// A wall whose material is unknown takes that of another wall that holds the proxy, else that of
+/// this tick's `last` contact, else that of any wall of the region.
 void ProxySolver::nameMaterials(int last) noexcept {
   auto* const end = contact_.wall.begin() + static_cast<std::ptrdiff_t>(contact_.count);
   const auto* const known = std::find_if(
@@ -129,7 +129,7 @@ void ProxySolver::nameMaterials(int last) noexcept {
   }
 }
 
-/// Of several walls the roughest counts, for the load of all.
+/// If several walls hold the proxy, the largest friction ratios apply to the load of all.
 void ProxySolver::holdByFriction(FrictionState& friction, bool is_first) noexcept {
   ContactSet& c = contact_;
   FrictionRatios ratios;
@@ -138,10 +138,10 @@ void ProxySolver::holdByFriction(FrictionState& friction, bool is_first) noexcep
   c.lag = lagOf(ratios, c.left, rest, c.load(), is_first, friction);
 }
 
-/// The cone: while it sticks the proxy may lag by static_ratio of the load, else it slides until it
-/// lags by kinetic_ratio of it. Where stiffness varies, its own lean pulls at the proxy too: the
-/// cone is about where the proxy would rest without friction. So the lean is felt through the lag,
-/// the same whether it sticks or slides.
+/// The friction cone: while it sticks, the proxy may lag by static_ratio of the load; else it
+/// slides until it lags by kinetic_ratio of it. Where stiffness varies, its gradient pulls at the
+/// proxy too, so the cone is centered on where the proxy would rest without friction. Thus this
+/// pull acts through the lag, the same whether the proxy sticks or slides.
 Vec3 ProxySolver::lagOf(const FrictionRatios& ratios, const Vec3& pulled, const Vec3& rest,
                         double load, bool is_first, FrictionState& friction) const noexcept {
   friction.is_felt = ratios.at_rest > 0.0 && !walker_.isSealed();
@@ -153,9 +153,9 @@ Vec3 ProxySolver::lagOf(const FrictionRatios& ratios, const Vec3& pulled, const 
   const double pull = glm::length(off);
   const double kinetic = std::min(ratios.sliding, ratios.at_rest) * load;
   if (friction.sticks && pull > ratios.at_rest * load) friction.sticks = false;
-  // What slides sticks again when the hand no longer pulls it on, which shows when a tick begins:
-  // at the end of its own slide it is always where the cone just holds it, and a hand that moves on
-  // would feel a saw.
+  // A sliding proxy sticks again when the hand no longer pulls it on. This is tested only at the
+  // beginning of a tick: at the end of its slide the proxy is always on the border of the cone, and
+  // if it stuck there, a steadily moving hand would feel a sawtooth.
   if (!friction.sticks && is_first && pull <= kinetic * (1.0 + limits::kSticksWithin)) {
     friction.sticks = true;
   }

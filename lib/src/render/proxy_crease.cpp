@@ -4,13 +4,13 @@
 #include "proxy_solver.h"
 #include "step_checks.h"
 
-// A usual tick: the proxy glides along the crease where two smooth walls meet, pressed against
-// both.
+// The usual tick at a crease: the proxy glides along the line where two smooth walls meet, pressed
+// against both.
 
 namespace palpate {
 namespace {
 
-/// One of the two walls, as it is at the place that is looked at.
+/// One of the two walls, at the place being examined.
 struct CreaseWall {
   LeafId id = 0;
   const Leaf* leaf = nullptr;
@@ -20,14 +20,14 @@ struct CreaseWall {
   WallThere there;
   Vec3 normal{0.0, 0.0, 0.0};  ///< [-] on the free side
   double gap = 0.0;            ///< [m]
-  double left = 0.0;           ///< [m] of the gap, to where the proxy rests
-  Mat3 bend{0.0};              ///< [1/m] towards the free side
+  double left = 0.0;           ///< [m] of the gap, to the proxy's resting position
+  Mat3 bend{0.0};              ///< [1/m] positive towards the free side
   double bend_size = 0.0;      ///< [1/m]
 
   [[nodiscard]] bool isOn() const noexcept {
     return std::fabs(left) <= (limits::kOnWall - limits::kRest) * there.tolerance;
   }
-  /// Takes the leaf as `jet` has it. False where it has no normal, or a fold.
+  /// Updates the members from `jet`. False where the leaf has no normal, or a fold.
   [[nodiscard]] bool take() noexcept {
     there = wallOf(id, *leaf, {jet.value, jet.gradient, jet.in_band});
     if (!(there.slope > 0.0)) return false;
@@ -40,10 +40,11 @@ struct CreaseWall {
   }
 };
 
-/// Two walls that meet: what `a` n1 + `b` n2 has to be for given parts along the normals n1 and n2.
+/// Two walls that meet: finds the factors for which `a` n1 + `b` n2 has given components along the
+/// normals n1 and n2.
 struct Corner {
   double cosine = 0.0;
-  double square = 0.0;  ///< of the sine
+  double square = 0.0;  ///< of the sine of the angle between them
 
   Corner(const Vec3& n1, const Vec3& n2) noexcept
       : cosine(glm::dot(n1, n2)), square(1.0 - cosine * cosine) {}
@@ -55,9 +56,9 @@ struct Corner {
 
 }  // namespace
 
-/// Finds by Newton where the proxy rests in the crease of the leaves `a` and `b`, the only ones
-/// near; it is on one of them at least. False, and nothing is changed, if that is not sure; other_
-/// is the one of the two that does not hold it, if that is so from the start.
+/// Finds by Newton's method where the proxy rests in the crease of the leaves `a` and `b`, the only
+/// ones near; it must be on at least one of them. Returns false, and changes nothing, if the result
+/// is uncertain; if one of the two clearly does not hold the proxy from the start, other_ names it.
 bool ProxySolver::glideBetween(LeafId a, LeafId b, const Vec3& hip,
                                FrictionState& friction) noexcept {
   other_ = -1;
@@ -73,7 +74,7 @@ bool ProxySolver::glideBetween(LeafId a, LeafId b, const Vec3& hip,
   }
   if (!wall[0].isOn() && !wall[1].isOn()) return false;
   if (!(Corner(wall[0].normal, wall[1].normal).square > limits::kSharp)) return false;
-  // The proxy's region there is the one cell between the two walls.
+  // The proxy's region there must be exactly the one cell between the two walls.
   for (CreaseWall& each : wall) {
     each.facet = walker_.facetAt(each.id);
     if (!isPlainWall(*each.leaf, each.facet) || each.facet.beyond == walker_.region()) return false;
@@ -102,13 +103,13 @@ bool ProxySolver::glideBetween(LeafId a, LeafId b, const Vec3& hip,
         glm::cross(wall[0].normal, wall[1].normal) * (1.0 / std::sqrt(corner.square));
     const double bend[2] = {glm::dot(along, wall[0].bend * along),
                             glm::dot(along, wall[1].bend * along)};
-    // The place is a minimum along the crease.
+    // The place must be a minimum along the crease.
     const double firm = 1.0 - press[0] * bend[0] - press[1] * bend[1];
     if (!(firm > limits::kFirm)) return false;
     const double pull = glm::dot(along, wish);
     if (wall[0].isOn() && wall[1].isOn() && std::fabs(pull) <= rest_) break;
 
-    // Along the crease, and by what the walls bend meanwhile back onto both.
+    // A step along the crease, and the correction that brings it back onto both curved walls.
     const double slide = pull / firm;
     const double back = 0.5 * slide * slide;
     double by[2];
@@ -149,7 +150,7 @@ bool ProxySolver::glideBetween(LeafId a, LeafId b, const Vec3& hip,
   friction.sticks = false;
   friction.is_felt = false;
 
-  // How hard each is pressed is measured from the surfaces.
+  // The pressure on each is measured from the surfaces.
   const Corner corner(wall[0].normal, wall[1].normal);
   const Vec3 wish = hip - y;
   double onto[2];

@@ -3,14 +3,14 @@
 
 #include "proxy_solver.h"
 
-// Cuts: tangent planes of walls that a step ended beyond, where one field has several of them at a
-// fold.
+// Cuts: tangent planes at points beyond a wall where a step ended. Near a fold one field has
+// several such planes.
 
 namespace palpate {
 
-/// Whether the wall of plane `i` where the last step landed is one that the proxy has to respect
-/// here: the step ended beyond it, its plane is not the one here, and carried back it does not cut
-/// off the proxy.
+/// Whether the wall of plane `i`, as it is where the last step landed, is one that the proxy has to
+/// respect here: the step ended beyond it, its plane differs from the plane here, and carried back
+/// to the proxy the plane does not cut the proxy off.
 bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Cut& out) const noexcept {
   const Source& from = problem.source[i];
   const WallThere& wall = landed_[i];
@@ -26,8 +26,8 @@ bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Cut& out) con
   out.plane.normal = side * wall.normal;
   double left = wall.gap(from.inside) + glm::dot(out.plane.normal, off);
   double slack = limits::kOnWall * here.tolerance;
-  // A wall that bends little between there and here is carried back with its curvature: along a
-  // crease the bends of both its walls decide how far to go.
+  // A wall that turns little between there and here is carried back with its curvature: along a
+  // crease the curvatures of both walls decide how far to go.
   const Leaf& leaf = walker_.leaf(here.leaf);
   const FieldJet jet = leaf.field->jet(landed_at_);
   const double slope = glm::length(jet.gradient);
@@ -47,8 +47,8 @@ bool ProxySolver::isCut(const CellProblem& problem, std::size_t i, Cut& out) con
   return left >= -slack;
 }
 
-/// Whether a wall that the cell has as one smooth leaf stands more in the way than its curvature,
-/// or that of a cut that it shows where the last step landed, explains.
+/// Whether a wall that the cell has as one smooth leaf obstructs the step more than is explained by
+/// its curvature, or by the curvature of a known cut.
 bool ProxySolver::foundCrease(const CellProblem& problem, double length) const noexcept {
   Cut cut;
   const Vec3 by = landed_at_ - x_;
@@ -72,8 +72,8 @@ bool ProxySolver::foundCrease(const CellProblem& problem, double length) const n
   return false;
 }
 
-/// Looks along `way` for the walls of cuts that hold the solution and were met far off, from close
-/// by on, if the step that is left is so short. True if that found them anew.
+/// Looks along `way` from close by for the walls of those cuts that hold the solution and were
+/// found far away, if the remaining step is short. True if that found them anew.
 bool ProxySolver::lookCloser(const CellProblem& problem, const Vec3& way) noexcept {
   double feature = 0.0;
   double away = 0.0;
@@ -85,7 +85,7 @@ bool ProxySolver::lookCloser(const CellProblem& problem, const Vec3& way) noexce
   }
   double length = limits::kClose * feature;
   if (glm::length(problem.solution.step) > std::max(length, rest_)) return false;
-  // Where the wall stands further off than it was thought to, it is not met so close by.
+  // If the wall is farther away than expected, these close places do not meet it.
   for (; limits::kNearer * length < away && batches_left_ > 0; length *= limits::kNearer) {
     if (lookAt(problem, x_ + length * unitOr(way, Vec3(0.0)))) return true;
   }
@@ -93,7 +93,7 @@ bool ProxySolver::lookCloser(const CellProblem& problem, const Vec3& way) noexce
 }
 
 /// Looks where `step` would end if walls did not turn. Beside an apex they turn so much that only
-/// short steps are tried, which do not show its other side. True if that found cuts.
+/// short steps are tried, and these never see the apex's other side. True if that found cuts.
 bool ProxySolver::lookFar(const CellProblem& problem, const Vec3& step, double ball) noexcept {
   const double length = glm::length(step);
   const double far = std::min(length, ball);
@@ -101,7 +101,7 @@ bool ProxySolver::lookFar(const CellProblem& problem, const Vec3& step, double b
   return lookAt(problem, x_ + (far / length) * step);
 }
 
-/// Takes the walls at `p` [m] as if a step had ended there. True if that found cuts.
+/// Evaluates the walls at `p` [m] as if a step had ended there. True if that found cuts.
 bool ProxySolver::lookAt(const CellProblem& problem, const Vec3& p) noexcept {
   landed_at_ = p;
   has_landed_ = true;
@@ -112,15 +112,15 @@ bool ProxySolver::lookAt(const CellProblem& problem, const Vec3& p) noexcept {
   return addCuts(problem);
 }
 
-/// Keeps the tangent planes of the cell's walls that the last step ended beyond. Of walls that are
-/// hollow towards the proxy they hold everywhere. False if there is none.
+/// Keeps the tangent planes of those walls of the cell that the last step ended beyond. Where the
+/// region is convex at such a wall, the plane is valid everywhere. False if there is none.
 bool ProxySolver::addCuts(const CellProblem& problem) noexcept {
   bool has_new = false;
   if (!has_landed_) return false;
   for (std::size_t i = 0; i < problem.planes && cuts_ < limits::kMaxCuts; ++i) {
     Cut cut;
     if (!isCut(problem, i, cut)) continue;
-    // Met again from nearer by, the same wall is better known; met as it was, there is nothing new.
+    // If the same wall was met from nearer by, replace the old cut; if nothing is new, skip it.
     std::size_t slot = cuts_;
     bool is_new = true;
     for (std::size_t c = 0; c < cuts_; ++c) {

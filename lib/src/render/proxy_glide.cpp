@@ -5,8 +5,8 @@
 #include "proxy_solver.h"
 #include "step_checks.h"
 
-// The usual ticks: the proxy flies with the hand, or glides on one smooth wall with nothing else
-// near. Between two: proxy_crease.cpp.
+// The usual ticks: the proxy flies with the hand, or glides on one smooth wall with no other wall
+// near. Gliding between two walls is in proxy_crease.cpp.
 
 namespace palpate {
 namespace {
@@ -23,16 +23,16 @@ struct Found {
   }
 };
 
-/// A wall that bends alike in all directions along it is a ball's, or a plane: the step to its
-/// point closest to a hand that is `pull` [m] away along it and `beyond` [m] behind it. `normal` is
-/// the wall's on the hand's free side, `side` times that outward. False where the wall bends
-/// otherwise, or where that point is not a minimum by more than kFirm.
+/// On a wall with equal curvature in all directions (a sphere or a plane): the step to its point
+/// closest to a hand that is `pull` [m] away along the wall and `beyond` [m] behind it. `normal` is
+/// the wall's normal towards the free side, `side` times the outward one. False where the two
+/// curvatures differ, or where that point is not a minimum by more than kFirm.
 bool ballStep(const Vec3& normal, double side, const Vec3& pull, double beyond, const Mat3& bend,
               double bend_square, Vec3& step) noexcept {
   const Vec3 by_normal = bend * normal;
   const double across = glm::dot(by_normal, normal);
   const double trace = bend[0][0] + bend[1][1] + bend[2][2] - across;
-  // For principal curvatures a and b: a^2 + b^2 and, were they equal, (a + b)^2 / 2.
+  // With principal curvatures a and b: a^2 + b^2, and its value (a + b)^2 / 2 if they were equal.
   const double square = bend_square - 2.0 * glm::dot(by_normal, by_normal) + across * across;
   const double even = 0.5 * trace * trace;
   if (std::fabs(square - even) > limits::kEven * even) return false;
@@ -40,16 +40,16 @@ bool ballStep(const Vec3& normal, double side, const Vec3& pull, double beyond, 
   const double left = 1.0 - curvature * beyond;
   if (!(left > limits::kFirm)) return false;
   const double pulled = glm::dot(pull, pull);
-  // The hand's distance from the center, over the radius.
+  // The hand's distance from the sphere's center, in units of the radius.
   const double far = std::sqrt(left * left + curvature * curvature * pulled);
   const double share = 1.0 / (far * (left + far));
   step = ((left + far) * share) * pull - (curvature * pulled * share) * normal;
   return true;
 }
 
-/// Newton's step along the plane with `normal`, for a hand whose part along it is `pull` [m] away:
-/// solves (I - bend) s = pull there. False where the place that it leads to is not a minimum by
-/// more than kFirm.
+/// Newton's step in the plane with `normal`, for a hand whose component in the plane is `pull` [m]
+/// away: solves (I - bend) s = pull there. False where the result is not a minimum by more than
+/// kFirm.
 bool newtonAlong(const Vec3& normal, const Vec3& pull, const Mat3& bend, Vec3& step) noexcept {
   Vec3 t1(0.0);
   Vec3 t2(0.0);
@@ -70,9 +70,9 @@ bool newtonAlong(const Vec3& normal, const Vec3& pull, const Mat3& bend, Vec3& s
 
 }  // namespace
 
-/// The shorter way to the place of rest that the general way finds, where it is sure: free, on one
-/// smooth wall, or between two. False if it is not; the general way goes on from where the proxy is
-/// then.
+/// The fast way to the resting place that the general method would find, for cases where it is
+/// certain: no wall, one smooth wall, or two. Returns false if it is not certain; the general
+/// method then goes on from where the proxy is.
 bool ProxySolver::goQuickly(const Vec3& hip, FrictionState& friction) noexcept {
   if (walker_.isSealed()) return false;
   const Vec3 x = walker_.position();
@@ -93,9 +93,9 @@ bool ProxySolver::goQuickly(const Vec3& hip, FrictionState& friction) noexcept {
          glide(other_ == found.last ? found.before : found.last, other_, hip, friction);
 }
 
-/// Finds by Newton where the proxy rests on `id`, the only leaf near but for `free`, one that does
-/// not hold it (-1: none). False, and nothing is changed, if that is not sure; other_ is the leaf
-/// that it meets on the way, if there is one.
+/// Finds by Newton's method where the proxy rests on `id`, the only leaf near except `free`, which
+/// does not hold it (-1: there is none). Returns false, and changes nothing, if the result is
+/// uncertain; if the proxy meets another leaf on the way, other_ names it.
 bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& friction) noexcept {
   other_ = -1;
   const Vec3 x = walker_.position();
@@ -124,8 +124,8 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
     const double left = gap - limits::kRest * wall.tolerance;
     const double within = (limits::kOnWall - limits::kRest) * wall.tolerance;
     if (round == 0 && std::fabs(left) > within) return false;
-    // Behind its surface, by rounding, it is brought back before it: nothing else would, however
-    // long it glides.
+    // If rounding has put the proxy behind the surface, bring it back to the free side now:
+    // otherwise it would stay behind, however long it glides.
     const bool is_on = gap >= 0.0 && left <= within;
     const Mat3 bend = jet.hessian * (1.0 / wall.slope);
     const double bend_square = squareOf(bend);
@@ -141,7 +141,7 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
     if (may_lag) {
       FrictionRatios ratios;
       if (round > 0 && !after.sticks && slides_easily) {
-        // What slides, slides on: the map of the other ratio need not be read.
+        // The proxy goes on sliding: the map of the static ratio need not be read.
         ratios = {rough.static_ratio.range().least, rough.kinetic_ratio.at(y)};
       } else {
         ratios.take(rough, y);
@@ -150,8 +150,8 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
       lag = lagOf(ratios, pull, rest, -gap - along, round == 0, after);
       pull -= lag;
     }
-    // The place is a minimum where the wall's curvature, times how far the hand is beyond it, stays
-    // below 1.
+    // The place is a minimum if the wall's curvature, times the hand's distance beyond it, is below
+    // 1.
     const bool is_rest = is_on && glm::dot(pull, pull) <= rest_ * rest_;
     if (is_rest && multiplier * bend_size < 1.0 - limits::kFirm) break;
     Vec3 step(0.0);
@@ -173,7 +173,7 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
     wall = there;
   }
 
-  // A hand between the surface and the proxy, which stands off it, does not press.
+  // The proxy stands off the surface; a hand between the two does not press.
   if (!(side * glm::dot(wall.normal, y - hip) - wall.gap(inside) > rest_)) return false;
   if (y != x) {
     const Vec3 far_before = hip - x;
@@ -194,7 +194,7 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
     walker_.know(id, jet);
   }
   if (y != x && !isPlainWall(leaf, facet)) {
-    // Here an opening may have begun, a hole, or another force may open it.
+    // The facet may differ here: an opening or a hole may begin, or another force may open it.
     const int material = facet.material;
     facet = walker_.facetAt(id);
     if (!isWallHere(leaf, facet) || facet.material != material) return false;
@@ -205,8 +205,8 @@ bool ProxySolver::glide(LeafId id, int free, const Vec3& hip, FrictionState& fri
   return true;
 }
 
-/// Whether the way of `length` [m] to `y` keeps to the free side of `id`, near which it is, and
-/// ends off it.
+/// Whether the way of `length` [m] to `y` stays on the free side of the near leaf `id`, and ends
+/// off its surface.
 bool ProxySolver::isPassed(LeafId id, const Vec3& y, double length) noexcept {
   const Leaf& leaf = walker_.leaf(id);
   const double side = walker_.side(id);
@@ -221,8 +221,8 @@ bool ProxySolver::isPassed(LeafId id, const Vec3& y, double length) noexcept {
          keepsOnChord(*leaf.field, walker_.position(), y, scale, bend, here.tolerance);
 }
 
-/// The contact with one wall that holds the proxy at rest. How hard it is pressed is measured from
-/// its surface.
+/// The contact with the one wall that holds the proxy at rest. The pressure is measured from the
+/// wall's surface.
 void ProxySolver::takeOnly(LeafId id, const Facet& facet, const WallThere& wall,
                            const FieldJet& jet, const Vec3& wish) noexcept {
   const double side = walker_.side(id);

@@ -3,7 +3,7 @@
 
 #include "proxy_solver.h"
 
-// Where a step landed, and the way back from there onto the walls that it has to keep to.
+// The place where a step landed, and the way back from there onto the walls that it has to keep to.
 
 namespace palpate {
 
@@ -22,9 +22,9 @@ bool ProxySolver::hasLandedFree(const CellProblem& problem) const noexcept {
   return true;
 }
 
-/// What brings a tangent step back onto the walls that hold it, as far as their curvature here
-/// tells. At a fold of one field only this tells how far off the wall it is that the field does not
-/// show there.
+/// The correction that brings a tangent step back onto the walls that hold it, as far as their
+/// curvature here predicts it. At a fold of one field this is the only estimate for the wall that
+/// the field does not show there.
 Vec3 ProxySolver::bentBack(const CellProblem& problem, const Vec3& step) const noexcept {
   std::array<Plane, 6> planes{};
   std::size_t count = 0;
@@ -51,8 +51,8 @@ Vec3 ProxySolver::bentBack(const CellProblem& problem, const Vec3& step) const n
 /// cell, by the shortest way. False if that takes more than a share of `length` [m].
 bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) noexcept {
   double moved = 0.0;
-  // Where a wall folds its field tells one of the planes that meet there at a time: those seen are
-  // kept.
+  // Where a wall folds, its field shows only one of the planes that meet there at a time: keep
+  // those seen before.
   std::array<Plane, kMaxSeen> seen{};  // gap at the world's origin
   std::size_t seen_count = 0;
   for (int round = 0; round < limits::kRestorations && batches_left_ > 0; ++round) {
@@ -77,7 +77,7 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
       planes[count++] = {normal, left};
       const bool is_held = isReached(i);
       const bool floats = is_held && left > wall.tolerance;
-      // What is held already stays so while the others come down.
+      // A wall that already holds the proxy keeps doing so while the others are approached.
       if (floats || (is_held && left > -limits::kNoise * wall.tolerance)) {
         planes[count++] = {-normal, -left};
       }
@@ -109,7 +109,7 @@ bool ProxySolver::restore(const CellProblem& problem, Vec3& y, double length) no
     }
     const std::size_t here = count;
     for (std::size_t i = 0; i < seen_count && count < kMaxPlanes; ++i) {
-      // The same wall as it is here knows better.
+      // If the same wall is among the present planes, the present plane is the better one.
       const bool is_here = std::any_of(planes.begin(), planes.begin() + here, [&](const Plane& p) {
         return glm::length(p.normal - seen[i].normal) <= limits::kCutTurn;
       });

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-// The tick: look around, and go on until the proxy rests. How one step is made: proxy_step.cpp.
+// The tick: look around, and go on until the proxy rests. A single step is in proxy_step.cpp.
 
 namespace palpate {
 
@@ -70,8 +70,8 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
           if (stop == CellWalker::Stop::kArrived) return true;
           const double flown = glm::length(walker_.position() - x_);
           if (stop == CellWalker::Stop::kSpent && flown <= rest_) return false;
-          // Stopped at once by a wall that it leads along: from here in steps that keep to the
-          // walls.
+          // A wall along the way stopped the flight at once: from here on take steps that follow
+          // the walls.
           may_fly = flown > rest_;
           wander_ = {.from = walker_.position()};
           continue;
@@ -94,9 +94,9 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
       may_fly = true;
       continue;
     }
-    // Only at rest does the spring of the wall have the length that is felt: a tangent plane that
-    // one tick's motion left behind may be pressed harder, and must not open what was never pressed
-    // so.
+    // A port may be opened only at rest, when the wall's spring has the length that is felt: before
+    // that, the plane left from the last tick may be pressed harder by the motion of one tick, and
+    // would open a port that was never really pressed so hard.
     if (opener.open(contact_)) continue;
     if (outcome == Try::kRefused) return goesNowhere();
     if (friction.sticks || !kick()) return true;
@@ -105,7 +105,7 @@ bool ProxySolver::track(const Vec3& hip, FrictionState& friction, WallOpener& op
   return goesNowhere();
 }
 
-/// About an apex in the plane of another wall, steps of some times the noise may lead round the tip
+/// At an apex in the plane of another wall, steps of a few times the noise may go around the tip
 /// for ever.
 bool ProxySolver::goesNowhere() const noexcept {
   return !trusts_sides_ && wander_.in_vain >= limits::kIdleSteps &&
@@ -117,7 +117,7 @@ double ProxySolver::restLength(const Vec3& x, const Vec3& wish) noexcept {
   return std::max(limits::kSettled * glm::length(wish), limits::kRounding * size);
 }
 
-/// Out of budget on the way: the walls that hold the proxy where it got to.
+/// If the budget ended on the way: takes the walls that hold the proxy where it stopped.
 void ProxySolver::takeLastContact(const Vec3& hip) noexcept {
   x_ = walker_.position();
   wish_ = hip - x_;
@@ -133,8 +133,8 @@ void ProxySolver::takeLastContact(const Vec3& hip) noexcept {
   contact_.lag = lag;
 }
 
-/// Looks at what touches the proxy: whether it is free to go, rests, stands at an opening, or has
-/// to slide.
+/// Looks at the walls that touch the proxy and decides whether it is free to go, rests, stands at
+/// an opening, or has to slide.
 ProxySolver::Look ProxySolver::lookAround(FrictionState& friction, bool is_first) noexcept {
   --batches_left_;
   rest_ = restLength(x_, wish_);
@@ -171,10 +171,10 @@ ProxySolver::Look ProxySolver::lookAround(FrictionState& friction, bool is_first
   return Look::kRests;
 }
 
-/// Whether the proxy goes on into `beyond`, which is open. At an edge where two regions that lead
-/// freely into each other both end at walls, the hand may draw it into each from the other. Back
-/// where it was at this place it does not go, unless a step leads on from there and none does from
-/// here; then it does not come again.
+/// Whether the proxy goes on into the open region `beyond`. At an edge where two regions that lead
+/// freely into each other both end at walls, the hand may draw the proxy from each into the other.
+/// So it does not go back into a region that it left at this place, unless a step leads on from
+/// there and none does from here; after that it stays.
 bool ProxySolver::goesOnInto(RegionId beyond, const CellProblem& problem) noexcept {
   if (crossed_.place != x_) crossed_ = {.place = x_};
   const bool leads_on = glm::length(problem.solution.step) > rest_;
@@ -190,8 +190,9 @@ bool ProxySolver::goesOnInto(RegionId beyond, const CellProblem& problem) noexce
   return true;
 }
 
-/// Near walls and cells within `radius` [m]. Where no cell holds the proxy (a field that lies about
-/// its bound let it through), the walker's sides say where it belongs. False if they do not say.
+/// Finds near walls and cells within `radius` [m]. If no cell contains the proxy (a field with a
+/// false Lipschitz bound let it through), the walker's sides decide where it belongs. False if they
+/// do not decide it either.
 bool ProxySolver::lookWithin(double radius) noexcept {
   trusts_sides_ = false;
   if (!near_.look(radius, false)) return false;

@@ -1,5 +1,5 @@
 #pragma once
-/// ProxySolver: where the proxy goes. It minimizes |x - P|^2 over the proxy's region along a
+/// ProxySolver: moves the proxy. It minimizes |x - P|^2 over the proxy's region along a
 /// connected path: at each place the region is a union of cells, each a conjunction of sides of
 /// smooth leaves, and x rests if and only if it rests in every cell that holds it. So edges,
 /// corners of any number of walls, apexes and the rims of unions need no rule of their own.
@@ -29,14 +29,14 @@ struct HeldWalls {
   [[nodiscard]] std::span<const HeldWall> walls() const noexcept { return {wall.data(), count}; }
 };
 
-/// What holds the proxy.
+/// The walls that hold the proxy.
 struct ContactSet {
   std::array<WallContact, 3> wall{};
   std::size_t count = 0;
-  Vec3 lag{0.0, 0.0, 0.0};  ///< [m] of P - x: the part along the walls that friction holds
+  Vec3 lag{0.0, 0.0, 0.0};  ///< [m] the part of P - x along the walls that friction holds
   /// [m] from the proxy, which stands off its walls by half a tolerance, onto their surfaces
   Vec3 snug{0.0, 0.0, 0.0};
-  Vec3 left{0.0, 0.0, 0.0};  ///< [m] of P - x: the part along the walls, held or still to go
+  Vec3 left{0.0, 0.0, 0.0};  ///< [m] part of P - x along the walls, held or still to slide
 
   [[nodiscard]] std::span<const WallContact> walls() const noexcept { return {wall.data(), count}; }
   void clear() noexcept {
@@ -48,10 +48,10 @@ struct ContactSet {
   [[nodiscard]] double load() const noexcept;  ///< [m] length of the sum of multiplier * normal
 };
 
-/// Asked at rest whether a wall that is pressed gives way.
+/// Decides, when the proxy rests, whether a wall that is pressed gives way.
 class WallOpener {
  public:
-  /// True if one did, and the walker went through it.
+  /// True if a wall gave way; the walker then has gone through it.
   virtual bool open(const ContactSet& contact) noexcept = 0;
 
  protected:
@@ -63,25 +63,25 @@ class ProxySolver {
   ProxySolver(const Scene& scene, CellWalker& walker)
       : scene_(scene), walker_(walker), near_(scene, walker) {}
 
-  /// Brings the proxy to where |x - P| is smallest in its region, as far as one tick's budget goes;
-  /// never further from P than it was, but for what friction holds. True if it came to rest there.
+  /// Brings the proxy to where |x - P| is smallest in its region, as far as one tick's budget
+  /// allows. The result is never further from P than before, except for what friction holds. True
+  /// if the proxy came to rest.
   bool track(const Vec3& hip, FrictionState& friction, WallOpener& opener) noexcept;
 
-  /// As of the last track(): what holds the proxy; empty where it is at P.
+  /// The walls that hold the proxy after the last track(); empty if the proxy is at P.
   [[nodiscard]] const ContactSet& contact() const noexcept { return contact_; }
 
  private:
   static constexpr std::size_t kMaxCells = NearCells::kMaxCells;
   static constexpr std::size_t kMaxNear = NearWalls::kMax;
   static constexpr std::size_t kMaxSeen =
-      6;  ///< planes of folds that a way back onto the walls keeps
+      6;  ///< planes of folds that are kept while a step is brought back onto the walls
 
-  /// A plane of a cell's problem: the side of a near wall, or a tangent plane met further on (a
-  /// cut).
+  /// A plane of a cell's problem: a near wall, or a tangent plane that was met further on (a cut).
   struct Source {
     std::uint8_t near = 0;  ///< index of the near wall
     bool inside = false;    ///< the side of it that the cell is on
-    std::int16_t cut = -1;  ///< index of the cut; -1: the wall as it is here
+    std::int16_t cut = -1;  ///< index of the cut; -1: the plane of the wall as it is here
 
     [[nodiscard]] bool isCut() const noexcept { return cut >= 0; }
   };
@@ -91,7 +91,7 @@ class ProxySolver {
     std::array<Source, kMaxPlanes> source{};
     std::size_t planes = 0;
     PlaneSolution solution;
-    double gain = 0.0;  ///< [m^2] of the solution
+    double gain = 0.0;  ///< [m^2] by how much the solution reduces the squared distance
 
     void add(const Plane& added, const Source& from) noexcept {
       if (planes == kMaxPlanes) return;
@@ -102,40 +102,39 @@ class ProxySolver {
     [[nodiscard]] bool holds(std::size_t plane_index) const noexcept;
   };
   struct Cut {
-    Plane plane;  ///< from where the look is
-    Mat3 bend{
-        0.0};  ///< [1/m] of the distance to that wall, outward; zero where it is not known here
+    Plane plane;     ///< as a constraint on steps from the present place
+    Mat3 bend{0.0};  ///< [1/m] curvature of that wall, outward; zero where it is not known here
     LeafId leaf = 0;
     bool inside = false;
-    double away = 0.0;  ///< [m] how far off it was met
+    double away = 0.0;  ///< [m] how far away it was met
   };
 
-  /// The regions that were left at one place in this tick.
+  /// The regions that the proxy left at one place in this tick.
   struct Crossed {
     struct From {
       RegionId region = kOutside;
-      bool leads_on = false;  ///< a step led on from there, along what was crossed
+      bool leads_on = false;  ///< a step led on from there, along the walls crossed
     };
     Vec3 place{kInfinity, kInfinity, kInfinity};  ///< [m]
     std::array<From, 16> from{};
     std::size_t count = 0;
-    bool is_last = false;  ///< where it is now, it stays
+    bool is_last = false;  ///< the proxy stays where it is now
   };
 
   /// The steps since the proxy last flew or crossed a wall in this tick.
   struct Wander {
     Vec3 from{0.0, 0.0, 0.0};  ///< [m]
-    double farthest = 0.0;     ///< [-] from there, over the noise of the walls
-    int in_vain = 0;           ///< steps that came no nearer to the aim than one before
+    double farthest = 0.0;     ///< [-] distance from `from` over the noise of the walls
+    int in_vain = 0;           ///< steps that came no nearer to the aim than an earlier one
   };
 
   enum class Look { kFree, kRests, kCrossed, kMoves, kNowhere };
   enum class Try { kMoved, kRests, kRefused };
-  /// What a step has to do: end on the walls and gain a share of what it promised; gain at all; or
-  /// it may end in free space.
+  /// What a step must achieve: end on the walls and gain a share of what it promised (kUsual); gain
+  /// at all (kMustGain); or gain, and be allowed to end in free space (kMayFly).
   enum class StepRule { kUsual, kMustGain, kMayFly };
 
-  /// [m] A step from `x` as short as this is none for a hand that is `wish` away.
+  /// [m] A step from `x` as short as this counts as none, for a hand that is `wish` away.
   [[nodiscard]] static double restLength(const Vec3& x, const Vec3& wish) noexcept;
   [[nodiscard]] bool goQuickly(const Vec3& hip, FrictionState& friction) noexcept;
   [[nodiscard]] bool glide(LeafId id, int free, const Vec3& hip, FrictionState& friction) noexcept;
@@ -180,7 +179,7 @@ class ProxySolver {
   void takeContact(const CellProblem& problem) noexcept;
   [[nodiscard]] int materialAside(const CellProblem& problem, std::size_t near) noexcept;
   void nameMaterials(int last) noexcept;
-  /// The roughest of some walls, [-].
+  /// The largest friction ratios [-] of some walls.
   struct FrictionRatios {
     double at_rest = 0.0;
     double sliding = 0.0;
@@ -206,10 +205,10 @@ class ProxySolver {
   ContactSet contact_;
 
   // Scratch of one tick.
-  Vec3 x_{0.0, 0.0, 0.0};     ///< [m] where the look is
+  Vec3 x_{0.0, 0.0, 0.0};     ///< [m] the place being examined
   Vec3 wish_{0.0, 0.0, 0.0};  ///< [m] from there to P
-  Vec3 aim_{0.0, 0.0, 0.0};   ///< [m] the same less what friction holds
-  double rest_ = 0.0;         ///< [m] a step as short as this is none
+  Vec3 aim_{0.0, 0.0, 0.0};   ///< [m] `wish_` without the part that friction holds
+  double rest_ = 0.0;         ///< [m] a step as short as this counts as none
   std::array<CellProblem, kMaxCells> problem_{};
   std::size_t problems_ = 0;
   std::array<Cut, limits::kMaxCuts> cut_{};
@@ -219,18 +218,18 @@ class ProxySolver {
   bool has_landed_ = false;
   bool leads_nowhere_ =
       false;  ///< the last step is within the noise, and came back to where it began
-  std::uint64_t reached_ = 0;  ///< by plane, a bit: the step at hand ends on it
-  int rim_ = -1;    ///< leaf that a way back onto the walls has to end on as well; -1: none
-  int other_ = -1;  ///< leaf that a quick way meets, or that no longer holds it; -1: none
+  std::uint64_t reached_ = 0;  ///< one bit for each plane: the present step ends on it
+  int rim_ = -1;               ///< leaf that the way back onto the walls must also end on; -1: none
+  int other_ = -1;  ///< leaf that the fast way meets, or that no longer holds the proxy; -1: none
   bool trusts_sides_ = false;
   int batches_left_ = 0;
   Crossed crossed_;
-  int hops_ = 0;  ///< steps of this tick cut short where the whole of it ended in free space
-  double nearest_ =
-      kInfinity;  ///< [m^2] least squared distance from the aim before or after a step of this tick
+  int hops_ = 0;  ///< steps cut short in this tick because the full step ended in free space
+  double nearest_ = kInfinity;  ///< [m^2] smallest squared distance from the aim before or after a
+                                ///< step of this tick
   std::array<Vec3, limits::kPlaces> before_{};  ///< [m] where the last steps of this tick began
-  bool is_nearest_ = false;  ///< the last step of this tick ended there, but for rounding
-  int idle_steps_ = 0;       ///< in a row, which lead nowhere (limits::kIdleSteps)
+  bool is_nearest_ = false;  ///< the last step of this tick ended at that distance, within rounding
+  int idle_steps_ = 0;       ///< number of steps in a row that led nowhere (limits::kIdleSteps)
   Wander wander_;
 };
 

@@ -4,13 +4,13 @@
 #include "proxy_solver.h"
 #include "step_checks.h"
 
-// One step of the proxy: to the best point of a cell that a tangent, curved and restored step gets
-// to. How it is brought back onto the walls: proxy_restore.cpp; what is learned from a step that
-// was refused: proxy_cuts.cpp.
+// One step of the proxy: along the tangent, corrected for curvature and brought back onto the
+// walls, to the best point of a cell that it reaches. The way back onto the walls is in
+// proxy_restore.cpp; cuts, which are learned from refused steps, are in proxy_cuts.cpp.
 
 namespace palpate {
 
-/// sum of multiplier * Hessian of the distances to the walls that hold the solution.
+/// The sum of multiplier * Hessian of the distance over the walls that hold the solution.
 Mat3 ProxySolver::bendOf(const CellProblem& problem) const noexcept {
   Mat3 sum(0.0);
   const PlaneSolution& s = problem.solution;
@@ -25,8 +25,8 @@ Mat3 ProxySolver::bendOf(const CellProblem& problem) const noexcept {
   return sum;
 }
 
-/// [m] How far the walls that hold the solution let the proxy go before their normals have turned
-/// as much as one step may.
+/// [m] How far the proxy may go along the walls that hold the solution before their normals have
+/// turned as much as one step may.
 double ProxySolver::turningLength(const CellProblem& problem) const noexcept {
   double bend = 0.0;
   double feature = kInfinity;
@@ -40,7 +40,7 @@ double ProxySolver::turningLength(const CellProblem& problem) const noexcept {
   return bend > 0.0 ? std::min(most, limits::kLargestTurn / bend) : 0.0;
 }
 
-/// [m] How far a place on the walls may be from another that is as good.
+/// [m] How far apart two places on the walls may be that are equally good within the tolerances.
 double ProxySolver::noiseOf(const CellProblem& problem) const noexcept {
   double out = 0.0;
   for (std::size_t i = 0; i < problem.planes; ++i) {
@@ -49,7 +49,7 @@ double ProxySolver::noiseOf(const CellProblem& problem) const noexcept {
   return out;
 }
 
-/// [m] How far the end of the step stays from the nearest wall of the cell that does not hold it.
+/// [m] Distance from the end of the step to the nearest wall of the cell that does not hold it.
 double ProxySolver::roomOf(const CellProblem& problem) noexcept {
   double room = kInfinity;
   for (std::size_t i = 0; i < problem.planes; ++i) {
@@ -60,7 +60,7 @@ double ProxySolver::roomOf(const CellProblem& problem) noexcept {
   return room;
 }
 
-/// Whether the same walls hold the solutions of both.
+/// Whether the same walls hold both solutions.
 bool ProxySolver::areHeldAlike(const CellProblem& a, const CellProblem& b) noexcept {
   if (a.solution.count != b.solution.count) return false;
   for (std::size_t k = 0; k < static_cast<std::size_t>(a.solution.count); ++k) {
@@ -71,9 +71,9 @@ bool ProxySolver::areHeldAlike(const CellProblem& a, const CellProblem& b) noexc
   return true;
 }
 
-/// Of the cells whose solutions the same walls hold as that of the first one, that with most room:
-/// so no order of walls chooses the way, as that of the faces of a box, which is another where the
-/// scene is turned.
+/// Of the cells whose solutions are held by the same walls as that of the first cell, the one with
+/// the most room. So the result does not depend on the order of the walls, for example of the faces
+/// of a box, which changes when the scene is rotated.
 std::size_t ProxySolver::roomiest() const noexcept {
   std::size_t best = 0;
   for (std::size_t i = 1; i < problems_; ++i) {
@@ -84,7 +84,8 @@ std::size_t ProxySolver::roomiest() const noexcept {
   return best;
 }
 
-/// A step in one of the cells that hold the proxy; kRests if there is none to make in any.
+/// A step in one of the cells that hold the proxy; kRests if there is no step to make in any of
+/// them.
 ProxySolver::Try ProxySolver::moveOn() noexcept {
   double longest = 0.0;
   double noise = 0.0;
@@ -96,8 +97,9 @@ ProxySolver::Try ProxySolver::moveOn() noexcept {
     longest = std::max({longest, glm::length(problem.solution.step), glm::length(curved.step)});
     if (curved.lowest < limits::kSaddle) longest = std::max(longest, turningLength(problem));
   }
-  // No better point is further away than twice the distance to the aim. The way back onto the walls
-  // is as long as their noise, however short the step.
+  // No better point is further away than twice the distance to the aim. The ball is at least as
+  // large as the noise of the walls, since the way back onto them may be that long however short
+  // the step.
   const double whole =
       std::max(std::min(limits::kBallOverStep * longest, 2.0 * glm::length(aim_)), noise);
   double ball = whole;
@@ -127,8 +129,8 @@ ProxySolver::Try ProxySolver::moveOn() noexcept {
   return flyOff(whole) ? Try::kMoved : Try::kRefused;
 }
 
-/// Just before a sharp edge of one leaf no step along its wall ends on a wall again: over the edge,
-/// into free space.
+/// Just before a sharp edge of one leaf, no step along its wall ends on a wall again: step over the
+/// edge into free space.
 bool ProxySolver::flyOff(double ball) noexcept {
   if (!lookWithin(limits::kReachOverStep * ball)) return false;
   poseAll(aim_);
@@ -148,8 +150,8 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
   bool is_refined = false;
   bool ends_free = false;
   for (int round = 0; round < limits::kCutRounds && batches_left_ > 0; ++round) {
-    // What was met far off is known only so well: asked for again close by before a short step or
-    // rest.
+    // A cut that was met far away is not exact: before a short step or rest it is met again from
+    // close by.
     if (!is_refined && lookCloser(problem, first)) {
       is_refined = true;
       pose(problem.cell, problem);
@@ -162,8 +164,8 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
         curvedStep(aim_, problem.given(), problem.solution, bend, limits::kLeastEigenvalue);
     step = curved.step;
     if (curved.lowest < limits::kSaddle) {
-      // Down from a saddle every step gains, and the farther the better: as far as the normal may
-      // turn.
+      // Down from a saddle every step gains, and a longer one gains more: go as far as the normal
+      // may turn.
       const double far = std::min(turningLength(problem), ball);
       const double length = glm::length(step);
       if (far > limits::kFarther * length && length > 0.0 &&
@@ -172,12 +174,12 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
       }
     }
     const Vec3& plain = problem.solution.step;
-    // Near a singular point the curvature is that of another scale.
+    // Near a singular point the curvature does not describe the wall over the length of the step.
     if (glm::length(step) < limits::kSingularStep * glm::length(plain) &&
         glm::length(bend * plain) > limits::kSingularTurn * glm::length(aim_)) {
       step = plain;
     }
-    // What comes to a sharp edge by shares of a step goes over it after some.
+    // A proxy that approaches a sharp edge by ever shorter steps goes over it after a few of them.
     if (tryStep(problem, step, ball,
                 hops_ < limits::kHops ? StepRule::kUsual : StepRule::kMayFly)) {
       return Try::kMoved;
@@ -197,7 +199,7 @@ ProxySolver::Try ProxySolver::tryCell(CellProblem& problem, double ball) noexcep
   return Try::kRefused;
 }
 
-/// Shortens a step to the ball, to what the walls' features allow, and to the largest turn.
+/// Shortens a step to the ball, to the walls' feature sizes, and to the largest turn of a normal.
 Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
                           double ball) const noexcept {
   double most = ball;
@@ -207,18 +209,18 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
     const NearWall& wall = near_.walls()[from.near];
     if (from.isCut()) continue;
     const Leaf& leaf = walker_.leaf(wall.leaf);
-    // What stays nearer than a wall is cannot land on its other side.
+    // A step shorter than the distance to a wall cannot land on its other side.
     const double safe = std::fabs(wall.distance) * std::min(1.0, wall.slope / leaf.lipschitz);
     if (!leaf.is_flat) {
-      // A longer step is looked at in strides, as many as there are, where the wall turns little
-      // over it.
+      // A longer step is examined in as many strides as there are, if the wall turns little over
+      // it.
       const double turned = limits::kLargestTurn / std::max(wall.bend_size, 1.0 / ball);
       const double seen = std::min(turned, limits::kMostStrides * limits::kStride * leaf.feature);
       most = std::min(most, std::max({limits::kShareOfFeature * leaf.feature, safe, seen}));
     }
     if (problem.holds(i)) turn = std::max(turn, glm::length(wall.bend * step));
   }
-  // Of a wall out of its band only a bound of the distance is known.
+  // For a wall outside its band only a bound of the distance is known.
   const std::span<const NearWall> walls = near_.walls();
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const std::uint32_t bit = std::uint32_t{1} << i;
@@ -238,7 +240,7 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   const Vec3 by = limited(problem, step, ball);
   const double length = glm::length(by);
   if (!(length > 0.0)) return false;
-  // A step that was cut short does not get to all the walls that hold the whole one.
+  // A step that was cut short does not reach all the walls that hold the full step.
   reached_ = 0;
   for (std::size_t i = 0; i < problem.planes; ++i) {
     const double left = problem.plane[i].gap + glm::dot(problem.plane[i].normal, by);
@@ -255,8 +257,8 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   }
   const Vec3 moved = y - x_;
   if (glm::length(moved) > limits::kReachOverStep * ball) return false;
-  // How far the proxy is from its aim before and after, and by how much the step promised to change
-  // that.
+  // The squared distance to the aim before and after the step, and the reduction that the step
+  // promised.
   const Vec3 after = aim_ - moved;
   const Vec3 promised = aim_ - by;
   const double before = glm::dot(aim_, aim_);
@@ -265,7 +267,7 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   const double slack = noise * std::sqrt(before);
   const double gain = before - glm::dot(after, after);
   if (!trusts_sides_) {
-    // A proxy beyond its walls comes back whatever it costs.
+    // This does not apply to a proxy beyond its walls, which must come back at any cost.
     const double least = rule == StepRule::kMustGain ? slack : limits::kGain * promise - slack;
     if (gain < least) return false;
     if (glm::length(moved) <= limits::kNowhere * rest_) {
@@ -291,7 +293,7 @@ bool ProxySolver::tryStep(const CellProblem& problem, const Vec3& step, double b
   return true;
 }
 
-/// Whether the chord to `y` [m] keeps to the cell, but for what the walls' own curvature makes it
+/// Whether the chord to `y` [m] stays in the cell, except where the curvature of the walls makes it
 /// dip.
 bool ProxySolver::keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept {
   const double length = glm::length(y - x_);
@@ -302,7 +304,7 @@ bool ProxySolver::keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept
     const Leaf& own = walker_.leaf(wall.leaf);
     if (!own.is_flat && length > limits::kShareOfFeature * own.feature &&
         std::fabs(wall.distance) < length) {
-      // Less than what a thin wall is deep: a chord through one is not a way along another.
+      // Less than the thickness of a thin wall: a chord through a wall is not a way along another.
       const double dip =
           std::min(dipOfChord(wall.bend_size, length), limits::kShareOfFeature * own.feature);
       const int strides = static_cast<int>(std::ceil(length / (limits::kStride * own.feature)));
@@ -320,7 +322,7 @@ bool ProxySolver::keepsOnWay(const CellProblem& problem, const Vec3& y) noexcept
   return true;
 }
 
-/// Goes to `y` [m]; or up to where an opening on the way lets go of a wall that holds the proxy.
+/// Goes to `y` [m], or up to the first opening on the way in a wall that holds the proxy.
 bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
   std::array<LeafId, kMaxNear> near{};
   const std::span<const NearWall> walls = near_.walls();
@@ -333,8 +335,8 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
   const std::span<const LeafId> leaves(near.data(), walls.size());
   const CellWalker::Slid slid = walker_.slideTo(y, problem.cell, leaves, {held.data(), count});
   if (slid.arrived) return true;
-  // To where the opening begins: on the walls that hold the proxy, and on the leaf that was passed
-  // there.
+  // The point where the opening begins: on the walls that hold the proxy, and on the leaf that was
+  // passed there.
   Vec3 rim = x_ + slid.share * (y - x_);
   const double length = std::max(glm::length(y - x_), rest_);
   rim_ = static_cast<int>(slid.leaf);
@@ -348,7 +350,7 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
   return true;
 }
 
-/// At rest by the first order: looks whether the proxy can come closer by the second.
+/// At a first-order minimum: looks whether the proxy can come closer by the second order.
 bool ProxySolver::kick() noexcept {
   const CellProblem& first = problem_[0];
   const PlaneSolution& s = first.solution;

@@ -9,10 +9,10 @@ namespace {
 constexpr int kMostMoves = 300;
 /// A climb ends where its steps get shorter than this share of the first one.
 constexpr double kShortest = 1e-6;
-/// Over where a climb began: what is deeper has no end.
+/// In units of the depth where the climb began: a region deeper than this counts as endless.
 constexpr double kEndless = 1e6;
 
-/// [m] How far inside the field `p` is; infinite where the field does not know.
+/// [m] Depth of `p` inside the field; infinite where the field does not know it.
 double depthIn(const Field& field, const Vec3& p) {
   const FieldSample s = field.sample(p);
   if (!s.in_band) return s.value < 0.0 ? kInfinity : -kInfinity;
@@ -20,7 +20,7 @@ double depthIn(const Field& field, const Vec3& p) {
   return field.metric() == Metric::kImplicit && slope > 0.0 ? -s.value / slope : -s.value;
 }
 
-/// [m] The same in a region: what later layers take is not of it.
+/// [m] The same in a region, which does not include what later layers take from it.
 double depthIn(std::span<const Region> regions, std::size_t region, const Vec3& p) {
   double depth = depthIn(*regions[region].field, p);
   for (std::size_t later = region + 1; later < regions.size(); ++later) {
@@ -53,7 +53,7 @@ double thicknessOf(std::span<const Region> regions, std::size_t region) {
     step *= is_deeper ? 2.0 : 0.5;
   }
   if (depth < kEndless * first) return 2.0 * depth;
-  // Deeper than a grid's band: then what counts is the least side of its box.
+  // Deeper than a grid's band: use the smallest side of the grid's box.
   const Box3 box = regions[region].field->bounds();
   const Vec3 size = box.size();
   return box.isBounded() ? std::min({size.x, size.y, size.z}) : kInfinity;

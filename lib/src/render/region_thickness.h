@@ -1,5 +1,5 @@
 #pragma once
-/// How thick a region is: the scale of what is felt within it.
+/// The thickness of a region: the length scale of its content.
 
 #include <span>
 
@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// [m] Across the largest ball that is found in the region by climbing from a point of it, its
-/// seed; infinite where it has no end. For set-up.
+/// [m] Diameter of the largest ball that is found in the region by climbing from its seed point;
+/// infinite where it has no end. For set-up.
 [[nodiscard]] double thicknessOf(std::span<const Region> regions, std::size_t region);
 
 }  // namespace palpate

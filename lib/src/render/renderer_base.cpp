@@ -105,8 +105,8 @@ Vec3 RendererBase::latticeForce(RegionId region, const Vec3& p) noexcept {
   if (!contents_.hasLattice(region)) return Vec3(0.0);
   const LatticePush push =
       latticePush(contents_.material(region)->lattice, contents_.latticeForce(region, p), p);
-  // What the hand's motion changes the potential by, the force gives or takes. All else comes from
-  // nowhere.
+  // Changes of the potential by the hand's motion are work of the force. Any other change has no
+  // such origin and counts as a source.
   SourceState& source = state_.source;
   const bool goes_on =
       source.lattice_region == region && source.lattice_version == contents_.version();

@@ -1,6 +1,6 @@
 #pragma once
-/// What both renderers have in common: the state that they own, contents that were changed, the
-/// limits of the force, and the count of sources.
+/// The common part of both renderers: the state that they own, changed contents, the limits of the
+/// force, and the count of sources.
 
 #include <span>
 #include <utility>
@@ -42,12 +42,12 @@ class RendererBase : public HapticRenderer {
     state_.last.region = scene_->startRegion();  // reported until the first good tick
   }
 
-  /// Drag of the content of `region` at the tip `p` [m], of which `share` is felt by a hand that
-  /// moves at `velocity` [m/s]. Counts what the flow does.
+  /// Drag of the content of `region` at the tip `p` [m], reduced to `share`, on a hand that moves
+  /// at `velocity` [m/s]. Also counts the work of the flow.
   [[nodiscard]] Vec3 dragForce(RegionId region, const Vec3& p, const Vec3& velocity,
                                double share) noexcept;
-  /// The lattice's force of `region` at the tip `p` [m]; once a tick. Counts its potential where it
-  /// jumps.
+  /// The lattice's force of `region` at the tip `p` [m]; to be called once a tick. Also counts
+  /// jumps of its potential.
   [[nodiscard]] Vec3 latticeForce(RegionId region, const Vec3& p) noexcept;
 
   ScenePtr scene_;
@@ -55,12 +55,12 @@ class RendererBase : public HapticRenderer {
   Contents contents_;
 
  private:
-  /// The algorithm's own tick: `hip` is finite, the force is not limited yet. state_.hip is that of
-  /// the tick before.
+  /// The algorithm's own tick: `hip` is finite, the returned force is not limited yet. state_.hip
+  /// is the hand's position in the tick before.
   [[nodiscard]] virtual TickResult step(const HipState& hip) noexcept = 0;
-  /// state_ was replaced: what is derived from it is to be made anew.
+  /// Called after state_ was replaced: computes anew what is derived from it.
   virtual void resume() noexcept = 0;
-  /// At least as many crossings as the last step() reported events.
+  /// The crossings of the last step(), at least as many as it reported events.
   [[nodiscard]] virtual std::span<const PortCrossing> details() const noexcept = 0;
   /// The entries of the last step().
   [[nodiscard]] virtual std::span<const RegionEntry> entered() const noexcept = 0;

@@ -9,16 +9,17 @@ namespace palpate {
 namespace {
 
 constexpr int kMostSteps = 20;
-/// Of the farthest: a step as short as this is the last.
+/// Relative to the farthest distance: a step as short as this is the last.
 constexpr double kMet = 1e-12;
-/// Of the coordinates: so is one that is rounding.
+/// Relative to the coordinates: a step as short as this is rounding.
 constexpr double kRounding = 1e-15;
 /// Two surfaces make a seam if they cross at an angle whose sine has at least this square.
 constexpr double kFlattest = 1e-3;
-/// Nearer to its center of curvature than that (an eigenvalue) no point of a seam is the nearest.
+/// Smallest eigenvalue at which a point of a seam can be the nearest: closer to its center of
+/// curvature it is not.
 constexpr double kFirm = 0.02;
-/// Of the radius: a seam so near has its direction by the leaf alone, since the way to it is
-/// rounding.
+/// Relative to the radius: a seam as near as this takes its direction from the leaf alone, since
+/// the way to it is rounding.
 constexpr double kOnSeam = 1e-7;
 
 }  // namespace
@@ -49,7 +50,7 @@ SeamPoint seamPoint(const Field& wall, const Field& other, const Vec3& place,
     const auto across = [&](double by_m, double by_n) {
       return ((by_m - cosine * by_n) / square) * m + ((by_n - cosine * by_m) / square) * n;
     };
-    // What holds the point on the seam: the way to `place`, but for its part along the seam.
+    // The part of the way to `place` that is across the seam.
     const Vec3 way = place - out.at;
     const double way_m = glm::dot(way, m);
     const double way_n = glm::dot(way, n);
@@ -70,7 +71,7 @@ SeamPoint seamPoint(const Field& wall, const Field& other, const Vec3& place,
   return out;
 }
 
-/// As the walker gathers them: leaves that change side together with this one.
+/// Collects the leaves that change side together with this one, as the walker does.
 void Seams::gather(LeafId leaf, const HeldWall& held) noexcept {
   surface_[0] = leaf;
   surface_count_ = 1;
@@ -162,7 +163,7 @@ Facet Seams::facetAcross(unsigned across, const Vec3& place) noexcept {
     const Seam& seam = seam_[i];
     const bool is_across = ((across >> i) & 1U) != 0;
     for (std::size_t k = 0; k < seam.count; ++k) {
-      // The walker's sides are those at the proxy: the place may be beyond the seam.
+      // The walker's sides are those at the proxy, while `place` may be beyond the seam.
       const double value = walker_.leaf(seam.leaf[k]).field->value(place);
       const bool is_inside = value == 0.0 ? walker_.side(seam.leaf[k]) < 0.0 : value < 0.0;
       if ((is_inside != is_across) != (walker_.side(seam.leaf[k]) < 0.0)) {
@@ -192,7 +193,8 @@ std::span<const Seams::Part> Seams::at(LeafId leaf, const HeldWall& held, const 
     Part part;
     part.facet = facetAcross(across, place);
     if (!part.facet.isClosed() || part.facet.material < 0) continue;
-    // Of each seam one side: the shares multiply, as where seams cross at right angles.
+    // A part lies on one side of each seam. The shares multiply, as where seams cross at right
+    // angles.
     for (std::size_t i = 0; i < seam_count_; ++i) {
       const SeamShare& share = seam_[i].share;
       const bool is_across = ((across >> i) & 1U) != 0;
@@ -211,7 +213,8 @@ std::span<const Seams::Part> Seams::at(LeafId leaf, const HeldWall& held, const 
     all_by_press += part.by_press;
     part_[count++] = part;
   }
-  // Where nothing is beside the wall, or something that is free, the rest of the surface bears all.
+  // Parts without a wall, or with an opening, bear nothing: the remaining parts share the whole
+  // press.
   if (!(all > 0.0)) return {};
   for (std::size_t i = 0; i < count; ++i) {
     Part& part = part_[i];

@@ -8,13 +8,13 @@
 namespace palpate {
 namespace {
 
-/// Of the radius: nodes of the smoothed field that count lie no further from the surface
+/// Relative to the radius: no node of the smoothed field that counts is further from the surface
 /// (contact/felt_height.h).
 constexpr double kLooks = 1.5;
 constexpr int kLines = 48;
-constexpr int kSteps = 128;  // of a line
+constexpr int kSteps = 128;  // samples along a line
 constexpr int kHalvings = 40;
-constexpr int kShares = 16;  // of what is needed
+constexpr int kShares = 16;  // samples over the needed distance
 constexpr int kShareHalvings = 8;
 
 /// The widest shading of the walls on either side of the layer's surface; -1: there is none.
@@ -37,7 +37,7 @@ int shadedMaterial(const Scene& scene, RegionId region) {
   return out;
 }
 
-/// [m] How far from the surface at `p` the field answers, on the side where that is less; at most
+/// [m] Up to which distance from its surface at `p` the field answers on both sides; at most
 /// `needed`.
 double knownAt(const Field& field, const Vec3& p, double needed) {
   const Vec3 n = unitOr(field.sample(p).gradient, Vec3(0.0));
@@ -103,7 +103,7 @@ std::vector<ShadingGap> shadingGaps(const Scene& scene) {
       Vec3 from = box.lo + t * box.size();
       Vec3 to = from;
       const int axis = line % 3;
-      // From a little beyond the box, so that its faces are met too.
+      // Begin slightly outside the box, so that its faces are met too.
       from[axis] = box.lo[axis] - 0.01 * box.size()[axis];
       to[axis] = box.hi[axis] + 0.01 * box.size()[axis];
       lookAlong(*field, from, to, gap);

@@ -8,15 +8,15 @@
 namespace palpate {
 namespace {
 
-// Together they bound the work: at most about 1500 looks at a point.
+// Together these bound the work to about 1500 evaluations.
 constexpr std::size_t kMostLeaves = 64;
 constexpr int kFootSteps = 12;
 constexpr int kDirections = 48;
 constexpr int kSteps = 20;
-/// How far within the region a foot point is taken, as a share of the feature size.
+/// How far inside the region a foot point is placed, as a share of the feature size.
 constexpr double kWithin = 1e-6;
 
-/// Evenly spread over the sphere (Fibonacci lattice).
+/// Element `i` of directions that are evenly spread over the sphere (Fibonacci lattice).
 Vec3 direction(int i) noexcept {
   const double golden = 2.399963229728653;  // [rad] pi (3 - sqrt 5)
   const double z = 1.0 - (2.0 * i + 1.0) / kDirections;
@@ -24,7 +24,7 @@ Vec3 direction(int i) noexcept {
   return {r * std::cos(golden * i), r * std::sin(golden * i), z};
 }
 
-/// Down (or up) the field from `p` to its surface; false if it does not get there.
+/// Follows the field's gradient from `p` to its surface; false if it does not get there.
 bool toSurface(const Leaf& leaf, Vec3& p, Vec3& normal) noexcept {
   for (int i = 0; i < kFootSteps; ++i) {
     const FieldSample s = leaf.field->sample(p);
@@ -69,7 +69,7 @@ Vec3 startPoint(const Scene& scene, CellWalker& probe, const Vec3& hip) noexcept
   }
   if (best < kInfinity) return found;
 
-  // Edges, corners, grids far out of their band: along lines, in steps that grow.
+  // For edges, corners and grids far outside their band: search along lines, in growing steps.
   const Box3 box = scene.bounds();
   const double reach =
       box.isBounded() ? glm::length(box.size()) + box.distanceTo(hip) : 1.0;  // [m]

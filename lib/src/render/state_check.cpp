@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// 0 and 1 are the only bytes that a bool may have.
+/// A bool may contain only the bytes 0 and 1.
 bool isBool(const bool& value) noexcept {
   unsigned char byte = 0;
   std::memcpy(&byte, &value, sizeof byte);
@@ -26,7 +26,7 @@ bool areFinite(Numbers... values) noexcept {
   return (std::isfinite(values) && ...);
 }
 
-/// How many regions, materials, leaves and ports a scene has.
+/// The numbers of regions, materials, leaves and ports of a scene.
 class Counts {
  public:
   explicit Counts(const Scene& scene) noexcept
@@ -70,7 +70,7 @@ class Counts {
 
  private:
   [[nodiscard]] bool isRegion(std::size_t id) const noexcept { return id < regions_; }
-  /// -1: none of them.
+  /// True for a valid index and for -1, which means none.
   [[nodiscard]] static bool isOneOf(int id, std::size_t count) noexcept {
     return id == -1 || (id >= 0 && static_cast<std::size_t>(id) < count);
   }

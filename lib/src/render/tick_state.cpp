@@ -12,7 +12,7 @@ RendererState::RendererState(const TickState& state) noexcept {
 }
 
 std::uint64_t RendererState::layout() noexcept {
-  // How large the parts are tells most changes that leave the size of the whole as it was.
+  // Most changes of the layout that keep the total size change the size of some part.
   std::uint64_t out = 0;
   for (const std::size_t size :
        {sizeof(TickState), sizeof(PlaceState), sizeof(FrictionState), sizeof(RelaxationState),

@@ -12,7 +12,7 @@ constexpr std::string_view kHeader =
     "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,"
     "region,contact,event,tick_ns\n";
 
-/// As a field of a table: in double quotes where it must be.
+/// `text` as a field of a CSV table: in double quotes where that is needed.
 std::string inCsv(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string out = "\"";
@@ -23,9 +23,9 @@ std::string inCsv(const std::string& text) {
   return out + '"';
 }
 
-/// A few numbers, each with a comma behind it, printed on the stack and appended at once: the text
-/// is written once, and not first filled with zeros. The longest shortest double has 24 characters
-/// (-2.2250738585072014e-308), an int64 has 20.
+/// A few numbers, each followed by a comma, printed on the stack and appended at once: so the
+/// string does not first fill the space with zeros. The longest double in shortest form has 24
+/// characters (-2.2250738585072014e-308), an int64 has 20.
 template <std::size_t kCount>
 class Numbers {
  public:
@@ -100,7 +100,7 @@ void TraceText::add(std::string& text, const TraceRow& row) const {
 namespace {
 
 std::string textOf(std::span<const TraceRow> rows, const TraceText& format) {
-  constexpr std::size_t kTypicalRow = 220;  // of numbers that use all their digits
+  constexpr std::size_t kTypicalRow = 220;  // for numbers that use all their digits
   std::string out;
   out.reserve(kHeader.size() + kTypicalRow * rows.size());
   out += kHeader;

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// Where a layer names no wall (documented in tools/docs/scene.md).
+/// Of the wall of a layer that names none (documented in tools/docs/scene.md).
 constexpr double kDefaultStiffness = 1000.0;  // [N/m]
 
 std::vector<FieldPtr> layerFields(const SceneDescription& description, const Box3& needed,
@@ -49,7 +49,7 @@ SceneCompiler::SceneCompiler(const SceneDescription& description, const Progress
                              Purpose purpose)
     : description_(description),
       needed_(purpose == Purpose::kTouch ? neededBox(description) : Box3::everything()),
-      // The paper's table has a row for every layer.
+      // All layers are needed there: the paper's table has a row for every layer.
       left_out_(purpose == Purpose::kTouch && description.renderer != RendererKind::kPaper
                     ? reasonsToLeaveOut(description, progress)
                     : std::vector<std::string>(description.layers.size())),

@@ -89,8 +89,8 @@ std::vector<Port> SceneCompiler::makePorts() {
     port.hole_radius = given.hole_radius;
     port.reopens_at = given.reopens_at;
     port.rearm = given.rearm;
-    // A port into what was left out leads nowhere; it keeps its place, for those that come after
-    // it.
+    // A port into a layer that was left out leads nowhere; it keeps its index, so that those after
+    // it keep theirs.
     const auto leave_out = [&](std::vector<RegionId>& regions) {
       std::erase_if(regions, [&](RegionId region) { return isLeftOut(region); });
     };
@@ -143,12 +143,12 @@ void SceneCompiler::requireTouching(const PortDescription& given, const Port& po
   };
   if (touching()) return;
   if (!patient_) {
-    // Small contacts escape the quick look; before calling the author wrong, look hard, once.
+    // The quick survey misses small contacts; before reporting an error, survey thoroughly, once.
     patient_ = true;
     survey_ = survey(scene_->partition(), boxes_, kPatientSurveyLines);
     if (touching()) return;
   }
-  // They may touch where nothing of them was made.
+  // The regions may touch in a part of them that was not made.
   const auto is_cut = [&](RegionId region) {
     if (region == kOutside || !needed_.isBounded()) return false;
     const Box3 bounds = layers_[region - 1U]->bounds();

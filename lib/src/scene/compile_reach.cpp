@@ -1,4 +1,4 @@
-// SceneCompiler's look at what touches what, and at what can be reached.
+// SceneCompiler's search for regions that touch, and for regions that can be reached.
 
 #include <algorithm>
 #include <random>
@@ -13,16 +13,16 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kSurveyLines = 192;
-constexpr int kShots = 2000;   // at a port or sheet
+constexpr int kShots = 2000;   // random lines at a port or sheet
 constexpr int kHalvings = 40;  // a shot shrinks to 1e-12 of itself
 
-/// The layer boxes to look at, unbounded ones cut to what the others span.
+/// The boxes of the layers to survey; unbounded ones are cut to the extent of the others.
 std::vector<Box3> surveyBoxes(std::span<const FieldPtr> layers, const Box3& needed) {
   Box3 all;
   for (const FieldPtr& field : layers) {
     if (!field) continue;
     Box3 box = field->bounds();
-    if (!box.isBounded()) box = box.intersectedWith(needed);  // cut off there
+    if (!box.isBounded()) box = box.intersectedWith(needed);  // the field was cut off at `needed`
     if (box.isBounded()) all = all.unitedWith(box);
   }
   if (all.isEmpty()) all = {Vec3(-0.1), Vec3(0.1)};
@@ -40,7 +40,7 @@ std::pair<RegionId, RegionId> pairOf(RegionId a, RegionId b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Straight ways between random points of a box.
+/// Random straight lines through a box.
 class Shots {
  public:
   explicit Shots(const Box3& box) : box_(box) {}
@@ -75,8 +75,8 @@ RegionId SceneCompiler::start() {
   throw unknownRegion(description_.start_region, description_.start_place);
 }
 
-/// The regions that the sheet was seen to lie in, within `part` if that is given: shoots through
-/// where it may be.
+/// The regions in which the sheet was found to lie, within `part` if that is given: samples random
+/// lines through its box.
 std::vector<bool> SceneCompiler::regionsOfSheet(std::size_t sheet,
                                                 const FieldSourcePtr& part) const {
   std::vector<bool> in(count(), false);
@@ -121,7 +121,7 @@ std::set<std::pair<RegionId, RegionId>> SceneCompiler::findPort(PortId id) const
       if (a != b && survey_.touches(a, b)) wanted.insert(pairOf(a, b));
     }
   }
-  if (port.on.empty() && port.mask < 0) return wanted;  // all of the wall
+  if (port.on.empty() && port.mask < 0) return wanted;  // a port in all of the wall
   const FieldSourcePtr& where = description_.ports[id].where;
   if (where) box = box.intersectedWith(made(where)->bounds());
   if (!box.isBounded()) box = box.intersectedWith(boxes_.front());
@@ -174,7 +174,7 @@ void SceneCompiler::markReachable() {
       table.ways.push_back({t.from, t.to, -1, false, false});
       continue;
     }
-    // The regions touch, but whether they do so where the port is open was not seen.
+    // The regions touch, but they were not seen to touch where the port is open.
     const bool is_doubtful = !found[*t.port].contains(pairOf(t.from, t.to));
     table.ways.push_back(
         {t.from, t.to, *t.port, scene_->ports()[*t.port].countsInward(t.from, t.to), is_doubtful});
@@ -186,7 +186,7 @@ void SceneCompiler::markReachable() {
         regionsOfSheet(static_cast<std::size_t>(port.sheet), description_.ports[id].where);
     for (std::size_t i = 0; i < count(); ++i) {
       const auto region = static_cast<RegionId>(i);
-      const bool is_doubtful = !lies_in[i];  // a small opening escapes the look
+      const bool is_doubtful = !lies_in[i];  // sampling may miss a small opening
       for (const bool inward : {true, false}) {
         if (port.direction == (inward ? PortDirection::kOut : PortDirection::kIn)) continue;
         table.ways.push_back({region, region, static_cast<int>(id), inward, is_doubtful});

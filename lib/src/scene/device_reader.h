@@ -1,5 +1,5 @@
 #pragma once
-/// The scene's `device`: how a device's space lies in the world.
+/// The scene's `device`: how the device's space is placed in the world.
 
 #include "palpate/scene/description.h"
 #include "palpate/scene/scene_file.h"

@@ -16,7 +16,7 @@ const Node* Node::find(std::string_view key) const noexcept {
 }
 
 SourcePlace Document::place(Mark mark) const {
-  constexpr std::size_t kLongestExcerpt = 200;  // characters; beyond, a line helps nobody
+  constexpr std::size_t kLongestExcerpt = 200;  // [characters] a longer line helps nobody
   SourcePlace place{file, mark.line, mark.column};
   if (mark.line < 1 || static_cast<std::size_t>(mark.line) > lines.size()) return place;
   const std::string& line = lines[static_cast<std::size_t>(mark.line) - 1];
@@ -59,7 +59,7 @@ std::shared_ptr<const Document> readDocument(const std::string& path) {
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw fail("cannot be opened", "may you read it?");
-  // One byte more than is allowed shows that there is more, even where a size is not known (a
+  // Read one byte more than is allowed: that detects a longer text even if its size is not known (a
   // pipe).
   std::string text(kLargestDocument + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));

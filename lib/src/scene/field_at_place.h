@@ -1,12 +1,12 @@
 #pragma once
-/// A field made of what a scene says, with the place where it says so.
+/// Makes a field from what a scene states, with the place of the statement in error messages.
 
 #include "palpate/core/error.h"
 #include "palpate/scene/description.h"
 
 namespace palpate {
 
-/// What `make` returns; a constructor's complaint, with the place it does not know.
+/// Calls `make`; if a constructor throws an input error without a place, adds the place.
 template <typename Make>
 FieldPtr madeAt(const SourcePlace& place, Make&& make) {
   try {

@@ -13,11 +13,12 @@
 namespace palpate {
 namespace {
 
-/// Whether an operation asks its operands only where it is asked itself. Those of the others are
-/// made whole: so a field that is used twice is asked for one box, and is one leaf.
+/// Whether an operation evaluates its operands only where it is evaluated itself. If not, its
+/// operands are made whole: so a field that is used twice is requested for one box, and is one
+/// leaf.
 enum class Asks { kThere, kElsewhere };
 
-// `make` over operands: done at once if they are all there, else when the result is asked for.
+// Applies `make` to the operands: now if all of them are made, else when the result is asked for.
 FieldSourcePtr deferred(std::vector<FieldSourcePtr> operands, Asks asks, SourcePlace place,
                         std::function<FieldPtr(std::vector<FieldPtr>)> make) {
   std::string summary = joined(operands, ", ", &FieldSource::summary);
@@ -56,13 +57,13 @@ FieldReader::Built FieldReader::buildOperation(const Node::Entry& kind,
   if (kind.key == "transform") return buildTransform(kind, reader);
   if (kind.key == "shell") {
     const double thickness = reader.value("thickness");
-    // Its outer faces are those of the field itself, so they keep their names.
+    // The outer faces of a shell are those of the field itself, so a port can still name them.
     Built built = modify(kind, *reader.find("field"),
                          [=](FieldPtr f) { return shell(std::move(f), thickness); });
     built.leaves = std::min(2 * built.leaves, kMostLeaves + 1);
     return built;
   }
-  // What goes into the others cannot be named by a port any more.
+  // The operands of the other operations can no longer be named by a port.
   const Node::Entry* const around = blend_;
   if (blend_ == nullptr) blend_ = &kind;
   Built built = buildBlend(kind, reader);

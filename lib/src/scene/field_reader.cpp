@@ -114,8 +114,8 @@ FieldReader::Built FieldReader::build(const Node& node) {
         node.mark, "scene.depth",
         "this field has fields in fields, more than " + std::to_string(kDeepestNesting) + " deep");
   };
-  // On the way in, so that a long chain of names cannot exhaust the stack; on the way out, because
-  // a chain in the other order comes here without depth.
+  // The depth is checked on the way in, so that a long chain of names cannot exhaust the stack, and
+  // on the way out, because a chain defined in the other order arrives here without depth.
   if (depth_ >= kDeepestNesting) throw too_deep();
   if (node.kind == Node::Kind::kMap) {
     if (node.entries.empty()) {
@@ -178,7 +178,8 @@ FieldReader::Built FieldReader::buildRegistered(const Node::Entry& kind) {
   }
   MapReader reader(loader_, kind.value, inQuotes(kind.key),
                    words == nullptr ? std::string_view() : words->type);
-  // It may be made of fields, which come here through read(), and whose faces may be new ones then.
+  // A registered kind may have fields as operands, which are read through read(); it may give them
+  // new faces.
   const Node::Entry* const around = blend_;
   if (blend_ == nullptr) blend_ = &kind;
   const Built before = std::exchange(operands_, Built{nullptr, 0, 0});

@@ -1,5 +1,6 @@
 #pragma once
-/// The `fields` of a scene: named and inline, analytic, combined, and of the registry's kinds.
+/// Reads the `fields` of a scene: named and inline, analytic, combined, and of the registry's
+/// kinds.
 
 #include <functional>
 #include <limits>
@@ -12,31 +13,31 @@
 
 namespace palpate {
 
-/// Makes field sources of nodes. A named field is made once, so that all its users share one
+/// Makes field sources from nodes. A named field is made once, so that all its users share one
 /// object: ports find their facet by identity.
 class FieldReader {
  public:
   FieldReader(const SceneLoader& loader, const SceneRegistry& registry)
       : loader_(loader), registry_(registry) {}
 
-  /// Takes note of what is named, then makes each; names may be used before they are defined.
+  /// Records all names, then makes each field; a name may be used before it is defined.
   void define(const Node& fields);
 
   /// A name, or an inline map of one kind.
   [[nodiscard]] FieldSourcePtr read(const Node& node);
-  /// A name only: for what must be the same object elsewhere.
+  /// A name only: for fields that must be the same object elsewhere.
   [[nodiscard]] FieldSourcePtr readName(const Node& node, const std::string& what);
 
-  /// Why the named field may be no face of what it went into, as a sentence for people; empty if
-  /// nothing is known of that.
+  /// The reason why the named field may not be a face of the field that it became part of, as a
+  /// sentence for people; empty if none is known.
   [[nodiscard]] std::string hidingPlace(const std::string& name) const;
 
   /// All named fields, in the order of the file.
   [[nodiscard]] std::vector<NamedField> all() const;
 
  private:
-  /// Fields are numbered with LeafId; names that stand for each other twice over reach this in 16
-  /// lines.
+  /// The most leaves of a tree, since leaves are numbered with LeafId. Names that each use the one
+  /// before twice exceed this in 16 lines.
   static constexpr std::size_t kMostLeaves = std::numeric_limits<LeafId>::max();
 
   struct Built {
@@ -48,8 +49,8 @@ class FieldReader {
     const Node::Entry* entry = nullptr;
     bool under_way = false;
     Built built = {};
-    std::vector<std::string> uses = {};      // names it is made from
-    const Node::Entry* hidden_in = nullptr;  // what made other faces of it
+    std::vector<std::string> uses = {};      // names that it is made from
+    const Node::Entry* hidden_in = nullptr;  // the operation that replaced its faces
   };
   using Combine = std::function<FieldPtr(std::vector<FieldPtr>)>;
 
@@ -72,9 +73,9 @@ class FieldReader {
   const SceneRegistry& registry_;
   std::map<std::string, Named, std::less<>> named_ = {};
   std::vector<std::string> order_ = {};
-  std::vector<std::string> path_ = {};  // names under way, to show a cycle
-  const Node::Entry* blend_ = nullptr;  // the outermost one that is being read
-  Built operands_ = {nullptr, 0, 0};    // of the registered kind that is being read, all together
+  std::vector<std::string> path_ = {};  // names being read, to show a cycle
+  const Node::Entry* blend_ = nullptr;  // the outermost one being read
+  Built operands_ = {nullptr, 0, 0};    // all operands together of the registered kind being read
   int depth_ = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// SceneLoader for one file, and the sections of a scene.
+/// SceneLoader for one file, which reads the sections of a scene.
 
 #include <map>
 #include <memory>
@@ -25,7 +25,7 @@ class FileLoader final : public SceneLoader {
   [[nodiscard]] std::shared_ptr<void> image(const std::string& name, Mark place) const override;
   [[nodiscard]] MaterialMapPtr map(const Node& node, const ParameterKind& of) const override;
 
-  /// The whole scene. Called once.
+  /// Reads the whole scene. To be called once.
   [[nodiscard]] SceneDescription read();
 
  private:
@@ -34,7 +34,7 @@ class FileLoader final : public SceneLoader {
 
   const Document& document_;
   const SceneRegistry& registry_;
-  mutable FieldReader fields_;  // remembers what it made
+  mutable FieldReader fields_;  // caches the fields that it made
   std::map<std::string, std::shared_ptr<void>, std::less<>> images_ = {};
   std::string length_unit_ = "m";
   double meters_per_unit_ = 1.0;

@@ -19,7 +19,7 @@ namespace palpate {
   return globs;
 }
 
-/// Whether any glob of the list stands for `name`.
+/// Whether any glob of the list matches `name`.
 [[nodiscard]] inline bool matchesAnyOf(const std::string& list, const std::string& name) {
   const std::vector<std::string> globs = globsIn(list);
   return std::any_of(globs.begin(), globs.end(),

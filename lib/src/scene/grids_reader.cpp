@@ -45,7 +45,7 @@ void readGrids(const MapReader& reader, const SceneRegistry& registry, SceneDesc
     if (port.on && port.on->isMade()) choice.keep.push_back(port.on->get());
   }
   for (LayerDescription& layer : scene.layers) {
-    // What is a grid, or was asked to be, is so already.
+    // A field that is already made is a grid, or was asked to be one.
     if (!layer.inside->isMade()) continue;
     if (std::any_of(keep.begin(), keep.end(),
                     [&](const std::string& glob) { return matchesGlob(glob, layer.name); })) {

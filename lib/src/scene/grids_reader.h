@@ -5,8 +5,8 @@
 
 namespace palpate {
 
-/// Puts what the registry chooses in the place of the layers' fields. Layers, ports and sheets are
-/// known already.
+/// Replaces the layers' fields by what the registry chooses. Call it after layers, ports and sheets
+/// were read.
 /// @throws Error (kInput) at the offending place.
 void readGrids(const MapReader& reader, const SceneRegistry& registry, SceneDescription& scene);
 

@@ -9,13 +9,14 @@
 namespace palpate {
 namespace {
 
-/// Share of the feature size from which on two positive labels keep the wall between them away.
+/// Share of the feature size: where both labels are positive, the wall between them is kept away
+/// from zero by this.
 constexpr double kApart = 0.25;
 
-/// The wall between two labels where both would be: (f_a - f_b) / 2, negative where `a` has the
-/// point. Only where both are negative does it mean anything. Elsewhere it is kept from being zero:
-/// far from both labels two grids may hold the same plateau, and a wall there would be met
-/// everywhere.
+/// The wall between two labels where both fields are negative: (f_a - f_b) / 2, negative where the
+/// point belongs to `a`. It has a meaning only there. Elsewhere it is kept from being zero: far
+/// from both labels two grids may have the same constant value, and a wall would appear everywhere
+/// there.
 class LabelWall final : public Field {
  public:
   LabelWall(FieldPtr a, FieldPtr b, const Box3& box)
@@ -73,7 +74,7 @@ class LabelWall final : public Field {
   [[nodiscard]] double featureSize() const noexcept override { return feature_; }
 
  private:
-  /// Of the box, and nothing within it, so that it never lifts the wall itself.
+  /// Distance from the box; -infinity within it, so that it never raises the wall itself.
   [[nodiscard]] double awayAt(const Vec3& p) const noexcept {
     const double away = box_.distanceTo(p);
     return away > 0.0 ? away : -kInfinity;
@@ -89,7 +90,7 @@ class LabelWall final : public Field {
 
 class LabelShare final : public Field {
  public:
-  /// `faces`: the own field, and for each other label where that one does not have the point.
+  /// `faces`: the label's own field, and for each other label the wall between the two.
   LabelShare(FieldPtr own, std::vector<FieldPtr> others, std::vector<FieldPtr> faces)
       : own_(std::move(own)), others_(std::move(others)), faces_(std::move(faces)) {
     lipschitz_ = own_->lipschitz();
@@ -106,7 +107,7 @@ class LabelShare final : public Field {
     const FieldSample own = own_->sample(p);
     FieldSample out = own;
     for (const FieldPtr& other : others_) {
-      // Away from the other label its field is positive, and half the difference is below
+      // Away from the other label that label's field is positive, and half the difference is below
       // own.value.
       if (other->value(p) >= -own.value) continue;
       const FieldSample theirs = other->sample(p);
@@ -162,13 +163,14 @@ SharedLabels shareLabels(const std::vector<LabelField>& layers) {
     pollStop();
     for (std::size_t j = i + 1; j < count; ++j) {
       if (haveCommon(layers[i].labels, layers[j].labels)) continue;
-      // Labels whose boxes stay apart cannot meet.
+      // Labels whose boxes are apart cannot meet.
       const double reach = fields[i]->featureSize() + fields[j]->featureSize();
       const Box3 box =
           fields[i]->bounds().grownBy(reach).intersectedWith(fields[j]->bounds().grownBy(reach));
       if (box.isEmpty()) continue;
-      // One leaf for both: where both are negative its sign tells whose the point is. Elsewhere it
-      // says nothing, so that the skin of either is closed on both sides of where the two meet.
+      // One leaf for both labels: where both are negative, its sign tells which label owns the
+      // point. Elsewhere it has no meaning, so that the surface of either label is closed on both
+      // sides of the line where the two meet.
       const auto wall = std::make_shared<LabelWall>(fields[i], fields[j], box);
       out.walls.push_back({wall, fields[i], fields[j]});
       others[i].push_back(fields[j]);

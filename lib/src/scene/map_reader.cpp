@@ -89,7 +89,7 @@ const Node* MapReader::optional(std::string_view key) {
 
 const Node& MapReader::require(std::string_view key) {
   if (const Node* node = optional(key)) return *node;
-  // A slip in the key is the likelier reason, and tells more.
+  // A misspelled key is more likely than a missing one, and its message is more helpful.
   for (const Node::Entry& entry : map_->entries) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
     if (entry.key.starts_with(std::string(key) + ':')) throw unknown(entry, {});

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-/// Wherever the hand may come, a parameter must be a number, and not below 0.
+/// A parameter must be a number, and not negative, wherever the hand may come.
 void checkParameter(const Parameter& parameter, const std::string& name, const std::string& of) {
   const MaterialMap::Range range = parameter.range();
   if (range.least >= 0.0 && range.least <= range.most && std::isfinite(range.most)) return;
@@ -105,7 +105,7 @@ void checkMaterial(const Material& material) {
   }
   checkParameter(material.friction.static_ratio, "static friction", of);
   checkParameter(material.friction.kinetic_ratio, "kinetic friction", of);
-  // Kinetic below static everywhere implies both; what is left, the loop clamps.
+  // If kinetic is below static everywhere, both ranges are too; otherwise the loop clamps.
   const MaterialMap::Range held = material.friction.static_ratio.range();
   const MaterialMap::Range slides = material.friction.kinetic_ratio.range();
   if (slides.least > held.least || slides.most > held.most) {

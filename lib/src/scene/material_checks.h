@@ -1,11 +1,11 @@
 #pragma once
-/// What every material must hold to, also one that no scene file was read for.
+/// The rules for every material, also for one that does not come from a scene file.
 
 #include "palpate/materials/material.h"
 
 namespace palpate {
 
-/// @throws Error (kInput) that names the material and what is wrong with it.
+/// @throws Error (kInput) that names the material and the fault.
 void checkMaterial(const Material& material);
 
 }  // namespace palpate

@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// "a, b, c": for hints that list what there is; cut after 32.
+/// "a, b, c": for hints that list the available names; cut off after 32.
 [[nodiscard]] std::string listed(const std::vector<std::string_view>& names);
 
 /// "did you mean 'x'?" if one of the names is close; else `lead` and the names; "" without names.

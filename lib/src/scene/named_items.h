@@ -1,5 +1,5 @@
 #pragma once
-/// Lists of what a scene gives names to.
+/// Lists of named things in a scene.
 
 #include <cstddef>
 #include <string>
@@ -19,7 +19,8 @@ std::vector<std::string_view> namesOf(const Items& items) {
   return names;
 }
 
-/// Throws if one of `items` has the name of `item` already; `what` they are.
+/// Throws if one of `items` already has the name of `item`; `what` says what they are, for the
+/// message.
 template <typename Item>
 void refuseSecond(const std::string& what, const Item& item, const std::vector<Item>& items) {
   for (const Item& other : items) {

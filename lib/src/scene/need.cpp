@@ -11,16 +11,16 @@
 namespace palpate {
 namespace {
 
-/// Boxes are grown by this share of their size, so that what touches overlaps.
+/// Boxes are grown by this share of their size, so that boxes that touch overlap.
 constexpr double kMargin = 1e-3;
-/// A hand at the border of its workspace still feels what lies this share of the workspace beyond
-/// it.
+/// At the border of its workspace a hand still feels what lies within this share of the workspace
+/// beyond it.
 constexpr double kBeyond = 0.05;
-/// Looks at a field, at most, to prove that it holds a box.
+/// The most evaluations of a field to prove that it contains a box.
 constexpr int kMostLooks = 200'000;
 constexpr int kMostHalvings = 12;
 
-/// [m] How far below a closed wall the scene is felt through it.
+/// [m] How deep below a closed wall the scene can be felt through it.
 double deepestFelt(const SceneDescription& scene) {
   double deepest = 0.0;
   for (const Material& material : scene.materials) {
@@ -31,7 +31,7 @@ double deepestFelt(const SceneDescription& scene) {
 
 bool overlap(const Box3& a, const Box3& b) { return !a.intersectedWith(b).isEmpty(); }
 
-/// Whether `box` lies inside `field`, proven by its Lipschitz bound cell by cell.
+/// Whether `box` lies inside `field`, proved cell by cell with the Lipschitz bound.
 bool isInside(const Field& field, const Box3& box, int halvings, int& looks) {
   const Box3 domain = field.lipschitzDomain();
   if (--looks < 0 || !domain.contains(box.lo) || !domain.contains(box.hi)) return false;
@@ -65,14 +65,15 @@ class Needs {
   std::vector<std::string> reasons() {
     leaveOutBeyondWorkspace();
     follow();
-    // Costly ones that nothing leads into; measured only if something may lie around them.
+    // Next the costly layers that nothing leads into; they are measured only if some layer may
+    // enclose them.
     const auto shut = std::count(entered_.begin() + 1, entered_.end(), false);
     if (entered_[kOutside] && shut < 2) return std::move(reasons_);
     std::vector<std::size_t> order;
     for (std::size_t i = 1; i < names_.size(); ++i) {
       if (!entered_[i] && reasons_[i - 1].empty() && canBeLeftOut(i)) order.push_back(i);
     }
-    // The largest first: what lies around others is looked at before them.
+    // The largest first: layers that enclose others are handled before them.
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return glm::length(boxOf(a)->size()) > glm::length(boxOf(b)->size());
     });
@@ -81,8 +82,8 @@ class Needs {
   }
 
  private:
-  /// [m] Around a layer, a little larger than it; none where only making it would tell. Measured
-  /// once, as that may mean to read a file.
+  /// [m] A box around a layer, a little larger than it; no value where only making the layer would
+  /// tell. Measured once, as that may require reading a file.
   const std::optional<Box3>& boxOf(std::size_t region) {
     Measured& known = boxes_[region];
     if (!known.is_measured) {
@@ -123,7 +124,8 @@ class Needs {
     return absent;
   }
 
-  /// Which regions the names of ports and walls let the probe into, whatever touches what.
+  /// Finds the regions that ports and walls let the probe into, judged by their names alone, as if
+  /// all regions touched.
   void follow() {
     const auto matches = [&](const std::string& globs) {
       std::vector<bool> out;
@@ -165,7 +167,7 @@ class Needs {
     }
     const Reached reached = reach(table);
     entered_.clear();
-    // What is undecided may be: only what is certain is left out.
+    // Undecided regions count as entered: only certain cases are left out.
     for (const Reach answer : reached.regions) entered_.push_back(answer != Reach::kNo);
   }
 
@@ -174,7 +176,7 @@ class Needs {
         {static_cast<RegionId>(from), static_cast<RegionId>(to), port, inward, false});
   }
 
-  /// Names that there are none of are refused later.
+  /// Unknown names are skipped here; they are refused later.
   [[nodiscard]] std::vector<PassedBefore> before(const PortDescription& port) const {
     std::vector<PassedBefore> out;
     for (const AfterDescription& given : port.after) {
@@ -187,10 +189,10 @@ class Needs {
     return out;
   }
 
-  /// Empty if it may be touched.
+  /// The reason why the region cannot be touched; empty if it may be.
   std::string whyUntouchable(std::size_t region) {
     pollStop();
-    // What it is felt through may be that thick.
+    // The layer may be felt through a wall, from as far away as this.
     const Box3 box = boxOf(region)->grownBy(felt_).intersectedWith(needed_);
     for (std::size_t other = 1; other < names_.size(); ++other) {
       if (other == region || !entered_[other]) continue;

@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-/// [N] at which the port opens, either way, anywhere.
+/// [N] The largest force at which the port opens, in either direction, anywhere.
 double mostForceOf(const PortDescription& port) {
   return std::max(port.opens_at.range().most, port.back.value_or(0.0).range().most);
 }
@@ -48,7 +48,7 @@ void RegionReader::readPorts(const std::vector<MapReader>& ports) {
     readPuncture(reader, port);
     scene_.ports.push_back(std::move(port));
   }
-  // When all ports are known.
+  // Only now all ports are known.
   for (std::size_t i = 0; i < ports.size(); ++i) {
     if (const Node* after = ports[i].find("after")) readAfter(*after, scene_.ports[i]);
   }
@@ -63,7 +63,7 @@ void RegionReader::requireOpeningForce(const MapReader& reader, std::string_view
       "give it the force: opens_at: 2 N");
 }
 
-/// How it opens by force, and what that leaves behind.
+/// Reads the force that opens it, and what is left behind.
 void RegionReader::readPuncture(const MapReader& reader, PortDescription& port) {
   for (const char* key : {"hole", "rate", "rearm"}) {
     if (reader.has(key)) requireOpeningForce(reader, key, port);
@@ -86,7 +86,7 @@ void RegionReader::readPuncture(const MapReader& reader, PortDescription& port) 
   port.rearm = reader.value("rearm");
 }
 
-/// Of the sheet that a port is in.
+/// Reads the name of the sheet that a port is in.
 std::string RegionReader::readSheetName(const MapReader& reader) const {
   const Document& document = loader_.document();
   for (const std::string& key : reader.words("sheet").excludes) {

@@ -17,7 +17,7 @@ std::string inUnit(double value, std::optional<Dimension> dimension) {
   return dimension ? number + ' ' + std::string(unitNames(*dimension)[0]) : number;
 }
 
-/// Its range must be finite, and within the key's bounds.
+/// Reads a map, whose range must be finite and within the key's bounds.
 Parameter readMap(const SceneLoader& loader, const Node& node, const KeyWords& key) {
   const std::string what = inQuotes(key.name);
   const bool is_signed = key.least < 0.0;

@@ -8,15 +8,16 @@
 
 namespace palpate {
 
-/// The parameter at a declared key, within the key's bounds everywhere; not given: the declared
+/// The parameter at a declared key, within the key's bounds everywhere; if absent, the declared
 /// default, or 0. A map of keys is read by the registry. @throws Error (kInput) at the offending
 /// place.
 [[nodiscard]] Parameter readParameter(const MapReader& reader, std::string_view key);
-/// The same; not given: `fallback`.
+/// The same; if absent, `fallback`.
 [[nodiscard]] Parameter readParameter(const MapReader& reader, std::string_view key,
                                       Parameter fallback);
 
-/// The three components of a declared list of velocities, each a quantity or a map; below 0 too.
+/// The three components of a declared list of velocities, each a quantity or a map; negative ones
+/// are allowed.
 [[nodiscard]] Flow readFlow(const MapReader& reader, std::string_view key);
 
 }  // namespace palpate

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxStates = 60'000;
 
-/// A region, and by slot how often its port was passed inward less outward.
+/// A region, and by slot how often its port was passed inward minus outward.
 struct State {
   RegionId region = kOutside;
   std::vector<std::int16_t> net = {};
@@ -25,11 +25,11 @@ std::string keyOf(const State& state) {
   return key;
 }
 
-/// What a search came upon.
+/// The result of a search.
 struct Found {
   std::vector<bool> regions;
   std::vector<bool> ports;
-  bool is_complete = true;  ///< nothing was left unlooked at
+  bool is_complete = true;  ///< no state was left out of the search
 };
 
 class Search {
@@ -56,7 +56,7 @@ class Search {
     }
   }
 
-  /// Without the memory: a port once passable counts as passed, as often as it takes.
+  /// Ignores the memory: a port that was passable once counts as passed as often as needed.
   [[nodiscard]] Found fixpoint(bool with_doubtful) const {
     Found found = nothing();
     found.regions[table_.start] = true;
@@ -81,9 +81,10 @@ class Search {
     return found;
   }
 
-  /// State by state. With `saturated` a count stops at the most that is asked for, and what is
-  /// taken back from there may or may not go below: more is found than there is. Else counts are
-  /// exact, and those that grow too large are not followed: less may be found.
+  /// Searches state by state. With `saturated` a count stops at the largest number that is asked
+  /// for, and if one passing is taken back from there, the count may or may not go below: the
+  /// result is an upper bound. Otherwise counts are exact, and states with too large counts are
+  /// dropped: the result is a lower bound.
   [[nodiscard]] Found states(bool with_doubtful, bool saturated) const {
     Found found = nothing();
     std::unordered_set<std::string> seen;
@@ -95,7 +96,7 @@ class Search {
       next.push_back(std::move(state));
     };
     add({table_.start, std::vector<std::int16_t>(most_.size(), 0)});
-    for (std::size_t i = 0; i < next.size(); ++i) {  // the fewest transitions first
+    for (std::size_t i = 0; i < next.size(); ++i) {  // fewest transitions first
       if (seen.size() > kMaxStates) {
         found.is_complete = false;
         return found;
@@ -128,7 +129,7 @@ class Search {
     });
   }
 
-  /// [times] Beyond this an exact count is not followed.
+  /// [times] Larger exact counts are not followed.
   [[nodiscard]] int limitOf(std::size_t slot) const {
     return std::min(2 * most_[slot] + 2,
                     static_cast<int>(std::numeric_limits<std::int16_t>::max()));
@@ -182,14 +183,14 @@ class Search {
     for (std::size_t i = 0; i < count; ++i) {
       const int net = all[i].net[slot];
       if (net * step <= 0) continue;
-      // "As often as asked for, or more": it may be as often still.
+      // The saturated count means "this often or more": after taking one back it may still be that.
       if (saturated && std::abs(net) == most_[slot]) all.push_back(all[i]);
       all[i].net[slot] = static_cast<std::int16_t>(net - step);
     }
   }
 
-  /// With a memory that keeps all: goes around as long as there is a way back, until nothing new is
-  /// passed. All states that differ only by such rounds become one.
+  /// For `memory: keep`: passes every port that lies on a way there and back, until no new port is
+  /// passed. All states that differ only by such round trips become one.
   void settle(State& state, bool with_doubtful, Found& found) const {
     for (bool is_changed = true; is_changed;) {
       is_changed = false;
@@ -210,8 +211,8 @@ class Search {
     }
   }
 
-  /// The regions that ways which are open now lead to from the state's, or from which they lead to
-  /// it.
+  /// The regions that can be reached from the state's region by ways that are open now (`forth`),
+  /// or from which that region can be reached (otherwise).
   [[nodiscard]] std::vector<bool> spread(const State& state, bool with_doubtful, bool forth) const {
     std::vector<bool> met(table_.regions, false);
     met[state.region] = true;
@@ -228,9 +229,9 @@ class Search {
   }
 
   const ReachTable& table_;
-  std::vector<int> slot_of_;                  ///< by port; -1: nothing asks for it
-  std::vector<int> most_;                     ///< [times] by slot: the most that is asked for
-  std::vector<std::vector<ReachWay>> turns_;  ///< by slot: the ways through its port
+  std::vector<int> slot_of_;  ///< by port; -1: no `after` names it
+  std::vector<int> most_;     ///< [times] by slot: the largest number that is asked for
+  std::vector<std::vector<ReachWay>> turns_;           ///< by slot: the ways through its port
   std::vector<std::vector<const ReachWay*>> leaving_;  ///< by region
 };
 
@@ -238,7 +239,7 @@ class Search {
 
 Reached reach(const ReachTable& table) {
   const Search search(table);
-  // What even the least strict rules do not allow cannot be.
+  // What is impossible even by the least strict rules is impossible.
   const Found possible = search.fixpoint(true);
   Found most = possible;
   Found certain;

@@ -1,6 +1,6 @@
 #pragma once
-/// Which regions a probe can ever get into, and which ports it can ever pass: a search of the table
-/// of states and transitions. A state is a region and what of the ports was passed.
+/// Finds which regions a probe can ever enter, and which ports it can ever pass, by a search over
+/// the table of states and transitions. A state is a region and how often each port was passed.
 
 #include <utility>
 #include <vector>
@@ -10,13 +10,13 @@
 
 namespace palpate {
 
-/// From one region to another, or through a port of a sheet to the same.
+/// A way from one region to another, or through a port of a sheet back to the same region.
 struct ReachWay {
   RegionId from = kOutside;
   RegionId to = kOutside;
-  int port = -1;        ///< -1: no wall is there
+  int port = -1;        ///< -1: there is no wall
   bool inward = false;  ///< as PassedPorts counts
-  /// It is not certain that there is such a way.
+  /// It is not certain that this way exists.
   bool is_doubtful = false;
 };
 
@@ -33,9 +33,9 @@ struct Reached {
   std::vector<Reach> ports;
 };
 
-/// kYes only with a sequence of transitions that leads there; kNo only where none does, whatever
-/// its length; kUndecided where neither was found: the states are more than are looked at, or a
-/// doubtful way is needed.
+/// kYes only if there is a sequence of transitions that leads there; kNo only if there is none of
+/// any length; kUndecided if neither could be shown, because there are more states than are
+/// searched, or because a doubtful way is needed.
 [[nodiscard]] Reached reach(const ReachTable& table);
 
 }  // namespace palpate

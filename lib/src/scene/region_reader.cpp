@@ -23,7 +23,7 @@ bool isGlob(std::string_view text) { return text.find_first_of("*?") != std::str
 
 }  // namespace
 
-// Names go into traces, grid names and globs, so they must not hold what separates there.
+// Names go into traces, grid names and globs, so they must not contain the separators used there.
 std::string RegionReader::readName(const MapReader& reader, std::string_view what) {
   std::string name = reader.text("name");
   const auto bad = std::find_if(name.begin(), name.end(), [](char c) {
@@ -158,7 +158,7 @@ void RegionReader::requireRegion(const Node& node, bool globs) const {
   }
 }
 
-/// A region, a glob, or a list of these: told apart by commas, which no name has.
+/// A region, a glob, or a list of these: separated by commas, which no name contains.
 std::string RegionReader::readSide(const Node& node) const {
   const Document& document = loader_.document();
   if (node.kind != Node::Kind::kSequence) {
@@ -179,7 +179,7 @@ RegionReader::Between RegionReader::readBetween(const MapReader& reader) const {
   const Document& document = loader_.document();
   const auto& items = readList(document, *reader.find("between"), "'between'", 2, 2);
   const Between between{readSide(items[0]), readSide(items[1])};
-  // A list means all pairs of it.
+  // A list means every pair of its members.
   const bool is_one = between.a.find(',') == std::string::npos && !isGlob(between.a);
   if (between.a == between.b && is_one) {
     throw document.error(items[1].mark, "scene.kind",

@@ -1,13 +1,14 @@
 #pragma once
-/// Layers, walls, ports, sheets and start of a scene: all that names regions and materials.
+/// Reads layers, walls, ports, sheets and start of a scene: everything that names regions and
+/// materials.
 
 #include "palpate/scene/scene_file.h"
 #include "scene/field_reader.h"
 
 namespace palpate {
 
-/// Fills a description whose materials are known already. Call in the order of declaration: each
-/// refers to what those before it defined.
+/// Fills a description whose materials are already known. Call its members in the order of
+/// declaration: each refers to what those before it defined.
 class RegionReader {
  public:
   RegionReader(const SceneLoader& loader, const SceneRegistry& registry, FieldReader& fields,

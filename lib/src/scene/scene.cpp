@@ -31,7 +31,7 @@ Box3 Scene::bounds() const {
   for (const Region& region : regions_) {
     if (!region.field) continue;
     Box3 box = region.field->bounds();
-    // A grid of which only a part was made goes on for ever beyond it.
+    // Beyond the part that was made, a grid's value continues without end.
     if (!box.isBounded() && !region.source.empty()) box = box.intersectedWith(device_.reach());
     if (box.isBounded()) all = all.unitedWith(box);
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// How a description becomes a Scene; a step for each kind of thing.
+/// Turns a description into a Scene, with one step for each kind of thing.
 
 #include <set>
 #include <string>
@@ -23,7 +23,7 @@ class SceneCompiler {
   ScenePtr build();
 
  private:
-  /// Of the regions.
+  /// Number of regions.
   [[nodiscard]] std::size_t count() const { return layers_.size() + 1; }
 
   // compile.cpp
@@ -51,7 +51,7 @@ class SceneCompiler {
   RegionId start();
   [[nodiscard]] std::vector<bool> regionsOfSheet(std::size_t sheet,
                                                  const FieldSourcePtr& part) const;
-  /// Pairs of regions, the lower one first, that were seen to touch where the port is.
+  /// Pairs of regions, the lower one first, that were found to touch where the port is.
   [[nodiscard]] std::set<std::pair<RegionId, RegionId>> findPort(PortId id) const;
   /// Follows absent walls and ports from the start.
   void markReachable();
@@ -59,10 +59,10 @@ class SceneCompiler {
   [[nodiscard]] bool isLeftOut(RegionId region) const {
     return region != kOutside && !left_out_[region - 1U].empty();
   }
-  /// Whether the names of regions `glob` stands for are all left out.
+  /// Whether all regions that match `globs` are left out.
   [[nodiscard]] bool isNowhere(const std::string& globs) const;
 
-  /// What is needed of the field, made if need be.
+  /// The needed part of the field, made if necessary.
   [[nodiscard]] const FieldPtr& made(const FieldSourcePtr& source,
                                      const Progress& progress = {}) const {
     return source->get(needed_, progress);
@@ -70,7 +70,7 @@ class SceneCompiler {
 
   const SceneDescription& description_;
   const Box3 needed_;                  // [m] nothing beyond it matters
-  std::vector<std::string> left_out_;  // by layer: why; empty if it is made
+  std::vector<std::string> left_out_;  // by layer: the reason; empty if it is made
   std::vector<LeafBetween> between_;   // filled with the layers
   std::vector<FieldPtr> layers_;
   std::vector<int> mask_of_;  // by port: index of a mask of the partition; -1: none

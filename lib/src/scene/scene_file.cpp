@@ -45,7 +45,7 @@ MaterialMapPtr FileLoader::map(const Node& node, const ParameterKind& of) const 
                         "write {grid: {file: NAME.vdb, name: LAYER/" + of.key + "}}");
 }
 
-// Before all else: a later format may change what everything below means.
+// Read this before all else: a later format may change the meaning of everything below.
 void FileLoader::readVersion(const Node& root) const {
   if (root.kind != Node::Kind::kMap) {
     throw document_.error(root.mark, "scene.kind", "a scene is a map of keys and values",

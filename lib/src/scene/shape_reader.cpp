@@ -16,17 +16,17 @@ namespace {
 using Make = std::function<FieldPtr()>;
 using Reader = const MapReader&;
 
-/// Calls `make` with these values when the shape is asked for.
+/// A function that calls `make` with these values when the shape is asked for.
 template <typename Function, typename... Values>
 Make later(Function make, Values... values) {
   return [=] { return make(values...); };
 }
 
-/// `key`, which may be at most `most`, which is `why`.
+/// The value at `key`, which may be at most `most`; `why` names that limit in messages.
 double valueUpTo(Reader reader, std::string_view key, double most, const std::string& why,
                  const std::string& hint) {
   const double value = reader.value(key);
-  // Halves and fifths of decimal numbers are not exact.
+  // Halves and fifths of decimal numbers are not exact in binary.
   if (value <= most * (1.0 + 1e-12)) return std::min(value, most);
   throw reader.errorAt(
       key, "scene.range",
@@ -63,7 +63,7 @@ Make capsuleOf(Reader r) {
   return later(capsule, from, to, r.value("radius"));
 }
 
-// The file's polynomial takes its x, y, z as numbers in the file's length unit, the library's in
+// In the file the polynomial takes x, y, z as numbers in the file's length unit, in the library in
 // meters.
 Make quadricOf(Reader r) {
   using Q = QuadricCoefficients;

@@ -1,6 +1,6 @@
 #pragma once
-/// The kinds of field that numbers alone describe: solids and implicit functions with no field in
-/// them.
+/// Reads the kinds of field that are described by numbers alone: solids and implicit functions
+/// without operands.
 
 #include <functional>
 #include <string>
@@ -10,8 +10,9 @@
 
 namespace palpate {
 
-/// What makes the shape of `kind` that `reader` has; null if that is not a kind that it makes.
-/// Making may throw Error (kInput) without a place. @throws Error (kInput) at the offending value.
+/// The function that makes the shape of `kind` from what `reader` holds; null if this reader does
+/// not know the kind. The function may throw Error (kInput) without a place. @throws Error (kInput)
+/// at the offending value.
 [[nodiscard]] std::function<FieldPtr()> readShape(std::string_view kind, const MapReader& reader);
 
 /// `meters` in the unit of the file, for messages: "12.5 mm".

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-// Bytes of the UTF-8 character at `at`, 0 if there is none: no overlong forms, surrogates or code
-// points beyond U+10FFFF (Unicode 15.0, table 3-7).
+// Length in bytes of the UTF-8 character at `at`, 0 if there is none: no overlong forms, surrogates
+// or code points beyond U+10FFFF (Unicode 15.0, table 3-7).
 std::size_t utf8Length(std::string_view text, std::size_t at) noexcept {
   const auto byte = [&](std::size_t i) -> unsigned {
     return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0U;
@@ -47,7 +47,7 @@ void splitLines(const std::string& text, std::vector<std::string>& lines) {
   lines.push_back(text.substr(start));
 }
 
-// An error that shows no line: it cannot be printed.
+// An error without the excerpt, since the line cannot be printed.
 Error unprintable(const Document& document, Mark mark, std::string code, std::string message) {
   return errorAt(
       {document.file, mark.line, mark.column}, std::move(code), std::move(message),

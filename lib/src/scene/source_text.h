@@ -9,7 +9,7 @@
 namespace palpate {
 
 inline constexpr std::size_t kLargestDocument = std::size_t{16} << 20U;  ///< [bytes]
-/// Values, lists and maps: a byte of a file may come to a hundred as a tree.
+/// Values, lists and maps: a byte of a file may become a hundred bytes in the tree.
 inline constexpr std::size_t kMostNodes = 250'000;
 inline constexpr int kDeepestNesting = 64;  ///< of lists and maps; more is a mistake or an attack
 

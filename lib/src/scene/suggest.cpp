@@ -1,4 +1,4 @@
-// Names: how alike they are, and globs.
+// Similarity of names, and globs.
 
 #include <algorithm>
 #include <array>
@@ -8,12 +8,12 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kLongestWord = 64;  // longer texts are not slips of a name
+constexpr std::size_t kLongestWord = 64;  // longer texts are not misspelled names
 
 char folded(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// Insertions, deletions, replacements and swaps of neighbors that lead from a to b, letter case set
-// aside (the restricted Damerau-Levenshtein distance, by its usual three-row recurrence).
+// Number of insertions, deletions, replacements and swaps of neighbors that lead from a to b,
+// ignoring case (the restricted Damerau-Levenshtein distance, by its usual three-row recurrence).
 std::size_t distance(std::string_view a, std::string_view b) noexcept {
   using Row = std::array<std::size_t, kLongestWord + 1>;
   Row before_last{};
@@ -36,7 +36,7 @@ std::size_t distance(std::string_view a, std::string_view b) noexcept {
   return last[b.size()];
 }
 
-// Bytes of the UTF-8 character at `at`.
+// Length in bytes of the UTF-8 character at `at`.
 std::size_t characterLength(std::string_view text, std::size_t at) noexcept {
   std::size_t length = 1;
   while (at + length < text.size() &&
@@ -66,7 +66,7 @@ std::string suggest(std::string_view word, std::span<const std::string_view> can
 }
 
 bool matchesGlob(std::string_view glob, std::string_view name) noexcept {
-  // Greedy with one place to return to: after a mismatch only the last star can take more.
+  // Greedy matching with one place to return to: after a mismatch only the last star can take more.
   std::size_t g = 0;
   std::size_t n = 0;
   std::size_t star = std::string_view::npos;

@@ -11,10 +11,10 @@ namespace palpate {
 namespace {
 
 constexpr int kStepsPerLine = 128;
-constexpr std::size_t kMaxLines = 20000;  // in all, so that many layers do not take minutes
-constexpr int kHalvings = 40;  // a step shrinks to 1e-12 of itself: the wall to double precision
+constexpr std::size_t kMaxLines = 20000;  // in total, so that many layers do not take minutes
+constexpr int kHalvings = 40;  // a step shrinks to 1e-12 of itself, about double precision
 
-/// Whether the straight way from `from` to `to` comes into `box`.
+/// Whether the straight way from `from` to `to` meets `box`.
 bool crosses(const Box3& box, const Vec3& from, const Vec3& to) {
   double enter = 0.0;
   double leave = 1.0;
@@ -32,9 +32,9 @@ bool crosses(const Box3& box, const Vec3& from, const Vec3& to) {
   return enter <= leave;
 }
 
-/// The regions along one straight line. Leaves whose bounds it does not cross are outside all
-/// along; of the others each is asked again only where its Lipschitz bound allows that its sign has
-/// changed.
+/// The regions along one straight line. Leaves whose bounds the line does not meet are outside all
+/// along it; each of the others is evaluated again only where its Lipschitz bound allows its sign
+/// to have changed.
 class Line {
  public:
   explicit Line(const Partition& partition)
@@ -93,7 +93,7 @@ class Line {
     double fixed_from, fixed_to;  ///< [m] along the line: its sign is the same in between
   };
 
-  /// A wall is halved down to between the same few cells.
+  /// A cache: bisecting towards a wall visits the same few cells again and again.
   RegionId regionHere() {
     for (const Cell& cell : cells_) {
       if (cell.is_known && cell.signs == signs_) return cell.region;
@@ -104,12 +104,12 @@ class Line {
     return oldest.region;
   }
 
-  /// True if its sign is another one than before.
+  /// Evaluates the leaf at `p`; true if its sign changed.
   bool ask(Candidate& candidate, const Vec3& p, double place) {
     const double value = candidate.field->value(p);
     const bool inside = value < 0.0 && candidate.bounds.contains(p);
-    // Less a share of the line for the rounding of places along it; nothing where the value is not
-    // a number.
+    // The length over which the sign is certain, reduced by a share of the line for rounding; not
+    // positive if the value is not a number.
     const double fixed = std::fabs(value) * candidate.per_slope - 1e-9 * length_;
     candidate.fixed_from = fixed > 0.0 ? place - fixed : kInfinity;
     candidate.fixed_to = fixed > 0.0 ? place + fixed : -kInfinity;
@@ -125,7 +125,7 @@ class Line {
   };
 
   const Partition& partition_;
-  std::array<Cell, 4> cells_;  ///< looked at last
+  std::array<Cell, 4> cells_;  ///< the last ones looked up
   std::size_t next_cell_ = 0;
   Vec3 from_{0.0};
   Vec3 along_{0.0};
@@ -150,7 +150,8 @@ class Surveyor {
   }
 
   void walk(const Vec3& from, const Vec3& to) {
-    pollStop();  // of hundreds of labels a line takes milliseconds, and there are thousands
+    pollStop();  // with hundreds of labels a line takes milliseconds, and there are thousands of
+                 // lines
     line_.begin(from, to);
     Vec3 last = from;
     RegionId region = line_.at(from);
@@ -159,7 +160,7 @@ class Surveyor {
       const Vec3 here = glm::mix(from, to, static_cast<double>(i) / kStepsPerLine);
       const RegionId now = line_.at(here);
       if (now != region) {
-        // Several walls may lie in one step: after the first is found, go on behind it.
+        // One step may contain several walls: after the first is found, continue behind it.
         Vec3 a = last;
         RegionId ra = region;
         for (int walls = 0; ra != now && walls < 8; ++walls) {

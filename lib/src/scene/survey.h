@@ -1,5 +1,5 @@
 #pragma once
-/// Which regions there are and which touch, found by walking lines through the scene.
+/// Finds which regions exist and which of them touch, by following lines through the scene.
 
 #include <span>
 #include <vector>
@@ -11,15 +11,15 @@ namespace palpate {
 struct Survey {
   std::size_t regions = 0;
   std::vector<bool> touch;     ///< [a * regions + b], symmetric
-  std::vector<bool> has_seed;  ///< region was met
-  std::vector<Vec3> seed;      ///< [m] a point of it, as deep inside it as the walk saw
+  std::vector<bool> has_seed;  ///< a point of the region was found
+  std::vector<Vec3> seed;      ///< [m] that point, as deep inside the region as the lines found
 
   [[nodiscard]] bool touches(RegionId a, RegionId b) const { return touch[a * regions + b]; }
 };
 
-/// Walks lines along the axes and at random (fixed seed) through `boxes`, one for each layer, and
-/// halves every step over which the region changes down to the wall itself. What is smaller than
-/// about a hundredth of every box may be missed.
+/// Follows lines along the axes and at random (fixed seed) through `boxes`, one for each layer.
+/// Every step over which the region changes is bisected down to the wall itself. Features smaller
+/// than about a hundredth of every box may be missed.
 [[nodiscard]] Survey survey(const Partition& partition, std::span<const Box3> boxes,
                             std::size_t lines_per_box);
 

@@ -1,5 +1,6 @@
 #pragma once
-/// What a material says of tissue: curved springs, relaxation, lattices, and needles.
+/// Reads the properties of tissue in a material: nonlinear springs, relaxation, lattices, and
+/// needles.
 
 #include <utility>
 
@@ -8,7 +9,7 @@
 
 namespace palpate {
 
-/// `static` and `kinetic`, which is no more, and `static` if it is not given.
+/// `static`, and `kinetic`, which must not be larger; if `kinetic` is absent it equals `static`.
 [[nodiscard]] std::pair<Parameter, Parameter> readFriction(const MapReader& reader);
 
 /// Reads `curve`, `maxwell`, `lattice`, `cutting` and `shaft` of a material whose stiffness is

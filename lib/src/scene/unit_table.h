@@ -1,5 +1,5 @@
 #pragma once
-/// What the scene reader needs to know of units beyond palpate/scene/units.h.
+/// Facts on units that the scene reader needs beyond palpate/scene/units.h.
 
 #include <string_view>
 #include <vector>
@@ -8,8 +8,9 @@
 
 namespace palpate {
 
-/// `value` in units of `factor`, in SI. Divides where the factor is one over a whole number: 1/1000
-/// is not a binary fraction, but 35/1000 rounds once, to what 0.035 written in SI is.
+/// Converts `value`, in units of `factor`, to SI. It divides if the factor is one over a whole
+/// number: 1/1000 is not a binary fraction, but 35/1000 rounds only once, to the same number as
+/// 0.035 written in SI.
 [[nodiscard]] double scaledTo(double value, double factor) noexcept;
 
 /// Every spelling of a unit of `dimension`, the SI unit first.

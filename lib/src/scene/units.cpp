@@ -13,7 +13,7 @@ namespace {
 struct Unit {
   std::string_view name;
   Dimension dimension;
-  double si;  ///< SI units in one of it
+  double si;  ///< SI units in one of this unit
 };
 
 // Every unit that is understood; the SI unit of a dimension comes first.
@@ -68,8 +68,8 @@ std::size_t numberLength(std::string_view text) noexcept {
   return at;
 }
 
-// True for what goes on behind its first digits as other readers' numbers do: "1_000", "1,5",
-// "0x1F".
+// True if the text continues behind its first digits the way numbers do for other readers: "1_000",
+// "1,5", "0x1F".
 bool continuesNumber(std::string_view text, std::size_t length) noexcept {
   if (length >= text.size()) return false;
   const char next = text[length];

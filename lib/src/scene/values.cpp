@@ -35,7 +35,7 @@ Error wrongKind(const Document& document, const Node& node, const std::string& w
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-// What to write instead of a text that is not a number; empty if nobody knows.
+// What to write instead of a text that is not a number; empty if that is not known.
 std::string numberHint(std::string_view text) {
   if (text.find("\xC2\xA0") != std::string_view::npos) {
     return "there is a no-break space in it; write a plain one";
@@ -177,7 +177,8 @@ const std::vector<Node>& readList(const Document& document, const Node& node,
     throw wrongKind(document, node, what, "a list", std::move(hint));
   }
   if (node.items.size() < least || (most != 0 && node.items.size() > most)) {
-    // A limit in the thousands guards against abuse: who gave too few need not read of it.
+    // A limit in the thousands only guards against abuse: do not mention it to a user who gave too
+    // few.
     const bool is_open = most == 0 || (most >= 1000 && node.items.size() < least);
     const std::string wanted = least == most ? std::to_string(least)
                                : is_open     ? std::to_string(least) + " or more"
@@ -360,8 +361,8 @@ void checkValue(const SceneLoader& loader, const Node& node, const KeyWords& key
       if (!is_map_of_places(node)) checkOne(loader, node, key, what);
       return;
     case KeyWords::Count::kList:
-      // How many maps a list has is checked when they are opened: what stands before them is read
-      // first.
+      // The number of maps in a list is checked when they are opened, so that errors before them in
+      // the file are reported first.
       for (const Node& item :
            readList(document, node, what, key.form == KeyWords::Form::kMap ? 0 : key.at_least,
                     key.form == KeyWords::Form::kMap ? 0 : key.at_most)) {

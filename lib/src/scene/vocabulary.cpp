@@ -69,8 +69,8 @@ std::vector<std::string> words(const Document& document, const Node& list) {
   return all;
 }
 
-/// True if the default is a value of the key's type, which is then what is read where the key is
-/// not given.
+/// True if the default is a value of the key's type, which the reader then uses where the key is
+/// absent.
 bool isValue(const KeyWords& key, const Node& node) {
   if (node.quoted || key.count != Count::kOne) return false;
   switch (key.form) {
@@ -97,7 +97,7 @@ auto* named(Items& items, std::string_view name) noexcept {
   return at == items.end() ? nullptr : &*at;
 }
 
-/// As the declarations have it.
+/// The number as the declarations write it.
 std::string shown(double value) { return shortNumber(value, 6); }
 
 }  // namespace

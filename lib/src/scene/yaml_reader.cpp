@@ -1,5 +1,5 @@
-// The one file that sees yaml-cpp. Its events show what its tree hides: anchors, tags, marks of
-// keys, keys given twice.
+// The one file that uses yaml-cpp directly. It reads events because yaml-cpp's tree hides anchors,
+// tags, marks of keys, and duplicate keys.
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
@@ -50,7 +50,7 @@ class TreeBuilder final : public YAML::EventHandler {
     node.kind = Node::Kind::kScalar;
     node.mark = markOf(mark);
     node.text = value;
-    node.quoted = tag == "!";  // what yaml-cpp calls every scalar that is not plain
+    node.quoted = tag == "!";  // yaml-cpp's tag for every scalar that is not plain
     refuseOpenQuote(mark);
     add(std::move(node));
   }
@@ -67,7 +67,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   [[nodiscard]] bool hasDocument() const noexcept { return has_document_; }
 
-  // An error for what yaml-cpp could not read; it names the likely cause where one is known.
+  // An error for text that yaml-cpp could not read; it names the likely cause where one is known.
   [[nodiscard]] Error syntax(const YAML::Exception& exception) const {
     const char at = characterAt(exception.mark);
     const char before =
@@ -106,13 +106,14 @@ class TreeBuilder final : public YAML::EventHandler {
  private:
   struct Frame {
     Node node;
-    bool has_key = false;  // maps: a key waits for its value
+    bool has_key = false;  // for maps: a key has been read and its value not yet
     std::string key = {};
     Mark key_mark = {};
     std::unordered_set<std::string> keys = {};
   };
 
-  // yaml-cpp counts from 0, and has no mark at all for what the end of the file left out.
+  // yaml-cpp counts from 0, and has no mark at all for a value that is missing at the end of the
+  // file.
   [[nodiscard]] Mark markOf(const YAML::Mark& mark) const {
     if (mark.is_null() || mark.line < 0 ||
         static_cast<std::size_t>(mark.line) >= document_.lines.size()) {
@@ -126,8 +127,8 @@ class TreeBuilder final : public YAML::EventHandler {
         !mark.is_null() && mark.pos >= 0 && static_cast<std::size_t>(mark.pos) < text_.size();
     return inside ? text_[static_cast<std::size_t>(mark.pos)] : '\0';
   }
-  // Where nothing is written yaml-cpp marks what comes next, perhaps lines below: go back to the
-  // last thing before it, the '-' or ',' or '[' that asked for a value.
+  // Where a value is missing, yaml-cpp marks what comes next, perhaps lines below: go back to the
+  // last thing before it, the '-' or ',' or '[' that needs a value.
   [[nodiscard]] Mark markOfNull(const YAML::Mark& mark) const {
     const char c = characterAt(mark);
     if (c == '~' || c == 'n' || c == 'N') return markOf(mark);
@@ -163,15 +164,15 @@ class TreeBuilder final : public YAML::EventHandler {
     if (anchor != 0) throw anchorError(mark);
   }
   void refuseTag(const YAML::Mark& mark, const std::string& tag) const {
-    // "?" and "!" stand for "none" on plain and quoted scalars; a written tag has the node's mark.
+    // "?" and "!" mean "no tag" on plain and quoted scalars; a written tag has the node's mark.
     if ((tag == "?" || tag == "!" || tag.empty()) && characterAt(mark) != '!') return;
     throw document_.error(markOf(mark), "document.tag",
                           "an unquoted '!' makes a YAML tag, which scenes do not use",
                           "quote the text, or leave the tag out");
   }
 
-  // yaml-cpp lets a quotation end with the file. One that runs on takes what follows for text, so
-  // it must end on its line, as in JSON.
+  // yaml-cpp accepts a quotation that is never closed. One that runs on swallows the following
+  // lines, so it must end on its line, as in JSON.
   void refuseOpenQuote(const YAML::Mark& mark) const {
     const char quote = characterAt(mark);
     if (quote != '"' && quote != '\'') return;
@@ -180,7 +181,7 @@ class TreeBuilder final : public YAML::EventHandler {
       if (quote == '"' && text_[i] == '\\') {
         ++i;
       } else if (text_[i] == quote) {
-        // Twice is one quotation mark of the text itself.
+        // A doubled quotation mark is one that belongs to the text.
         const bool doubled = quote == '\'' && i + 1 < text_.size() && text_[i + 1] == quote;
         if (!doubled) return;
         ++i;
@@ -195,7 +196,8 @@ class TreeBuilder final : public YAML::EventHandler {
             Node::Kind kind) {
     refuseTag(mark, tag);
     refuseAnchor(mark, anchor);
-    // Before yaml-cpp recurses: every level of its recursion below here comes through this line.
+    // Checked before yaml-cpp recurses: every level of its recursion below here comes through this
+    // line.
     if (frames_.size() >= static_cast<std::size_t>(kDeepestNesting)) {
       throw document_.error(markOf(mark), "document.depth",
                             "nested deeper than " + std::to_string(kDeepestNesting) + " levels",

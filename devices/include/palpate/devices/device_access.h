@@ -1,5 +1,5 @@
 #pragma once
-/// What a user has to know of a device that a hand holds.
+/// What a user has to know about a device that a hand holds.
 
 #include <cstdint>
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace palpate::devices {
 
-/// Of every driver here; to be printed wherever a device is offered or used.
+/// True of every driver here; to be printed wherever a device is offered or used.
 constexpr const char* kUnverifiedNotice = "protocol from public sources, unverified on hardware";
 
-/// The line of /etc/udev/rules.d/70-haptics.rules that permits the device to the group plugdev and
-/// to who sits at the machine.
+/// The line of /etc/udev/rules.d/70-haptics.rules that gives access to the device to the group
+/// plugdev and to the user logged in at the machine.
 [[nodiscard]] PALPATE_EXPORT std::string udevRule(std::uint16_t vendor, std::uint16_t product);
 
 }  // namespace palpate::devices

@@ -1,5 +1,5 @@
 #pragma once
-/// What a device and the hand that holds it are to the loop: masses, springs and friction at the
+/// Mechanical models of a device and of the hand that holds it: masses, springs and friction at the
 /// tip.
 
 #include <string>
@@ -9,26 +9,27 @@
 
 namespace palpate::devices {
 
-/// A device as it is at its tip, alike along its three axes, which do not act on each other.
+/// A device at its tip, with the same parameters along its three axes, which are independent of
+/// each other.
 struct DeviceModel {
   std::string name = {};
-  double mass = 0.1;             ///< [kg] more than 0
-  double damping = 0.0;          ///< [N s/m] viscous, 0 or more
-  double friction = 0.0;         ///< [N] Coulomb, sticking and sliding alike; 0 or more
-  double encoder = 0.0;          ///< [m] step of a reading; 0: none
-  double lag = 0.0;              ///< [s] time constant of the amplifier; 0: none
-  double max_force = kInfinity;  ///< [N] what the motors give at most; more than 0
-  Box3 workspace{Vec3(-kInfinity), Vec3(kInfinity)};  ///< [m, device] what the tip can get to
+  double mass = 0.1;      ///< [kg] more than 0
+  double damping = 0.0;   ///< [N s/m] viscous, 0 or more
+  double friction = 0.0;  ///< [N] Coulomb friction, the same when sticking and sliding; 0 or more
+  double encoder = 0.0;   ///< [m] step of a reading; 0: none
+  double lag = 0.0;       ///< [s] time constant of the amplifier; 0: none
+  double max_force = kInfinity;  ///< [N] the most that the motors exert; more than 0
+  Box3 workspace{Vec3(-kInfinity), Vec3(kInfinity)};  ///< [m, device] the reach of the tip
 };
 
-/// A hand: a mass on a spring and a damper, whose other end goes along the path that the hand
-/// wants to go. It holds the device by a grip, another spring and damper, or is one with it.
+/// A hand: a mass on a spring and a damper, whose other end follows the path that the hand wants to
+/// take. It holds the device by a grip (another spring and damper), or is rigidly connected to it.
 struct HandModel {
   std::string name = {};
   double mass = 0.0;            ///< [kg] 0 or more; with a grip more than 0
   double damping = 0.0;         ///< [N s/m] to the path, 0 or more
   double stiffness = 0.0;       ///< [N/m] to the path, 0 or more
-  double grip_stiffness = 0.0;  ///< [N/m] 0 or more; 0 of both: the hand is one with the device
+  double grip_stiffness = 0.0;  ///< [N/m] 0 or more; both 0: the hand is fixed to the device
   double grip_damping = 0.0;    ///< [N s/m] 0 or more
 
   [[nodiscard]] bool hasGrip() const noexcept { return grip_stiffness > 0.0 || grip_damping > 0.0; }

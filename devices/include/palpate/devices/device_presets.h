@@ -1,5 +1,5 @@
 #pragma once
-/// Devices and hands by name, each number with what is known of it.
+/// Devices and hands by name, each number with its source.
 
 #include <cstdint>
 #include <optional>
@@ -15,29 +15,29 @@ namespace palpate::devices {
 /// How far a number can be trusted.
 enum class Known : std::uint8_t {
   kSourced,     ///< read in the source that is named
-  kUnverified,  ///< stated by its maker, as the field passes it on; not read in a source
+  kUnverified,  ///< stated by its maker and quoted in the field, but not read in a source
   kAssumed,     ///< no source gives it
 };
 
 struct Quantity {
   double value = 0.0;
   Known known = Known::kAssumed;
-  std::string_view source = {};  ///< who says it; for what is assumed, why so
+  std::string_view source = {};  ///< who states it; for an assumed number, the reason
 };
 
 /// Effective mass, damping and friction are those at the tip, in the middle of the workspace.
 struct DevicePreset {
-  std::string_view name;   ///< of the command line
-  std::string_view title;  ///< of its maker
+  std::string_view name;   ///< on the command line
+  std::string_view title;  ///< its maker's name for it
   Quantity mass;           ///< [kg]
   Quantity damping;        ///< [N s/m]
   Quantity friction;       ///< [N]
   Quantity encoder;        ///< [m]
   Quantity max_force;      ///< [N] peak
-  Quantity width;          ///< [m] of the workspace along x, about the device's origin,
+  Quantity width;          ///< [m] of the workspace along x, centered on the device's origin
   Quantity height;         ///< [m] along y
-  Quantity depth;          ///< [m] and along z
-  /// With no lag of the amplifier: no source gives one, and it is assumed to be none.
+  Quantity depth;          ///< [m] along z
+  /// Without an amplifier's lag: no source states one, so none is assumed.
   [[nodiscard]] PALPATE_EXPORT DeviceModel model() const;
 };
 
@@ -50,12 +50,12 @@ struct HandPreset {
 [[nodiscard]] PALPATE_EXPORT std::span<const DevicePreset> devicePresets() noexcept;
 [[nodiscard]] PALPATE_EXPORT std::span<const HandPreset> handPresets() noexcept;
 
-/// @throws Error (kUsage, device.unknown) that lists the names, for one that there is not.
+/// @throws Error (kUsage, device.unknown) that lists the known names, if the name is unknown.
 [[nodiscard]] PALPATE_EXPORT const DevicePreset& devicePreset(std::string_view name);
-/// None for "none": nobody holds the device. @throws Error (kUsage, hand.unknown) as above.
+/// No value for "none": nobody holds the device. @throws Error (kUsage, hand.unknown) likewise.
 [[nodiscard]] PALPATE_EXPORT std::optional<HandModel> handPreset(std::string_view name);
 
-/// "", " (not verified)" or " (assumed)": for behind the number.
+/// "", " (not verified)" or " (assumed)": to be written after the number.
 [[nodiscard]] PALPATE_EXPORT std::string_view markOf(Known known) noexcept;
 
 }  // namespace palpate::devices

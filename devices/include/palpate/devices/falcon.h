@@ -14,18 +14,19 @@ namespace palpate::devices {
 constexpr std::uint16_t kFalconVendor = 0x0403;
 constexpr std::uint16_t kFalconProduct = 0xcb48;
 
-/// What differs from device to device, or that nobody has measured. In a file: one `name value` a
-/// line, '#' begins a comment.
+/// Numbers that differ from device to device, or that nobody has measured. In a file: one `name
+/// value` a line; '#' begins a comment.
 struct FalconCalibration {
-  /// [counts/Nm] of a motor's command by the torque at the thigh, from libnifalcon, never measured:
-  /// a real force may be two or three times off. Negative: the command that turns an arm outward.
+  /// [counts/Nm] of a motor's command per torque at the thigh; from libnifalcon, never measured:
+  /// the real force may be wrong by a factor of two or three. Negative: the command that turns an
+  /// arm outward.
   double counts_per_torque = -10000.0;
-  double radians_per_count = 0.000635905;  ///< [rad] of a thigh by encoder count
+  double radians_per_count = 0.000635905;  ///< [rad] angle of a thigh per encoder count
   Vec3 zero_angles{0.610865, 0.610865,
-                   0.610865};     ///< [rad] of the thighs where the encoders say 0: 35 degrees
-  Vec3 origin{0.0, 0.0, 0.125};   ///< [m] of the device's frame, in that of its base
+                   0.610865};  ///< [rad] angle of the thighs where the encoders read 0: 35 degrees
+  Vec3 origin{0.0, 0.0, 0.125};   ///< [m] origin of the device's frame, in the frame of its base
   double max_force = 8.0;         ///< [N] the largest that is asked of the motors
-  double continuous_force = 4.0;  ///< [N] that they hold forever: an assumption, none is published
+  double continuous_force = 4.0;  ///< [N] that they can hold forever: assumed, none is published
 };
 
 /// @throws Error (kInput) if the file cannot be read, a name is unknown or a value is out of range.
@@ -34,8 +35,8 @@ struct FalconCalibration {
 
 struct FalconSettings {
   std::string serial;  ///< empty: the first one
-  /// 0 or more: an open file descriptor of its node. From then on libusb finds no devices by itself
-  /// in this process.
+  /// 0 or more: an open file descriptor of its node. After that, libusb no longer finds devices by
+  /// itself in this process.
   int descriptor = -1;
   std::string firmware;  ///< image for a device that runs none; empty: such a device is refused
   FalconCalibration calibration = {};

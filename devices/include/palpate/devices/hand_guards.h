@@ -1,6 +1,6 @@
 #pragma once
-/// What a scene asks of the loop that holds its device, with the numbers of the device that is
-/// there.
+/// The guards that a scene asks for in its device's loop, completed with the numbers of the actual
+/// device.
 
 #include <optional>
 
@@ -18,9 +18,9 @@ struct HandGuards {
   std::optional<CouplingSettings> coupling = {};
 };
 
-/// What `asked` of passivity and a coupling comes to in a loop of `period` [s]. What it does not
-/// say comes from the device and the delay of `loop`. @throws Error (kUsage, passivity.mass,
-/// coupling.device) if that is not given and needed.
+/// The settings of passivity and coupling that `asked` means in a loop of `period` [s]. Numbers
+/// that it does not give come from the device and the delay of `loop`. @throws Error (kUsage,
+/// passivity.mass, coupling.device) if a number that is needed is not given by either.
 [[nodiscard]] PALPATE_EXPORT HandGuards guardsOf(const DeviceMapping& asked,
                                                  const std::optional<LoopModel>& loop,
                                                  double period);

@@ -14,17 +14,17 @@ namespace palpate::devices {
 struct Inverse3Settings {
   std::string host = "127.0.0.1";
   std::uint16_t port = 10001;
-  std::string id;  ///< of the device; empty: the first that the service names
+  std::string id;  ///< of the device; empty: the first that the service lists
 };
 
 /// WebSocket and JSON live in a thread of their own; read() and write() only exchange values with
 /// it. Each write() sends a force, each answer of the service is a reading; the service forgets a
-/// force that is not sent again. Frame: the service's. open() throws Error (kDevice) if nothing
-/// answers there, or if the service does not know the device.
+/// force that is not sent again. The frame is the service's. open() throws Error (kDevice) if
+/// nothing answers at its address, or if the service does not know the device.
 /// @throws Error (kDevice) in a build without Boost.Beast and nlohmann-json.
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeInverse3(const Inverse3Settings& settings);
 
-/// Whether something listens where the service should be.
+/// Whether something listens at the service's address.
 [[nodiscard]] PALPATE_EXPORT bool hasInverseService(const Inverse3Settings& settings) noexcept;
 
 }  // namespace palpate::devices

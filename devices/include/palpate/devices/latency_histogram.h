@@ -1,5 +1,5 @@
 #pragma once
-/// LatencyHistogram: how often a time was how long, in fixed memory.
+/// LatencyHistogram: counts how often each duration occurred, in fixed memory.
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,11 @@
 
 namespace palpate::devices {
 
-/// Times in [ns], kept to one part in eight. A value of about 4 kB; add() is real-time safe.
+/// Durations in [ns], resolved to one part in eight. A value type of about 4 kB; add() is real-time
+/// safe.
 class LatencyHistogram {
  public:
-  /// A time below 0 counts as 0.
+  /// A negative time counts as 0.
   void add(std::int64_t ns) noexcept {
     const auto value = static_cast<std::uint64_t>(std::max<std::int64_t>(ns, 0));
     ++buckets_[bucketOf(value)];
@@ -24,8 +25,8 @@ class LatencyHistogram {
   [[nodiscard]] std::int64_t longest() const noexcept {
     return static_cast<std::int64_t>(longest_);
   }
-  /// [ns] that the given share (0 to 1) of the times does not exceed: at least the true one, and at
-  /// most an eighth above it. 0 of no times.
+  /// [ns] The duration that the given share (0 to 1) of the durations does not exceed: at least the
+  /// true value, and at most an eighth above it. 0 if there are none.
   [[nodiscard]] std::int64_t quantile(double share) const noexcept {
     const double wanted = std::ceil(std::clamp(share, 0.0, 1.0) * static_cast<double>(count_));
     const auto rank = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(wanted));
@@ -38,7 +39,7 @@ class LatencyHistogram {
   }
 
  private:
-  static constexpr std::uint64_t kParts = 8;  // of an octave
+  static constexpr std::uint64_t kParts = 8;  // per octave
   static constexpr std::size_t kBuckets = 62 * kParts;
 
   [[nodiscard]] static std::size_t bucketOf(std::uint64_t value) noexcept {
@@ -46,7 +47,7 @@ class LatencyHistogram {
     const auto shift = static_cast<std::size_t>(std::bit_width(value)) - 4;
     return (shift + 1) * kParts + ((value >> shift) & (kParts - 1));
   }
-  /// The longest time of a bucket.
+  /// The longest duration in a bucket.
   [[nodiscard]] static std::uint64_t lastOf(std::size_t bucket) noexcept {
     if (bucket < kParts) return bucket;
     const std::size_t shift = bucket / kParts - 1;

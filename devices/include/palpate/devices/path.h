@@ -1,5 +1,5 @@
 #pragma once
-/// Hand paths: where the HIP is, tick by tick; and a device that follows one.
+/// Hand paths: the position of the HIP at each tick; and a device that follows a path.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,14 +17,15 @@ namespace palpate::devices {
 
 struct PathPoint {
   double t = 0.0;                ///< [s]
-  Vec3 position{0.0, 0.0, 0.0};  ///< [m, world], or of a recording in the frame that it says
+  Vec3 position{0.0, 0.0, 0.0};  ///< [m, world]; for a recording, in the frame that it names
 };
 using Path = std::vector<PathPoint>;
 
-/// A path whose rows are computed when they are asked for: of one size, however long it is.
+/// A path whose rows are computed when they are asked for, so that its size does not depend on its
+/// length.
 class PathFormula {
  public:
-  /// Row i < `last` is at position(i / rate), row `last` at `end`; `position` must not allocate,
+  /// Row i < `last` is `position(i / rate)`, row `last` is `end`; `position` must not allocate,
   /// lock or throw.
   PathFormula(std::size_t last, double rate, const Vec3& end, std::function<Vec3(double)> position)
       : last_(last), rate_(rate), end_(end), position_(std::move(position)) {}
@@ -47,39 +48,39 @@ struct RecordedPath {
   DeviceFrame frame = DeviceFrame::kWorld;
 };
 
-/// What a path may hold.
+/// The rows that a path may contain.
 enum class PathRules : std::uint8_t {
-  kSound,       ///< finite positions, at times that rise
-  kAsRecorded,  ///< whatever a device may have said: positions and times that are not numbers,
-                ///< times that do not rise
+  kSound,       ///< finite positions, at increasing times
+  kAsRecorded,  ///< whatever a device may have reported: positions and times that are not numbers,
+                /// < times that do not increase
 };
 
-/// CSV with the header `t,x,y,z` (s, m), or `t,device_x,device_y,device_z` for what a device itself
-/// said (DeviceFrame::kDevice), one row a tick; t must rise. Lines end in LF or CRLF, the last may
-/// have no end. Nothing else is let in: no comment, blank line, space, quote, NaN or infinity. The
-/// file is read in pieces: memory is what the path itself takes. By PathRules::kAsRecorded `nan`,
-/// `inf` and `-inf` are let in, and any time.
+/// CSV with the header `t,x,y,z` (s, m), or `t,device_x,device_y,device_z` for a device's own
+/// coordinates (DeviceFrame::kDevice), one row a tick; t must increase. Lines end in LF or CRLF,
+/// the last may have no end. Comments, blank lines, spaces, quotes, NaN and infinity are not
+/// allowed. The file is read in pieces, so only the path itself takes memory.
+/// PathRules::kAsRecorded also allows `nan`, `inf` and `-inf`, and any time.
 /// @throws Error (kInput) with file:line:column and the offending line for anything else; codes
 /// path.unreadable, .empty, .header, .comment, .blank, .columns, .number, .not_finite, .time.
 [[nodiscard]] PALPATE_EXPORT RecordedPath readPath(const std::string& file,
                                                    PathRules rules = PathRules::kSound);
 
 // Generators. Row i is at t = i / rate, exactly; the first row is the start and the last row the
-// end point, exactly, at the first sample not before the end of the motion. In between, positions
-// are the formula given. Set-up only: they allocate. All throw Error (kInput, path.parameter) for a
-// value that is not finite or out of its range, and for paths of more than 10^8 rows. `rate` is in
-// [Hz], above 0.
+// end point, exactly, at the first sample that is not before the end of the motion. In between,
+// each position is given by the formula stated. Set-up only: they allocate. All throw Error
+// (kInput, path.parameter) for a value that is not finite or out of its range, and for paths of
+// more than 10^8 rows. `rate` is in [Hz], above 0.
 
-/// Straight in to `depth` beyond `surface` against `normal`, hold, and out again: height above the
-/// surface, along `normal`: clearance - speed t down to -depth, -depth for `hold`, and back up to
-/// clearance. With hold >= 1 / rate a row is exactly at the deepest point.
+/// Straight in to `depth` beyond `surface` against `normal`, hold, and out again. The height above
+/// the surface along `normal` is clearance - speed t down to -depth, -depth for `hold`, and then
+/// back up to clearance. If hold >= 1 / rate, one row is exactly at the deepest point.
 struct PressPath {
   Vec3 surface{0.0, 0.0, 0.0};  ///< [m] where to press
   Vec3 normal{0.0, 0.0, 1.0};   ///< [-] outward, any length but zero
   double depth = 0.002;         ///< [m] 0 or more
-  double clearance = 0.005;     ///< [m] start and end above the surface, 0 or more; not both zero
-  double speed = 0.05;          ///< [m/s] above 0
-  double hold = 0.2;            ///< [s] 0 or more
+  double clearance = 0.005;  ///< [m] of both ends above the surface, 0 or more; not 0 if depth is
+  double speed = 0.05;       ///< [m/s] above 0
+  double hold = 0.2;         ///< [s] 0 or more
 };
 [[nodiscard]] PALPATE_EXPORT PathFormula formula(const PressPath& shape,
                                                  double rate);  ///< rate [Hz]
@@ -98,22 +99,22 @@ struct StrokePath {
 [[nodiscard]] PALPATE_EXPORT Path generate(const StrokePath& shape,
                                            double rate);  ///< all of its rows
 
-/// Sinusoidal taps along `normal`: from `clearance` above to `depth` below, `taps` times: height
-/// (clearance - depth) / 2 + (clearance + depth) / 2 cos(2 pi frequency t).
+/// Sinusoidal taps along `normal`, `taps` times from `clearance` above the surface to `depth`
+/// below: the height is (clearance - depth) / 2 + (clearance + depth) / 2 cos(2 pi frequency t).
 struct TapPath {
   Vec3 surface{0.0, 0.0, 0.0};  ///< [m]
   Vec3 normal{0.0, 0.0, 1.0};   ///< [-] outward, any length but zero
   double depth = 0.002;         ///< [m] 0 or more
-  double clearance = 0.005;     ///< [m] 0 or more; not both zero
+  double clearance = 0.005;     ///< [m] 0 or more; not 0 if depth is
   double frequency = 4.0;       ///< [Hz] above 0
   int taps = 4;                 ///< 1 or more
 };
 [[nodiscard]] PALPATE_EXPORT PathFormula formula(const TapPath& shape, double rate);
 [[nodiscard]] PALPATE_EXPORT Path generate(const TapPath& shape, double rate);  ///< all of its rows
 
-/// Straight through way points at constant speed, there and (if asked) back: at the arc length
-/// speed t of the polyline. Ends at the last point, or at the first if `back`. With hold >= 1 /
-/// rate a row is exactly at the far end.
+/// Straight through way points at constant speed, there and (if asked) back: the arc length along
+/// the polyline is speed t. Ends at the last point, or at the first if `back`. If hold >= 1 / rate,
+/// one row is exactly at the far end.
 struct InsertPath {
   std::vector<Vec3> points;  ///< [m] two or more, not all the same
   double speed = 0.05;       ///< [m/s] above 0
@@ -124,23 +125,24 @@ struct InsertPath {
 [[nodiscard]] PALPATE_EXPORT Path generate(const InsertPath& shape,
                                            double rate);  ///< all of its rows
 
-/// One read() is one row of the path. The velocity is the backward difference of the rows (0 at the
-/// first, and where the time does not rise), the time is the row's. After the last row read()
-/// answers kEnd and leaves its argument alone. While it is not open, read() and write() answer
-/// kDisconnected. open() starts the path anew. Its maximum force is kMaxForce, its workspace the
-/// box of the path.
+/// Each read() returns one row of the path. The velocity is the backward difference of the rows (0
+/// at the first, and where the time does not increase), the time is the row's. After the last row
+/// read() answers kEnd and leaves its argument unchanged. While the device is not open, read() and
+/// write() answer kDisconnected. open() restarts the path. Its maximum force is kMaxForce, its
+/// workspace the bounding box of the path.
 class PALPATE_EXPORT VirtualDevice final : public Device {
  public:
-  /// [N] A hundred times what desktop devices hold, so that closed forms hold in every sane scene,
-  /// and yet a limit, as every device has one.
+  /// [N] A hundred times what desktop devices can hold, so that closed forms are valid in every
+  /// sensible scene, and yet a finite limit, as every device has one.
   static constexpr double kMaxForce = 1000.0;
 
-  /// @throws Error (kInput) for an empty path or times that do not rise, unless `rules` let them.
-  /// Positions are taken as they are, so that a NaN from a broken sensor can be played.
+  /// @throws Error (kInput) for an empty path, or for times that do not increase unless `rules`
+  /// allow them. Positions are used as they are, so that a NaN from a broken sensor can be played
+  /// back.
   explicit VirtualDevice(Path path, DeviceFrame frame = DeviceFrame::kWorld,
                          PathRules rules = PathRules::kSound);
 
-  /// The same of a path that is computed row by row: it takes no memory.
+  /// The same for a path that is computed row by row: it takes no memory.
   explicit VirtualDevice(PathFormula formula, DeviceFrame frame = DeviceFrame::kWorld);
 
   void open() override;
@@ -158,7 +160,7 @@ class PALPATE_EXPORT VirtualDevice final : public Device {
   [[nodiscard]] PathPoint pointAt(std::size_t row) const;
 
   DeviceInfo info_;
-  Path path_;  ///< empty: formula_ says it
+  Path path_;  ///< empty: formula_ is used
   std::optional<PathFormula> formula_;
   std::size_t next_ = 0;
   bool is_open_ = false;

@@ -1,6 +1,7 @@
 #pragma once
-/// Devices whose makers give no protocol but a library, which is found when the device is opened:
-/// nothing of it is linked or shipped. Protocol from public sources, unverified on hardware.
+/// Devices whose makers publish no protocol but a library, which is loaded when the device is
+/// opened: no part of it is linked or shipped. Protocol from public sources, unverified on
+/// hardware.
 
 #include <memory>
 #include <string>
@@ -11,12 +12,12 @@
 namespace palpate::devices {
 
 struct PluginSettings {
-  std::string library;  ///< a path, or a name as dlopen() takes it; empty: the maker's usual one
+  std::string library;  ///< a path, or a name for dlopen(); empty: the maker's usual one
 };
 
 /// 3D Systems' Touch and Phantom devices, by OpenHaptics' HD library (libHD.so). Frame: x to the
 /// right, y up, z towards the hand. The library's own thread reads the device and writes the force,
-/// 1000 times a second; if no force came for 20 of its turns it writes zero.
+/// 1000 times a second; after 20 of its turns without a new force it writes zero.
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeOpenHaptics(
     const PluginSettings& settings);
 
@@ -25,7 +26,7 @@ struct PluginSettings {
 [[nodiscard]] PALPATE_EXPORT std::unique_ptr<Device> makeForceDimension(
     const PluginSettings& settings);
 
-/// Whether the library of either can be loaded; no device is opened.
+/// Whether the maker's library can be loaded; no device is opened.
 [[nodiscard]] PALPATE_EXPORT bool hasOpenHaptics(const PluginSettings& settings);
 [[nodiscard]] PALPATE_EXPORT bool hasForceDimension(const PluginSettings& settings);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A device that repeats the readings of a record, and fails where a test asks it to.
+/// A device that repeats the readings of a record, and fails where a test requests it.
 
 #include <cstdint>
 #include <string>
@@ -11,23 +11,23 @@
 namespace palpate::devices {
 
 enum class InjectedKind : std::uint8_t {
-  kStale,        ///< nothing new; the hand's next row comes later
-  kShortPacket,  ///< a reply that was cut: its row is lost, and the driver says kStale
+  kStale,        ///< no new reading; the hand's next row comes later
+  kShortPacket,  ///< a truncated reply: its row is lost, and the driver answers kStale
   kTimeout,
-  kUnplug,  ///< gone until it is opened again
+  kUnplug,  ///< disconnected until it is opened again
   kNan,     ///< a position that is not a number
-  kJump,    ///< a position half a meter off
+  kJump,    ///< a position that is off by half a meter
 };
 
 struct InjectedFault {
-  std::uint64_t read = 0;  ///< from 0: which call of read() it begins at
+  std::uint64_t read = 0;  ///< index, from 0, of the call of read() at which it begins
   InjectedKind kind = InjectedKind::kStale;
-  std::uint64_t count = 1;  ///< of calls
+  std::uint64_t count = 1;  ///< number of calls
 };
 
-/// One read() is one row of the record, with its time, velocity and buttons; after the last it
-/// answers kEnd. open() starts anew. While it is not open, read() and write() answer kDisconnected.
-/// Deterministic.
+/// Each read() returns one row of the record, with its time, velocity and buttons; after the last
+/// row it answers kEnd. open() restarts it. While the device is not open, read() and write() answer
+/// kDisconnected. Deterministic.
 class PALPATE_EXPORT ReplayDevice final : public Device {
  public:
   /// @throws Error (kInput) for no rows.

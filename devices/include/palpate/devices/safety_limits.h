@@ -1,41 +1,44 @@
 #pragma once
-/// SafetyLimits: how much of a force a device may pass on to a hand, and what it must stop for.
+/// SafetyLimits: how much of a force a device may pass on to a hand, and the conditions under which
+/// it must stop.
 
 #include "palpate/core/math.h"
 
 namespace palpate::devices {
 
-/// Of one device; DeviceInfo has them. By default nothing is limited: a simulated hand cannot be
-/// hurt, and its forces are compared with closed forms. handLimits() has what a device that a
-/// person holds starts from. A limit that is NaN or below 0 permits nothing.
+/// The limits of one device, part of its DeviceInfo. By default nothing is limited: a simulated
+/// hand cannot be hurt, and its forces are compared with closed forms. handLimits() are the
+/// defaults for a device that a person holds. A limit that is NaN or negative permits nothing.
 struct SafetyLimits {
   double max_growth = kInfinity;  ///< [N/s] slew rate of the force vector; see ForceGuard::apply()
   /// [s] from zero to full force after open, homing, silence, a hang or a value that is not finite
   double ramp = 0.0;
-  /// [m/s] of the hand, as a filter of kSpeedFilter sees it; beyond it: fault
+  /// [m/s] of the hand, filtered with kSpeedFilter; a faster hand is a fault
   double max_speed = kInfinity;
-  /// [m/s] a reading further from the last good one than `jump_speed` times its age plus
-  /// `jump_slack` [m] is dropped
+  /// [m/s] a reading is dropped if its distance from the last good one is more than `jump_speed`
+  /// times the age of that one plus `jump_slack` [m]
   double jump_speed = kInfinity;
   double jump_slack = 0.0;
-  /// Dropped readings, or values that are not finite, in a row that make a fault; 0: never
+  /// This many dropped or non-finite readings, or non-finite forces, in a row are a fault; 0: never
   int strikes = 0;
-  double continuous_force = kInfinity;  ///< [N] that the motors hold forever
-  double thermal_time = 10.0;           ///< [s] time constant of their warming
-  double silence = kInfinity;           ///< [s] without a valid reply: zero force
-  double silence_fault = kInfinity;     ///< [s] the same: fault
-  /// [s] real time without a turn of the loop: another thread writes zero force (Device::cut())
+  double continuous_force = kInfinity;  ///< [N] that the motors can hold forever
+  double thermal_time = 10.0;           ///< [s] time constant of the motors' warming
+  double silence = kInfinity;           ///< [s] without a valid reply after which the force is zero
+  double silence_fault = kInfinity;     ///< [s] without a valid reply after which it is a fault
+  /// [s] of real time without a turn of the loop after which another thread writes zero force
+  /// (Device::cut())
   double hang = kInfinity;
-  double hang_fault = kInfinity;  ///< [s] the same: fault, once the loop goes on
+  double hang_fault = kInfinity;  ///< [s] of real time without a turn after which it is a fault,
+                                  ///< once the loop goes on
 
-  /// [s] time constant of the speed that max_speed is compared with.
+  /// [s] time constant of the filter for the speed that is compared with max_speed.
   static constexpr double kSpeedFilter = 0.01;
-  /// [-] of the motors' heat from which on the force is held back; full heat is what the continuous
+  /// [-] heat of the motors above which the force is reduced; 1 is the heat that the continuous
   /// force makes.
   static constexpr double kWarm = 0.8;
 };
 
-/// What a device that a hand holds needs; a driver changes what its device asks for.
+/// The limits that a device held by a hand needs; a driver adapts them to its device.
 [[nodiscard]] inline SafetyLimits handLimits() noexcept {
   SafetyLimits limits;
   limits.max_growth = 2000.0;

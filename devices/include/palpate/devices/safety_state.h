@@ -1,6 +1,6 @@
 #pragma once
-/// SafetyState: what a device may do at this moment, as a table of states and events; and what is
-/// counted on the way.
+/// SafetyState: what a device may do at the moment, as a table of states and events; and the
+/// counters that go with it.
 
 #include <array>
 #include <cstddef>
@@ -16,8 +16,8 @@ enum class SafetyState : std::uint8_t {
   kOpen,          ///< no reply yet: zero force
   kUncalibrated,  ///< replies, but its origin is not known: zero force
   kIdle,          ///< ready: zero force until the next tick asks for one
-  kRamping,       ///< the force grows from zero to the one that is asked for
-  kActive,        ///< the force that is asked for, within the limits
+  kRamping,       ///< the force grows from zero to the requested one
+  kActive,        ///< the requested force, within the limits
   kFault,         ///< latched: zero force until it is closed and opened again
 };
 inline constexpr std::size_t kSafetyStates = 7;
@@ -26,34 +26,34 @@ enum class SafetyEvent : std::uint8_t {
   kOpened,   ///< open() has succeeded
   kReply,    ///< a valid reply came
   kHomed,    ///< a valid reply came, and the device knows its origin
-  kAsked,    ///< a tick asks for a force
+  kAsked,    ///< a tick requests a force
   kRamped,   ///< the ramp is over
-  kBroken,   ///< silence, a hang, or a value that is not finite: shorter than a fault
+  kBroken,   ///< silence, a hang, or a value that is not finite, but too short for a fault
   kFailed,   ///< a fault: see SafetyFault
   kClosing,  ///< close()
 };
 inline constexpr std::size_t kSafetyEvents = 8;
 
-/// Why a device is in kFault.
+/// The reason for kFault.
 enum class SafetyFault : std::uint8_t {
   kNone,
   kSilence,     ///< no valid reply for too long
-  kJump,        ///< readings that the hand cannot have made, one after the other
-  kNotFinite,   ///< readings or forces that are not numbers, one after the other
+  kJump,        ///< readings that the hand cannot have made, several in a row
+  kNotFinite,   ///< readings or forces that are not numbers, several in a row
   kSpeed,       ///< the hand was faster than is safe
   kHomingLost,  ///< the device forgot its origin
-  kHung,        ///< the loop stood still for too long
+  kHung,        ///< the loop hung for too long
   kDevice,      ///< the device reported a fault, a timeout, or that it is gone
 };
 
-/// What a loop counted since its device was opened.
+/// The counts of a loop since its device was opened.
 struct SafetyCounts {
   std::uint64_t jumps = 0;      ///< readings dropped
-  std::uint64_t zeroed = 0;     ///< forces that were not finite, or answered what was not
-  std::uint64_t shortened = 0;  ///< to the device's maximum
-  std::uint64_t warm = 0;       ///< held back because of the motors' heat
-  std::uint64_t hangs = 0;      ///< times the loop stood still for SafetyLimits::hang
-  double heat = 0.0;            ///< [-] the most; 1: as the continuous force makes forever
+  std::uint64_t zeroed = 0;     ///< forces that were not finite, or answered a reading that was not
+  std::uint64_t shortened = 0;  ///< forces shortened to the device's maximum
+  std::uint64_t warm = 0;       ///< forces reduced because of the motors' heat
+  std::uint64_t hangs = 0;      ///< times the loop hung for SafetyLimits::hang
+  double heat = 0.0;  ///< [-] the highest; 1: what the continuous force makes in the long run
 };
 
 struct SafetyRule {
@@ -91,7 +91,7 @@ inline constexpr std::array<SafetyRule, 25> kSafetyRules = {{
     {SafetyState::kFault, SafetyEvent::kFailed, SafetyState::kFault},
 }};
 
-/// A pure function.
+/// The state after an event. A pure function.
 [[nodiscard]] constexpr SafetyState after(SafetyState state, SafetyEvent event) noexcept {
   for (const SafetyRule& rule : kSafetyRules) {
     if (rule.from == state && rule.event == event) return rule.to;
@@ -106,7 +106,7 @@ inline constexpr std::array<SafetyRule, 25> kSafetyRules = {{
 
 [[nodiscard]] PALPATE_EXPORT std::string_view nameOf(SafetyState state) noexcept;
 [[nodiscard]] PALPATE_EXPORT std::string_view nameOf(SafetyEvent event) noexcept;
-/// What happened, for a message: "the hand was faster than is safe".
+/// A description for messages: "the hand was faster than is safe".
 [[nodiscard]] PALPATE_EXPORT std::string_view textOf(SafetyFault fault) noexcept;
 
 }  // namespace palpate::devices

@@ -21,24 +21,24 @@
 
 namespace palpate::devices {
 
-/// What the clutch makes of one reading.
+/// The clutch's result for one reading.
 struct Clutched {
   Vec3 position{0.0, 0.0, 0.0};  ///< [m, world] where the probe is
-  Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s, world] of the probe, as drag and damping are to feel it
+  Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s, world] of the probe, for drag and damping
   double share = 1.0;            ///< [-] of the force that the hand gets
 };
 
-/// A value type, real-time safe. The reading with which the clutch is engaged, and that with which
-/// it is let go, have the position, the velocity and the share of the force that they would have
-/// had without; what changes begins with the next one. From there on the force fades to nothing, or
-/// comes back, and the velocity goes from what it was to zero, or to the hand's, as 3 s^2 - 2 s^3
+/// A value type, real-time safe. The reading at which the clutch is engaged, and the one at which
+/// it is released, still have the position, velocity and share of the force that they would have
+/// without the clutch; changes begin with the next reading. From there on the force fades to zero,
+/// or returns, and the velocity goes from its value to zero, or to the hand's, as 3 s^2 - 2 s^3
 /// over kFade: a drag that stopped at once would be a kick.
 class Clutch {
  public:
   static constexpr double kFade = 0.05;  ///< [s]
 
-  /// `position` [m, world] and `velocity` [m/s, world] of the reading by the mapping alone; `dt`
-  /// [s] since the last reading, of which nothing below 0 counts.
+  /// `position` [m, world] and `velocity` [m/s, world] are those of the reading by the mapping
+  /// alone; `dt` [s] since the last reading, where a negative one counts as 0.
   [[nodiscard]] Clutched step(const Vec3& position, const Vec3& velocity, bool is_held,
                               double dt) noexcept {
     const double change = dt > 0.0 ? std::min(1.0, dt / kFade) : 0.0;
@@ -61,19 +61,19 @@ class Clutch {
   [[nodiscard]] static double smooth(double s) noexcept { return s * s * (3.0 - 2.0 * s); }
 
   bool is_held_ = false;
-  double fade_ = 1.0;          ///< [-] of the force, before it is smoothed
-  double turned_ = 1.0;        ///< [-] how far the velocity got since the clutch turned
-  Vec3 from_{0.0, 0.0, 0.0};   ///< [m/s, world] the velocity with which it turned
-  Vec3 shift_{0.0, 0.0, 0.0};  ///< [m, world] that all clutching so far has added
+  double fade_ = 1.0;    ///< [-] share of the force, before it is smoothed
+  double turned_ = 1.0;  ///< [-] progress of the velocity's change since the clutch was switched
+  Vec3 from_{0.0, 0.0, 0.0};   ///< [m/s, world] the velocity when it was switched
+  Vec3 shift_{0.0, 0.0, 0.0};  ///< [m, world] the sum of all displacements by clutching
   Vec3 held_{0.0, 0.0, 0.0};   ///< [m, world]
 };
 
 class Recorder;
 
-/// From `time` on the content of `region` feels as `change` says; what was changed of it before is
-/// taken back.
+/// From `time` on the content of `region` feels as `change` says; earlier changes of it are taken
+/// back.
 struct ContentEvent {
-  double time = 0.0;  ///< [s] of the device
+  double time = 0.0;  ///< [s] of the device's clock
   RegionId region = kOutside;
   ContentChange change = {};
 };
@@ -82,56 +82,56 @@ struct SessionSettings {
   RendererSettings renderer = {};
   VelocitySettings velocity = {};
   ServoSettings servo = {};
-  int clutch_button = 0;  ///< bit of DeviceState::buttons, 0 to 31, that holds the clutch, where
-                          ///< the scene allows one
-  std::vector<ContentEvent> changes = {};  ///< by time
-  /// Both are at the hand, in the device's frame. Not given: as the scene's `device` asks for, with
-  /// what it does not say from `loop` (hand_guards.h); off if it does not.
+  int clutch_button = 0;  ///< bit of DeviceState::buttons, 0 to 31, that engages the clutch, if
+                          /// < the scene allows one
+  std::vector<ContentEvent> changes = {};  ///< in the order of time
+  /// Both act at the hand, in the device's frame. No value: as the scene's `device` asks for,
+  /// completed with numbers from `loop` (hand_guards.h); off if the scene does not ask for it.
   std::optional<PassivitySettings> passivity = {};
   std::optional<CouplingSettings> coupling = {};
-  /// [ticks] Before each tick whose number is a multiple of this, but 0, Session::checkpoint() is
-  /// taken; 0: never. Two sessions feel the same bit for bit only if theirs is the same: see
-  /// HapticRenderer::checkpoint().
+  /// [ticks] Session::checkpoint() is taken before each tick whose number is a multiple of this,
+  /// except tick 0; 0: never. Two sessions feel the same bit for bit only if both have the same
+  /// value here: see HapticRenderer::checkpoint().
   std::uint64_t checkpoint_every = 0;
-  /// The device and the hand that the scene is for: Session::overBudget() then warns. Its period
-  /// and its velocity are the session's own, whatever is here.
+  /// The device and the hand for which the scene is meant: Session::overBudget() then warns. Its
+  /// period and velocity are replaced by the session's own.
   std::optional<LoopModel> loop = {};
 };
 
-/// All that one tick of a session leaves for the next. A value of fixed size, about 30 kB, for the
-/// build that made it: stored, it means nothing to another.
+/// All that one tick of a session leaves for the next. A value of fixed size, about 30 kB, valid
+/// only for the build that made it.
 struct SessionState {
   RendererState renderer;
   VelocityTracker tracker;
   Clutch clutch;
   std::optional<VirtualCoupling> coupling;
   std::optional<PassivityController> passivity;
-  double source_work = 0.0;       ///< [J] of the renderer, up to the last tick
-  std::uint64_t ticks = 0;        ///< that were made
-  std::uint64_t next_change = 0;  ///< of SessionSettings::changes, the first that has not come yet
+  double source_work = 0.0;       ///< [J] sourceWork() of the renderer, up to the last tick
+  std::uint64_t ticks = 0;        ///< number that were made
+  std::uint64_t next_change = 0;  ///< index of the first of SessionSettings::changes not yet due
   double last_time = 0.0;         ///< [s]
   bool has_begun = false;
 };
 static_assert(std::is_trivially_copyable_v<SessionState>);
 
-/// What one tick took in and what came out.
+/// The inputs and outputs of one tick.
 struct SessionTick {
   std::uint64_t number = 0;  ///< from 0
   DeviceState reading;       ///< as it came
-  /// [s] since the last reading: the servo's period at the first, 0 where the time did not rise or
+  /// [s] since the last reading: the servo's period at the first, 0 if the time did not increase or
   /// is not a number
   double dt = 0.0;
-  HipState hip;                   ///< [world] what the renderer got; with a coupling the tool
-  TickResult result;              ///< [world] what it answered
-  Vec3 unlimited{0.0, 0.0, 0.0};  ///< [N, world] its force before the limits
+  HipState hip;                   ///< [world] the renderer's input; with a coupling, the tool
+  TickResult result;              ///< [world] the renderer's result
+  Vec3 unlimited{0.0, 0.0, 0.0};  ///< [N, world] the renderer's force before the limits
   Vec3 force{0.0, 0.0, 0.0};      ///< [N] in the device's frame: for the device
-  Vec3 added{0.0, 0.0, 0.0};      ///< [N] of it by the passivity controller
+  Vec3 added{0.0, 0.0, 0.0};      ///< [N] the passivity controller's share of it
   std::int64_t renderer_ns = 0;   ///< [ns] of the renderer's update alone
-  bool is_held = false;           ///< the clutch is
-  bool is_checkpoint = false;     ///< Session::checkpoint() is what was before this tick
+  bool is_held = false;           ///< the clutch is held
+  bool is_checkpoint = false;     ///< Session::checkpoint() is the state before this tick
 };
 
-/// What another thread may see of a session while it runs.
+/// The part of a session that another thread may see while it runs.
 struct SessionView {
   std::uint64_t number = 0;    ///< of the tick
   double time = 0.0;           ///< [s] of the device
@@ -140,21 +140,21 @@ struct SessionView {
   Vec3 force{0.0, 0.0, 0.0};   ///< [N, world] after the limits
   RegionId region = kOutside;  ///< of the proxy
   std::uint32_t buttons = 0;
-  bool is_held = false;  ///< the clutch is
+  bool is_held = false;  ///< the clutch is held
 };
 
-/// Owns the renderer, the velocity tracker, the clutch, the guards of stability and all that they
-/// keep between ticks; the scene is shared and const. Construction may throw and allocate; step()
-/// never allocates, locks, throws or blocks. One thread at a time.
+/// Owns the renderer, the velocity tracker, the clutch, the stability guards and everything that
+/// they keep between ticks; the scene is shared and const. Construction may throw and allocate;
+/// step() never allocates, locks, throws or blocks. One thread at a time.
 class PALPATE_EXPORT Session {
  public:
   /// Called after each tick of run(), in the servo thread: it must not allocate, lock, throw or
   /// block.
   using Listener = std::function<void(const SessionTick&, const HapticRenderer&)>;
 
-  /// @throws Error (kInput) as makeRenderer(); (kUsage) for velocity settings, a servo loop, limits
-  /// of the force, a button, changes, passivity or a coupling that cannot be, and as sceneBudget()
-  /// for a loop.
+  /// @throws Error (kInput) as makeRenderer(); (kUsage) for invalid velocity settings, servo
+  /// settings, limits of the force, clutch button, changes, passivity or coupling; and as
+  /// sceneBudget() for `loop`.
   explicit Session(ScenePtr scene, SessionSettings settings = {});
   ~Session();
   Session(Session&& other) noexcept;
@@ -170,15 +170,17 @@ class PALPATE_EXPORT Session {
   [[nodiscard]] ServoReport run(Device& device, const std::atomic<bool>& stop,
                                 const Listener& listener = {});
 
-  /// The same, each tick into `recorder`, once its force was written. @throws Error as runServo().
+  /// The same; each tick also goes into `recorder`, after its force was written. @throws Error as
+  /// runServo().
   [[nodiscard]] ServoReport run(Device& device, const std::atomic<bool>& stop, Recorder& recorder);
 
-  /// What was before the last tick whose SessionTick::is_checkpoint is set. A session of the same
-  /// scene and settings that resume()s from it feels bit for bit what this one felt from there.
+  /// The state before the last tick whose SessionTick::is_checkpoint is set. A session with the
+  /// same scene and settings that resume()s from it feels bit for bit what this one felt from there
+  /// on.
   [[nodiscard]] const SessionState& checkpoint() const noexcept { return checkpoint_; }
-  /// Goes on from a checkpoint of a session with the same scene and settings; contents that changed
-  /// before it are changed. False, and nothing is done, if this session has made a tick, or if it
-  /// cannot be a state of it.
+  /// Goes on from a checkpoint of a session with the same scene and settings; contents that had
+  /// changed before it are changed again. Returns false, and does nothing, if this session has
+  /// already made a tick, or if `state` cannot be one of its states.
   [[nodiscard]] bool resume(const SessionState& state) noexcept;
   /// The number of the next tick.
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
@@ -188,20 +190,19 @@ class PALPATE_EXPORT Session {
     return passivity_ ? &passivity_->observer() : nullptr;
   }
 
-  /// From any thread: the hand goes on in another scene, with a renderer that is made here and now.
-  /// While the servo thread runs, what was felt goes with it by names (carryState()), up to the
-  /// last region that the probe came into. From one tick to the next the scene is another; the
-  /// force begins at zero and comes back within kSwapFade. A scene that was offered and not yet
-  /// taken is forgotten. Changes of contents asked for by time do not hold in it, and a record does
-  /// not know of it. Passivity and the coupling go on as they were asked for at first. Waits for
-  /// the servo thread, a second at most. One thread at a time. @throws Error (kInput) as
-  /// makeRenderer().
+  /// From any thread: the hand goes on in another scene, with a renderer that is made here in this
+  /// call. While the servo thread runs, the present state is carried over by names (carryState()),
+  /// up to the last region that the probe entered. The scene changes between two ticks; the force
+  /// begins at zero and comes back within kSwapFade. A scene that was offered earlier and not yet
+  /// taken is dropped. Timed changes of contents do not apply in the new scene, and a record does
+  /// not contain the swap. Passivity and coupling keep their first settings. Waits for the servo
+  /// thread, at most a second. One thread at a time. @throws Error (kInput) as makeRenderer().
   void offer(ScenePtr scene, const RendererSettings& settings);
-  /// From any thread: the last tick. None before the first.
+  /// From any thread: the last tick. No value before the first.
   [[nodiscard]] std::optional<SessionView> view() const noexcept;
   static constexpr double kSwapFade = 0.1;  ///< [s]
-  /// A warning of set-up: what of the scene is stiffer than SessionSettings::loop can hold. Empty
-  /// without a loop. What is felt does not change for it.
+  /// A warning at set-up: the items of the scene that are stiffer than SessionSettings::loop can
+  /// hold. Empty without `loop`. It does not change what is felt.
   [[nodiscard]] const std::vector<BudgetItem>& overBudget() const noexcept { return over_budget_; }
 
   [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
@@ -211,7 +212,7 @@ class PALPATE_EXPORT Session {
  private:
   struct Shared;
 
-  /// Takes the scene that was offered, if one was.
+  /// Switches to the scene that was offered, if there is one.
   void swapScene() noexcept;
 
   std::unique_ptr<Shared> shared_;
@@ -222,23 +223,23 @@ class PALPATE_EXPORT Session {
   Clutch clutch_;
   std::optional<VirtualCoupling> coupling_;
   std::optional<PassivityController> passivity_;
-  double source_work_ = 0.0;  ///< [J] of the renderer, up to the last tick
+  double source_work_ = 0.0;  ///< [J] sourceWork() of the renderer, up to the last tick
 
   struct Felt {
     Vec3 force{0.0, 0.0, 0.0};  ///< [N, world]
     double stiffness = 0.0;     ///< [N/m] of the wall, at the hand; 0: not known
   };
-  /// The renderer's answer for the probe at `probe`, through the coupling if there is one, and
+  /// The renderer's force for the probe at `probe`, through the coupling if there is one, and
   /// before the clutch.
   [[nodiscard]] Felt feel(const Clutched& probe, DeviceFrame frame, SessionTick& tick) noexcept;
-  /// Changes the contents whose time has come.
+  /// Applies the changes of contents that are due.
   void changeUntil(double time) noexcept;
   void saveCheckpoint() noexcept;
 
   std::uint64_t ticks_ = 0;
   std::size_t next_change_ = 0;
   bool has_begun_ = false;
-  double swap_fade_ = 1.0;  ///< [-] of the force since the scene was swapped
+  double swap_fade_ = 1.0;  ///< [-] share of the force since the scene was swapped
   double last_time_ = 0.0;
   SessionState checkpoint_;
   std::vector<BudgetItem> over_budget_;

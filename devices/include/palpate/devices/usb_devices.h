@@ -14,12 +14,12 @@ struct UsbDevice {
   std::uint16_t product = 0;
   int bus = 0;
   int address = 0;
-  std::string serial;          ///< empty: none, or no access
+  std::string serial;          ///< empty: it has none, or there is no access
   bool is_accessible = false;  ///< this user may open it
 };
 
-/// Every USB device there is; none where the build has no libusb. @throws Error (kDevice) if libusb
-/// does not start.
+/// All USB devices; empty if the build has no libusb. @throws Error (kDevice) if libusb does not
+/// start.
 [[nodiscard]] PALPATE_EXPORT std::vector<UsbDevice> listUsbDevices();
 
 [[nodiscard]] PALPATE_EXPORT bool hasLibusb() noexcept;

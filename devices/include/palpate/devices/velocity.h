@@ -1,5 +1,5 @@
 #pragma once
-/// The hand's velocity out of its positions, by a named estimator whose delay is known.
+/// Estimates the hand's velocity from its positions, by a named estimator whose delay is known.
 
 #include <array>
 #include <cstddef>
@@ -11,44 +11,44 @@
 namespace palpate::devices {
 
 enum class VelocityEstimator : std::uint8_t {
-  /// Over the last interval. Its delay is half of that; an encoder step of q [m] makes it noisy by
-  /// q / T.
+  /// The mean over the last interval. Its delay is half of that; an encoder step of q [m] adds
+  /// noise of q / T.
   kBackwardDifference,
-  /// The slope of the least-squares line through the readings of the last `window`. Of readings at
-  /// even times its delay is
-  /// half the window: it is exact for a motion that accelerates evenly, half a window ago.
+  /// The slope of the least-squares line through the readings of the last `window`. For equally
+  /// spaced readings its delay is half the window: for a motion with constant acceleration it is
+  /// exactly the velocity half a window ago.
   kLeastSquares,
   /// First-order adaptive windowing (Janabi-Sharifi, Hayward and Chen, IEEE Transactions on Control
-  /// Systems Technology 8(6), 2000), of each axis by itself: the
-  /// slope over a window whose chord no reading in it leaves by more than `noise`. The window grows
-  /// reading by reading and stops
-  /// before the first chord that some reading leaves, as the paper's does: a longer one may keep
-  /// again. Long where the hand is
-  /// slow, short where it turns; its delay is half of what it took.
+  /// Systems Technology 8(6), 2000), for each axis separately: the slope over a window in which no
+  /// reading is farther than `noise` from the window's chord. As in the paper, the window grows
+  /// reading by reading and stops before the first chord from which some reading is farther,
+  /// although an even longer window might be valid again. The window is long where the hand is
+  /// slow, and short where it turns; the delay is half of the window.
   kAdaptiveWindow,
 };
 
 struct VelocitySettings {
   VelocityEstimator estimator = VelocityEstimator::kBackwardDifference;
-  double window = 0.01;  ///< [s] kLeastSquares: how far back; kAdaptiveWindow: at most
-  /// [m] kAdaptiveWindow: by how much readings of an even motion may leave their chord; 0 or more.
-  /// Of an encoder its whole step: each end of the chord is off by up to half of one, and so is
-  /// what lies between.
+  double window = 0.01;  ///< [s] length of the window; for kAdaptiveWindow its largest length
+  /// [m] kAdaptiveWindow: largest distance of readings of a uniform motion from their chord; 0 or
+  /// more. For an encoder it is a whole step: each end of the chord is wrong by up to half a step,
+  /// and so are the readings in between.
   double noise = 0.0;
 };
 
 struct Velocity {
   Vec3 value{0.0, 0.0, 0.0};  ///< [m/s]
-  Vec3 delay{0.0, 0.0, 0.0};  ///< [s] it is the velocity so long ago, by axis
+  Vec3 delay{0.0, 0.0, 0.0};  ///< [s] by axis: it is the velocity at this time before the reading
 };
 
-/// Readings go in, a velocity comes out. A value type; add() never allocates, locks or throws.
+/// Turns readings into a velocity. A value type; add() never allocates, locks or throws.
 class PALPATE_EXPORT VelocityTracker {
  public:
-  /// Readings that are kept: a window that holds more of them is that much shorter.
+  /// The most readings that are kept: a window that would contain more of them is shortened.
   static constexpr std::size_t kCapacity = 64;
-  /// [s] No hand's way is known across a longer gap: the reading behind it is a first one. A time
-  /// stamp that leaps ahead by more is broken, and so no velocity comes of it.
+  /// [s] The hand's motion during a longer gap is not known, so the reading after it counts as a
+  /// first one. A time stamp that leaps ahead by more than this is broken, and this also prevents a
+  /// velocity from being computed from it.
   static constexpr double kLongestGap = 10.0;
 
   /// @throws Error (kUsage, velocity.window, velocity.noise, velocity.estimator) for a window that
@@ -56,14 +56,15 @@ class PALPATE_EXPORT VelocityTracker {
   /// estimator.
   explicit VelocityTracker(const VelocitySettings& settings = {});
 
-  /// The velocity at the reading at `position` [m] and `time` [s]. Zero at the first. A time that
-  /// does not rise repeats the last answer, and the reading is left out; if the time after it rises
-  /// again, but not above the last that was taken, the clock was set back, and that reading is a
-  /// first one. A position or a time that is not finite gives NaN, and the next one is a first one.
+  /// The velocity at the reading at `position` [m] and `time` [s]; zero at the first. If the time
+  /// does not increase, the last result is repeated and the reading is ignored. If the time of the
+  /// next reading increases again, but not above that of the last reading used, the clock was set
+  /// back, and that reading counts as a first one. A position or a time that is not finite gives
+  /// NaN, and the next reading counts as a first one.
   [[nodiscard]] Velocity add(double time, const Vec3& position) noexcept;
-  /// The next reading is a first one.
+  /// Makes the next reading a first one.
   void reset() noexcept { count_ = 0; }
-  /// Of a value out of a file: what it counts is there.
+  /// For a value read from a file: whether its counts are within its arrays.
   [[nodiscard]] bool isSound() const noexcept { return newest_ < kCapacity && count_ <= kCapacity; }
 
  private:
@@ -71,11 +72,12 @@ class PALPATE_EXPORT VelocityTracker {
     double time = 0.0;
     Vec3 position{0.0};
   };
-  /// The `back`th reading before the newest.
+  /// The reading `back` places before the newest.
   [[nodiscard]] const Reading& at(std::size_t back) const noexcept {
     return readings_[(newest_ + kCapacity - back) % kCapacity];
   }
-  /// How many readings before the newest lie within the window: at least one, if there is one.
+  /// Number of readings before the newest that lie within the window: at least one, if there is
+  /// one.
   [[nodiscard]] std::size_t reach() const noexcept;
   [[nodiscard]] Velocity leastSquares(std::size_t reach) const noexcept;
   [[nodiscard]] Velocity adaptive(std::size_t reach) const noexcept;
@@ -85,7 +87,7 @@ class PALPATE_EXPORT VelocityTracker {
   std::array<Reading, kCapacity> readings_{};
   std::size_t newest_ = 0;
   std::size_t count_ = 0;
-  double latest_ = 0.0;  ///< [s] the time of the last reading, taken or not
+  double latest_ = 0.0;  ///< [s] the time of the last reading, used or not
   Velocity last_;
 };
 

@@ -1,17 +1,18 @@
 #pragma once
-/// ReadingWatch: how old the last reading is, and what of a force may be written because of that.
+/// ReadingWatch: the age of the last reading, and the share of a force that may be written because
+/// of it.
 
 #include <cstdint>
 
 namespace palpate::devices {
 
-/// Times are in [ns] of one clock. A value; real-time safe.
+/// Times are in [ns] of one clock. A value type; real-time safe.
 class ReadingWatch {
  public:
   ReadingWatch(std::int64_t longest, std::int64_t recovery) noexcept
       : longest_(longest), recovery_(recovery) {}
 
-  /// A turn of the loop at `now`, with a new reading or without.
+  /// A turn of the loop at time `now`, with or without a new reading.
   void turn(std::int64_t now, bool is_new) noexcept {
     if (is_new) {
       if (has_expired_ && !is_recovering_) {
@@ -28,15 +29,15 @@ class ReadingWatch {
     if (is_recovering_ && now_ - recovered_from_ >= recovery_) is_recovering_ = false;
   }
 
-  /// The share begins again at 0, at the time of the last turn.
+  /// Lets the share begin again at 0, at the time of the last turn.
   void restart() noexcept {
     is_recovering_ = recovery_ > 0;
     recovered_from_ = now_;
   }
 
-  /// Nothing new for too long: zero is to be written.
+  /// True if no new reading came for too long: zero force must be written.
   [[nodiscard]] bool hasExpired() const noexcept { return has_expired_; }
-  /// From 0 when readings came again to 1.
+  /// Grows from 0, when readings came again, to 1.
   [[nodiscard]] double share() const noexcept {
     if (!is_recovering_) return 1.0;
     return static_cast<double>(now_ - recovered_from_) / static_cast<double>(recovery_);

@@ -1,5 +1,5 @@
 #pragma once
-/// Safety: which readings are believed, and how much of a force reaches the hand.
+/// Safety: decides which readings are believed, and how much of a force reaches the hand.
 
 #include <cstdint>
 
@@ -10,47 +10,49 @@
 
 namespace palpate::devices {
 
-/// What one turn of the loop knows of the device's answer.
+/// The judgment of the device's answer in one turn of the loop.
 enum class ReadingVerdict : std::uint8_t {
-  kNone,     ///< nothing new, or not to be used
+  kNone,     ///< nothing new, or unusable
   kSound,    ///< use it
-  kDropped,  ///< a jump: as if nothing had come
+  kDropped,  ///< a jump: treated as no answer
 };
 
-/// What became of a force.
+/// The force after the safety rules.
 struct SafeForce {
   Vec3 force{0.0, 0.0, 0.0};  ///< [N] to be written
   double share = 1.0;         ///< [-] of the ramp
   bool is_zeroed = false;     ///< a force or a reading was not finite
-  bool is_shortened = false;  ///< to the device's maximum
+  bool is_shortened = false;  ///< shortened to the device's maximum
 };
 
-/// A value without a clock of its own; real-time safe. For each turn of a loop: read(), ask() and
-/// wrote(). Times are in [ns] of one clock and never go back; one that does counts as no time.
+/// A value type without a clock of its own; real-time safe. In each turn of a loop call read(),
+/// ask() and wrote(). Times are in [ns] of one clock and never go back; if one does, it counts as
+/// no time.
 class Safety {
  public:
-  /// `max_force` [N] as DeviceInfo has it. `watchdog` [ns]: silence after which the force is zero,
-  /// if the limits ask for no shorter one; at least two `turn`s [ns] of the loop pass before.
-  /// `recovery` [ns]: the ramp after that, if the limits ask for no longer one.
+  /// `max_force` [N] as in DeviceInfo. `watchdog` [ns]: silence after which the force is zero,
+  /// unless the limits ask for a shorter one; at least two `turn`s [ns] of the loop must pass
+  /// before. `recovery` [ns]: the ramp after that, unless the limits ask for a longer one.
   Safety(const SafetyLimits& limits, double max_force, std::int64_t watchdog, std::int64_t recovery,
          std::int64_t turn) noexcept;
 
   /// The device was opened at `now`.
   void open(std::int64_t now) noexcept;
   void close() noexcept;
-  /// The loop stood still for `duration`, and the force was cut meanwhile.
+  /// The loop hung for `duration`, and the force was cut meanwhile.
   void hang(std::int64_t duration) noexcept;
 
   [[nodiscard]] ReadingVerdict read(std::int64_t now, DeviceStatus status,
                                     const DeviceState& fresh) noexcept;
-  /// True if a force may be asked for: the last sound reading is young enough and homed.
+  /// True if a force may be computed: the last sound reading is recent enough and homed.
   [[nodiscard]] bool ticks() const noexcept;
-  /// No reading came for too long.
+  /// True if no reading came for too long.
   [[nodiscard]] bool isSilent() const noexcept { return has_reading_ && watch_.hasExpired(); }
-  /// The force that may be written for `wanted` [N]. `answers` is the reading that it answers.
+  /// The force that may be written when `wanted` [N] is computed. `answers` is the reading that it
+  /// answers.
   [[nodiscard]] SafeForce ask(const Vec3& wanted, const DeviceState& answers) noexcept;
 
-  /// What the device answered to the force.
+  /// Takes the device's answer to the force.
   void wrote(DeviceStatus status) noexcept {
     if (status >= DeviceStatus::kTimeout) fail(SafetyFault::kDevice);
   }
@@ -86,9 +88,9 @@ class Safety {
   Vec3 speed_{0.0, 0.0, 0.0};     ///< [m/s] filtered
   int jump_strikes_ = 0;
   int finite_strikes_ = 0;
-  bool needs_ramp_ = false;  ///< before the next force
+  bool needs_ramp_ = false;  ///< a ramp begins with the next force
   double heat_ = 0.0;
-  double load_ = 0.0;  ///< [-] of the last force: its square by that of the continuous one
+  double load_ = 0.0;  ///< [-] square of the last force over that of the continuous force
 };
 
 }  // namespace palpate::devices

@@ -1,5 +1,6 @@
 #pragma once
-/// SceneSwap: hands a scene and its renderer to the servo thread, which neither frees nor waits.
+/// SceneSwap: hands a scene and its renderer to the servo thread, which neither frees memory nor
+/// waits.
 
 #include <atomic>
 #include <cstdint>
@@ -11,17 +12,18 @@
 
 namespace palpate::devices {
 
-/// A scene and its renderer on their way, and what their offer rests on.
+/// A scene and its renderer on their way to the servo thread, and the state that the offer is based
+/// on.
 struct OfferedScene {
   ScenePtr scene;
   std::unique_ptr<HapticRenderer> renderer;
-  std::uint64_t number = 0;  ///< of the scene, from 1
-  /// How many regions the probe had come into when the state was taken that the renderer has; none:
-  /// it has no state of before.
+  std::uint64_t number = 0;  ///< of the scene, counted from 1
+  /// The number of regions that the probe had entered when the renderer's state was taken; no value
+  /// if it has no earlier state.
   std::optional<std::uint64_t> entries = {};
 };
 
-/// One thread offers, one takes.
+/// One thread offers, one thread takes.
 class SceneSwap {
  public:
   SceneSwap() = default;
@@ -32,8 +34,8 @@ class SceneSwap {
   SceneSwap(const SceneSwap&) = delete;
   SceneSwap& operator=(const SceneSwap&) = delete;
 
-  /// May allocate and free; frees what the servo thread has put away. The number of the scene that
-  /// was offered before and will never be taken, if there is one.
+  /// May allocate and free; frees what the servo thread has put away. Returns the number of the
+  /// scene that was offered before and will never be taken, if there is one.
   std::optional<std::uint64_t> offer(OfferedScene offered) {
     auto made = std::make_unique<OfferedScene>(std::move(offered));
     delete retired_.exchange(nullptr, std::memory_order_acq_rel);
@@ -43,12 +45,12 @@ class SceneSwap {
   }
 
   enum class Taken { kNothing, kOld, kNew };
-  /// Real-time safe. kNew: the offered ones took the place of `scene` and `renderer`, which the
-  /// other thread frees later. kOld: they rest on a state from before the last of `entries`
-  /// regions, and were put away.
+  /// Real-time safe. kNew: the offered scene and renderer replaced `scene` and `renderer`, which
+  /// the other thread frees later. kOld: the offer is based on a state from before the last of
+  /// `entries` regions, and was put away.
   [[nodiscard]] Taken take(ScenePtr& scene, std::unique_ptr<HapticRenderer>& renderer,
                            std::uint64_t entries, std::uint64_t& number) noexcept {
-    // A scene is taken only when there is room to put the old one away.
+    // A scene is taken only if there is room to put the old one away.
     if (offered_.load(std::memory_order_relaxed) == nullptr ||
         retired_.load(std::memory_order_acquire) != nullptr) {
       return Taken::kNothing;

@@ -1,5 +1,6 @@
 #pragma once
-/// SeqLock: one thread says what is, any number look, and nobody waits for anybody.
+/// SeqLock: one thread stores a value, any number of threads load it, and no thread waits for
+/// another.
 
 #include <array>
 #include <atomic>
@@ -23,12 +24,12 @@ class SeqLock {
     std::memcpy(words.data(), &value, sizeof(Value));
     const std::uint64_t turn = turn_.load(std::memory_order_relaxed);
     turn_.store(turn + 1, std::memory_order_relaxed);
-    // Who sees a new word sees the odd turn as well.
+    // A reader that sees a new word also sees the odd turn.
     for (std::size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
     turn_.store(turn + 2, std::memory_order_release);
   }
 
-  /// None before the first store(), and if the value changed at each of some attempts.
+  /// No value before the first store(), or if the value changed during each of several attempts.
   [[nodiscard]] std::optional<Value> load() const noexcept {
     constexpr int kAttempts = 100;
     for (int i = 0; i < kAttempts; ++i) {

@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// Whose fault it was. The command maps these to its exit codes.
+/// Who or what is at fault. The command maps these to its exit codes.
 enum class ErrorKind {
   kUsage,      ///< the call or the command line is wrong (exit 2)
   kInput,      ///< a file or value that was given is bad (exit 3)
@@ -18,7 +18,7 @@ enum class ErrorKind {
   kCancelled,  ///< the user asked to stop (exit 130)
 };
 
-/// One problem, told so that the reader can mend it: where, what, and the remedy.
+/// One problem, described so that the reader can mend it: where, what, and the remedy.
 struct Problem {
   std::string code;          ///< stable, for scripts: "scene.unknown_key", "mesh.open", ...
   std::string message;       ///< what is wrong, with the offending value
@@ -46,7 +46,7 @@ class PALPATE_EXPORT Error : public std::runtime_error {
   Problem problem_;
 };
 
-/// Shorthand for what happens most: an input that is bad.
+/// Shorthand for the most frequent error: bad input.
 [[nodiscard]] inline Error inputError(std::string code, std::string message, std::string hint = {},
                                       std::string file = {}) {
   return Error(ErrorKind::kInput,

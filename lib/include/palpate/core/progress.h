@@ -1,5 +1,5 @@
 #pragma once
-/// How long work reports itself and is stopped.
+/// How long work reports its progress and is stopped.
 
 #include <functional>
 #include <string_view>
@@ -13,7 +13,7 @@ namespace palpate {
 /// of kind kCancelled and leaves nothing behind. An empty function means: no report, no stop.
 using Progress = std::function<bool(std::string_view what, double fraction)>;
 
-/// Reports, and throws kCancelled if told to stop.
+/// Reports progress; throws kCancelled if `progress` returns false.
 inline void report(const Progress& progress, std::string_view what, double fraction) {
   if (progress && !progress(what, fraction)) {
     throw Error(ErrorKind::kCancelled, {"cancelled", "stopped at your request"});

@@ -12,10 +12,10 @@
 namespace palpate {
 
 /// One evaluation of a scalar field. Value and gradient come together because contact always needs
-/// both, and because a narrow-band grid reads the same voxels for either.
+/// both, and because a narrow-band grid reads the same voxels for both.
 struct FieldSample {
   double value = 0.0;            ///< [m] negative inside, zero on the surface, positive outside
-  Vec3 gradient{0.0, 0.0, 0.0};  ///< [-] of `value` by position, in the frame of the query
+  Vec3 gradient{0.0, 0.0, 0.0};  ///< [-] d value / d position, in the frame of the query
   bool in_band = true;           ///< false: |value| is only a lower bound of the distance with the
                                  ///< right sign, and the gradient is zero (grids, far away)
 };
@@ -28,8 +28,8 @@ struct FieldJet {
   bool in_band = true;           ///< as in FieldSample; outside the band the Hessian is zero too
 };
 
-/// Points that are asked for their values together, so that the work on them can share
-/// instructions: a cube of 4^3 voxels, say. What is not needed may be any finite point.
+/// Points whose values are asked for together, so that the work on them can share instructions: a
+/// cube of 4^3 voxels, for example. Unused entries may be any finite point.
 struct PointBatch {
   static constexpr std::size_t kCount = 64;
   std::array<double, kCount> x, y, z;  ///< [m] the field's frame
@@ -48,17 +48,17 @@ enum class Metric {
 class Field;
 using FieldPtr = std::shared_ptr<const Field>;  ///< shared and unchanging, never null in a scene
 
-/// How a field is put together, so that CSG can be taken apart into its smooth leaves. The operands
-/// are a view into the field that was asked, and live as long as it.
+/// How a field is put together, so that CSG can be taken apart into its smooth leaves. The span
+/// `operands` points into the field that was asked and is valid as long as that field lives.
 struct FieldStructure {
   enum class Kind {
-    kLeaf,          ///< smooth, or to be taken as it is
+    kLeaf,          ///< smooth, or not to be taken apart
     kUnion,         ///< min of the operands
     kIntersection,  ///< max of the operands
     kComplement,    ///< minus the operand
     kTransform,     ///< the operand, moved
-    kFaces,  ///< inside where inside all operands, which are smooth; the value itself is better
-             ///< than their max (a box: its exact distance, and six half-spaces)
+    kFaces,  ///< inside where inside all operands, which are smooth; the field's own value is
+             ///< better than their max (a box: its exact distance, and six half-spaces)
   };
   Kind kind = Kind::kLeaf;
   std::span<const FieldPtr> operands{};  ///< none for a leaf; one for complement and transform
@@ -78,14 +78,14 @@ class PALPATE_EXPORT Field {
   /// NaN for finite `p`. For a non-finite `p` the value is NaN or infinite and must not be used.
   [[nodiscard]] virtual FieldSample sample(const Vec3& p) const noexcept = 0;
 
-  /// Value alone [m]. Override where it is cheaper than sample().
+  /// Value alone [m]. Override it if that is cheaper than sample().
   [[nodiscard]] virtual double value(const Vec3& p) const noexcept { return sample(p).value; }
 
-  /// value() of each point, bit for bit. Override where many at once are cheaper than one by one.
+  /// value() of each point, bit for bit. Override it if many at once are cheaper than one by one.
   virtual void values(const PointBatch& points, ValueBatch& out) const noexcept;
 
-  /// Value, gradient and Hessian. The base version differences the gradient over a step that is a
-  /// small share of featureSize().
+  /// Value, gradient and Hessian. The base version takes finite differences of the gradient over a
+  /// step that is a small share of featureSize().
   [[nodiscard]] virtual FieldJet jet(const Vec3& p) const noexcept;
 
   /// A box that holds every point with value <= 0 [m]; may be infinite.
@@ -99,12 +99,12 @@ class PALPATE_EXPORT Field {
   /// Where lipschitz() holds [m]; everything unless a field says otherwise.
   [[nodiscard]] virtual Box3 lipschitzDomain() const noexcept { return Box3::everything(); }
 
-  /// Length [m] to which tolerances are relative: the smallest radius of curvature or thickness of
+  /// Length [m] that tolerances are relative to: the smallest radius of curvature or thickness of
   /// the shape, or the voxel size of a grid. Positive and finite.
   [[nodiscard]] virtual double featureSize() const noexcept = 0;
 
-  /// True if the surface is one plane and S the distance to it, everywhere: it has no size of its
-  /// own, and featureSize() stands in for one.
+  /// True if the surface is one plane and S the distance to it, everywhere. A plane has no natural
+  /// size, so featureSize() then returns a stand-in.
   [[nodiscard]] virtual bool isFlat() const noexcept { return false; }
 
   /// The default is a leaf.

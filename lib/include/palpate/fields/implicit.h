@@ -34,12 +34,13 @@ struct QuadricCoefficients {
                                               const QuadricCoefficients& coefficients,
                                               double reach = 0.5);
 
-/// One half of space, as parted by the gyroid sin X cos Y + sin Y cos Z + sin Z cos X = 0 with
-/// X = 2 pi x / period. Endless: intersect it with a solid. lipschitz() is 1, everywhere.
+/// One of the two halves into which the gyroid sin X cos Y + sin Y cos Z + sin Z cos X = 0 divides
+/// space, X = 2 pi x / period. It has no end: intersect it with a solid. lipschitz() is 1,
+/// everywhere.
 [[nodiscard]] PALPATE_EXPORT FieldPtr gyroid(const Vec3& center, double period);
 
-/// A wall along the gyroid, `thickness` across to within an eighth; at most a fifth of `period`.
-/// The intersection of two smooth fields, its two faces.
+/// A wall along the gyroid. It is `thickness` thick to within an eighth, and at most a fifth of
+/// `period`. It is the intersection of two smooth fields, one for each face.
 [[nodiscard]] PALPATE_EXPORT FieldPtr gyroidWall(const Vec3& center, double period,
                                                  double thickness);
 
@@ -52,27 +53,27 @@ enum class FallOff {
 
 struct Metaball {
   Vec3 center{0.0, 0.0, 0.0};  ///< [m]
-  double radius = 0.0;         ///< [m] of influence, not of a surface
+  double radius = 0.0;         ///< [-] negative: makes a dent
   double strength = 1.0;       ///< [-] negative: a dent
 };
 
-/// The points where the sum of strength * fall-off is above `iso` (0 < iso). Out of bounds() the
-/// field rises by up to the distance d to that box, d - w atan(d / w) where w is half the smallest
+/// The points where the sum of strength * fall-off is above `iso` (0 < iso). Outside bounds(), at
+/// distance d from that box, the field is raised by d - w atan(d / w), w being half the smallest
 /// radius, so that it has a gradient everywhere, and its first two derivatives are continuous where
-/// the surface touches the box. The Lipschitz bound holds everywhere. Of many balls only those that
-/// reach the point are asked; a Gaussian ends where all of them together are below rounding. Throws
-/// if the balls cannot reach `iso`.
+/// the surface touches the box. The Lipschitz bound holds everywhere. Only the balls that reach a
+/// point are evaluated there; a Gaussian is cut off where all of them together are below rounding.
+/// Throws if the balls cannot reach `iso`.
 [[nodiscard]] PALPATE_EXPORT FieldPtr metaballs(std::vector<Metaball> balls, FallOff fall_off,
                                                 double iso);
 
-/// A function of one's own; its gradient and Hessian are taken numerically.
+/// A function supplied by the caller; its gradient and Hessian are taken numerically.
 struct UserFunction {
   /// Negative inside. Must not throw (that ends the program) and, in the loop, not allocate or
   /// block.
   std::function<double(const Vec3&)> value;
-  Box3 bounds = Box3::everything();            ///< [m] holds every point with value <= 0
-  double feature_size = 0.0;                   ///< [m] steps of differences are small shares of it
-  double lipschitz = 1.0;                      ///< see Field::lipschitz()
+  Box3 bounds = Box3::everything();  ///< [m] holds every point with value <= 0
+  double feature_size = 0.0;         ///< [m] steps of finite differences are small shares of it
+  double lipschitz = 1.0;            ///< see Field::lipschitz()
   Box3 lipschitz_domain = Box3::everything();  ///< [m]
   Metric metric = Metric::kImplicit;
 };

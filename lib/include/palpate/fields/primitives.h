@@ -16,7 +16,7 @@ namespace palpate {
 /// Axis-aligned box with full edge lengths `size`. Exact, inside and out.
 [[nodiscard]] PALPATE_EXPORT FieldPtr box(const Vec3& center, const Vec3& size);
 
-/// Solid cylinder: `center` is the middle of its axis, `height` its full length, capped flat.
+/// Solid cylinder: `center` is the middle of its axis, `height` its full length; its ends are flat.
 /// Exact.
 [[nodiscard]] PALPATE_EXPORT FieldPtr cylinder(const Vec3& center, const Vec3& axis, double radius,
                                                double height);
@@ -26,17 +26,17 @@ namespace palpate {
 /// Hyperellipsoid", 2013).
 [[nodiscard]] PALPATE_EXPORT FieldPtr ellipsoid(const Vec3& center, const Vec3& radii);
 
-/// Box whose edges and corners are rounded off by `rounding`, at most half its smallest size, which
-/// stays its outer size. Exact; smooth (C1), so one leaf.
+/// Box whose edges and corners are rounded with the radius `rounding`, at most half its smallest
+/// size; `size` stays its outer size. Exact; smooth (C1), so one leaf.
 [[nodiscard]] PALPATE_EXPORT FieldPtr roundedBox(const Vec3& center, const Vec3& size,
                                                  double rounding);
 
-/// Cone on a disc of `radius` about `base`, its tip at base + height * axis / |axis|. Exact.
+/// Cone over the disc of `radius` around `base`, its tip at base + height * axis / |axis|. Exact.
 [[nodiscard]] PALPATE_EXPORT FieldPtr cone(const Vec3& base, const Vec3& axis, double radius,
                                            double height);
 
-/// Ring: a tube of radius `tube` around the circle of `radius` about `center` across `axis`;
-/// tube < radius. Exact.
+/// Ring: a tube of radius `tube` around the circle of `radius` about `center` in the plane normal
+/// to `axis`; tube < radius. Exact.
 [[nodiscard]] PALPATE_EXPORT FieldPtr torus(const Vec3& center, const Vec3& axis, double radius,
                                             double tube);
 

@@ -1,5 +1,6 @@
 #pragma once
-/// Regions and ports as the loop knows them: by number. Ports are the openings in walls and sheets.
+/// Regions and ports as the loop uses them, identified by numbers. Ports are the openings in walls
+/// and sheets.
 
 #include <cstdint>
 #include <string>
@@ -12,7 +13,7 @@ namespace palpate {
 
 using RegionId =
     std::uint16_t;  ///< 0 is `outside`; layer i (from 0, outermost first) is region i + 1
-using LeafId = std::uint16_t;  ///< of a smooth field whose surface parts regions
+using LeafId = std::uint16_t;  ///< a smooth field whose surface separates regions
 using PortId = std::uint16_t;
 
 inline constexpr RegionId kOutside = 0;
@@ -28,18 +29,18 @@ struct PassedBefore {
   PassedBefore(PortId before = 0, int at_least = 1) : port(before), times(at_least) {}
 };
 
-/// How the force that a wall gives way to depends on the speed v >= 0 [m/s] of the hand into it:
-/// that at rest times
+/// How the force at which a wall ruptures depends on the speed v >= 0 [m/s] of the hand into the
+/// wall: the force at rest is multiplied by
 ///   1 + (ratio - 1) v / (v + speed).
 /// A fast hand comes near to `ratio` times the force at rest, and is half way there at `speed`.
 /// Mahvash and Dupont 2010 (10.1109/TBME.2009.2036856) found that the force and the deformation at
-/// rupture approach a limit as insertion gets faster, at a speed that goes with the inverse of the
-/// tissue's relaxation time. The curve between both ends is the simplest one that does so.
+/// rupture approach a limit as insertion gets faster, at a speed proportional to the inverse of the
+/// tissue's relaxation time. This is the simplest curve with both limits.
 struct RuptureRate {
   double ratio = 1.0;  ///< [-] more than 0; 1: the speed does not matter
   double speed = 0.0;  ///< [m/s] 0 or more, more than 0 unless `ratio` is 1
 
-  /// [-] of the force at rest
+  /// [-] Factor on the force at rest.
   [[nodiscard]] double share(double v) const noexcept {
     return v > 0.0 && ratio != 1.0 ? 1.0 + (ratio - 1.0) * v / (v + speed) : 1.0;
   }
@@ -50,31 +51,31 @@ struct PALPATE_EXPORT Port {
   std::string name;
   std::vector<RegionId> from;  ///< the first of `between`, resolved; empty in a sheet
   std::vector<RegionId> to;    ///< the second of `between`, resolved; empty in a sheet
-  int sheet =
-      -1;  ///< opens this sheet of the scene, which has one region on both sides; -1: a wall
+  int sheet = -1;  ///< the sheet of the scene that it opens, with one region on both sides; -1: it
+                   ///< opens a wall
   std::vector<LeafId> on;  ///< open only on facets of these leaves; empty: on any facet
   int mask = -1;           ///< open only within this mask of the partition; -1: everywhere
   PortDirection direction = PortDirection::kBoth;
   std::vector<PassedBefore> after;  ///< ports that must have been passed before
-  int slot = -1;       ///< of PassedPorts; -1: no `after` names this port. Given by Passages
-  Parameter opens_at;  ///< [N] elastic normal force at which it opens; 0: always open. A map holds
-                       ///< at the point touched; where it is 0, the lightest touch opens
+  int slot = -1;  ///< index in PassedPorts, assigned by Passages; -1: no `after` names this port
+  Parameter opens_at;  ///< [N] elastic normal force that opens it; 0: always open. A map is read
+                       /// < at the point touched; where the map is 0, the lightest touch opens
   Parameter back;      ///< [N] the same for coming back
-  RuptureRate rate;    ///< how both depend on the speed that the wall is pressed at
-  double hole_radius = 0.0;  ///< [m] of the hole that is left when force opens the port; 0: no hole
-  /// [N] opens the port within such a hole, in place of opens_at and back where these are larger.
-  /// Of a map the value counts where the wall gave way
+  RuptureRate rate;    ///< how `opens_at` and `back` depend on the speed that presses the wall
+  double hole_radius = 0.0;  ///< [m] of the hole left when force opens the port; 0: no hole
+  /// [N] Within such a hole the port opens at this force, in place of opens_at and back where these
+  /// are larger. A map is read at the point where the wall gave way.
   Parameter reopens_at;
-  /// [m] Opened by force, it does so again only when the proxy has been this far from there, or the
-  /// hand is this far beyond the wall; 0: at once.
+  /// [m] After force has opened the port, it opens by force again only when the proxy has been this
+  /// far from that point, or the hand is this far beyond the wall; 0: at once.
   double rearm = 0.0;
 
   /// True if going from `a` to `b` is the way in: from the first region named to the second.
   [[nodiscard]] bool leadsInward(RegionId a, RegionId b) const noexcept;
 
-  /// True if going from `a` to `b`, which the port joins, counts as inward. As leadsInward(), but
-  /// where that holds both ways (globs) only towards the later layer, so that the way back is the
-  /// other way.
+  /// True if going from `a` to `b`, which the port joins, counts as inward. Like leadsInward(), but
+  /// where globs make both directions inward, only the direction towards the later layer counts, so
+  /// that the way back counts as outward.
   [[nodiscard]] bool countsInward(RegionId a, RegionId b) const noexcept {
     return leadsInward(a, b) && (a < b || !leadsInward(b, a));
   }

@@ -17,15 +17,15 @@ struct TraceRow {
   double t = 0.0;           ///< [s]
   Vec3 hip{0.0, 0.0, 0.0};  ///< [m]
   TickResult result = {};
-  std::int64_t tick_ns = 0;     ///< [ns] of the renderer's update alone
-  std::size_t first_entry = 0;  ///< of this tick among Trace::entries()
+  std::int64_t tick_ns = 0;     ///< [ns] time of the renderer's update alone
+  std::size_t first_entry = 0;  ///< index in Trace::entries() of this tick's first entry
   std::size_t entry_count = 0;
 };
 
 /// Fixed capacity, so that adding a row never allocates.
 class Trace {
  public:
-  /// Of regions entered there is room for one a row, and for kMoreEntries more.
+  /// Room for entered regions: one a row, and kMoreEntries more.
   static constexpr std::size_t kMoreEntries = 1024;
 
   explicit Trace(std::size_t capacity) {
@@ -49,7 +49,7 @@ class Trace {
   [[nodiscard]] std::span<const TraceRow> rows() const noexcept { return rows_; }
   /// HapticRenderer::entries() of all rows, in order.
   [[nodiscard]] std::span<const RegionEntry> entries() const noexcept { return entries_; }
-  /// Those of one of rows().
+  /// The entries of one row, which must be an element of rows().
   [[nodiscard]] std::span<const RegionEntry> entriesOf(const TraceRow& row) const noexcept {
     return std::span<const RegionEntry>(entries_).subspan(row.first_entry, row.entry_count);
   }
@@ -63,12 +63,12 @@ class Trace {
   std::uint64_t dropped_entries_ = 0;
 };
 
-/// Trace rows as CSV, one at a time: header() and then add() for each gives what traceCsv() gives.
-/// Names come from the scene.
+/// Trace rows as CSV, one at a time: header() followed by add() for each row gives the same text as
+/// traceCsv(). Names come from the scene.
 class PALPATE_EXPORT TraceText {
  public:
   explicit TraceText(const Scene& scene);
-  /// `regions` by RegionId, `ports` by PortId.
+  /// Names of regions, indexed by RegionId, and of ports, indexed by PortId.
   TraceText(std::span<const std::string> regions, std::span<const std::string> ports);
 
   [[nodiscard]] static std::string_view header() noexcept;
@@ -82,12 +82,12 @@ class PALPATE_EXPORT TraceText {
 
 /// As CSV, with the header
 /// t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_ns
-/// with shortest numbers that read back exactly (`nan`, `inf` for a broken sensor's position). A
+/// Numbers are the shortest that read back exactly (`nan`, `inf` for a broken sensor's position). A
 /// name with a comma, quote or line end is quoted as RFC 4180 says. Names come from the scene.
 [[nodiscard]] PALPATE_EXPORT std::string traceCsv(std::span<const TraceRow> rows,
                                                   const Scene& scene);
 
-/// The same with names given: `regions` by RegionId, `ports` by PortId.
+/// The same with the names given: `regions` indexed by RegionId, `ports` indexed by PortId.
 /// @throws Error (kInput) for an id that has no name.
 [[nodiscard]] PALPATE_EXPORT std::string traceCsv(std::span<const TraceRow> rows,
                                                   std::span<const std::string> regions,

@@ -19,24 +19,24 @@
 
 namespace palpate {
 
-/// How the energy of the loop is counted and controlled (devices/passivity.h). What is not given is
-/// as the device has it.
+/// How the energy of the loop is counted and controlled (devices/passivity.h). Members without a
+/// value take the device's.
 struct PassivityRequest {
-  bool controls = true;                   ///< false: the energy is counted only
-  std::optional<double> mass = {};        ///< [kg] the device's least
-  std::optional<double> damping = {};     ///< [N s/m] the device's least
-  std::optional<double> friction = {};    ///< [N] the device's least
-  std::optional<double> encoder = {};     ///< [m] one step
+  bool controls = true;                   ///< false: the energy is only counted
+  std::optional<double> mass = {};        ///< [kg] the device's smallest
+  std::optional<double> damping = {};     ///< [N s/m] the device's smallest
+  std::optional<double> friction = {};    ///< [N] the device's smallest
+  std::optional<double> encoder = {};     ///< [m] one encoder step
   std::optional<double> hand_force = {};  ///< [N] the hand's largest
   friend bool operator==(const PassivityRequest&, const PassivityRequest&) = default;
 };
 
 /// A spring and a damper between the hand and the tool (devices/virtual_coupling.h).
 struct CouplingRequest {
-  /// What the coupling is designed for, where it has no stiffness of its own.
+  /// What the coupling is designed for, if it has no stiffness of its own.
   enum class For : std::uint8_t {
-    kSprings,   ///< walls that stand still
-    kAnyScene,  ///< whatever is passive
+    kSprings,   ///< walls that do not move
+    kAnyScene,  ///< any passive scene
   };
   For design = For::kSprings;
   std::optional<double> stiffness = {};  ///< [N/m] at the hand
@@ -46,17 +46,17 @@ struct CouplingRequest {
 
 /// World = offset + scale * rotation * device, in [m]; forces go back by the rotation, `force`
 /// times as large. So the hand does force / scale times the work that is done in the world, and a
-/// stiffness is felt scale * force times as stiff. The workspace is what the device's tip can be
-/// brought to.
+/// stiffness feels scale * force times as stiff. The workspace is the space that the device's tip
+/// can reach.
 struct DeviceMapping {
   Vec3 offset{0.0, 0.0, 0.0};  ///< [m, world] where the device's origin is
-  Mat3 rotation{1.0};          ///< [-] of the device's axes into the world's; proper
-  double scale = 1.0;          ///< [-] world per device, more than 0
-  double force = 1.0;          ///< [-] force at the hand per force in the world, more than 0
-  bool clutch = false;  ///< the hand can let go and take hold elsewhere: all the world is in reach
-  Box3 workspace{Vec3(-kInfinity), Vec3(kInfinity)};  ///< [m, device] around it
-  std::optional<PassivityRequest> passivity = {};     ///< not given: off
-  std::optional<CouplingRequest> coupling = {};       ///< not given: off
+  Mat3 rotation{1.0};   ///< [-] from the device's axes to the world's; proper (determinant +1)
+  double scale = 1.0;   ///< [-] world per device, more than 0
+  double force = 1.0;   ///< [-] force at the hand per force in the world, more than 0
+  bool clutch = false;  ///< the hand can take hold elsewhere: the whole world is in reach
+  Box3 workspace{Vec3(-kInfinity), Vec3(kInfinity)};  ///< [m, device] box around it
+  std::optional<PassivityRequest> passivity = {};     ///< no value: off
+  std::optional<CouplingRequest> coupling = {};       ///< no value: off
 
   [[nodiscard]] Vec3 toWorld(const Vec3& device) const noexcept {
     return offset + scale * (rotation * device);
@@ -74,20 +74,20 @@ struct DeviceMapping {
   /// [-] Stiffness at the hand per stiffness in the world.
   [[nodiscard]] double stiffnessAtHand() const noexcept { return force * scale; }
 
-  /// [m, world] A box around what a hand can get to; everything if the workspace is not bounded or
-  /// there is a clutch.
+  /// [m, world] A box around everything that the hand can reach; all space if the workspace is not
+  /// bounded or there is a clutch.
   [[nodiscard]] Box3 reach() const noexcept {
     if (clutch || !workspace.isBounded()) return {Vec3(-kInfinity), Vec3(kInfinity)};
     return Pose{scale * rotation, offset}.apply(workspace);
   }
 };
 
-/// Limits of the rendered force that the author of a scene asks for. What is not given is not
-/// limited.
+/// Limits of the rendered force that the author of a scene asks for. Members without a value set no
+/// limit.
 struct ForceRequest {
   std::optional<double> max = {};   ///< [N] more than 0; longer forces are shortened to it
-  std::optional<double> slew = {};  ///< [N/s] more than 0; by how much the force may grow
-  std::optional<double> ramp = {};  ///< [s] more than 0; from zero to the full force
+  std::optional<double> slew = {};  ///< [N/s] more than 0; the rate at which the force may grow
+  std::optional<double> ramp = {};  ///< [s] more than 0; time from zero to full force
   friend bool operator==(const ForceRequest&, const ForceRequest&) = default;
 };
 
@@ -98,28 +98,28 @@ enum class AlphaForm : std::uint8_t {
   kNewton,    ///< alpha S N / (N . N)
 };
 
-/// What is felt at the wall from within (row 3 of Table I).
+/// What is felt when the wall is touched from within (row 3 of Table I).
 enum class PaperInterior : std::uint8_t {
   kTogether,  ///< wall and content at once, as the text says
   kWall,      ///< the wall alone, as the table says
 };
 
-/// What is not given is as the scene has it, or else as written here.
+/// Members without a value are as the scene has them, or else as written here.
 struct PaperParameters {
   static constexpr int kMaxHalvings = 48;
   static constexpr double kAlpha = 1.0;
 
-  /// [m] epsilon: so near to the surface the contact point counts as on it; more than 0. By default
-  /// 1 um, but at most a ten-thousandth of the field's feature size. |S| is held against it times
-  /// the slope of S.
+  /// [m] epsilon: within this distance of the surface the contact point counts as on it; more than
+  /// 0. By default 1 um, but at most a ten-thousandth of the field's feature size. |S| is compared
+  /// with epsilon times the slope of S.
   std::optional<double> epsilon = {};
   std::optional<int> max_halvings =
-      {};  ///< MAX_N: of the segment in which the surface is searched; 1 to 1000
+      {};  ///< MAX_N: number of parts of the segment on which the surface is searched; 1 to 1000
   std::optional<double> alpha = {};  ///< [-] share of the nudge; 0 or more
   std::optional<AlphaForm> alpha_form = {};
   std::optional<PaperInterior> interior = {};
 
-  /// These, and of `others` what these do not give.
+  /// These parameters; where one has no value, that of `others`.
   [[nodiscard]] PaperParameters over(const PaperParameters& others) const {
     PaperParameters out = *this;
     if (!out.epsilon) out.epsilon = others.epsilon;
@@ -131,7 +131,8 @@ struct PaperParameters {
   }
 };
 
-/// Where in a file something was said, so that later errors can point at it. Line 0: nowhere.
+/// The place in a file where something was stated, so that later errors can point at it. Line 0:
+/// none.
 struct SourcePlace {
   std::string file = {};
   int line = 0;
@@ -139,26 +140,27 @@ struct SourcePlace {
   std::string excerpt = {};
 };
 
-/// An error about something said at `place`.
+/// An error about something stated at `place`.
 [[nodiscard]] PALPATE_EXPORT Error errorAt(const SourcePlace& place, std::string code,
                                            std::string message, std::string hint = {});
 
-/// A field that is ready, or that costs work (a mesh, a scan) and is made when first asked for, so
-/// that what a scene does not need is never made. Set-up thread only.
+/// A field that is ready, or one that is costly (from a mesh, a scan) and is made when first asked
+/// for, so that a field the scene does not need is never made. Set-up thread only.
 class PALPATE_EXPORT FieldSource {
  public:
   using Maker = std::function<FieldPtr(const Progress&)>;
 
-  /// Makes what is right within the box [m], and beyond has the sign of its faces (knownWithin()).
+  /// Makes a field that is right within the box [m], and beyond it keeps the sign that it has at
+  /// the box's faces (knownWithin()).
   using PartMaker = std::function<FieldPtr(const Box3& within, const Progress&)>;
 
-  /// [m] A box around what will be made, much cheaper than making it.
+  /// [m] A box around the field to be made, much cheaper than making it.
   using Measurer = std::function<Box3(const Progress&)>;
 
   explicit FieldSource(FieldPtr ready) : made_(std::move(ready)) {}
   FieldSource(std::string summary, Maker maker, Measurer measurer = {})
       : summary_(std::move(summary)), maker_(std::move(maker)), measurer_(std::move(measurer)) {}
-  /// `maker` is asked for all with a box that is everything.
+  /// To make the whole field, `maker` is called with a box that is all of space.
   FieldSource(std::string summary, PartMaker maker, Measurer measurer = {})
       : summary_(std::move(summary)),
         part_maker_(std::move(maker)),
@@ -166,13 +168,13 @@ class PALPATE_EXPORT FieldSource {
 
   /// The field, made now if need be. The same pointer every time.
   [[nodiscard]] const FieldPtr& get(const Progress& progress = {}) const;
-  /// What is needed of it where only `within` [m] matters: the field itself if it is made, or
-  /// cannot be made in part. The same pointer every time for the same box.
+  /// The part of the field that is needed where only `within` [m] matters: the whole field if it is
+  /// made already, or cannot be made in part. The same pointer every time for the same box.
   [[nodiscard]] const FieldPtr& get(const Box3& within, const Progress& progress = {}) const;
-  /// [m] A box around the field; none if only making it would tell.
+  /// [m] A box around the field; no value if only making the field would tell.
   [[nodiscard]] std::optional<Box3> bounds(const Progress& progress = {}) const;
   [[nodiscard]] bool isMade() const noexcept { return made_ != nullptr; }
-  /// What was made for a box last; null if nothing was.
+  /// The part that was made last for a box; null if none was.
   [[nodiscard]] const FieldPtr& part() const noexcept { return part_; }
   /// What it is made from ("mesh bone.stl"); empty for analytic fields.
   [[nodiscard]] const std::string& summary() const noexcept { return summary_; }
@@ -193,7 +195,7 @@ struct NamedField {
   FieldSourcePtr source;
 };
 
-/// What stands between a layer and its surroundings.
+/// The wall between a layer and its surroundings.
 struct WallDescription {
   bool absent = false;
   std::string material = {};  ///< name; empty (and not absent): the documented default wall
@@ -204,12 +206,12 @@ struct LayerDescription {
   FieldSourcePtr inside;
   std::string content = {};  ///< material name; empty: nothing is felt inside
   WallDescription wall = {};
-  /// Layers with the same non-empty group come from one label image: where they meet, the one whose
-  /// field is smallest has the point. Their fields may overlap; they should,
-  /// a little, where edges meet, so that none of the image is left over between them.
+  /// Layers with the same non-empty group come from one label image: where they meet, a point
+  /// belongs to the one whose field is smallest. Their fields should overlap a little where edges
+  /// meet, so that no part of the image is left over between them.
   std::string label_group = {};
-  /// Of the group's image, ascending. Two layers that have one in common do not limit each other:
-  /// the later has what is in both.
+  /// Labels of the group's image, ascending. Two layers that share a label do not limit each other:
+  /// the later layer owns points that are in both.
   std::vector<int> labels = {};
   SourcePlace place = {};
 };
@@ -223,7 +225,7 @@ struct WallOverride {
   SourcePlace place = {};
 };
 
-/// A port that must have been passed before, and at least how often.
+/// A port that must have been passed before, and the least number of times.
 struct AfterDescription {
   std::string port;
   int times = 1;  ///< 1 or more
@@ -238,21 +240,21 @@ struct PortDescription {
   std::string name;
   std::string from;  ///< region names and globs, with ", " between them
   std::string to;    ///< the same
-  /// It opens this sheet and no wall: `from` and `to` are empty, there is no `on`, and inward is
-  /// against the gradient of what the sheet is on.
+  /// The port opens this sheet and not a wall. Then `from` and `to` are empty, there is no `on`,
+  /// and inward is against the gradient of the field that the sheet lies on.
   std::string sheet = {};
   FieldSourcePtr on = {};    ///< null: any facet
-  std::string on_name = {};  ///< how the author called it
-  /// Why `on` may be no face though the scene uses it (it went into a blend), for compile() to say
-  /// if so; empty: no reason is known.
+  std::string on_name = {};  ///< the name that the author gave it
+  /// Why `on` may not be a face although the scene uses it (it went into a blend); compile() adds
+  /// this to its error. Empty: no reason is known.
   std::string on_note = {};
   FieldSourcePtr where = {};  ///< null: everywhere
   PortDirection direction = PortDirection::kBoth;
   std::vector<AfterDescription> after = {};
   Parameter opens_at = 0.0;            ///< [N]
   std::optional<Parameter> back = {};  ///< [N]; not given: as opens_at
-  RuptureRate rate = {};               ///< of both
-  double hole_radius = 0.0;            ///< [m] 0: opening it by force leaves no hole
+  RuptureRate rate = {};               ///< of both `opens_at` and `back`
+  double hole_radius = 0.0;            ///< [m] 0: force that opens it leaves no hole
   Parameter reopens_at = 0.0;          ///< [N] in a hole
   double rearm = 0.0;                  ///< [m]
   SourcePlace place = {};
@@ -268,7 +270,7 @@ struct SheetDescription {
   SourcePlace place = {};
 };
 
-/// Which renderer a scene asks for.
+/// The renderer that a scene asks for.
 enum class RendererKind { kConstraint, kPaper };
 
 struct SceneDescription {
@@ -283,7 +285,7 @@ struct SceneDescription {
   std::vector<SheetDescription> sheets = {};
   std::string start_region = "outside";
   SourcePlace start_place = {};
-  bool keep_memory = false;  ///< `memory: keep`: what was passed is never taken back nor cleared
+  bool keep_memory = false;  ///< `memory: keep`: ports passed are never taken back nor cleared
   RendererKind renderer = RendererKind::kConstraint;
   ForceRequest force = {};
   PaperParameters paper = {};

@@ -9,17 +9,17 @@
 
 namespace palpate {
 
-/// A wall or a sheet, with the material that it is felt with.
+/// A wall or a sheet, with the material that gives its feel.
 struct FeltWall {
   std::string
-      place;  ///< "from | into"; the region alone where none was found beside it; or a sheet
+      place;  ///< "from | into"; the region alone if no neighbor of it was found; or a sheet
   int material = -1;  ///< index into Scene::materials()
   bool is_sheet = false;
 };
 
-/// Those between regions that were found to touch, from a region that can be reached; the own walls
-/// of layers without end of which none was found to be in reach, since what touches what was looked
-/// for near the layers that have an end; and all sheets. Allocates.
+/// The walls between regions that were found to touch, if one of the two can be reached; the own
+/// walls of layers that have no end and no neighbor in reach (neighbors are searched only near
+/// layers that have an end); and all sheets. Allocates.
 [[nodiscard]] PALPATE_EXPORT std::vector<FeltWall> feltWalls(const Scene& scene);
 
 }  // namespace palpate

@@ -1,11 +1,11 @@
 #pragma once
-/// Scene files: YAML -> Document -> SceneDescription, strictly. What reads other files (meshes,
-/// grids, scans) is not known here; it comes through a SceneRegistry that the vdb module fills.
+/// Scene files: YAML -> Document -> SceneDescription, strictly. The readers of other files (meshes,
+/// grids, scans) are not known here; they come through a SceneRegistry that the vdb module fills.
 ///
-/// A Document is a strict YAML subset as an immutable tree with places. No yaml-cpp type is visible
-/// here. Refused with file:line:column: duplicate keys, aliases and anchors, tags, more than one
-/// document, keys that are not plain text, nesting deeper than 64. JSON is a subset and is read
-/// too.
+/// A Document is a strict YAML subset as an immutable tree whose nodes know their line and column.
+/// No yaml-cpp type is visible here. Refused with file:line:column: duplicate keys, aliases and
+/// anchors, tags, more than one document, keys that are not plain text, nesting deeper than 64.
+/// JSON is a subset and is read too.
 
 #include <functional>
 #include <map>
@@ -37,7 +37,7 @@ struct PALPATE_EXPORT Node {
   std::string text = {};  ///< scalar: as written
   bool quoted = false;    ///< scalar: "..." or '...': text, never a number
   std::vector<Node> items = {};
-  std::vector<Entry> entries;  ///< map: in the order of the file (no "= {}": Entry is incomplete)
+  std::vector<Entry> entries;  ///< map: in the file's order (no "= {}": Entry is incomplete here)
 
   [[nodiscard]] const Node* find(std::string_view key) const noexcept;
 };
@@ -65,32 +65,33 @@ struct PALPATE_EXPORT Document {
 
 class SceneLoader;
 
-class Vocabulary;  // vocabulary.h: maps, keys, and what may stand at them, as data
+class Vocabulary;  // vocabulary.h: maps, keys, and the values that keys may have, as data
 struct MapWords;
 struct KeyWords;
 using VocabularyPtr = std::shared_ptr<const Vocabulary>;
 
-/// What lib itself reads. The top level is the map "scene"; the kinds of fields are the keys of
-/// "field_kind".
+/// The vocabulary that lib itself reads. The top level is the map "scene"; the kinds of fields are
+/// the keys of "field_kind".
 [[nodiscard]] PALPATE_EXPORT const VocabularyPtr& sceneVocabulary();
 
-/// A map node being read. A map that the vocabulary declares is checked whole when it is opened:
-/// unknown and missing keys, types and bounds; value(), text() and their like then only fetch what
-/// is there, or the declared default. In any other map every key must be asked for, by require(),
-/// optional() or one of the getters with a fallback, and what is left over is an error with a
-/// suggestion (finish()). All throw Error (kInput) at the offending place.
+/// Reads a map node. A map that the vocabulary declares is checked as a whole when it is opened:
+/// unknown and missing keys, types and bounds; value(), text() and similar getters then only fetch
+/// the value that is there, or the declared default. In any other map every key must be read by
+/// require(), optional() or one of the getters with a fallback, and finish() reports every key left
+/// over as an error with a suggestion. All throw Error (kInput) at the offending place.
 class PALPATE_EXPORT MapReader {
  public:
   MapReader(const SceneLoader& loader, const Node& map, std::string what);
-  /// `declared`: the vocabulary's name of the map; read as one that it does not declare if it has
-  /// no keys for it.
+  /// `declared`: the vocabulary's name of the map; if the vocabulary has no keys for it, the map is
+  /// read as one that is not declared.
   MapReader(const SceneLoader& loader, const Node& map, std::string what,
             std::string_view declared);
 
   [[nodiscard]] bool has(std::string_view key) const noexcept;
-  /// What is written at a declared key; null if it is not there.
+  /// The node at a declared key; null if the key is not there.
   [[nodiscard]] const Node* find(std::string_view key) const noexcept { return map_->find(key); }
-  /// A number, or a quantity in SI; not given: the declared default, or 0 where that is in words.
+  /// A number, or a quantity in SI; if absent, the declared default, or 0 if that default is stated
+  /// in words.
   [[nodiscard]] double value(std::string_view key) const;
   [[nodiscard]] std::string text(std::string_view key) const;  ///< "" without a default
   [[nodiscard]] int choice(std::string_view key) const;        ///< -1 without a default
@@ -98,7 +99,7 @@ class PALPATE_EXPORT MapReader {
   [[nodiscard]] Vec3 point(std::string_view key) const;  ///< [m], or a direction
   /// The map at `key`, opened; `key` must be there.
   [[nodiscard]] MapReader map(std::string_view key) const;
-  /// The maps of a list of them.
+  /// The maps in the list at `key`.
   [[nodiscard]] std::vector<MapReader> maps(std::string_view key) const;
 
   [[nodiscard]] const Node& require(std::string_view key);
@@ -108,19 +109,19 @@ class PALPATE_EXPORT MapReader {
   [[nodiscard]] double requireNumber(std::string_view key);
   [[nodiscard]] double numberOr(std::string_view key, double fallback);
   [[nodiscard]] bool boolOr(std::string_view key, bool fallback);  ///< only true and false
-  /// A bare number in the file's length unit, or a text with a unit; in [m].
+  /// A bare number in the file's length unit, or a text with a unit; the result is in [m].
   [[nodiscard]] double requireLength(std::string_view key);
   [[nodiscard]] double lengthOr(std::string_view key, double fallback_meters);
   [[nodiscard]] Vec3 requirePoint(std::string_view key);  ///< lengths, in [m]
   /// Error at the key's value (or at the map if the key is not there).
   [[nodiscard]] Error errorAt(std::string_view key, std::string code, std::string message,
                               std::string hint = {}) const;
-  /// Throws if a key was not asked for.
+  /// Throws if a key was not read.
   void finish();
 
   [[nodiscard]] const SceneLoader& loader() const noexcept { return *loader_; }
   [[nodiscard]] const Node& node() const noexcept { return *map_; }
-  /// What the vocabulary says of a key of this map, which it must declare.
+  /// The vocabulary's entry for a key of this map, which must be declared there.
   [[nodiscard]] const KeyWords& words(std::string_view key) const;
 
  private:
@@ -134,14 +135,14 @@ class PALPATE_EXPORT MapReader {
   std::vector<std::string> known_;
 };
 
-/// What a map is of.
+/// The kind of quantity that a map holds.
 struct ParameterKind {
   std::string key;                          ///< "stiffness"
-  std::optional<Dimension> dimension = {};  ///< none: a ratio
-  bool is_signed = false;                   ///< values below 0 have a meaning, as of a velocity
+  std::optional<Dimension> dimension = {};  ///< no value: a ratio
+  bool is_signed = false;                   ///< negative values have a meaning, as for a velocity
 };
 
-/// What a loader extension needs to know of the file that is being read.
+/// The view of the file being read that an extension of the loader needs.
 class PALPATE_EXPORT SceneLoader {
  public:
   virtual ~SceneLoader() = default;
@@ -153,21 +154,22 @@ class PALPATE_EXPORT SceneLoader {
   [[nodiscard]] virtual std::string resolvePath(const std::string& path) const = 0;
   /// A field written as a name, or inline as {kind: {...}}.
   [[nodiscard]] virtual FieldSourcePtr field(const Node& node) const = 0;
-  /// What the registry's image reader made of `images.NAME`; error at `place` if there is none.
+  /// The object that the registry's image reader made of `images.NAME`; error at `place` if there
+  /// is none.
   [[nodiscard]] virtual std::shared_ptr<void> image(const std::string& name, Mark place) const = 0;
-  /// The map of a parameter, written as {grid: {...}} or whatever kinds the registry has.
+  /// The map of a parameter, written as {grid: {...}} or another kind that the registry has.
   [[nodiscard]] virtual MaterialMapPtr map(const Node& node, const ParameterKind& of) const = 0;
 };
 
-/// Kinds that other modules add: what makes them, by their YAML keys, and what may be written of
-/// them. A kind that the vocabulary does not declare asks for its keys itself.
+/// Kinds that other modules add: the functions that make them, by their YAML keys, and the keys
+/// that may be written for them. A kind that the vocabulary does not declare reads its keys itself.
 struct SceneRegistry {
   /// `fields: {x: {mesh: {...}}}`: makes the source of a field; must not do heavy work itself.
   using FieldKind = std::function<FieldSourcePtr(MapReader&)>;
   /// One entry of `images:`; opaque to lib.
   using ImageKind = std::function<std::shared_ptr<void>(MapReader&)>;
-  /// `layers: [{name, labels: {...}}]`: what the layer's field comes from, and its label group
-  /// with the labels, ascending, that it has of it.
+  /// `layers: [{name, labels: {...}}]`: the source of the layer's field, and its label group with
+  /// the labels of that group that it owns, ascending.
   struct LayerSurface {
     FieldSourcePtr inside;
     std::string label_group = {};
@@ -175,20 +177,20 @@ struct SceneRegistry {
   };
   using LayerKind = std::function<LayerSurface(MapReader&, const std::string& layer_name)>;
   /// `stiffness: {image: ct, transfer: [...]}`: reads the map whose keys include the kind's name.
-  /// It is made at once, as its range decides whether it may stand there.
+  /// It is made at once, as its range decides whether it is allowed there.
   using ParameterMapKind = std::function<MaterialMapPtr(MapReader&, const ParameterKind&)>;
 
-  /// `grids: {tolerance, voxel}`: what a layer made of formulas is asked to become.
+  /// `grids: {tolerance, voxel}`: what a grid for a layer made of formulas has to satisfy.
   struct GridChoice {
     std::string layer;
     std::string length_unit;
     double tolerance = 0.0;           ///< [m] by how much a grid may be off
-    double voxel_size = 0.0;          ///< [m] 0: not said
-    std::vector<FieldPtr> keep = {};  ///< these stay as they are, as ports name them
+    double voxel_size = 0.0;          ///< [m] 0: not given
+    std::vector<FieldPtr> keep = {};  ///< fields to keep as they are, since ports name them
     SourcePlace place = {};
   };
-  /// The same field, of which the parts that a grid holds within the tolerance and answers faster
-  /// are grids; made when it is asked for.
+  /// The same field with some parts replaced by grids: those that a grid holds within the tolerance
+  /// and answers faster. It is made when it is asked for.
   using GridChooser = std::function<FieldSourcePtr(const FieldSourcePtr&, const GridChoice&)>;
 
   VocabularyPtr vocabulary = sceneVocabulary();

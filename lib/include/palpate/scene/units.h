@@ -25,7 +25,7 @@ enum class Dimension {
 /// Meters in one `unit` ("mm", "cm", "m", "um", "in"); nothing if the unit is not known.
 [[nodiscard]] PALPATE_EXPORT std::optional<double> metersPer(std::string_view unit) noexcept;
 
-/// What became of a quantity's text.
+/// Outcome of reading a quantity's text.
 struct Quantity {
   enum class Status { kOk, kNotANumber, kMissingUnit, kUnknownUnit, kWrongDimension };
   Status status = Status::kNotANumber;
@@ -33,14 +33,14 @@ struct Quantity {
   std::string_view unit = {};  ///< as written
 };
 
-/// "1500 N/m", "1.5 N/mm", "4 N.s/m", "0.5 Ns/m", "2.8 N", "3 mm", "30 um".
+/// Reads "1500 N/m", "1.5 N/mm", "4 N.s/m", "0.5 Ns/m", "2.8 N", "3 mm", "30 um".
 [[nodiscard]] PALPATE_EXPORT Quantity parseQuantity(std::string_view text,
                                                     Dimension dimension) noexcept;
 
-/// Plain decimal number, the whole text, finite, no octal, hex or inf; else nothing.
+/// A plain decimal number that is the whole text and finite, not octal, hex or inf; else nothing.
 [[nodiscard]] PALPATE_EXPORT std::optional<double> parseNumber(std::string_view text) noexcept;
 
-/// The SI unit and some that are understood, for messages: "N/m (also N/mm, N/cm, kN/m)".
+/// The SI unit and others that are understood, for messages: "N/m (also N/mm, N/cm, kN/m)".
 [[nodiscard]] PALPATE_EXPORT std::string_view unitHelp(Dimension dimension) noexcept;
 
 }  // namespace palpate

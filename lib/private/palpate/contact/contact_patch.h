@@ -6,25 +6,26 @@
 
 namespace palpate {
 
-/// The mean of a map over a patch, and what it changes by.
+/// The mean of a map over a patch, and its gradients.
 struct PatchSample {
   double value = 0.0;  ///< [unit of the map]
-  /// [the same per m] where the middle moves and the press stays as it is, ...
+  /// [unit per m] gradient by the middle of the patch at constant press
   Vec3 by_place{0.0, 0.0, 0.0};
-  /// ... and the other way round
+  /// [unit per m] gradient by the press at constant middle
   Vec3 by_press{0.0, 0.0, 0.0};
 };
 
-/// [m] Radius of the patch of a press `depth` [m] deep. `contrast` [m]: over what length the map
-/// changes by as much as it is, at its steepest. Down to half of that depth the patch is a point:
-/// there a contrast pushes sideways a quarter as hard as the wall pushes back, at most. Far below
-/// it is as wide as the press is deep.
+/// [m] Radius of the patch of a press `depth` [m] deep. `contrast` [m] is the length over which the
+/// map, where it is steepest, changes by as much as its own value. Down to a depth of half of that
+/// the patch is a point: there a contrast pushes sideways at most a quarter as hard as the wall
+/// pushes back. At much larger depths the radius approaches the depth.
 [[nodiscard]] double patchRadius(double depth, double contrast) noexcept;
 
-/// The mean of `map` about `middle` [m], for a press that goes from the hand to the proxy by
-/// `press` [m], not zero. The places are those of a sphere, flattened across the press: along any
-/// line they are spread evenly. One sample where the radius is 0, else 24, and 96 where it is more
-/// than 16 times `contrast` (between, both, blended). Real-time safe.
+/// The mean of `map` about `middle` [m], for a press whose way from the hand to the proxy is
+/// `press` [m], not zero. The samples lie on a sphere flattened along the press, so that their
+/// projections on any line in the patch are spread evenly. One sample if the radius is 0; otherwise
+/// 24, or 96 if the radius is more than 16 times `contrast`; in between a blend of both. Real-time
+/// safe.
 [[nodiscard]] PatchSample overPatch(const Parameter& map, const Vec3& middle, const Vec3& press,
                                     double contrast) noexcept;
 

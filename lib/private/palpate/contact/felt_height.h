@@ -1,6 +1,6 @@
 #pragma once
-/// Heights at which a wall is felt above where it is: bumps of a texture, and a surface smoothed by
-/// shading. Both are functions of the place alone, so that what is felt of them has a potential.
+/// Heights that are added to a wall's surface: bumps of a texture, and the difference to a surface
+/// smoothed by shading. Both are functions of the place alone, so that their force has a potential.
 
 #include <array>
 
@@ -17,14 +17,15 @@ struct FeltHeight {
 /// Height of the texture at `p` [m].
 [[nodiscard]] FeltHeight textureHeight(const Texture& texture, const Vec3& p) noexcept;
 
-/// [m] The depth down to which the texture is felt in full: deeper, it would be stiffer along the
-/// wall than the wall is. At least twice its amplitude; infinite for no texture.
+/// [m] The depth down to which the texture counts in full. If it did so deeper down, it would be
+/// stiffer along the wall than the wall itself is. At least twice its amplitude; infinite without a
+/// texture.
 [[nodiscard]] double textureReach(const Texture& texture) noexcept;
 
 /// A field smoothed over a radius: the quadratic B-spline of its distances at the nodes of a
-/// lattice that is fixed in space, two thirds of the radius wide. So value and gradient are
-/// continuous wherever the field has edges, and are each other's. Keeps the nodes around the last
-/// place. Real-time safe.
+/// lattice that is fixed in space, with a spacing of two thirds of the radius. So the value is
+/// continuous also where the field has edges, and the gradient is exactly its derivative,
+/// continuous too. Caches the nodes around the last place. Real-time safe.
 class SmoothedField {
  public:
   /// At `p` [m] within reach of the surface; `radius` [m] more than 0.
@@ -35,7 +36,7 @@ class SmoothedField {
 
   const Field* field_ = nullptr;
   double spacing_ = 0.0;
-  std::array<double, 3> node_{};       ///< number of the middle one along each axis
+  std::array<double, 3> node_{};       ///< index of the middle node along each axis
   std::array<double, 27> distance_{};  ///< [m]
 };
 

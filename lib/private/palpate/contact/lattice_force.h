@@ -6,11 +6,11 @@
 namespace palpate {
 
 struct LatticePush {
-  Vec3 force{0.0, 0.0, 0.0};  ///< [N] minus the slope of `energy`, also where the amplitude varies
+  Vec3 force{0.0, 0.0, 0.0};  ///< [N] minus the gradient of `energy`, its amplitude's included
   double energy = 0.0;        ///< [J] 0 or more; 0 at the origin
 };
 
-/// At `p` [m, world], with `amplitude` the lattice's own force there, or what stands for it.
+/// At `p` [m, world]; `amplitude` is the lattice's force parameter there, or a replacement for it.
 [[nodiscard]] LatticePush latticePush(const Lattice& lattice, const MaterialMap::Sample& amplitude,
                                       const Vec3& p) noexcept;
 

@@ -1,16 +1,18 @@
 #pragma once
-/// The state of a Maxwell branch: a spring of stiffness K' behind a dashpot of K' tau.
+/// The state of a Maxwell branch: a spring of stiffness K' in series with a dashpot of viscosity K'
+/// tau.
 
 namespace palpate {
 
-/// How far the branch's spring is stretched; it pushes with K' times that. A value; real-time safe.
-/// Passive: what it gives back was put in, less what the dashpot took.
+/// The stretch of the branch's spring; its force is K' times that. A value type; real-time safe.
+/// Passive: it gives back only the energy that was put in, minus what the dashpot dissipated.
 class MaxwellBranch {
  public:
-  /// The depth changed evenly by `by` [m] within `dt` [s]; exact for that. `time` [s] is tau,
-  /// positive.
+  /// The depth changed at a constant rate by `by` [m] within `dt` [s]; the result is exact for
+  /// that. `time` [s] is tau, positive.
   void step(double by, double dt, double time) noexcept;
-  /// Lets go of what is below `least` [m] (which is 0 or less): the branch does not pull harder.
+  /// Raises the stretch to at least `least` [m] (0 or less), so that the branch does not pull
+  /// harder.
   void keepAbove(double least) noexcept {
     if (stretch_ < least) stretch_ = least;
   }

@@ -1,8 +1,8 @@
 #pragma once
 /// Algorithms I and II of Maneewarn, Hannaford, Storti and Ganter, "Haptic rendering for internal
 /// content of an implicit object", to the letter. The contact point Po is driven by the probe's own
-/// motion, so it drifts and re-acquires where the surface is curved: that is the method, kept for
-/// comparison.
+/// motion, so it drifts and is re-acquired where the surface is curved. That belongs to the method,
+/// which is kept for comparison.
 
 #include "palpate/fields/field.h"
 
@@ -16,7 +16,7 @@ struct PaperSurface {
   double alpha = 1.0;        ///< [-] share of the nudge
   bool newton_form = false;  ///< alpha S N / (N.N) instead of the printed alpha S N / |N|
   int max_halvings =
-      48;  ///< MAX_N: of the segment that is searched; as PaperParameters::kMaxHalvings
+      48;  ///< MAX_N: halvings of the segment that is searched; as PaperParameters::kMaxHalvings
 
   /// S and N with the side applied: negative beyond the wall, N towards the hand's side.
   [[nodiscard]] FieldSample at(const Vec3& p) const noexcept;
@@ -29,13 +29,13 @@ struct PaperContact {
 };
 
 /// Algorithm I, first contact: bisects from the probe's last position (outside) to its present one.
-/// Where the segment has no bracket (the probe began beyond the wall), Po is found down the
-/// gradient.
+/// If the segment does not cross the surface (the probe began beyond the wall), Po is found by
+/// following the gradient.
 [[nodiscard]] PaperContact firstContact(const PaperSurface& surface, const Vec3& outside,
                                         const Vec3& probe) noexcept;
 
-/// Algorithm II, still in contact: Po slides by the probe's motion, and is re-acquired by Algorithm
-/// I on Po..Pi (or Po..P where Pi is outside) when it slid off the surface.
+/// Algorithm II, still in contact: Po follows the probe's motion, and if it left the surface it is
+/// re-acquired by Algorithm I on Po..Pi (or Po..P where Pi is outside).
 [[nodiscard]] PaperContact trackContact(const PaperSurface& surface, const PaperContact& last,
                                         const Vec3& last_probe, const Vec3& probe) noexcept;
 

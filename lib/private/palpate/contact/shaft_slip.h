@@ -3,7 +3,8 @@
 
 namespace palpate {
 
-/// The friction of one tissue along the shaft, per length of it, as it is where the shaft is.
+/// The friction of one tissue along the shaft, per length of it, with its parameters at the place
+/// of the shaft.
 struct ShaftLaw {
   struct Way {
     double static_force = 0.0;   ///< [N/m]
@@ -17,19 +18,19 @@ struct ShaftLaw {
 };
 
 /// How far the tissue that sticks to the shaft is drawn along, and whether the shaft slides through
-/// it. A value; real-time safe. Passive: new length comes in unstretched, length that leaves takes
-/// its share of the stretch with it, and slipping only ever lets go.
+/// it. A value type; real-time safe. Passive: new length enters unstretched, length that leaves
+/// takes its share of the stretch with it, and slipping only ever reduces the stretch.
 class ShaftSlip {
  public:
-  /// The shaft went in by `advance` [m] (out: less than 0), while the hand moves at `speed` [m/s]
-  /// along it; now `length` [m] of it is in this tissue. Returns the force [N] against going in
-  /// that it feels.
+  /// The shaft went in by `advance` [m] (negative: out), while the hand moves at `speed` [m/s]
+  /// along it; now `length` [m] of it is in this tissue. Returns the force [N] on the shaft against
+  /// going in.
   double step(const ShaftLaw& law, double length, double advance, double speed) noexcept;
   void reset() noexcept { *this = {}; }
 
   [[nodiscard]] bool isSliding() const noexcept { return is_sliding_; }
   [[nodiscard]] double stretch() const noexcept { return stretch_; }  ///< [m] mean over the length
-  /// [J] in the tissue drawn along, as stiff as `stiffness` [N/m^2].
+  /// [J] Energy in the tissue that is drawn along, of stiffness `stiffness` [N/m^2].
   [[nodiscard]] double stored(double stiffness) const noexcept {
     return 0.5 * stiffness * stretch_ * stretch_ * length_;
   }

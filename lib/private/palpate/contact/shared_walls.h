@@ -1,5 +1,5 @@
 #pragma once
-/// Walls beside each other on one surface, each of which bears its share of one press.
+/// Walls beside each other on one surface that share one press.
 
 #include <array>
 
@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// A wall's law at one place, and how it changes with the place.
+/// A wall's law at one place, and its derivatives by the place.
 struct SharedWall {
   WallLaw law;
   Vec3 height_rise{0.0, 0.0, 0.0};      ///< [-] gradient of its height by the place, ...
@@ -21,26 +21,25 @@ struct SharedWall {
     return height_rise == Vec3(0.0) && stiffness_rise == Vec3(0.0) &&
            stiffening_rise == Vec3(0.0) && stiffness_press == Vec3(0.0);
   }
-  /// [N] What the energy, `depth` [m] deep, rises by with the place, where the press stays as it
-  /// is, ...
+  /// [N] The gradient, at `depth` [m], of the energy by the place at constant press, ...
   [[nodiscard]] Vec3 rise(double depth) const noexcept;
-  /// [N] ... and the other way round.
+  /// [N] ... and by the press at constant place.
   [[nodiscard]] Vec3 byPress(double depth) const noexcept {
     if (stiffness_press == Vec3(0.0)) return stiffness_press;
     return law.energyPerStiffness(depth) * stiffness_press;
   }
 };
 
-/// Walls that share a press. Each stores its share of what its own law would store alone; so the
-/// force has a potential, whatever the shares, if what they change by is in it as well. One wall:
-/// all of it. Values; real-time safe.
+/// Walls that share a press. Each stores its share of the energy that its own law would store
+/// alone. So the force has a potential, whatever the shares, if it includes the gradient of the
+/// shares. A single wall has the share 1. A value type; real-time safe.
 class SharedWalls {
  public:
-  /// More are left out: the ones that bear least.
+  /// The most walls; of more, those with the smallest shares are left out.
   static constexpr std::size_t kMost = 4;
 
   /// Adds a wall that bears `share` [-] of the press; `by_place` [1/m] is the gradient of the share
-  /// where the place moves and the press stays as it is, `by_press` [1/m] the other way round.
+  /// by the place at constant press, `by_press` [1/m] that by the press at constant place.
   void add(const SharedWall& felt, double share = 1.0, const Vec3& by_place = Vec3(0.0),
            const Vec3& by_press = Vec3(0.0)) noexcept;
 
@@ -51,7 +50,7 @@ class SharedWalls {
   [[nodiscard]] double force(double depth) const noexcept;
   [[nodiscard]] double tangent(double depth) const noexcept;
   [[nodiscard]] double energy(double depth) const noexcept;
-  /// [N] Gradients of the energy, `depth` [m] deep, by the place and by the press.
+  /// [N] Gradients of the energy at `depth` [m] by the place and by the press.
   [[nodiscard]] Vec3 rise(double depth) const noexcept;
   [[nodiscard]] Vec3 byPress(double depth) const noexcept;
 
@@ -62,7 +61,7 @@ class SharedWalls {
     Vec3 by_place{0.0, 0.0, 0.0};
     Vec3 by_press{0.0, 0.0, 0.0};
 
-    /// [N] What the share's own gradient [1/m] adds; most walls are alone and have none.
+    /// [N] The part due to the share's own gradient [1/m]; most walls are alone and have none.
     [[nodiscard]] Vec3 byShare(const Vec3& gradient, double depth) const noexcept {
       return gradient == Vec3(0.0) ? gradient : felt.law.energy(depth) * gradient;
     }
@@ -73,7 +72,7 @@ class SharedWalls {
   std::size_t count_ = 0;
 };
 
-/// As softWall() of one law.
+/// Like softWall() of one law.
 [[nodiscard]] SoftWall softWall(const SharedWalls& walls, double stop, double give) noexcept;
 
 }  // namespace palpate

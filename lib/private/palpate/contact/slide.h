@@ -13,18 +13,19 @@ struct HeldWall {
   double side = 1.0;        ///< +1: the proxy is where S > 0
   FieldJet jet{};           ///< at the proxy
   Vec3 normal{0.0};         ///< [-] side * gradient / |gradient|
-  double multiplier = 0.0;  ///< [m] of PlaneSolution
+  double multiplier = 0.0;  ///< [m] as in PlaneSolution
 };
 
-/// The part of `v` across all `normals` (unit), ...
+/// The part of `v` perpendicular to all `normals` (unit), ...
 [[nodiscard]] Vec3 partAcross(const Vec3& v, std::span<const Vec3> normals) noexcept;
-/// ... and along all walls.
+/// ... and the part along all walls.
 [[nodiscard]] Vec3 tangentialPart(const Vec3& v, std::span<const HeldWall> walls) noexcept;
 
-/// The chain rule through a proxy at rest: the gradient by the hand's position of what has
-/// `gradient` by the proxy's. The proxy follows the hand by (I - sum lambda_i H_i / |grad S_i|)^-1
-/// along the walls, and not at all across them; near the hand's focal points the inverse is held to
-/// 1000. Source: the derivative of the second-order condition of min |x - P|^2 on S = 0.
+/// The chain rule through a proxy at rest: turns `gradient`, by the proxy's position, into the
+/// gradient by the hand's position. The proxy follows the hand by (I - sum lambda_i H_i / |grad
+/// S_i|)^-1 along the walls, and not at all across them; near the hand's focal points the inverse
+/// is limited to 1000. Source: the derivative of the second-order condition of min |x - P|^2 on S =
+/// 0.
 [[nodiscard]] Vec3 gradientByHand(const Vec3& gradient, std::span<const HeldWall> walls) noexcept;
 
 }  // namespace palpate

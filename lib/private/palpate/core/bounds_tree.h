@@ -1,6 +1,6 @@
 #pragma once
-/// A bounding-volume hierarchy over axis-aligned boxes: which of many things may be near a point or
-/// meet a box.
+/// A bounding-volume hierarchy over axis-aligned boxes: finds which of many things may be near a
+/// point or meet a box.
 
 #include <cstdint>
 #include <span>
@@ -14,7 +14,7 @@ namespace palpate {
 
 /// Immutable after construction; visits are real-time safe (their stack is fixed, the tree's depth
 /// is bounded by halving). Items are numbered as in the constructor's list; empty boxes are never
-/// met, infinite ones always.
+/// visited, infinite ones always.
 class PALPATE_EXPORT BoundsTree {
  public:
   BoundsTree() = default;
@@ -28,7 +28,7 @@ class PALPATE_EXPORT BoundsTree {
     walk([&](const Box3& box) { return isNear(box, p, radius); }, f);
   }
 
-  /// Whether they have a point in common.
+  /// Whether the boxes have a point in common.
   [[nodiscard]] static bool meet(const Box3& a, const Box3& b) noexcept {
     return a.lo.x <= b.hi.x && b.lo.x <= a.hi.x && a.lo.y <= b.hi.y && b.lo.y <= a.hi.y &&
            a.lo.z <= b.hi.z && b.lo.z <= a.hi.z;
@@ -40,15 +40,15 @@ class PALPATE_EXPORT BoundsTree {
     walk([&](const Box3& each) { return meet(each, box); }, f);
   }
 
-  /// Calls f(item), about the nearest boxes first, for the items whose boxes come within a radius
-  /// of `p` that narrows down as the visit goes on: `radius` [m] at first, then what f returned
-  /// last. A negative radius meets the boxes that hold `p`.
+  /// Calls f(item) for items whose boxes come within a radius of `p`, roughly the nearest boxes
+  /// first. The radius [m] shrinks as the visit goes on: it is `radius` at first, then what f
+  /// returned last. A negative radius visits the boxes that contain `p`.
   template <typename F>
   void visitNearest(const Vec3& p, double radius, F&& f) const noexcept {
     if (nodes_.empty()) return;
     struct Entry {
       std::uint32_t node;
-      double square;  ///< [m^2] of the distance of its box
+      double square;  ///< [m^2] squared distance to its box
     };
     Entry stack[kMaxDepth];
     int depth = 0;
@@ -75,14 +75,15 @@ class PALPATE_EXPORT BoundsTree {
   }
 
  private:
-  static constexpr int kMaxDepth = 96;  // two a level; 2^32 items need 32 levels
+  static constexpr int kMaxDepth = 96;  // two entries a level; 2^32 items need 32 levels
   struct Node {
     Box3 box;
     std::uint32_t first = 0;  ///< leaf: first item; inner: left child, the right one follows it
     std::uint32_t count = 0;  ///< items of a leaf; 0: inner
   };
 
-  /// Calls f(item) for each item whose box, and all boxes around it, `is_met` says yes to.
+  /// Calls f(item) for each item for which `is_met` returns true of its box and of all boxes around
+  /// it.
   template <typename Met, typename F>
   void walk(const Met& is_met, F& f) const {
     if (nodes_.empty()) return;

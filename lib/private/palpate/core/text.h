@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers, names and lists, as messages show them.
+/// Numbers, names and lists, as messages write them.
 
 #include <functional>
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace palpate {
 
-/// With at most `digits` significant digits.
+/// `value` with at most `digits` significant digits.
 [[nodiscard]] PALPATE_EXPORT std::string shortNumber(double value, int digits);
-/// With as few digits as read back exactly.
+/// `value` with as few digits as read back exactly.
 [[nodiscard]] PALPATE_EXPORT std::string exactNumber(double value);
 
-/// `text` in single quotes, on one line and not too long.
+/// `text` in single quotes, on one line and cut off if it is too long.
 [[nodiscard]] PALPATE_EXPORT std::string inQuotes(std::string_view text);
 
-/// "a, b, c": shown(item) of each, or the member of each that it is. Those that show as nothing are
-/// left out.
+/// "a, b, c": `shown` of each item, which is a function or a member. Items for which that is empty
+/// are left out.
 template <typename Items, typename Shown = std::identity>
 [[nodiscard]] std::string joined(const Items& items, std::string_view between = ", ",
                                  Shown shown = {}) {

@@ -1,6 +1,7 @@
 #pragma once
-/// Space cut into regions. Each layer is a Boolean expression over smooth leaf fields; the leaves'
-/// signs at a point say which layers hold it, and the last of those is its region.
+/// Space divided into regions. Each layer is a Boolean expression over smooth leaf fields. The
+/// leaves' signs at a point decide which layers contain it, and the last of those layers is its
+/// region.
 
 #include <array>
 #include <bit>
@@ -20,42 +21,43 @@ namespace palpate {
 struct Leaf {
   FieldPtr field;
   double lipschitz = 1.0;  ///< Field::lipschitz()
-  /// [m] the unit of tolerances at this leaf: Field::featureSize(); of a plane, that of the solid
-  /// it is a face of, or else the largest of the other leaves
+  /// [m] the length that tolerances at this leaf are relative to: Field::featureSize(); for a
+  /// plane, that of the solid it is a face of, or else the largest of the other leaves
   double feature = 1.0;
   bool is_flat = false;  ///< Field::isFlat()
-  /// A leaf between two others means something only where both of them are inside; where just one
-  /// is, it is inside with the first of them and outside with the second.
+  /// Set for a leaf between two others, which has a meaning only where both of these are inside.
+  /// Where only one of them is, this leaf counts as inside with the first and as outside with the
+  /// second.
   bool is_between = false;
   std::array<LeafId, 2> ends{};
 };
 
-/// Tells that `wall` is a leaf between `first` and `second`: all three vanish in one line, and
-/// without this rounding could see cells there that do not exist. Ignored where one of the two is
-/// not a single leaf.
+/// States that `wall` is a leaf between `first` and `second`: all three vanish on one line, and
+/// without this information rounding could produce cells there that do not exist. Ignored if one of
+/// the two is not a single leaf.
 struct LeafBetween {
   FieldPtr wall;
   FieldPtr first;   ///< inside wherever the wall is inside and `second` is
   FieldPtr second;  ///< inside wherever the wall is outside and `first` is
 };
 
-/// One bit for each leaf: true is inside (negative). A value with room for as many leaves as a
+/// One bit for each leaf: true is inside (negative). A value type with room for as many leaves as a
 /// scene may have.
 class Signs {
  public:
   static constexpr std::size_t kMaxLeaves = 65535;
 
   Signs() = default;
-  /// `leaves`: at most kMaxLeaves
+  /// `leaves` is at most kMaxLeaves.
   explicit Signs(std::size_t leaves) noexcept
       : leaves_(static_cast<std::uint32_t>(leaves)),
         used_(static_cast<std::uint32_t>((leaves + 63) / 64)) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return leaves_; }
-  /// Whether these can be signs of so many leaves: a value out of a file need not be.
+  /// Whether these can be the signs of that many leaves: a value from a file need not be.
   [[nodiscard]] bool isOf(std::size_t leaves) const noexcept;
 
-  /// As the defaulted copy, without the words that are not used.
+  /// Like the defaulted copy, without copying the words that are not used.
   void assign(const Signs& other) noexcept {
     leaves_ = other.leaves_;
     used_ = other.used_;
@@ -82,7 +84,7 @@ class Signs {
       }
     }
   }
-  /// How many of `count` leaves from `first` on are inside.
+  /// Number of leaves inside, among the `count` leaves from `first` on.
   [[nodiscard]] std::size_t countInside(LeafId first, std::size_t count) const noexcept;
   /// True if any (all) of `count` leaves from `first` on are inside.
   [[nodiscard]] bool anyInside(LeafId first, std::size_t count) const noexcept;
@@ -103,33 +105,35 @@ class Signs {
 
 static_assert(std::is_trivially_copyable_v<Signs>);
 
-/// One step of an expression whose negations stand at the leaves only, in postfix order: a leaf's
-/// side or what a run of leaves has in common is pushed; kAnd and kOr take two off the stack.
+/// One step of an expression in postfix order whose negations are all at the leaves. kAnyOf and
+/// kAllOf push whether any or all leaves of a run (or a single leaf) are on the side `inside`; kAnd
+/// and kOr combine the two topmost stack entries.
 struct SideStep {
   enum class Op : std::uint8_t { kAnyOf, kAllOf, kAnd, kOr } op = Op::kAnyOf;
-  bool inside = true;       ///< of a run: which side of its leaves is meant
+  bool inside = true;       ///< of a run: the side of its leaves that is tested
   LeafId first = 0;         ///< of a run
-  std::uint16_t count = 0;  ///< of a run; 1 for a leaf, 0 for none: false of any, true of all
+  std::uint16_t count = 0;  ///< of a run; 1 for a leaf, 0 for none: then any is false, all is true
 };
 
 /// Leaves and the layers' expressions over them. Immutable; every const member is real-time safe.
 class Partition {
  public:
-  /// Takes each layer's field apart along its CSG structure, and each mask's likewise. A mask is
-  /// the extent of a port or sheet: its leaves cut cells, but it holds no region. A leaf that
-  /// several of them use (the same field at the same place) is one leaf. A layer without field
-  /// (null) holds nothing. @throws Error (kInput) for more leaves or layers than the id types hold.
+  /// Splits each layer's field along its CSG structure, and each mask's likewise. A mask is the
+  /// extent of a port or sheet: its leaves divide cells, but it does not contain a region. A leaf
+  /// that several of them use (the same field at the same place) is one leaf. A layer without a
+  /// field (null) contains nothing. @throws Error (kInput) for more leaves or layers than the id
+  /// types can number.
   explicit Partition(std::span<const FieldPtr> layers, std::span<const FieldPtr> masks = {},
                      std::span<const LeafBetween> between = {});
 
   [[nodiscard]] std::span<const Leaf> leaves() const noexcept { return leaves_; }
   [[nodiscard]] std::size_t regionCount() const noexcept { return layer_count_ + 1; }
 
-  /// The leaves that `part`, a field met while a layer was taken apart, came to be; empty if it was
+  /// The leaves into which `part`, a field met while a layer was split, was split; empty if it was
   /// not met. This is how `on: brim` finds its facet.
   [[nodiscard]] std::vector<LeafId> leavesOf(const Field* part) const;
 
-  /// Leaves of one layer's expression, without repetition.
+  /// Leaves of the expression of `region`'s layer, without repetition.
   [[nodiscard]] std::span<const LeafId> leavesOfRegion(RegionId region) const noexcept;
 
   /// Regions whose layer's expression uses `leaf`.
@@ -142,36 +146,37 @@ class Partition {
     return between_[leaf];
   }
 
-  /// Which leaves' insides may come near a point: items are leaf ids.
+  /// A tree over the boxes of the leaves' insides: its items are leaf ids.
   [[nodiscard]] const BoundsTree& tree() const noexcept { return tree_; }
 
-  /// True if `region`'s own layer (later layers not looked at) holds the cell `signs`; true for
+  /// True if `region`'s own layer (ignoring later layers) contains the cell `signs`; true for
   /// outside.
   [[nodiscard]] bool layerHolds(RegionId region, const Signs& signs) const noexcept;
 
   /// True if the cell `signs` lies within mask `index` (of the constructor's list).
   [[nodiscard]] bool maskHolds(std::size_t index, const Signs& signs) const noexcept;
 
-  /// The last layer that holds the cell, or outside.
+  /// The last layer that contains the cell, or outside.
   [[nodiscard]] RegionId regionOf(const Signs& signs) const noexcept;
 
-  /// Where `region`'s own layer is (`holds`), or where it is not. Not for outside.
+  /// The expression for where `region`'s own layer is (`holds`), or where it is not. Not for
+  /// outside.
   [[nodiscard]] std::span<const SideStep> layerSides(RegionId region, bool holds) const noexcept {
     return sides_[region - 1U][holds ? 1 : 0];
   }
-  /// The same of mask `index`.
+  /// The same for mask `index`.
   [[nodiscard]] std::span<const SideStep> maskSides(std::size_t index, bool holds) const noexcept {
     return sides_[layer_count_ + index][holds ? 1 : 0];
   }
-  /// Stack entries that evaluating any of these takes at most.
+  /// The most stack entries that evaluating any of these takes.
   static constexpr std::size_t kMaxDepth = 64;
 
   /// Signs of all leaves at `p` [m]; zero counts as outside. `out` must have room for all leaves.
   void signsAt(const Vec3& p, Signs& out) const noexcept;
 
  private:
-  /// Postfix: leaves push their sign, or the union or intersection of a run of them; kAnd and kOr
-  /// take two off the stack.
+  /// A step of a program in postfix order: leaves push their sign, or the union or intersection of
+  /// a run of leaves; kAnd and kOr combine the two topmost entries.
   struct Step {
     enum class Op : std::uint8_t { kLeaf, kAnyOf, kAllOf, kAnd, kOr, kNot } op;
     LeafId leaf = 0;          ///< the leaf, or the first of a run
@@ -182,20 +187,20 @@ class Partition {
     std::vector<LeafId> leaves;
   };
   struct Builder;
-  /// By program: where it does not hold, and where it does.
+  /// For one program: where it does not hold, and where it does.
   using Sides = std::array<std::vector<SideStep>, 2>;
   [[nodiscard]] static Sides sidesOf(const Program& program);
 
   [[nodiscard]] static bool evaluate(const Program& program, const Signs& signs) noexcept;
 
   std::vector<Leaf> leaves_;
-  std::vector<Program> programs_;  ///< the layers', then the masks'
+  std::vector<Program> programs_;  ///< of the layers, then of the masks
   std::vector<Sides> sides_;       ///< by program
   std::size_t layer_count_ = 0;
   std::vector<std::vector<RegionId>> regions_of_leaf_;
-  std::vector<std::vector<LeafId>> between_;  ///< by either end
+  std::vector<std::vector<LeafId>> between_;  ///< by either of the two leaves that it lies between
   std::vector<RegionId>
-      hold_empty_;  ///< regions that hold the cell outside all leaves (complements)
+      hold_empty_;  ///< regions that contain the cell outside all leaves (complements)
   BoundsTree tree_;
   std::vector<std::pair<const Field*, std::vector<LeafId>>> parts_;
 };

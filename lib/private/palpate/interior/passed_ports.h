@@ -8,33 +8,34 @@
 
 namespace palpate {
 
-/// How often each port of interest was passed, and which way last: a value of fixed size, to be
-/// copied to rewind, that never fills up and never forgets by itself. Of interest are the ports
+/// How often each relevant port was passed, and which way last. A value type of fixed size, so that
+/// a copy can be restored; it never fills up and never forgets by itself. Relevant are the ports
 /// that some `after` names; Passages gives each of them a slot. Real-time safe.
 class PassedPorts {
  public:
-  /// Ports that the `after` of all ports together can name; a scene with more is refused when
-  /// compiled.
+  /// The most ports that the `after` of all ports together can name; a scene with more is refused
+  /// when it is compiled.
   static constexpr std::size_t kCapacity = 128;
 
-  /// [times] that the port was passed, less the times it was passed back; 0 or more.
+  /// [times] that the port was passed, minus the times it was passed back; 0 or more.
   [[nodiscard]] std::int64_t times(std::size_t slot) const noexcept {
     return net_[slot] < 0 ? -net_[slot] : net_[slot];
   }
-  /// The way of the passings that count: 1 in, -1 out, 0 if there are none.
+  /// The direction of the passings that count: 1 in, -1 out, 0 if there are none.
   [[nodiscard]] int turn(std::size_t slot) const noexcept {
     return net_[slot] > 0 ? 1 : net_[slot] < 0 ? -1 : 0;
   }
-  /// The port was passed, inward or not. A passing against those that count takes one of them back;
-  /// with `keep` none is ever taken back, and passings count either way.
+  /// Records a passing of the port, inward or not. A passing in the direction opposite to those
+  /// that count takes one of them back; with `keep` none is ever taken back, and passings in both
+  /// directions count.
   void pass(std::size_t slot, bool inward, bool keep) noexcept {
     net_[slot] += inward || keep ? 1 : -1;
   }
-  /// Takes one passing back, if those that count were made this way.
+  /// Takes one passing back, if those that count were made in this direction.
   void takeBack(std::size_t slot, bool inward) noexcept {
     if (turn(slot) == (inward ? 1 : -1)) net_[slot] -= inward ? 1 : -1;
   }
-  /// As often, and the same way, as the port `from` was passed in `other`.
+  /// Copies the count and direction of the port `from` in `other`.
   void take(std::size_t slot, const PassedPorts& other, std::size_t from) noexcept {
     net_[slot] = other.net_[from];
   }
@@ -43,7 +44,7 @@ class PassedPorts {
   friend bool operator==(const PassedPorts&, const PassedPorts&) = default;
 
  private:
-  std::array<std::int64_t, kCapacity> net_{};  ///< by slot: passed inward less passed outward
+  std::array<std::int64_t, kCapacity> net_{};  ///< by slot: passed inward minus outward
 };
 
 static_assert(std::is_trivially_copyable_v<PassedPorts>);

@@ -1,6 +1,6 @@
 #pragma once
-/// The contents of a scene's regions as one renderer feels them: what the scene says, but for what
-/// was changed while it runs.
+/// The contents of a scene's regions as one renderer feels them: as the scene describes them,
+/// except for what was changed while it runs.
 
 #include <cstdint>
 #include <vector>
@@ -10,15 +10,15 @@
 
 namespace palpate {
 
-/// A value for each region. Real-time safe but for the constructor.
+/// One entry for each region. Real-time safe except for the constructor.
 class Contents {
  public:
   explicit Contents(const Scene& scene);
 
-  /// False, and nothing is changed, for an unknown region or a value that it cannot have.
+  /// Returns false, and changes nothing, for an unknown region or a value out of its range.
   [[nodiscard]] bool change(RegionId region, const ContentChange& change) noexcept;
 
-  /// Null where nothing is felt, whatever is changed.
+  /// Null if nothing is felt there and no change can alter that.
   [[nodiscard]] const Material* material(RegionId region) const noexcept {
     return regions_[region].material;
   }
@@ -37,7 +37,7 @@ class Contents {
   [[nodiscard]] bool hasLattice(RegionId region) const noexcept {
     return regions_[region].has_lattice;
   }
-  /// [N] of the lattice's force at `p` [m]
+  /// [N] amplitude of the lattice's force at `p` [m]
   [[nodiscard]] MaterialMap::Sample latticeForce(RegionId region, const Vec3& p) const noexcept {
     const Region& r = regions_[region];
     if (r.change.lattice_force) return {*r.change.lattice_force, Vec3(0.0)};
@@ -49,17 +49,17 @@ class Contents {
     if (r.change.cutting) return *r.change.cutting;
     return r.material != nullptr ? r.material->cutting.at(p) : 0.0;
   }
-  /// Whether a needle is held there: by cutting, or along its shaft.
+  /// Whether the region holds a needle: by cutting force, or along its shaft.
   [[nodiscard]] bool holdsNeedle(RegionId region) const noexcept {
     return regions_[region].holds_needle;
   }
-  /// Grows with every change.
+  /// A number that grows with every change.
   [[nodiscard]] std::uint32_t version() const noexcept { return version_; }
-  /// [m] Ways of a needle this close together are one: about its radius. 0.5 mm, or an eighth of
-  /// the thickest tissue where that is less, so that a scene in micrometers is the same scene.
-  /// Ports that make holes say how wide these are.
+  /// [m] Two paths of a needle that are closer than this count as one; it is about a needle's
+  /// radius: 0.5 mm, or an eighth of the thickest tissue where that is less, so that it scales with
+  /// the scene. Ports that make holes have their own radius.
   [[nodiscard]] double sameWay() const noexcept { return same_way_; }
-  /// Whether any region does.
+  /// Whether any region holds a needle.
   [[nodiscard]] bool holdNeedles() const noexcept { return hold_needles_; }
 
  private:

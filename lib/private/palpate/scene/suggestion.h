@@ -1,5 +1,5 @@
 #pragma once
-/// What to do about a name that nobody knows.
+/// The hint for a name that is not known.
 
 #include <functional>
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace palpate {
 
-/// "did you mean 'x'?" if a name of one of `items` is close to `word`, else `otherwise`. `name` is
-/// the member of each that is its name.
+/// "did you mean 'x'?" if the name of one of `items` is close to `word`, else `otherwise`. `name`
+/// is the member that holds an item's name.
 template <typename Items, typename Name = std::identity>
 [[nodiscard]] std::string suggestionFor(std::string_view word, const Items& items,
                                         std::string otherwise = {}, Name name = {}) {

@@ -1,5 +1,5 @@
 #pragma once
-/// The table of states and transitions that a scene comes to.
+/// The table of a scene's states and transitions.
 
 #include <optional>
 #include <vector>
@@ -12,13 +12,13 @@ namespace palpate {
 struct Transition {
   RegionId from = kOutside;
   RegionId to = kOutside;
-  std::optional<PortId> port = {};  ///< none: no wall is there
+  std::optional<PortId> port = {};  ///< none: there is no wall
   Parameter force = 0.0;            ///< [N] at which the port opens this way; 0: it is open
 };
 
 /// All rows, by regions and then in the author's order of ports. Ports of sheets, which lead from a
-/// region to itself, are not among them. Which rows a probe can ever take, from the start and by
-/// ports after ports, say Region::reach and Scene::reachOf(). Set-up thread.
+/// region to itself, are not included. Region::reach and Scene::reachOf() say which rows a probe
+/// can ever take, from the start and with ports in their order. Set-up thread.
 [[nodiscard]] std::vector<Transition> transitions(const Scene& scene);
 
 }  // namespace palpate
