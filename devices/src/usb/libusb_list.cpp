@@ -48,7 +48,7 @@ class List {
 }  // namespace
 
 Context::Context(bool is_blind) {
-  // libusb can only be told this for all later contexts.
+  // libusb offers this option only for all later contexts together.
   if (is_blind) (void)libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
   if (const int error = libusb_init(&context_); error != 0) {
     throw openError(error, "start libusb");

@@ -1,5 +1,5 @@
-// The mean of a map over the patch of a press: its slopes against differences, its spread against
-// the moment of a disk.
+// The mean of a map over the patch of a press: its gradients against differences, its spread
+// against the moment of a disk.
 
 #include "palpate/contact/contact_patch.h"
 
@@ -30,7 +30,7 @@ Parameter waves() {
       MaterialMap::Range{700.0, 1300.0}));
 }
 
-/// The slope of `f` by its argument at `at`, by central differences.
+/// The gradient of `f` at `at`, by central differences.
 Vec3 slope(const std::function<double(const Vec3&)>& f, const Vec3& at, double step) {
   Vec3 out(0.0);
   for (int axis = 0; axis < 3; ++axis) {
@@ -44,11 +44,11 @@ Vec3 slope(const std::function<double(const Vec3&)>& f, const Vec3& at, double s
 TEST(OverPatch, ItsSlopesAreThoseOfItsValue) {
   const Parameter map = waves();
   Random random(3);
-  // Off by (step / length)^2 of the slope, 1.5e5 N/m^2 and more, and by the rounding of 1e-13 of
-  // the value over the step.
+  // Errors: (step / length)^2 of the gradient, which is 1.5e5 N/m^2 and more, and the rounding of
+  // 1e-13 of the value over the step.
   constexpr double kStep = 1e-8;
   constexpr double kTolerance = 0.05;
-  // A point, few places, few and many blended (16 to 32 times the contrast), and many.
+  // A point; few places; a blend of few and many (16 to 32 times the contrast); and many.
   for (const double contrast : {6e-3, 1e-3, 0.12e-3, 0.05e-3}) {
     for (int i = 0; i < 40; ++i) {
       const Vec3 middle = random.in({Vec3(-3e-3), Vec3(3e-3)});
@@ -83,8 +83,8 @@ TEST(OverPatch, LiesAcrossThePressAndIsAsWideAsThePatch) {
         return overPatch(map, middle, depth * u, contrast).value;
       };
       EXPECT_NEAR(mean_square(u), 0.0, 1e-12 * radius * radius);
-      // Evenly along any line: a third of the radius squared. 24 places are that even to some
-      // percent.
+      // Evenly spread along any line: the mean square is a third of the radius squared. 24 places
+      // are that even to some percent.
       EXPECT_NEAR(mean_square(along), radius * radius / 3.0, 0.05 * radius * radius / 3.0);
     }
   }
@@ -97,7 +97,7 @@ TEST(OverPatch, IsAPointDownToHalfTheContrast) {
   EXPECT_EQ(patchRadius(1e-3, 2e-3), 0.0);
   EXPECT_GT(patchRadius(1e-3, 1.9e-3), 0.0);
   EXPECT_EQ(patchRadius(5.0, kInfinity), 0.0);
-  // Far below it is as wide as the press is deep, less the contrast.
+  // At great depth the radius is the depth minus the contrast.
   EXPECT_NEAR(patchRadius(0.1, 1e-3), 0.099, 1e-5);
   EXPECT_EQ(overPatch(map, middle, press, 2e-3).value, map.at(middle));
   EXPECT_NE(overPatch(map, middle, press, 1e-3).value, map.at(middle));

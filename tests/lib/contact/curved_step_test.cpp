@@ -1,5 +1,5 @@
-// The step in the metric of the walls' curvature, against the best of all sets of planes that may
-// hold it.
+// The step in the metric of the walls' curvature, against the best result of all sets of planes
+// that may hold it.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ Mat3 symmetric(Random& random, double size) {
   return out;
 }
 
-/// A quadratic problem on one plane: what is minimized, and what is allowed.
+/// A quadratic problem on one plane: the objective and the constraints.
 struct Problem {
   Vec3 wish;
   Mat3 metric;
@@ -42,7 +42,7 @@ struct Problem {
   /// The best point of base + span(directions); false if there is none.
   [[nodiscard]] bool bestIn(const Vec3& from, const std::vector<Vec3>& directions,
                             Vec3& out) const {
-    // Cost along them: c'Mc / 2 - g.c.
+    // The cost along the directions: c'Mc / 2 - g.c.
     out = from;
     if (directions.empty()) return true;
     const Vec3 pull = wish - metric * from;
@@ -65,7 +65,7 @@ struct Problem {
     out += ((c * p - b * q) / det) * d + ((a * q - b * p) / det) * e;
     return true;
   }
-  /// The least cost that is allowed, over all sets of at most two more planes that hold the point.
+  /// The smallest cost permitted, over all sets of at most two more planes that hold the point.
   [[nodiscard]] double least(double slack) const {
     double out = kInfinity;
     const auto look = [&](const Vec3& from, const std::vector<Vec3>& directions) {
@@ -107,7 +107,7 @@ TEST(CurvedStep, OnOneWallIsTheBestThatTheOthersAllow) {
     for (Plane& plane : problem.planes) plane = {random.direction(), random.uniform(0.0, 0.6)};
     problem.planes[0].gap = 0.0;
     problem.wish = random.uniform(0.2, 2.0) * random.direction();
-    // Eigenvalues of 1 - bend lie above 0.1 then: it is the matrix as it is.
+    // Then the eigenvalues of 1 - bend are above 0.1, and the matrix is used unchanged.
     const Mat3 bend = symmetric(random, 0.3);
     const PlaneSolution first = closestStep(problem.wish, problem.planes);
     if (first.count != 1) continue;
@@ -118,7 +118,8 @@ TEST(CurvedStep, OnOneWallIsTheBestThatTheOthersAllow) {
     problem.base = glm::dot(n, first.step) * n;
     EXPECT_NEAR(glm::dot(n, step.step - first.step), 0.0, 1e-12) << "stays on its wall";
     EXPECT_LE(problem.broken(step.step), 1e-9) << trial;
-    // Along the wall only: what is across it is given. Its bend across counts for nothing.
+    // Only the motion along the wall is free; the component across it is given, so the curvature
+    // across does not count.
     problem.metric = Mat3(1.0) - bend;
     const Mat3 along = Mat3(1.0) - glm::outerProduct(n, n);
     problem.metric = along * problem.metric * along;
@@ -134,7 +135,7 @@ TEST(CurvedStep, OnOneWallIsTheBestThatTheOthersAllow) {
 }
 
 TEST(CurvedStep, GoesDownhillWhereTheWallBendsTooMuch) {
-  // A hand beyond the center of curvature in one direction: along that the eigenvalue counts by its
+  // A hand beyond the center of curvature in one direction: there the eigenvalue is replaced by its
   // magnitude.
   Random random(22);
   for (int trial = 0; trial < 500; ++trial) {
@@ -176,8 +177,8 @@ TEST(CurvedStep, BetweenTwoWallsGoesAlongTheirCrease) {
     const Vec3 t = glm::normalize(glm::cross(a, b));
     const double eigenvalue = 1.0 - glm::dot(t, bend * t);
     EXPECT_NEAR(step.lowest, eigenvalue, 1e-12);
-    // From the crease's point nearest to the wish as far as the curvature wants, or up to the first
-    // plane.
+    // From the point on the crease nearest to the wish as far as the curvature demands, or up to
+    // the first plane.
     const Vec3 base = first.step - glm::dot(t, first.step) * t;
     double lo = -kInfinity;
     double hi = kInfinity;

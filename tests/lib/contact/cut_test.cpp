@@ -1,5 +1,5 @@
-// A cut against its closed form along a straight way, in and out and in again, and its energy on
-// any way.
+// A cut against its closed form along a straight way in, out and in again, and its energy on any
+// way.
 
 #include "palpate/contact/cut.h"
 
@@ -66,8 +66,8 @@ TEST(Cut, SidesHoldUpToTheCuttingForceAndTheCutSwingsAlong) {
               1.0, 1e-12);
 }
 
-// A tissue may be left beside and behind where it was entered: through a wall that is not square to
-// the needle.
+// A tissue may be left beside and behind the point where it was entered: through a wall that is not
+// perpendicular to the needle.
 TEST(Cut, DrawnOutPastItsEntryTheTipIsHeldSidewaysOnly) {
   Cut cut(kEntry);
   for (int i = 0; i <= 200; ++i) {
@@ -83,8 +83,8 @@ TEST(Cut, DrawnOutPastItsEntryTheTipIsHeldSidewaysOnly) {
   EXPECT_EQ(cut.end(), end);
 }
 
-// Whatever the way: all that is given back was stored, and cutting only takes. Trapezoids, as the
-// force is continuous; a tick's way is far below the lag.
+// On any way, all energy given back was stored before, and cutting only dissipates. Trapezoids
+// suffice, as the force is continuous and the way in a tick is far below the lag.
 TEST(Cut, NeverGivesEnergy) {
   std::mt19937 random(4);
   std::normal_distribution<double> change(0.0, 1e-6);

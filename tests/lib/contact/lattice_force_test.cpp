@@ -1,5 +1,5 @@
-// The lattice's force against its formula and as the slope of its energy, also where its amplitude
-// varies.
+// The lattice's force against its formula and as the gradient of its energy, also where its
+// amplitude varies.
 
 #include "palpate/contact/lattice_force.h"
 
@@ -27,8 +27,8 @@ TEST(LatticeForce, IsASineAlongEachAxis) {
     return latticePush(lattice, lattice.force.sample(p), p).force;
   };
   EXPECT_EQ(push(lattice.origin), Vec3(0.0));
-  EXPECT_NEAR(push(Vec3(2e-3, 0.0, 0.0)).x, -0.4, 1e-15);  // a quarter on
-  EXPECT_NEAR(push(Vec3(0.0, 0.0, 0.0)).x, 0.4, 1e-15);    // a quarter back
+  EXPECT_NEAR(push(Vec3(2e-3, 0.0, 0.0)).x, -0.4, 1e-15);  // a quarter of a wavelength further
+  EXPECT_NEAR(push(Vec3(0.0, 0.0, 0.0)).x, 0.4, 1e-15);    // a quarter of a wavelength back
   EXPECT_NEAR(push(Vec3(1e-3, 1.5e-3, 5e-3)).y, -0.4, 1e-15);
   EXPECT_EQ(push(Vec3(1e-3, 1.5e-3, 5e-3)).z, 0.0);  // no waves along z
 }
@@ -37,7 +37,7 @@ TEST(LatticeForce, IsTheSlopeOfItsEnergy) {
   const Lattice lattice = sampleLattice();
   std::mt19937 random(2);
   std::uniform_real_distribution<double> place(-0.01, 0.01);
-  const Vec3 slope(30.0, -20.0, 50.0);  // [N/m] of an amplitude that varies
+  const Vec3 slope(30.0, -20.0, 50.0);  // [N/m] gradient of an amplitude that varies
   const auto at = [&](const Vec3& p) {
     return latticePush(lattice, {0.4 + glm::dot(slope, p), slope}, p);
   };
@@ -47,7 +47,7 @@ TEST(LatticeForce, IsTheSlopeOfItsEnergy) {
     for (int axis = 0; axis < 3; ++axis) {
       Vec3 h(0.0);
       h[axis] = 1e-6;
-      // Central differences: h^2 / 6 of the third derivative, 0.6 k^2 and less.
+      // Error of central differences: h^2 / 6 of the third derivative, which is 0.6 k^2 or less.
       EXPECT_NEAR(force[axis], -(at(p + h).energy - at(p - h).energy) / 2e-6, 1e-6);
     }
   }

@@ -1,4 +1,4 @@
-// Stacks of layers against limits that need no integral, and bounds that hold for all.
+// Stacks of layers against limits that need no integral, and against bounds that hold for all.
 
 #include "palpate/contact/layered.h"
 
@@ -36,10 +36,9 @@ TEST(StackStiffness, ThickLayersHideAndThinOnesVanish) {
   EXPECT_NEAR(felt({{400.0, 0.01}, {5000.0, 1e-7}, {900.0, 0.0}}), without, 1e-3 * without);
 }
 
-/// Far below, a layer is under what a point force does, and the force it keeps from sinking is
-/// known: on an incompressible layer of thickness h that sticks to a rigid ground a patch is
-/// stiffer than on a half-space by 1 / (1 - c a / h). c is found twice, at two thicknesses, and
-/// must be the same.
+/// A ground far below a layer feels only a point force, whose reduced compliance is known: on an
+/// incompressible layer of thickness h that sticks to a rigid ground, a patch is stiffer than on a
+/// half-space by 1 / (1 - c a / h). c is computed at two thicknesses, and must be the same.
 TEST(StackStiffness, ADeepGroundShowsAsTheRadiusToTheDepth) {
   const auto c = [](double h) {
     const double rise = felt({{400.0, h}, {4e9, 0.0}}) / 400.0;
@@ -75,7 +74,8 @@ TEST(StackStiffness, LiesBetweenItsLayersAndGrowsWithEach) {
       thicker[i].thickness += h;
       thinner[i].thickness -= h;
       const double slope = (felt(thicker) - felt(thinner)) / (2.0 * h);
-      // The rule's own error changes with the thickness where that is far below the radius.
+      // Where a thickness is far below the radius, the error of the quadrature itself changes with
+      // it.
       if (layers[i].thickness < 0.4 * kRadius || layers[0].thickness < 0.4 * kRadius) continue;
       ASSERT_NEAR(all.by_thickness[i], slope, 0.02 * std::fabs(slope) + 1e-4 * most / kRadius) << i;
     }
@@ -96,9 +96,9 @@ Mat inverse(const Mat& x) {
   return {f * x.d, -f * x.b, -f * x.c, f * x.a};
 }
 
-/// How much further the stack gives way than its top layer alone, as a share of that, at wave
-/// number k. Another way than by reflections: what lies below a plane resists a displacement u
-/// there by 2 k Y u, and a layer makes Y of its lower side into that of its upper one.
+/// The compliance of the stack beyond that of its top layer alone, as a share of the latter, at
+/// wave number k. It is computed without reflections: the material below a plane resists a
+/// displacement u there by 2 k Y u, and a layer turns Y at its lower side into Y at its upper side.
 double excess(const std::vector<StackLayer>& layers, double k) {
   const double last = layers.back().stiffness;
   Mat y{last, 0.0, 0.0, last};
@@ -131,7 +131,7 @@ double byIntegral(const std::vector<StackLayer>& layers) {
     sum += (to - from) / 6.0 * (f(from) + 4.0 * f(0.5 * (from + to)) + f(to));
     from = to;
   }
-  sum += 0.5 / kEnd * excess(layers, kEnd / kRadius);  // sin^2 is a half in the mean
+  sum += 0.5 / kEnd * excess(layers, kEnd / kRadius);  // the mean of sin^2 is a half
   return layers.front().stiffness / (1.0 + 2.0 / std::numbers::pi * sum);
 }
 
@@ -145,7 +145,7 @@ TEST(StackStiffness, IsTheIntegralOverTheWaves) {
       layer = {std::exp(log_stiffness(random)), std::exp(log_thickness(random))};
     }
     const double expected = byIntegral(layers);
-    // 16 waves stand for all.
+    // Sixteen waves approximate the integral.
     ASSERT_NEAR(felt(layers), expected, 4e-3 * expected) << trial;
   }
 }

@@ -1,5 +1,5 @@
-// The point of some walls nearest to a hand settles wherever the steps begin: also when they are
-// cut short by the walls' curvature, or go from one face of a wall to the other.
+// The point of some walls nearest to a hand converges wherever the steps begin: also if steps are
+// shortened because of the walls' curvature, or alternate between faces of one wall.
 
 #include "palpate/contact/local_projection.h"
 
@@ -15,13 +15,13 @@
 namespace palpate::test {
 namespace {
 
-/// A hand up to 6 mm below the origin, in which the walls' surfaces meet.
+/// A hand up to 6 mm below the origin, where the walls' surfaces meet.
 Vec3 handBelow(Random& random) {
   const Vec3 u = random.direction();
   return 6e-3 * (u.z > 0.0 ? -u : u);
 }
 
-/// The force that the walls make of the way from the point to the hand leaves nothing of it over.
+/// The walls' forces add up to the whole way from the point to the hand.
 void expectHeld(const LocalProjection& out, const Vec3& hand, int trial) {
   ASSERT_TRUE(out.settled) << trial;
   Vec3 rest = hand - out.at;
@@ -29,8 +29,8 @@ void expectHeld(const LocalProjection& out, const Vec3& hand, int trial) {
     EXPECT_GE(out.held[k].multiplier, 0.0);
     rest += out.held[k].multiplier * out.held[k].normal;
   }
-  // Settled means that a step is below 1e-12 of the way; where two walls are almost one, what is
-  // left of it is more.
+  // Settled means that a step is below 1e-12 of the way; where two walls almost coincide, the
+  // remainder is larger.
   EXPECT_LT(glm::length(rest), 1e-9 * glm::length(hand - out.at) + 1e-15) << trial;
 }
 
@@ -46,7 +46,8 @@ TEST(LocalProjection, SettlesOnAnEllipsoidSmallerThanTheWay) {
   }
 }
 
-/// A ball's distance is as exact as its center's coordinates: steps never get shorter than that.
+/// A ball's distance is only as exact as its center's coordinates: steps never get shorter than
+/// that.
 TEST(LocalProjection, SettlesOnABallWhoseCenterIsFarFromAShortWay) {
   Random random(34);
   for (int i = 0; i < 1000; ++i) {
@@ -79,11 +80,11 @@ TEST(LocalProjection, SettlesOnTheFacesOfOneWallFromBothSides) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 size(random.uniform(2e-3, 22e-3), random.uniform(2e-3, 22e-3),
                     random.uniform(2e-3, 22e-3));
-    // One of its corners is at the origin, but for its rounding.
+    // One of the box's corners is at the origin, except for rounding.
     const FieldPtr field = roundedBox(-0.5 * size, size, 0.5e-3);
     std::vector<HeldWall> walls{outsideOf(field)};
     if (i % 2 == 1)
-      walls[0].side = -1.0;  // the hand is held within, where whole steps would go to and fro
+      walls[0].side = -1.0;  // the hand is held inside, where full steps would alternate
     const Vec3 hand = handBelow(random);
     expectHeld(projectLocally(Vec3(0.0), hand, walls), hand, i);
   }
@@ -120,8 +121,8 @@ TEST(LocalProjection, LeavesWhatIsAllowedAlone) {
 }
 
 TEST(LocalProjection, SettlesFarFromTheOriginDownToRounding) {
-  // At a thousand times the way to the target, what rounding leaves of a step is longer than 1e-12
-  // of that way.
+  // At a thousand times the way to the target, the rounding of a step is longer than 1e-12 of that
+  // way.
   const Vec3 center(3.0, -2.0, 1.0);
   const FieldPtr ball = sphere(center, 0.01);
   const std::vector<HeldWall> walls{outsideOf(ball)};
@@ -136,8 +137,8 @@ TEST(LocalProjection, SettlesFarFromTheOriginDownToRounding) {
   }
 }
 
-/// Within a cone that stands on its tip: the nearest place is the tip from all that is in the cone
-/// of its normals, else the foot on the side.
+/// Inside a cone that stands on its tip: if the target is in the cone of the tip's normals, the tip
+/// is the nearest place, else the foot on the side.
 TEST(LocalProjection, ByCutsFindsTheTipAndTheSideOfAHollowCone) {
   const double height = 4e-3;
   const FieldPtr field = cone(Vec3(0.0, 0.0, height), Vec3(0.0, 0.0, -1.0), height, height);
@@ -156,7 +157,7 @@ TEST(LocalProjection, ByCutsFindsTheTipAndTheSideOfAHollowCone) {
       EXPECT_EQ(on.at, target) << i;
       continue;
     }
-    // The side goes up by as much as it goes out.
+    // The side rises by as much as it goes outward.
     const double along = 0.5 * (out + target.z);
     const bool is_tip = along <= 0.0;
     const Vec3 expected =

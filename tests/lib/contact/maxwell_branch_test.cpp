@@ -38,12 +38,12 @@ TEST(MaxwellBranch, AJumpIsASpringAndNoTimeIsNone) {
   branch.step(-3e-3, 0.0, kTime);
   branch.keepAbove(-1e-3);
   EXPECT_EQ(branch.stretch(), -1e-3);
-  branch.step(kTime, 1e-3, 1e-300);  // a dashpot that gives way at once
+  branch.step(kTime, 1e-3, 1e-300);  // a dashpot that yields at once
   EXPECT_NEAR(branch.stretch(), 0.0, 1e-12);
 }
 
-// Work by the trapezoid of what each tick's ends push with: the branch is a spring behind a
-// dashpot, so from rest the hand can only lose.
+// The work is computed by the trapezoidal rule from the force at both ends of each tick. The branch
+// is a spring in series with a dashpot, so from rest the hand can only lose.
 TEST(MaxwellBranch, GivesBackNoMoreThanItWasGiven) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> step(-1e-4, 1e-4);
@@ -53,8 +53,8 @@ TEST(MaxwellBranch, GivesBackNoMoreThanItWasGiven) {
     const double by = step(random);
     const double before = branch.stretch();
     branch.step(by, 1e-3, kTime);
-    // In a tick the push is that of stretch(s), s from 0 to dt; its mean times `by` is the work.
-    // Integrated numerically from the closed form, in steps far finer than the tick.
+    // During a tick the force is that of stretch(s), s from 0 to dt; its mean times `by` is the
+    // work, integrated numerically from the closed form in steps much finer than the tick.
     double mean = 0.0;
     constexpr int kParts = 8;
     for (int k = 0; k < kParts; ++k) {

@@ -6,7 +6,7 @@
 
 namespace palpate::test {
 
-/// The surface of `field`, for a hand outside of it.
+/// The surface of `field`, for a hand outside it.
 inline HeldWall outsideOf(const FieldPtr& field) {
   HeldWall out;
   out.field = field.get();

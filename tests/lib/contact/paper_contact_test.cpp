@@ -1,5 +1,5 @@
 // Algorithms I and II against a transcription of their text made for this test alone, and the drift
-// that they are known for.
+// for which they are known.
 
 #include "palpate/contact/paper_contact.h"
 
@@ -13,7 +13,7 @@
 namespace palpate::test {
 namespace {
 
-/// The text, sentence by sentence. S and N are the surface's, P the probe.
+/// The paper's text, sentence by sentence. S and N are the surface's, P the probe.
 struct Text {
   const PaperSurface& surface;
   int reacquired_on_pi = 0;
@@ -62,7 +62,7 @@ struct Text {
 };
 
 void expectSame(const PaperContact& a, const PaperContact& b, const std::string& where) {
-  // Both do the same sums in another order: 1e-13 m is a thousand roundings of a decimeter.
+  // Both compute the same sums in different orders: 1e-13 m is a thousand roundings of a decimeter.
   EXPECT_LT(glm::length(a.surface_point - b.surface_point), 1e-13) << where;
   EXPECT_LT(glm::length(a.interaction_point - b.interaction_point), 1e-13) << where;
 }
@@ -94,7 +94,8 @@ TEST(PaperContact, IsTheTextStepByStep) {
     for (const double side : {1.0, -1.0}) {
       for (const bool newton : {false, true}) {
         for (const double alpha : {1.0, 0.3}) {
-          // Printed, the term grows with the slope of S: on the quadric it would throw Po about.
+          // In the printed form the term grows with the slope of S: on the quadric it would throw
+          // Po around.
           if (!newton && field->metric() == Metric::kImplicit && alpha > 0.5) continue;
           const PaperSurface surface{field.get(), side, 1e-6, newton ? alpha : 0.02 * alpha,
                                      newton};
@@ -106,7 +107,7 @@ TEST(PaperContact, IsTheTextStepByStep) {
           Vec3 last = side * Vec3(0.06, 0, 0) * (side > 0 ? 1.0 : 0.0);
           Vec3 drift = random.direction();
           for (int tick = 0; tick < 3000; ++tick) {
-            // A walk near the surface, now and then through it: pulled to depths up to 4 mm.
+            // A walk near the surface, sometimes through it: limited to depths of up to 4 mm.
             const FieldSample s = field->sample(last);
             const double depth = side * random.uniform(-0.004, 0.002);
             drift = glm::normalize(drift + 0.3 * random.direction());
@@ -126,7 +127,7 @@ TEST(PaperContact, IsTheTextStepByStep) {
             if (touching) {
               expectSame(mine, theirs, std::to_string(tick));
               ASSERT_FALSE(HasFailure()) << "side " << side << " newton " << newton;
-              theirs = mine;  // differences of rounding must not add up over a branch
+              theirs = mine;  // so that rounding differences do not add up until a branch differs
             }
             last = probe;
           }
@@ -140,8 +141,8 @@ TEST(PaperContact, IsTheTextStepByStep) {
 }
 
 TEST(PaperContact, ReacquiresOnPiOrOnPAsTheTextSays) {
-  // Single ticks with long motions over a flat ellipsoid: its normal lines miss it when Po slid off
-  // the rim.
+  // Single ticks with long motions over a flat ellipsoid: its normal lines miss it after Po slid
+  // off the rim.
   const Quadric flat(Vec3(0.05, 0.05, 0.004));
   Random random(6);
   int on_pi = 0;
@@ -168,7 +169,7 @@ TEST(PaperContact, ReacquiresOnPiOrOnPAsTheTextSays) {
 }
 
 TEST(PaperContact, FirstContactIsTheCrossingOfThePathNotTheClosestPoint) {
-  // The paper's figure 2.1: a convex surface met off its normal.
+  // The paper's figure 2.1: a convex surface met away from its normal.
   const FieldPtr ball = sphere(Vec3(0.0), 0.05);
   const PaperSurface surface{ball.get()};
   const PaperContact c = firstContact(surface, Vec3(-0.06, 0.03, 0), Vec3(0.02, 0.03, 0));
@@ -198,11 +199,11 @@ TEST(PaperContact, WithoutABracketGoesDownTheGradient) {
   const PaperSurface surface{ball.get()};
   const PaperContact c = firstContact(surface, Vec3(0.03, 0, 0), Vec3(0, 0.04, 0));
   EXPECT_LT(glm::length(c.surface_point - Vec3(0, 0.05, 0)), 1e-6);
-  // At the very center there is one fixed direction, and nothing that is not a number.
+  // Exactly at the center one fixed direction is used, and nothing is NaN.
   EXPECT_TRUE(isFinite(firstContact(surface, Vec3(0.0), Vec3(0.0)).surface_point));
 }
 
-/// Angle in degrees by which Po is behind P after `turns` turns at depth `share` R.
+/// Angle in degrees by which Po lags behind P after `turns` turns at a depth of `share` R.
 double lagAfter(double turns, double share, double side) {
   const double radius = 0.05;
   const FieldPtr ball = sphere(Vec3(0.0), radius);
@@ -220,14 +221,15 @@ double lagAfter(double turns, double share, double side) {
     c = trackContact(surface, c, last, probe);
     last = probe;
     const double now = tick * step - std::atan2(c.surface_point.y, c.surface_point.x);
-    lag += std::remainder(now - lag, 2.0 * std::numbers::pi);  // the turns unwound
+    lag += std::remainder(now - lag, 2.0 * std::numbers::pi);  // the unwrapped angle
   }
   return lag * 180.0 / std::numbers::pi;
 }
 
 TEST(PaperContact, DriftsOnABall) {
-  // Po walks rho per turn on a circle of R, so it falls behind by 2 pi d/R at first, and the more
-  // it is behind the less of the motion is along its tangent: 7.2 degrees at least for d/R = 0.02.
+  // Po moves rho per turn on a circle of radius R, so it falls behind by 2 pi d/R at first; the
+  // further it is behind, the less of the motion is along its tangent. So the lag is at least 7.2
+  // degrees for d/R = 0.02.
   const double one = lagAfter(1.0, 0.02, 1.0);
   EXPECT_GT(one, 7.2);
   EXPECT_LT(one, 9.5);

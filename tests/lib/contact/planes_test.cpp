@@ -27,7 +27,8 @@ Vec3 dykstra(const Vec3& wish, const std::vector<Plane>& planes, int rounds) {
   return x;
 }
 
-/// Feasible, stationary, complementary, and reported as it is: what makes a point the one minimum.
+/// Feasible, stationary, complementary, and consistently reported: these conditions characterize
+/// the unique minimum.
 void expectOptimal(const Vec3& wish, const std::vector<Plane>& planes, const PlaneSolution& s,
                    double tolerance) {
   for (const Plane& plane : planes) {
@@ -53,26 +54,27 @@ TEST(ClosestStep, RandomPlanesAgainstDykstra) {
   for (int trial = 0; trial < 4000; ++trial) {
     std::vector<Plane> planes(static_cast<std::size_t>(1 + trial % 8));
     for (Plane& plane : planes) {
-      // Half of them pass through the point, as walls in contact do.
+      // In half of the trials the planes pass through the point, as walls in contact do.
       plane = {random.direction(), trial % 2 == 0 ? 0.0 : random.uniform(0.0, 1.0)};
     }
     const Vec3 wish = 2.0 * random.uniform(0.0, 1.0) * random.direction();
     const PlaneSolution s = closestStep(wish, planes);
     ++by_count[s.count];
-    // Multipliers grow like 1 / sin of the planes' angle: the tolerance covers 1e-16 at 1e-3 rad
-    // squared.
+    // Multipliers grow like 1 / sin of the angle between planes: the tolerance covers 1e-16 over
+    // the square of 1e-3 rad.
     expectOptimal(wish, planes, s, 1e-9);
     const Vec3 other = dykstra(wish, planes, 400);
     double unfinished = 0.0;
     for (const Plane& plane : planes) {
       unfinished = std::max(unfinished, -plane.gap - glm::dot(plane.normal, other));
     }
-    // Cyclic projections are slow at sharp edges; where they got through, it is the same point.
+    // Cyclic projections are slow at sharp edges; where they converged, the result is the same
+    // point.
     if (unfinished < 1e-9) {
       ++compared;
       EXPECT_LE(glm::length(s.step - other), 1e-4);
     }
-    // With all gaps >= 0 staying is allowed, so the minimum is never farther than that.
+    // With all gaps >= 0 the zero step is permitted, so the minimum is never farther than that.
     EXPECT_LE(glm::length(s.step - wish), glm::length(wish) * (1.0 + 1e-6));
   }
   for (int count = 0; count <= 3; ++count) EXPECT_GT(by_count[count], 100) << count;
@@ -89,7 +91,7 @@ TEST(ClosestStep, ClosedForms) {
     Vec3 step;
     int count;
   };
-  const Plane raised{Vec3(0, 0, 1), -0.25};  // already a quarter beyond
+  const Plane raised{Vec3(0, 0, 1), -0.25};  // already a quarter beyond it
   const Plane far_floor{Vec3(0, 0, 1), 0.5};
   for (const Row& row : {
            Row{Vec3(1, 2, 3), {}, Vec3(1, 2, 3), 0},
@@ -121,7 +123,8 @@ TEST(ClosestStep, TheSameWallTwiceActsAsOne) {
       for (int i = 0; i < s.count; ++i) load += s.multiplier[static_cast<std::size_t>(i)];
       const double depth = -glm::dot(n, wish);
       EXPECT_NEAR(load, depth, 1e-5 * depth) << apart << ": felt once, not twice";
-      // Walls that near each other may stop the slide along the sliver between them, never more.
+      // Walls that come close to each other may stop the slide along the sliver between them, never
+      // lengthen it.
       EXPECT_LE(glm::length(s.step), 0.0031) << apart;
       for (const Plane& plane : planes) {
         EXPECT_GE(glm::dot(plane.normal, s.step) + plane.gap, -1e-9 * depth);
@@ -136,14 +139,14 @@ TEST(ClosestStep, OpposingPlanes) {
   const std::vector<Plane> slot{up, down};
   EXPECT_LT(glm::length(closestStep(Vec3(1, 0, -3), slot).step - Vec3(1, 0, -0.1)), 1e-15);
   EXPECT_LT(glm::length(closestStep(Vec3(1, 0, 3), slot).step - Vec3(1, 0, 0.2)), 1e-15);
-  // No room at all: the slot is shut by rounding. It stays, and one of them is felt.
+  // No room at all: rounding has closed the slot. The point stays, and one of the planes holds it.
   const std::vector<Plane> shut{{Vec3(0, 0, 1), -1e-12}, {Vec3(0, 0, -1), -1e-12}};
   const PlaneSolution s = closestStep(Vec3(0, 0, -0.01), shut);
   EXPECT_LT(glm::length(s.step), 1e-11);
   ASSERT_EQ(s.count, 1);
   EXPECT_EQ(s.plane[0], 0);
   EXPECT_NEAR(s.multiplier[0], 0.01, 1e-11);
-  // Exactly shut: the tangential way is still free.
+  // Closed exactly: tangential motion is still free.
   const std::vector<Plane> tight{{Vec3(0, 0, 1), 0.0}, {Vec3(0, 0, -1), 0.0}};
   EXPECT_LT(glm::length(closestStep(Vec3(0.02, 0, -0.01), tight).step - Vec3(0.02, 0, 0)), 1e-15);
 }

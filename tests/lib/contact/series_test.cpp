@@ -1,4 +1,4 @@
-// Walls of several kinds in series with one stop: the force is minus the slope of the energy,
+// Walls of several kinds in series with one stop: the force is minus the gradient of the energy,
 // whatever the shapes.
 
 #include "palpate/contact/series.h"
@@ -15,14 +15,14 @@
 namespace palpate::test {
 namespace {
 
-/// Each wall a kind of its own, with a height and a stiffness that vary along it.
+/// Each wall is a kind of its own, with a height and a stiffness that vary along it.
 class Kinds final : public SoftKinds {
  public:
   Kinds(std::vector<FieldPtr> fields, const std::vector<WallLaw>& laws)
       : fields_(std::move(fields)), walls_(fields_.size()), laws_(laws) {
     putProxy(Vec3(0.0));
   }
-  /// The laws are those where the proxy is: bumps and a stiffness that differ from place to place.
+  /// Sets the laws to those at the proxy: bumps and a stiffness that differ from place to place.
   void putProxy(const Vec3& p) {
     for (std::size_t i = 0; i < walls_.size(); ++i) {
       SharedWall felt;
@@ -95,7 +95,8 @@ TEST(SeriesForce, IsMinusTheSlopeOfTheEnergy) {
           const double slope = (seriesForce(proxy, hand + by, stop, kinds).energy -
                                 seriesForce(proxy, hand - by, stop, kinds).energy) /
                                2e-7;
-          // A difference over 0.2 um of some 1e-4 J that are known to 1e-16 of it.
+          // The difference over 0.2 um of energies of some 1e-4 J, each known to 1e-16 of its
+          // value.
           EXPECT_NEAR(here.force[axis], -slope, 1e-6) << i << " " << varies;
         }
         EXPECT_EQ(here.varies, varies);

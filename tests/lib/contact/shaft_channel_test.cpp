@@ -1,5 +1,5 @@
-// How a tissue holds a shaft sideways: the closed form, the channel point by point, and its energy
-// on any way.
+// The sideways force of a tissue on a shaft: the closed form, the channel computed point by point,
+// and its energy on any way.
 
 #include "palpate/contact/shaft_channel.h"
 
@@ -17,7 +17,8 @@ constexpr double kStiffness = 4e4;  // [N/m^2]
 
 Vec3 turned(double angle) { return {std::sin(angle), 0.0, -std::cos(angle)}; }
 
-// A needle 25 mm deep, turned about its hole: stiffness L^2 sin(angle) / 3, square to it and back.
+// A needle 25 mm deep, turned about its hole: stiffness L^2 sin(angle) / 3, perpendicular to the
+// needle and directed back.
 TEST(ShaftChannel, TurnedAboutTheHoleItIsTheClosedForm) {
   const double length = 0.025;
   for (const double angle : {0.0, 0.01, 0.12, 0.6, -0.3}) {
@@ -38,8 +39,8 @@ TEST(ShaftChannel, APartOfTheShaftPushesByWhereItIs) {
   EXPECT_NEAR(glm::length(moment), kStiffness * 26e-6 / 3.0 * std::sin(0.1), 1e-12);
 }
 
-// Against a channel kept point by point: a spring for each bit of length, which comes in where the
-// needle lies.
+// Against a channel stored point by point: a spring for each piece of length, which is unstretched
+// where the needle enters.
 TEST(ShaftChannel, IsTheChannelPointByPointWhileTheNeedleGoesIn) {
   Random random(3);
   struct Bit {
@@ -74,7 +75,7 @@ TEST(ShaftChannel, BeyondItsStrengthTheTissueTearsAndStaysWhereItIs) {
   const double strength = 50.0;  // [N/m]
   ShaftChannel channel;
   (void)channel.step({kStiffness, strength}, 0.0, length, turned(0.0));
-  // The mean load is stiffness times half of the length times how far the directions are apart.
+  // The mean load is stiffness times half of the length times the difference of the directions.
   const double apart = strength / (kStiffness * 0.5 * length);
   for (double angle = 0.0; angle < 1.0; angle += 0.01) {
     const double chord = 2.0 * std::sin(0.5 * angle);
@@ -82,17 +83,18 @@ TEST(ShaftChannel, BeyondItsStrengthTheTissueTearsAndStaysWhereItIs) {
     const double expected = kStiffness * std::pow(length, 3) / 3.0 * held *
                             std::cos(0.5 * std::min(angle, 2.0 * std::asin(0.5 * apart)));
     const Vec3 moment = channel.step({kStiffness, strength}, 0.0, length, turned(angle));
-    // Torn, the channel follows along the chord: to the second order of how far it is behind.
+    // After tearing, the channel follows along the chord: exact to the second order of its lag.
     ASSERT_NEAR(glm::length(moment), expected, 0.01 * expected + 1e-12) << angle;
     ASSERT_LE(glm::length(moment), kStiffness * std::pow(length, 3) / 3.0 * apart + 1e-12);
   }
-  // Back by as much as the tissue was pushed aside it is slack, on this side of where it was cut.
+  // When the needle is turned back by as much as the tissue was pushed aside, the tissue is slack,
+  // short of where it was cut.
   const double slack = 0.99 - 2.0 * std::asin(0.5 * apart);
   EXPECT_NEAR(glm::length(channel.step({kStiffness, strength}, 0.0, length, turned(slack))), 0.0,
               0.03 * kStiffness * std::pow(length, 3) / 3.0 * apart);
 }
 
-// In, out, round about, tearing or not: what the tip got back never exceeds what it gave.
+// In, out, around, with or without tearing: the tip never gets back more energy than it gave.
 TEST(ShaftChannel, NoWayGivesEnergy) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     Random random(seed);
@@ -114,7 +116,7 @@ TEST(ShaftChannel, NoWayGivesEnergy) {
       work += gave;
       moved += std::fabs(gave);
       force = now;
-      // The trapezium is off by the third power of a step of 20 um at 25 mm.
+      // The trapezoidal rule has an error of third order in the step of 20 um at 25 mm.
       ASSERT_LE(work, 1e-5 * moved + 1e-12) << seed << ", " << i;
     }
     EXPECT_LT(work, 0.0);

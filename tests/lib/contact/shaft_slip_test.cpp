@@ -1,4 +1,4 @@
-// Shaft friction against the closed forms of Karnopp's law, each way, and its energy.
+// Shaft friction against the closed forms of Karnopp's law, in both directions, and its energy.
 
 #include "palpate/contact/shaft_slip.h"
 
@@ -21,7 +21,7 @@ ShaftLaw liverLike() {
 
 constexpr double kLength = 0.03;  // [m]
 
-// The force after a long way at `speed` [m/s], the length the same all along.
+// The force after a long way at `speed` [m/s] with a constant length.
 double slidingForce(double speed, double dt) {
   const ShaftLaw law = liverLike();
   ShaftSlip slip;
@@ -51,7 +51,7 @@ TEST(ShaftSlip, SticksUpToItsLimitAndBreaksAway) {
   }
   EXPECT_NEAR(highest, kLength * 18.0, 1e-9);
   EXPECT_NEAR(slip.step(law, kLength, step, 1e-3), kLength * (10.0 + 0.29), 1e-12);
-  // Creeping on, it sticks at what it slid with and climbs again.
+  // Moving on slowly, it sticks at the force at which it slid, and the force rises again.
   const double again = slip.step(law, kLength, step, 0.5e-3);
   EXPECT_FALSE(slip.isSliding());
   EXPECT_NEAR(again, kLength * (10.0 + law.stiffness * step), 1e-12);
@@ -68,7 +68,8 @@ TEST(ShaftSlip, ACreepingHandFeelsASaw) {
     before = force;
     EXPECT_LE(force, kLength * (18.0 + 290.0 * 0.5e-3));
   }
-  // From C to D is 80 um of stretch, then it slips: one drop every 80 ticks after the first 180.
+  // From C to D the stretch grows by 80 um, then it slips: one drop every 80 ticks after the first
+  // 180.
   EXPECT_NEAR(drops, (2000 - 180) / 80.0, 2.0);
 }
 
@@ -79,12 +80,13 @@ TEST(ShaftSlip, LengthThatComesInIsUnstretched) {
   const double force = slip.step(law, 0.01, 1e-4, 1.0);
   EXPECT_NEAR(force, 1e5 * 0.01 * 1e-4, 1e-12);
   EXPECT_NEAR(slip.step(law, 0.02, 0.0, 1.0), force, 1e-12);        // twice as long, the same force
-  EXPECT_NEAR(slip.step(law, 0.01, 0.0, 1.0), 0.5 * force, 1e-12);  // half of it is gone
+  EXPECT_NEAR(slip.step(law, 0.01, 0.0, 1.0), 0.5 * force, 1e-12);  // half of it has left
   EXPECT_EQ(slip.step(law, 0.0, 0.0, 1.0), 0.0);
 }
 
-// Any way in and out, from nothing to nothing: the hand never gains. Force k acts over step k + 1,
-// as a device holds it; the trapezoid takes that out, so that what is left is the model's own.
+// Any way in and out that begins and ends at zero length: the hand never gains. Force k acts over
+// step k + 1, as a device holds it; the trapezoidal rule removes that effect, so that only the
+// model's own energy is left.
 TEST(ShaftSlip, NeverGivesEnergy) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> change(-2e-5, 2e-5);
@@ -106,7 +108,7 @@ TEST(ShaftSlip, NeverGivesEnergy) {
     const double now = slip.step(law, depth, advance, advance / 1e-3);
     given -= 0.5 * (force + now) * advance;
     force = now;
-    // Of the trapezoid: half of a tick's change of force times its way.
+    // Error of the trapezoidal rule: half of a tick's change of force times its way.
     ASSERT_LE(given, 1e-6) << i;
   }
   EXPECT_LT(given, -1e-3);

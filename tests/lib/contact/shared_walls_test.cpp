@@ -44,10 +44,10 @@ TEST(SharedWalls, PushByTheSlopeOfWhatTheyStore) {
     constexpr double kStep = 1e-8;
     const double slope = (walls.energy(depth + kStep) - walls.energy(depth - kStep)) / (2 * kStep);
     const double rate = (walls.force(depth + kStep) - walls.force(depth - kStep)) / (2 * kStep);
-    // Differences over 0.02 um.
+    // Differences over a step of 0.02 um.
     EXPECT_NEAR(walls.force(depth), slope, 1e-6 * slope);
     EXPECT_NEAR(walls.tangent(depth), rate, 1e-5 * rate);
-    // Behind a stop they push as much as the stop does.
+    // In series with a stop, walls and stop exert the same force.
     const SoftWall soft = softWall(walls, 5000.0, depth);
     EXPECT_NEAR(soft.force, walls.force(soft.depth), 1e-12);
     EXPECT_NEAR(soft.depth - soft.force / 5000.0, depth, 1e-15);
@@ -78,7 +78,7 @@ TEST(SharedWalls, RiseByWhatTheirSharesAndLawsChangeBy) {
       const auto slope = [&](const SharedWalls& more, const SharedWalls& less) {
         return (more.energy(depth) - less.energy(depth)) / (2.0 * kStep);
       };
-      // Of some 1e-4 J, known to 1e-16 of it, over 0.2 um.
+      // Differences of some 1e-4 J, known to 1e-16 of that, over 0.2 um.
       EXPECT_NEAR(here.rise(depth)[axis], slope(at(by, Vec3(0.0)), at(-by, Vec3(0.0))), 1e-9);
       EXPECT_NEAR(here.byPress(depth)[axis], slope(at(Vec3(0.0), by), at(Vec3(0.0), -by)), 1e-9);
     }

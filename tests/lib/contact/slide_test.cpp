@@ -1,5 +1,5 @@
-// How a proxy at rest follows the hand, against differences of closed forms: on a ball, in a ball,
-// on a cylinder and on a circular crease.
+// How a proxy at rest follows the hand, against differences of closed forms: outside and inside a
+// ball, on a cylinder and on a circular crease.
 
 #include "palpate/contact/slide.h"
 
@@ -37,8 +37,8 @@ Vec3 differences(const std::function<Vec3(const Vec3&)>& proxy, const Vec3& hand
   return out;
 }
 
-// Central differences of a smooth map at this size are wrong by about (step / R)^2, and by 1e-16 R
-// / step.
+// Errors of central differences of a smooth map at this size: about (step / R)^2, and 1e-16 R /
+// step.
 constexpr double kTolerance = 1e-8;
 
 TEST(GradientByHand, OnABallAndWithinIt) {
@@ -105,8 +105,8 @@ TEST(GradientByHand, IsNoneInACornerAndHeldNearAFocalPoint) {
 }
 
 TEST(GradientByHand, BeyondAFocalPointEigenvaluesCountByTheirMagnitude) {
-  // |M| = sqrt(M M), and the root of a matrix of two rows in closed form: no eigenvector is looked
-  // for.
+  // |M| = sqrt(M M), and the square root of a 2 x 2 matrix has a closed form that needs no
+  // eigenvectors.
   Random random(12);
   const FieldPtr any = sphere(Vec3(0.0), kR);
   for (int i = 0; i < 400; ++i) {
@@ -136,7 +136,8 @@ TEST(GradientByHand, BeyondAFocalPointEigenvaluesCountByTheirMagnitude) {
     const double p = glm::dot(g, d);
     const double q = glm::dot(g, e);
     const Vec3 expected = ((a22 * p - a12 * q) / root) * d + ((a11 * q - a12 * p) / root) * e;
-    // The least eigenvalue is 0.05 / 3 or so: rounding of 1e-16 counts a hundredfold, squared.
+    // The smallest eigenvalue is about 0.05 / 3, so a rounding of 1e-16 is amplified by a hundred,
+    // squared.
     EXPECT_LT(glm::length(gradientByHand(g, {&wall, 1}) - expected), 1e-11) << i;
   }
 }
@@ -154,7 +155,7 @@ TEST(TangentialPart, IsWhatAllWallsLeave) {
     const Vec3 both = tangentialPart(v, walls);
     EXPECT_NEAR(glm::dot(both, walls[0].normal), 0.0, 1e-13);
     EXPECT_NEAR(glm::dot(both, walls[1].normal), 0.0, 1e-13);
-    // What is taken away lies in the plane of both normals.
+    // The difference lies in the plane of both normals.
     EXPECT_NEAR(glm::dot(v - both, glm::cross(walls[0].normal, walls[1].normal)), 0.0, 1e-13);
   }
 }

@@ -15,7 +15,7 @@ namespace {
 
 using Kind = SweepResult::Kind;
 
-/// S from a function; the slope by differences.
+/// S from a function; the gradient by differences.
 class FromFunction final : public Field {
  public:
   FromFunction(std::function<double(const Vec3&)> f, double lipschitz, double feature)
@@ -56,8 +56,8 @@ std::vector<Shape> shapes() {
       {"plate of 0.1 mm", box(Vec3(0.0), Vec3(0.06, 0.06, 1e-4)), true},
       {"cylinder", cylinder(Vec3(0.0), Vec3(1, 1, 0), 0.02, 0.05), true},
       {"torus", std::make_shared<FromFunction>(torus, 1.0, 0.01)},
-      // Slopes from 0.2 to 40: only a bound of the slope is known, and it is far off nearly
-      // everywhere.
+      // Slopes from 0.2 to 40: only an upper bound of the slope is known, and it is far too large
+      // almost everywhere.
       {"uneven", std::make_shared<FromFunction>(
                      [](const Vec3& p) {
                        const double d = glm::length(p) - 0.03;
@@ -73,7 +73,7 @@ SweepSurface surfaceOf(const FieldPtr& field, double side) {
   return {field.get(), side, field->lipschitz(), tolerance, 0.02 * field->featureSize()};
 }
 
-/// Deepest point beyond the wall among `n` samples of the way up to share `until`.
+/// Largest depth beyond the wall among `n` samples of the way up to share `until`.
 double deepest(const SweepSurface& s, const Vec3& a, const Vec3& b, double until, int n) {
   double worst = kInfinity;
   for (int i = 0; i <= n; ++i) {
@@ -87,7 +87,7 @@ TEST(Sweep, AgainstDenseSamplingFromBothSides) {
     Random random(17);
     int hits = 0;
     int unsure = 0;
-    // Ticks of 0.1 to 20 mm: 0.1 to 20 m/s at 1 kHz; some of the scene's size.
+    // Ticks of 0.1 to 20 mm, that is 0.1 to 20 m/s at 1 kHz; some as long as the scene.
     for (int trial = 0; trial < 6000; ++trial) {
       const Vec3 a = random.in({Vec3(-0.045), Vec3(0.045)});
       const double length = std::pow(10.0, random.uniform(-4.0, -1.0));
@@ -98,8 +98,9 @@ TEST(Sweep, AgainstDenseSamplingFromBothSides) {
       const SweepResult out = sweep(s, a, b, std::fabs(value), 4096);
       ASSERT_GE(out.at, 0.0);
       ASSERT_LE(out.at, 1.0);
-      // On its own side as far as it says, but for grazes shorter than `graze`: a chord of that
-      // length dips by graze^2 / (8 R) = 5e-5 R into a curved wall, and by graze / 2 into an edge.
+      // The point stays on its own side up to the reported share, except for grazes shorter than
+      // `graze`: a chord of that length dips by graze^2 / (8 R) = 5e-5 R into a curved wall, and by
+      // graze / 2 into an edge.
       const double dip =
           (shape.has_edges ? 1e-2 : 1e-4) * shape.field->featureSize() * shape.field->lipschitz();
       ASSERT_GE(deepest(s, a, b, out.at, 500), -dip) << shape.name << " trial " << trial;
@@ -163,7 +164,7 @@ TEST(Sweep, FromTheSurface) {
       }
     }
   }
-  // From within, along a chord: free over the hollow, then the wall on the other side.
+  // From inside, along a chord: free across the interior, then a hit on the opposite wall.
   const SweepSurface within = surfaceOf(ball, -1.0);
   const Vec3 chord = glm::normalize(Vec3(-1, 1, 0));
   const SweepResult hit = sweep(within, on, on + 0.1 * chord, 0.0, 256);
@@ -204,21 +205,21 @@ TEST(Sweep, BudgetsAreKeptAndWhatIsSaidIsTrue) {
     [[nodiscard]] double lipschitz() const noexcept override { return 1.0; }
     [[nodiscard]] double featureSize() const noexcept override { return 1e-6; }
   } field;
-  // A long way close above a plane, told in tiny strides.
+  // A long way close above a plane, whose Lipschitz bound permits only tiny steps.
   const SweepSurface s{&field, 1.0, 1.0, 1e-12, 1e-9};
   for (const int budget : {16, 64, 256}) {
     field.calls = 0;
     const SweepResult out = sweep(s, Vec3(0, 0, 1e-6), Vec3(1, 0, 1e-6), 1e-6, budget);
     EXPECT_EQ(out.kind, Kind::kUnsure);
-    EXPECT_LE(field.calls, budget + 60);  // narrowing down a hit may add to it
+    EXPECT_LE(field.calls, budget + 60);  // narrowing down a hit may add some
     EXPECT_LT(out.at, 0.1);
     EXPECT_GT(out.at, 0.0);
   }
   EXPECT_EQ(sweep(s, Vec3(0.0, 0, 1), Vec3(0.0, 0, 1), 1.0, 8).kind, Kind::kFree) << "no motion";
 }
 
-/// Falls from z = 1 to z = 0, through zero at `at`: as a line, or bent to either side. Counts how
-/// often it was asked.
+/// Falls from z = 1 to z = 0, with a zero at `at`: linearly, or curved to either side. Counts its
+/// evaluations.
 struct Falling final : Field {
   enum class Bend : std::uint8_t { kLine, kHollow, kBulging };
   Falling(double zero, Bend how) : at(zero), bend(how) {}
@@ -250,11 +251,11 @@ TEST(Sweep, NarrowsDownInFewLooks) {
       const SweepSurface s{&field, 1.0, field.lipschitz(), 1e-10, 1.0};
       const SweepResult out = sweep(s, Vec3(0, 0, 1), Vec3(0.0), start, 64);
       ASSERT_EQ(out.kind, Kind::kHit);
-      // On the near side of the surface, nearer to it than the tolerance.
+      // On the near side of the surface, closer to it than the tolerance.
       EXPECT_LE(out.at, 1.0 - at);
       EXPECT_GT(out.at, 1.0 - at - 1e-9);
-      // The end, and where the value is straight one secant. Where it bends an end would stay for
-      // good if its weight were not halved: that takes 14 looks and more.
+      // The end, and one secant step if the value is linear. If it is curved, one end would stay
+      // for ever if its value were not halved: that would take 14 evaluations and more.
       EXPECT_LE(field.looks, bend == Bend::kLine ? 2 : 12) << at;
     }
   }

@@ -1,5 +1,5 @@
-// A wall's law, with a height and any curve: its slopes against differences, and behind a stop
-// against its own definition.
+// A wall's law, with a height and any curve: its derivatives against differences, and its form in
+// series with a stop against the definition.
 
 #include "palpate/contact/wall_law.h"
 
@@ -14,7 +14,7 @@
 namespace palpate::test {
 namespace {
 
-/// Straight, stiffening and Hertzian, each flat, raised and lowered.
+/// Linear, stiffening and Hertzian, each flat, raised and lowered.
 std::vector<WallLaw> laws() {
   std::vector<WallLaw> out;
   for (const WallSpring& spring :
@@ -30,12 +30,12 @@ std::vector<WallLaw> laws() {
 TEST(WallLaw, ForceIsTheSlopeOfTheEnergyAndTangentThatOfTheForce) {
   constexpr double kStep = 1e-8;
   for (const WallLaw& law : laws()) {
-    // Neither where the height is held (0.4 and 0.3 mm) nor where it begins and ends to fade (2 and
-    // 4 mm): kinks.
+    // Depths away from the kinks: where the limit of the height ends (0.4 and 0.3 mm), and where
+    // its fading begins and ends (2 and 4 mm).
     for (const double depth : {0.05e-3, 0.2e-3, 0.6e-3, 1.5e-3, 2.7e-3, 4.5e-3}) {
       const double force = (law.energy(depth + kStep) - law.energy(depth - kStep)) / (2.0 * kStep);
       const double tangent = (law.force(depth + kStep) - law.force(depth - kStep)) / (2.0 * kStep);
-      // Rounding of an energy of some mJ, over the step.
+      // Rounding of an energy of some mJ, divided by the step.
       EXPECT_NEAR(law.force(depth), force, 1e-6 * (1.0 + std::fabs(force))) << depth;
       EXPECT_NEAR(law.tangent(depth), tangent, 1e-5 * (1.0 + std::fabs(tangent))) << depth;
     }
@@ -77,9 +77,11 @@ TEST(SoftWall, GivesWayByWhatTheStopDoesNot) {
       for (int i = 0; i < 40; ++i) {
         const double give = last_give + random.uniform(1e-6, 0.1e-3);
         const SoftWall soft = softWall(law, stop, give);
-        // The two springs in series share the force, and the whole way is theirs together.
+        // The two springs in series have the same force, and the whole depth is the sum of their
+        // compressions.
         EXPECT_NEAR(soft.depth - soft.force / stop, give, 1e-9 * give + 1e-15) << stop;
-        // Less stiff than the stop allows, it is the law; from there on a line as steep as that.
+        // Where it is less stiff than the stop allows, it is the law itself; from there on a
+        // straight line with the largest slope.
         if (law.tangent(soft.depth) < 0.98 * stop) {
           EXPECT_LE(soft.force, law.force(soft.depth) * (1.0 + 1e-9));
         }
@@ -90,7 +92,7 @@ TEST(SoftWall, GivesWayByWhatTheStopDoesNot) {
         const double slope =
             (softWall(law, stop, give + step).force - softWall(law, stop, give - step).force) /
             (2.0 * step);
-        // Kinks of the law within a step are passed over: where the slopes to both sides differ.
+        // Steps that contain a kink of the law are skipped: there the slopes on both sides differ.
         const double before = (soft.force - softWall(law, stop, give - step).force) / step;
         const double after = (softWall(law, stop, give + step).force - soft.force) / step;
         if (std::fabs(after - before) < 1e-3 * std::fabs(slope)) {

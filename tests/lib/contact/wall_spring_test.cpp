@@ -9,7 +9,7 @@
 namespace palpate::test {
 namespace {
 
-// Work to press `depth` deep, by Simpson's rule.
+// The work needed to press `depth` deep, by Simpson's rule.
 double workTo(const WallSpring& spring, double depth) {
   constexpr int kSteps = 2000;
   double sum = 0.0;
@@ -54,7 +54,7 @@ TEST(WallSpring, EnergyIsTheWorkDone) {
     const double depth = 4e-3;
     const double energy = spring.stiffness * spring.energyPerStiffness(depth) +
                           spring.stiffening * WallSpring::energyPerStiffening(depth);
-    // Simpson's error on a d^1.5 start is about 1e-9 of the whole.
+    // Simpson's error, because the force begins like d^1.5, is about 1e-9 of the whole.
     EXPECT_NEAR(energy, workTo(spring, depth), 1e-8 * energy);
   }
 }

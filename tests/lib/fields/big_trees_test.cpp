@@ -1,4 +1,5 @@
-// Fields of up to 10 000 parts: what asks only a few of them must give what asking all would give.
+// Fields of up to 10 000 parts: those that evaluate only a few of their parts must give the same as
+// evaluating all.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ namespace {
 
 const Box3 kRoom{Vec3(-0.2), Vec3(0.2)};
 
-/// Shapes of every kind of knowledge: exact ones, some placed or put together, now and then one of
+/// Shapes with different metrics: exact ones, some placed or combined, and now and then one of
 /// which only the sign is known.
 FieldPtr anyShape(Random& random, std::size_t number, double size) {
   const Vec3 c = random.in(kRoom);
@@ -50,7 +51,7 @@ std::vector<FieldPtr> shapes(std::size_t count) {
   return out;
 }
 
-/// Index of the operand that decides, the first of several equal ones, found by asking all.
+/// Index of the operand that decides, the first of several equal ones, found by evaluating all.
 std::size_t decider(const std::vector<FieldPtr>& operands, bool is_minimum, const Vec3& p) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < operands.size(); ++i) {
@@ -61,7 +62,7 @@ std::size_t decider(const std::vector<FieldPtr>& operands, bool is_minimum, cons
   return best;
 }
 
-/// Anywhere, on surfaces, far away, and where several operands may be equal.
+/// Points anywhere, on surfaces, far away, and where several operands may be equal.
 std::vector<Vec3> probes(const std::vector<FieldPtr>& operands, std::size_t count) {
   Random random(7);
   std::vector<Vec3> out = {Vec3(0.0), Vec3(1e6, -1e6, 3.0), Vec3(1e120, 0.0, 0.0)};
@@ -163,7 +164,7 @@ TEST_P(BigTrees, AHalfSpaceThatIsEquallyNearDoesNotHideAnEarlierOperand) {
 INSTANTIATE_TEST_SUITE_P(Counts, BigTrees, ::testing::Values(1U, 2U, 11U, 12U, 13U, 300U, 10000U),
                          ::testing::PrintToStringParamName());
 
-/// A ball that counts how often it is asked.
+/// A ball that counts its evaluations.
 class CountedBall final : public Field {
  public:
   CountedBall(FieldPtr ball, std::atomic<long>& count) : ball_(std::move(ball)), count_(count) {}
@@ -208,7 +209,7 @@ TEST(BigTreeWork, NearASurfaceAHundredTimesTheOperandsAreAskedHardlyMoreOften) {
   for (const Shape shape : {Shape::kUnion, Shape::kDifference}) {
     const double few = asksAPoint(100, shape);
     const double many = asksAPoint(10000, shape);
-    EXPECT_LT(many, 12.0);  // a leaf of the tree holds 4; a ball reaches into a few of them
+    EXPECT_LT(many, 12.0);  // a leaf of the tree holds 4; the box of a ball overlaps a few of them
     EXPECT_LT(many, 2.0 * few + 2.0);
   }
 }
@@ -247,7 +248,8 @@ std::vector<Metaball> manyBalls(std::size_t count, double reach) {
   return balls;
 }
 
-/// iso - sum, the field up to its scale, by the formulas of implicit.h in the order given.
+/// iso - sum, which is the field except for its scale, by the formulas of implicit.h in the given
+/// order.
 double lackOf(const std::vector<Metaball>& balls, FallOff fall_off, double iso, const Vec3& p) {
   double sum = 0.0;
   for (const Metaball& ball : balls) {
@@ -270,11 +272,12 @@ double lackOf(const std::vector<Metaball>& balls, FallOff fall_off, double iso, 
 TEST(BigMetaballs, AreTheSumOfAll) {
   for (const std::size_t count : {11U, 12U, 100U, 10000U}) {
     for (const FallOff fall_off : {FallOff::kWyvill, FallOff::kGaussian, FallOff::kInverseSquare}) {
-      if (count == 10000U && fall_off == FallOff::kInverseSquare) continue;  // all reach everywhere
+      if (count == 10000U && fall_off == FallOff::kInverseSquare)
+        continue;  // every ball reaches everywhere
       const std::vector<Metaball> balls = manyBalls(count, 0.2);
       const double iso = 0.5;
       const FieldPtr field = metaballs(balls, fall_off, iso);
-      // The scale, from a point within the bounds where the lack is large.
+      // Determines the scale at a point within the bounds where iso - sum is large.
       const Vec3 at = balls.front().center;
       const double scale = field->value(at) / lackOf(balls, fall_off, iso, at);
       ASSERT_GT(scale, 0.0);
@@ -283,7 +286,7 @@ TEST(BigMetaballs, AreTheSumOfAll) {
       for (std::size_t i = 0; i < points; ++i) {
         const Vec3 p = random.in(kRoom);
         if (!field->bounds().contains(p)) continue;
-        // Sums of some tens of terms around 1 in another order, and pow() against products.
+        // Sums of some tens of terms around 1 in a different order, and pow() instead of products.
         ASSERT_NEAR(field->value(p) / scale, lackOf(balls, fall_off, iso, p), 1e-12)
             << count << " balls, fall-off " << static_cast<int>(fall_off);
         ASSERT_EQ(field->value(p), field->sample(p).value);
@@ -312,7 +315,7 @@ TEST(BoundsTree, VisitsNearestFirstAndNoFartherThanAsked) {
     double expected = kInfinity;
     for (const Box3& box : boxes) expected = std::min(expected, box.distanceTo(p));
     ASSERT_EQ(nearest, expected);
-    // A radius of less than nothing meets the boxes around the point, and all of them.
+    // A negative radius visits the boxes around the point, and all of them.
     int around = 0;
     tree.visitNearest(p, -1.0, [&](std::uint32_t item) {
       EXPECT_TRUE(boxes[item].contains(p));

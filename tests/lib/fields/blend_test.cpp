@@ -79,7 +79,7 @@ TEST(Blend, IsPlainCsgAwayFromTheCrease) {
 }
 
 TEST(Blend, GradientAndCurvatureAreContinuousAcrossTheCrease) {
-  // Two half-spaces at a right angle: walk over the crease at equal values.
+  // Two half-spaces at a right angle: walk across the crease, where their values are equal.
   const FieldPtr corner = smoothIntersect(
       {halfSpace(Vec3(0.0), Vec3(1, 0, 0)), halfSpace(Vec3(0.0), Vec3(0, 1, 0))}, kBlend);
   const double step = 1e-6;
@@ -87,7 +87,8 @@ TEST(Blend, GradientAndCurvatureAreContinuousAcrossTheCrease) {
   for (double x = -2 * kBlend; x < 2 * kBlend; x += step) {
     const FieldJet now = corner->jet(Vec3(x, -x, 0));
     if (x > -2 * kBlend) {
-      // The second derivative is 1/radius, the third 1/radius^2, times sqrt(2) for each derivative.
+      // The second derivative is 1 / radius, the third 1 / radius^2, each times sqrt(2) for each
+      // derivative.
       EXPECT_LT(glm::length(now.gradient - before.gradient), 4.0 * step / kBlend);
       EXPECT_LT(std::fabs(now.hessian[0][0] - before.hessian[0][0]),
                 4.0 * step / (kBlend * kBlend));
@@ -117,7 +118,7 @@ TEST(Blend, ChecksItsParameters) {
   EXPECT_EQ(smoothUnite({only}, kBlend), only);
 }
 
-// A chain of blends would be as deep as it is long.
+// A chain of nested blends would be as deep as it is long.
 TEST(SmoothUnion, TakesTensOfThousandsOfOperands) {
   std::vector<FieldPtr> balls;
   for (int i = 0; i < 30000; ++i) balls.push_back(sphere(Vec3(0.01 * i, 0, 0), 0.004));
@@ -126,7 +127,7 @@ TEST(SmoothUnion, TakesTensOfThousandsOfOperands) {
   EXPECT_GT(chain->jet(Vec3(150.0, 0.01, 0.0)).hessian[0][0], 0.0);
 }
 
-// A ball that knows distances up to `band` only, as a grid does.
+// A ball that knows distances only up to `band`, as a grid does.
 class BandedBall final : public Field {
  public:
   explicit BandedBall(double band) : band_(band) {}
@@ -145,8 +146,8 @@ class BandedBall final : public Field {
   double band_;
 };
 
-// Outside the band a value is not a distance: a blend or offset of it would put surfaces where none
-// are.
+// Outside the band a value is not a distance: a blend or offset of it would produce surfaces where
+// none exist.
 TEST(Bands, MustReachAsFarAsWhatIsMadeOfThem) {
   const FieldPtr grid = place(std::make_shared<BandedBall>(0.004), {Mat3(1.0), Vec3(0.1, 0, 0)});
   EXPECT_NO_THROW((void)smoothUnite({grid, body()}, 0.003));

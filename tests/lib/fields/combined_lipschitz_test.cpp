@@ -1,4 +1,4 @@
-// A combination is as steep as its steepest operand, wherever that stands.
+// A combination is as steep as its steepest operand, whichever position that has.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ FieldPtr steepBall(const Vec3& center) {
   return userField(std::move(f));
 }
 
-/// The operand's place among the others.
+/// The operands, with the steep one at `place`.
 std::vector<FieldPtr> withSteepAt(std::size_t place) {
   std::vector<FieldPtr> out = {sphere({0.05, 0, 0}, 0.01), sphere({0, 0.05, 0}, 0.01),
                                sphere({0, 0, 0.05}, 0.01)};
@@ -57,7 +57,7 @@ TEST(CombinedLipschitz, IsThatOfTheSteepestOperand) {
       SCOPED_TRACE(name + ", operand " + std::to_string(place));
       const FieldPtr field = combine(withSteepAt(place));
       EXPECT_GE(field->lipschitz(), kSteep);
-      // And it is needed: somewhere the value does rise that fast.
+      // The bound is tight: somewhere the value does rise that fast.
       double steepest = 0.0;
       for (int i = -60; i <= 60; ++i) {
         const Vec3 p(5e-4 * i, 1e-4, 0.0);

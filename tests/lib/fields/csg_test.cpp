@@ -82,7 +82,7 @@ TEST(Csg, BoundsFollowTheOperands) {
   EXPECT_EQ(bounds.hi, body->bounds().hi);
   EXPECT_EQ(unite({body, hole})->bounds().lo.x, kLeft.x - 0.025);
   EXPECT_FALSE(complement(body)->bounds().isBounded());
-  // Turned inside out twice, or by way of the complement of a part: the box comes back.
+  // After two complements, or a complement of a part, the box is the original one.
   EXPECT_EQ(complement(complement(body))->bounds().hi, body->bounds().hi);
   EXPECT_EQ(complement(unite({complement(body), hole}))->bounds().hi, body->bounds().hi);
   EXPECT_TRUE(
@@ -118,13 +118,14 @@ TEST(Csg, StructureShowsTheOperands) {
   ASSERT_EQ(cut->structure().kind, Kind::kComplement);
   EXPECT_EQ(cut->structure().operands[0], ball);
   EXPECT_EQ(unite({body, difference})->structure().kind, Kind::kUnion);
-  // An operand that is itself a union stays one node: a port may name it.
+  // An operand that is itself a union stays one node, since a port may name it.
   const FieldPtr both = unite({body, ball});
   EXPECT_EQ(unite({both, body})->structure().operands[0], both);
 }
 
 TEST(Csg, FirstOperandCountsWhereTwoAreEqual) {
-  // The crease between two equal spheres: one of the two gradients, always the same.
+  // On the crease between two equal spheres the gradient is that of one of them, always the same
+  // one.
   const FieldPtr pair = unite({sphere(Vec3(-0.01, 0, 0), 0.02), sphere(Vec3(0.01, 0, 0), 0.02)});
   EXPECT_GT(pair->sample(Vec3(0, 0.03, 0)).gradient.x, 0.0);
   EXPECT_GT(pair->jet(Vec3(0, 0.03, 0)).gradient.x, 0.0);

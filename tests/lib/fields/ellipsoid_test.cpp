@@ -35,7 +35,7 @@ std::vector<FieldCase> ellipsoidCases() {
          .awkward = {c, c + Vec3(e.x, 0, 0), c - Vec3(0, e.y, 0), c + Vec3(0, 0, 0.5 * e.z),
                      c + Vec3(0.3 * e.x, 0.2 * e.y, 0), c + Vec3(0, 0.9 * e.y, -0.1 * e.z)},
          .sign_margin = 1e-11});
-    // What contact holds: the same surface as a cheaper field.
+    // The face that contact holds: the same surface as a cheaper field.
     FieldCase face = cases.back();
     face.name += "_face";
     face.make = [=] { return ellipsoid(c, e)->structure().operands.front(); };
@@ -54,7 +54,7 @@ struct SurfacePoint {
 };
 
 SurfacePoint surfacePoint(const Vec3& e, const Vec3& u) {
-  // u on the unit sphere maps to the surface, its image under 1/e to the normal.
+  // u on the unit sphere is mapped to the surface by e, and to the normal by 1/e.
   const Vec3 x = e * u;
   const Vec3 w = u / e;
   // No curvature of the ellipsoid exceeds |1/e^2|max / |x/e^2|.
@@ -70,14 +70,15 @@ TEST(Ellipsoid, IsAccurateToRoundingAtEveryProportion) {
       const FieldPtr field = ellipsoid(Vec3(0.0), e);
       for (int i = 0; i < 2000; ++i) {
         const SurfacePoint s = surfacePoint(e, random.direction());
-        // Inside only as deep as this is still the closest point.
+        // Inside, x is the closest point only down to this depth.
         const double outside = std::pow(10.0, random.uniform(-6.0, 3.0));
         const double d = i % 2 == 0 ? outside : -random.uniform(0.0, 0.99) * s.reach_inside;
         const FieldSample got = field->sample(s.x + d * s.n);
-        // 1e-14 of the larger of body and distance.
+        // The tolerance is 1e-14 of the larger of size and distance.
         const double scale = std::max(1.0, std::fabs(d));
         EXPECT_NEAR(got.value, d, 1e-14 * scale) << thin << ' ' << middle;
-        // The position itself is rounded; where the surface bends tightly that turns the normal.
+        // The position itself is rounded; where the surface is strongly curved, that turns the
+        // normal.
         const double turn =
             4e-16 * scale / std::max(s.reach_inside * 0.01, std::fabs(d + s.reach_inside));
         EXPECT_LT(glm::length(got.gradient - s.n), 1e-14 + turn)

@@ -1,4 +1,5 @@
-// How steep a sum of metaballs can be: never less than it is anywhere, and not much more.
+// How steep a sum of metaballs can be: the bound is never less than the slope anywhere, and not
+// much more.
 
 #include "fields/fall_off.h"
 
@@ -11,14 +12,14 @@
 namespace palpate::test {
 namespace {
 
-/// The slope of one fall-off by q, from its formula.
+/// The derivative of one fall-off by q, from its formula.
 double slopeOf(FallOff kind, double q) {
   if (kind == FallOff::kWyvill) return q < 1.0 ? 6.0 * q * std::pow(1.0 - q * q, 2.0) : 0.0;
   if (kind == FallOff::kGaussian) return 2.0 * q * std::exp(-q * q);
   return 2.0 * q / std::pow(1.0 + q * q, 2.0);
 }
 
-/// All slopes at a place, as if they pointed one way.
+/// The sum of all slopes at a place, as if they all pointed in the same direction.
 double slopesAt(const std::vector<Metaball>& balls, FallOff kind, const Vec3& p) {
   double sum = 0.0;
   for (const Metaball& ball : balls) {
@@ -33,7 +34,7 @@ TEST(FallOff, TheSteepestSumIsFoundToATwentieth) {
   const std::vector<Metaball> beside{{Vec3(0.30, -0.20, 0.11), 0.03, 1.0},
                                      {Vec3(0.33, -0.19, 0.10), 0.02, 0.8},
                                      {Vec3(0.31, -0.17, 0.12), 0.04, -0.5}};
-  // About one center each is steepest where the other is flat.
+  // Both have the same center; each is steepest where the other is flat.
   const std::vector<Metaball> within{{Vec3(0.30, -0.20, 0.11), 0.03, 3.0},
                                      {Vec3(0.30, -0.20, 0.11), 0.01, 1.0}};
   for (const auto& balls : {beside, within}) {
@@ -51,7 +52,7 @@ TEST(FallOff, TheSteepestSumIsFoundToATwentieth) {
       }
       const double told = fields::steepestSum(balls, kind);
       EXPECT_GE(told, found);
-      // A twentieth more, and what steps of a fifth of the smallest radius miss.
+      // The tolerance of a twentieth, plus what steps of a fifth of the smallest radius miss.
       EXPECT_LE(told, 1.05 * 1.03 * found);
     }
   }

@@ -1,4 +1,5 @@
-// The contract suite itself: it must catch a field that lies, each lie by the check made for it.
+// The contract suite itself: it must catch a field that violates the contract, each violation by
+// the check made for it.
 
 #include "support/field_contract.h"
 
@@ -11,16 +12,16 @@
 namespace palpate::test {
 namespace {
 
-/// A ball that tells one untruth.
+/// A ball with one violation of the contract.
 struct Lie {
   double value_scale = 1.0;
   double lipschitz = 1.0;
   double bounds_margin = 0.0;  ///< [m]
   double gradient_scale = 1.0;
   double hessian_scale = 1.0;
-  double value_offset = 0.0;  ///< [m] of value() alone
-  double batch_offset = 0.0;  ///< [m] of one value of values()
-  double dent = 0.0;          ///< [m] depth of a ripple of `value`, its slope in the gradient
+  double value_offset = 0.0;  ///< [m] error of value() alone
+  double batch_offset = 0.0;  ///< [m] error of one value of values()
+  double dent = 0.0;  ///< [m] depth of a ripple of the value, whose slope is in the gradient
   Metric metric = Metric::kExact;
   bool nan_at_center = false;
 };
@@ -80,14 +81,15 @@ TEST(FieldContractSuite, AcceptsTheTruth) {
 }
 
 TEST(FieldContractSuite, CatchesAFalseLipschitzBound) {
-  // Implicit, so that only the bound is at fault: half a percent steeper than it says.
+  // Metric kImplicit, so that only the bound is wrong: the field is half a percent steeper than it
+  // states.
   EXPECT_FALSE(checkLipschitz(caseOf({.value_scale = 1.005, .metric = Metric::kImplicit})));
   EXPECT_TRUE(checkLipschitz(
       caseOf({.value_scale = 1.005, .lipschitz = 1.005, .metric = Metric::kImplicit})));
 }
 
 TEST(FieldContractSuite, CatchesALipschitzBoundThatFailsInFewPlaces) {
-  // The slopes of ball and ripple add up to 1.02 only about the poles.
+  // The slopes of ball and ripple add up to 1.02 only near the poles.
   EXPECT_FALSE(
       checkLipschitz(caseOf({.lipschitz = 1.01, .dent = 1e-4, .metric = Metric::kImplicit})));
   EXPECT_TRUE(

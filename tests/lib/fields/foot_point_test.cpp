@@ -129,7 +129,7 @@ TEST(FootPoint, OnAGyroidNoPointOfTheSurfaceIsNearer) {
     ++found;
     EXPECT_EQ(foot->distance < 0.0, field->value(p) < 0.0);
     EXPECT_LT(std::fabs(field->value(foot->point)), 1e-14);
-    // The sphere that reaches almost to the foot lies on the side of p.
+    // The sphere that reaches almost to the foot is entirely on p's side of the surface.
     for (int k = 0; k < 100; ++k) {
       const Vec3 at = p + 0.98 * foot->distance * random.direction();
       EXPECT_EQ(field->value(at) < 0.0, field->value(p) < 0.0);
@@ -155,7 +155,7 @@ TEST(FootPoint, WhereTheNearestPointIsNotFoundThereIsNone) {
   }
   // Deep inside, between the two flat sides, Newton's method may find either side or none.
   EXPECT_GT(known, 2 * unknown);
-  // The middle, where the gradient vanishes, and no numbers at all.
+  // The middle, where the gradient vanishes, and points that are NaN.
   EXPECT_FALSE(footPoint(*flat, kCenter));
   EXPECT_FALSE(footPoint(*flat, Vec3(std::numeric_limits<double>::quiet_NaN())));
 }

@@ -123,7 +123,7 @@ std::vector<FieldCase> implicitCases() {
            },
        .region = {Vec3(-0.06), Vec3(0.06)},
        .inside = [](const Vec3& p) { return glm::dot(p - kCenter, p - kCenter) < 0.03 * 0.03; },
-       // At its kink the function itself has no gradient, and 1e160 squared none either.
+       // At its kink the function itself has no gradient, and neither has 1e160 squared.
        .unit_gradient = false,
        .far_away = false});
   return cases;
@@ -167,7 +167,8 @@ TEST(Heart, HasAGradientEverywhereOnItsSurface) {
 }
 
 TEST(Heart, FarAwayItDoesNotBend) {
-  // As a cone: its curvature is one over the distance, and 1e-100 m^-1 is none.
+  // Far away it is like a cone: the curvature is one over the distance, and 1e-100 m^-1 is rounded
+  // to zero.
   const FieldPtr field = heart(kCenter, 0.06);
   for (const Vec3& p : {Vec3(1e100, 0, 0), Vec3(-1e120, 2e120, 1e119), Vec3(0, 0, 1e200)}) {
     const FieldJet jet = field->jet(p);
@@ -245,7 +246,8 @@ TEST(Metaballs, OneBallAloneIsASphere) {
 TEST(Metaballs, LipschitzBoundDoesNotGrowWithBallsFarApart) {
   std::vector<Metaball> balls;
   for (int i = 0; i < 200; ++i) balls.push_back({Vec3(0.1 * i, 0, 0), 0.02, 1.0});
-  // One ball has slope 1, the way to the bounds another 1, and the search is tight to a twentieth.
+  // One ball contributes a slope of 1, the term outside the bounds another 1, and the search is
+  // tight to a twentieth.
   EXPECT_LE(metaballs(balls, FallOff::kWyvill, 0.5)->lipschitz(), 2.06);
 }
 
@@ -258,8 +260,8 @@ TEST(Metaballs, AreSmoothWhereTheSurfaceTouchesTheBounds) {
     const Box3 bounds = field->bounds();
     Random random(3);
     for (int i = 0; i < 600; ++i) {
-      // Across a face: at the place that is touched, near it, or anywhere on it; and across an
-      // edge's planes.
+      // Across a face: at the place where the surface touches it, near that, or anywhere on it; and
+      // across the planes at an edge.
       const int axis = i % 3;
       Vec3 p = i < 200   ? kCenter
                : i < 400 ? kCenter + random.in({Vec3(-1e-3), Vec3(1e-3)})
@@ -279,7 +281,7 @@ TEST(Metaballs, AreSmoothWhereTheSurfaceTouchesTheBounds) {
                   200.0 * step / (radius * radius));
       }
     }
-    // It still rises, everywhere around.
+    // The value rises outward everywhere around it.
     for (int i = 0; i < 1000; ++i) {
       const Vec3 u = random.direction();
       const double near = field->value(kCenter + 1.01 * bounds.size().x * u);

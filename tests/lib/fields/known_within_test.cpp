@@ -1,4 +1,4 @@
-// A field of which only a box is kept.
+// A field that is restricted to a box.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 const Box3 kBox{Vec3(-0.06, -0.02, -0.06), Vec3(0.01, 0.03, 0.06)};
 
-/// A ball that must not be asked out of the box.
+/// A ball that must not be evaluated outside the box.
 class Guarded final : public Field {
  public:
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
@@ -72,7 +72,7 @@ TEST(KnownWithin, RefusesNothingAndAnEmptyBox) {
             "field.empty_box");
 }
 
-/// A ball whose Lipschitz bound holds in a box only.
+/// A ball whose Lipschitz bound holds only in a box.
 class BoundedIn final : public Field {
  public:
   explicit BoundedIn(const Box3& domain) : domain_(domain) {}
@@ -95,7 +95,7 @@ TEST(KnownWithin, ItsLipschitzBoundHoldsEverywhereIfItDoesInTheWholeBox) {
     return knownWithin(std::make_shared<BoundedIn>(Box3{lo, hi}), kBox)->lipschitzDomain();
   };
   EXPECT_FALSE(domain(kBox.lo - Vec3(0.01), kBox.hi + Vec3(0.01)).isBounded());
-  // One corner of the box is in it, the other is not.
+  // One corner of the box is in that domain, the other is not.
   const Vec3 middle = kBox.center();
   const Box3 low = domain(kBox.lo - Vec3(0.01), middle);
   EXPECT_EQ(low.lo, kBox.lo);

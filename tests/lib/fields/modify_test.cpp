@@ -118,7 +118,8 @@ TEST(Offset, BoxesShrinkSharpAndGrowRound) {
 }
 
 TEST(Offset, BoundsAreHonestWhereTheValueIsOnlyABound) {
-  // Two half-spaces that meet at 5 degrees: the grown wedge reaches much farther than its distance.
+  // Two half-spaces that meet at 5 degrees: the tip of the grown wedge moves much farther than the
+  // offset.
   const double tilt = 0.0436;
   const FieldPtr wedge = intersect({halfSpace(Vec3(0.0), Vec3(std::sin(tilt), 0, std::cos(tilt))),
                                     halfSpace(Vec3(0.0), Vec3(std::sin(tilt), 0, -std::cos(tilt))),

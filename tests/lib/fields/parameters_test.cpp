@@ -1,4 +1,4 @@
-// Bad parameters are refused with a message that names parameter, value and permitted range.
+// Bad parameters are refused with a message that states parameter, value and permitted range.
 
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ TEST(Parameters, DirectionsAreNotZero) {
                 {"half_space", "normal", "[0, 0, 0]"});
   expectRefused([] { return cylinder(kOrigin, Vec3(0.0, -0.0, 0.0), 1.0, 1.0); },
                 "field.zero_direction", {"cylinder", "axis"});
-  // Any other length will do.
+  // Any other length is accepted.
   EXPECT_EQ(halfSpace(kOrigin, Vec3(0, 0, 1e-310))->value(Vec3(0, 0, 2)), 2.0);
   EXPECT_EQ(halfSpace(kOrigin, Vec3(0, 1e300, 0))->value(Vec3(0, 3, 0)), 3.0);
 }

@@ -37,7 +37,7 @@ std::vector<FieldCase> primitiveCases() {
                                   radius * radius;
                          },
                      .awkward = {c, c + Vec3(radius, 0, 0), c + Vec3(1e-18, 0, 0)},
-                     // Coordinates of 0.02 m hold a radius of 1 um to 1e-12 of it.
+                     // At coordinates of 0.02 m a radius of 1 um is represented to 1e-12 of itself.
                      .sign_margin = 1e-9});
   }
 

@@ -17,7 +17,7 @@ const Vec3 kTilt = glm::normalize(Vec3(1.0, -2.0, 0.5));
 std::vector<FieldCase> roundCases() {
   std::vector<FieldCase> cases;
   const Vec3 size(0.1, 0.04, 0.06);
-  for (const double r : {0.004, 0.02}) {  // the second leaves a flat core
+  for (const double r : {0.004, 0.02}) {  // the second one leaves a flat core
     cases.push_back({.name = r < 0.01 ? "rounded_box" : "rounded_box_to_the_middle",
                      .make = [=] { return roundedBox(kCenter, size, r); },
                      .region = {kCenter - size, kCenter + size},
@@ -97,7 +97,7 @@ TEST(Cone, HasEuclideanDistanceToSlantBaseTipAndRim) {
   EXPECT_EQ(field->value(Vec3(0, 0, 6)), 2.0);
   EXPECT_EQ(field->value(Vec3(1, 1, -2)), 2.0);
   EXPECT_EQ(field->value(Vec3(6, 0, -4)), 5.0);
-  // From the middle of the slant, along its normal (4, 3) / 5.
+  // From the middle of the slant along its normal (4, 3) / 5.
   EXPECT_NEAR(field->value(Vec3(1.5 + 0.8, 0, 2 + 0.6)), 1.0, 1e-15);
   EXPECT_NEAR(field->value(Vec3(1.5 - 0.4, 0, 2 - 0.3)), -0.5, 1e-15);
   EXPECT_EQ(field->structure().kind, FieldStructure::Kind::kFaces);

@@ -1,5 +1,6 @@
-// The cells of a region near a point, against the region itself: whatever sides of the near leaves
-// a point is on, it is in a cell if the region has it there and no sheet is in between.
+// The cells of a region near a point, against the region itself: for any combination of sides of
+// the near leaves, a point with these sides is in a cell if and only if it is in the region and no
+// sheet is in between.
 
 #include "palpate/interior/near_cells.h"
 
@@ -25,7 +26,7 @@ class World {
     for (int i = 0; i < 3; ++i) layers_.push_back(tree(2));
     std::vector<Sheet> sheets;
     if (has_sheets) {
-      // One that goes on for ever, and one with an edge.
+      // A sheet without an edge, and one with an edge.
       masks_ = {tree(1), tree(1), tree(1)};
       for (const int mask : {-1, 2}) {
         Sheet sheet;
@@ -43,7 +44,7 @@ class World {
     passages_ = Passages(regions, std::vector<Wall>(regions * regions), {}, sheets);
   }
 
-  /// Whether a point with these sides is where one with the sides `from` may go.
+  /// Whether a point with the sides `there` is permitted to one that now has the sides `from`.
   [[nodiscard]] bool mayBe(const Signs& there, const Signs& from) const {
     if (partition_->regionOf(there) != partition_->regionOf(from)) return false;
     const auto& sheets = passages_.sheets();
@@ -84,7 +85,8 @@ bool isIn(std::span<const NearCell> cells, std::uint32_t inside) {
   });
 }
 
-/// Looks at many points of a world with one finder, as a solver does; how many sides were compared.
+/// Examines many points of a world with one finder, as a solver does; returns the number of
+/// comparisons.
 int compare(World& world, bool may_be_anywhere) {
   const std::size_t leaves = world.partition().leaves().size();
   NearCells finder(world.partition(), world.passages());

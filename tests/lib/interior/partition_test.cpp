@@ -1,5 +1,5 @@
-// CSG taken apart into leaves and put together again as regions: what the loop believes of a point
-// must be what the fields' own values say there.
+// CSG split into leaves and recombined as regions: the region that the loop computes for a point
+// must agree with the fields' own values there.
 
 #include "palpate/interior/partition.h"
 
@@ -51,7 +51,7 @@ TEST(Partition, TakesCsgApartAndSharesLeaves) {
   const FieldPtr a = ball(0.0);
   const FieldPtr b = ball(0.02);
   const FieldPtr c = halfSpace(Vec3(0.0), Vec3(0, 0, 1));
-  // a and b stand in both layers, once below a complement: they are one leaf each.
+  // a and b occur in both layers, once below a complement: each is one leaf.
   const FieldPtr lower = intersect({unite({a, b}), c});
   const std::vector<FieldPtr> layers{lower, subtract({a, b})};
   const Partition partition(layers);
@@ -76,7 +76,7 @@ TEST(Partition, GivesTransformsToTheLeaves) {
   const FieldPtr twice = place(complement(place(part, turn)), shift);
   const std::vector<FieldPtr> layers{once, twice};
   const Partition partition(layers);
-  // The same shapes at two places are four leaves; `part` stands for all of them.
+  // The same two shapes at two places are four leaves; `part` stands for all of them.
   ASSERT_EQ(partition.leaves().size(), 4U);
   EXPECT_EQ(partition.leavesOf(part.get()).size(), 4U);
   EXPECT_EQ(partition.leavesOf(once.get()).size(), 2U);
@@ -84,7 +84,7 @@ TEST(Partition, GivesTransformsToTheLeaves) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p = random.in({Vec3(-0.1), Vec3(0.1)});
     const RegionId expected = twice->value(p) < 0.0 ? 2 : once->value(p) < 0.0 ? 1 : 0;
-    // Two roundings of the same motion: points at the wall itself have no sure side.
+    // The same motion was rounded in two ways: points on the wall itself have no certain side.
     if (std::min(std::fabs(twice->value(p)), std::fabs(once->value(p))) < 1e-14) continue;
     ASSERT_EQ(regionAt(partition, p), expected);
   }
@@ -200,8 +200,8 @@ TEST(Partition, WideTreesAreNoProblemAndDeepOnesAreRefusedOrRight) {
   EXPECT_EQ(regionAt(Partition(wide), Vec3(0.3, 0, 0)), 1);
   EXPECT_EQ(regionAt(Partition(wide), Vec3(0.32, 0, 0)), 0);
 
-  // Nested in the last operand the stack grows with every level; the point is in the deepest one
-  // only.
+  // Nested in the last operand, the stack grows with every level; the point is only in the deepest
+  // one.
   const auto nested = [](int levels) {
     FieldPtr field = ball(1.0, 0.01);
     for (int i = 0; i < levels; ++i) field = unite({ball(0.0, 0.01), field});
@@ -211,7 +211,7 @@ TEST(Partition, WideTreesAreNoProblemAndDeepOnesAreRefusedOrRight) {
   EXPECT_EQ(regionAt(Partition(nested(62)), Vec3(0.5, 0, 0)), 0);
   EXPECT_THROW(Partition{nested(63)}, Error);
 
-  // In the first operand it does not grow, however deep.
+  // Nested in the first operand, it does not grow, however deep.
   FieldPtr first = ball(1.0, 0.01);
   for (int i = 0; i < 200; ++i) first = unite({first, ball(0.0, 0.01)});
   const Partition left_deep{std::vector<FieldPtr>{first}};

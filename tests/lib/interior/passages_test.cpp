@@ -1,4 +1,4 @@
-// What a facet is for the proxy: walls, ports, and the memory of ports passed.
+// The meaning of a facet for the proxy: walls, ports, and the memory of ports passed.
 
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ Port portOf(Ids from, Ids to) {
   return out;
 }
 
-/// Chambers 1, 2, 3 in a ring behind a door from outside: port 0 is the door, 1, 2, 3 lead on (1 to
-/// 2, 2 to 3, 3 to 1), 4 leads back from 2 to 1. All are counted.
+/// Chambers 1, 2, 3 form a ring behind a door from outside: port 0 is the door, ports 1, 2, 3 lead
+/// on (1 to 2, 2 to 3, 3 to 1), port 4 leads back from 2 to 1. All are counted.
 class Ring : public ::testing::Test {
  protected:
   Ring() {
@@ -101,7 +101,7 @@ TEST_F(Ring, PassedTheOtherWayFirstCountsThatWay) {
 }
 
 TEST_F(Ring, AnAbsentWallBackTakesThePassageOff) {
-  // 1 and 2 touch by port 1 in one half and by an absent wall in the other.
+  // 1 and 2 are connected by port 1 in one half and by an absent wall in the other.
   pass(0, 0, 1);
   pass(1, 1, 2);
   pass(2, 2, 3);
@@ -143,7 +143,8 @@ TEST_F(Ring, AfterHoldsFromTheNumberAskedForOn) {
 }
 
 TEST(PassedPorts, APortThatJoinsARegionToItselfByGlobsIsComeBackThrough) {
-  // between: ["*", "*"]: both ways are in, and still the second is back.
+  // between: ["*", "*"]: both directions count as in, and still the second one takes the first
+  // back.
   std::vector<Port> ports{portOf({0, 1, 2}, {0, 1, 2}), portOf({1}, {2})};
   ports[1].after = {0};
   const Passages passages(3, std::vector<Wall>(9), ports);
@@ -190,7 +191,8 @@ TEST(Port, LeadsByItsDirection) {
   }
 }
 
-/// Two nested balls and a mask: leaf 0 is region 1's, leaf 1 region 2's, leaf 2 the mask (x < 0).
+/// Two nested balls and a mask: leaf 0 belongs to region 1, leaf 1 to region 2, leaf 2 is the mask
+/// (x < 0).
 class Facets : public ::testing::Test {
  protected:
   Facets()
@@ -198,7 +200,7 @@ class Facets : public ::testing::Test {
         masks_{halfSpace(Vec3(0.0), Vec3(1, 0, 0))},
         partition_(layers_, masks_) {}
 
-  /// The facet seen from `here`, when `crossed` change sides.
+  /// The facet seen from `here`, when the leaves `crossed` change sides.
   Facet look(const Vec3& here, Ids crossed, std::vector<Port> ports,
              const PassedPorts& passed = {}) {
     std::vector<Wall> walls(9, Wall{false, 5});
@@ -302,7 +304,7 @@ TEST_F(Facets, AnOpeningForceThatVariesSaysSo) {
   skin.opens_at = testing::linearMap(3.0, Vec3(0, 0, 10.0), {1.0, 5.0});
   EXPECT_TRUE(look(outside_, {0}, {skin}).varies);
   EXPECT_DOUBLE_EQ(look(outside_ + Vec3(0, 0, 0.1), {0}, {skin}).opens_at, 4.0);
-  // Whatever else leads through there.
+  // This holds whatever other ports lead through there.
   Port hard = port({0}, {1});
   hard.opens_at = 5.0;
   EXPECT_TRUE(look(outside_, {0}, {skin, hard}).varies);

@@ -1,5 +1,6 @@
 // Random walks through random mazes of chambers, rings, valves, sheets and holes, at the level of
-// the port machine, against a machine written from the rules of the scene file's page alone.
+// the port machine, against a second machine written only from the rules in the scene file's
+// documentation.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ namespace {
 constexpr int kMasks = 4;
 constexpr int kSheets = 2;
 
-/// A port as an author writes it.
+/// A port in the author's terms.
 struct Told {
   std::vector<int> a;  ///< the first of `between`
   std::vector<int> b;
@@ -34,7 +35,7 @@ struct Told {
   double reopens_at = 0.0;
 };
 
-/// What the wall in front of the probe is.
+/// The kind of wall in front of the probe.
 struct Verdict {
   char what = 'w';  ///< w: wall, n: nothing there, a: absent, o: open port, f: wall that gives way
                     ///< to a force
@@ -66,7 +67,7 @@ class Rules {
       const bool forth = has(p.a, from) && has(p.b, to) && p.direction != 'o';
       const bool back = has(p.b, from) && has(p.a, to) && p.direction != 'i';
       if (!forth && !back) continue;
-      // Both at once (globs): towards the inner region is in.
+      // If both hold (globs), the direction towards the inner region is in.
       const bool inward = forth && (!has(p.a, to) || !has(p.b, from) || from < to);
       if (offer(static_cast<int>(i), forth, inward, masks, x, best)) return best;
     }
@@ -110,7 +111,7 @@ class Rules {
         continue;
       }
       if (standing.empty() || p.sheet >= 0) continue;
-      // Was it passed from `to` to `from`?
+      // Whether it was passed from `to` to `from`.
       const bool forth = has(p.a, to) && has(p.b, from) && p.direction != 'o';
       const bool back = has(p.b, to) && has(p.a, from) && p.direction != 'i';
       if (!forth && !back) continue;
@@ -139,7 +140,7 @@ class Rules {
     }
     return nullptr;
   }
-  /// True if the port stands open: the first such decides.
+  /// Takes a port into account; true if it stands open: the first such port decides.
   bool offer(int port, bool is_way_in, bool inward, const std::vector<bool>& masks, double x,
              Verdict& best) const {
     const Told& p = ports[static_cast<std::size_t>(port)];
@@ -157,7 +158,7 @@ class Rules {
     return false;
   }
 
-  std::vector<std::vector<bool>> passings;  ///< by port: those that stand, by their direction
+  std::vector<std::vector<bool>> passings;  ///< by port: passings that count
   std::vector<long> kept;
   std::deque<Made> holes;
 };
@@ -180,7 +181,7 @@ class Maze {
     build();
   }
 
-  /// One try of the probe to get through a wall. False if the two differ.
+  /// One attempt of the probe to pass a wall. False if the two machines differ.
   bool tick() {
     const double x = 0.25 * pick(40);
     std::vector<bool> masks;

@@ -35,7 +35,7 @@ TEST(Punctures, InAHoleNoSecondOneIsMade) {
   punctures.puncture(3, port, Vec3(0.0));
   punctures.puncture(3, port, Vec3(0.5e-3, 0.0, 0.0));
   EXPECT_EQ(punctures.holes().size(), 1U);
-  punctures.puncture(4, port, Vec3(0.0));  // another port's wall may lie there as well
+  punctures.puncture(4, port, Vec3(0.0));  // the wall of another port may be there as well
   EXPECT_EQ(punctures.holes().size(), 2U);
   punctures.puncture(5, portWith(0.0, 0.0, 0.0), Vec3(1.0));
   EXPECT_EQ(punctures.holes().size(), 2U) << "a port that makes none";

@@ -7,18 +7,19 @@
 namespace palpate::oracle {
 namespace {
 
-// Everything is some tens of millimeters large.
+// All shapes are some tens of millimeters large.
 constexpr double kSize = 0.05;
 
-/// `x` is allowed, and nothing allowed nearby is nearer to `p`; each found by values alone.
+/// Checks that `x` is permitted, and that no permitted point nearby is nearer to `p`, both by
+/// values alone.
 void expectMinimum(const FeasibleSet& set, const Vec3& p, const Vec3& x, Random& random) {
-  const double slack = 1e-12;  // of rounding, at 0.1 m and a gradient of at most 100 1/m
+  const double slack = 1e-12;  // rounding, at 0.1 m and a gradient of at most 100 1/m
   EXPECT_GE(set.value(x), -slack);
   const double depth = glm::length(x - p);
   for (const double radius : {1e-4 * kSize, 1e-6 * kSize}) {
     for (int i = 0; i < 300; ++i) {
       const Vec3 y = x + radius * random.unit();
-      // A step r along a surface can only gain what rounding of the surface gives.
+      // A step r along a surface can gain only what rounding of the surface permits.
       if (set.value(y) >= 0.0) {
         EXPECT_GE(glm::length(y - p), depth - 1e-11);
       }
@@ -26,7 +27,7 @@ void expectMinimum(const FeasibleSet& set, const Vec3& p, const Vec3& x, Random&
   }
 }
 
-/// Every allowed sample is at least as far from `p` as the nearest minimum.
+/// Checks that every permitted sample is at least as far from `p` as the nearest minimum.
 void expectNearest(const FeasibleSet& set, const Vec3& p, const Minima& minima, Random& random) {
   ASSERT_FALSE(minima.empty());
   const double depth = glm::length(nearestTo(minima, p) - p);
@@ -38,7 +39,7 @@ void expectNearest(const FeasibleSet& set, const Vec3& p, const Minima& minima, 
   }
 }
 
-/// Both, for random points; `global`: the nearest minimum is the nearest allowed point.
+/// Both checks, for random points; `global`: the nearest minimum is the nearest permitted point.
 template <typename Formula>
 void tryOut(const FeasibleSet& set, const Formula& formula, double half, int least_contacts) {
   Random random;
@@ -130,7 +131,7 @@ TEST(ClosedForms, Cone) {
     tryOut(
         Set::allOf({Set::inside(side), Set::inside(planeField(base, -axis, kSize))}),
         [&](const Vec3& p) { return coneInside(p, base, axis, radius, height); }, 0.1, 50);
-    // Beyond the tip within the cone of its normals, it is the tip.
+    // Beyond the tip, within the cone of its normals, the tip is nearest.
     const Vec3 tip = base + height * axis;
     EXPECT_NEAR(glm::length(coneInside(tip + 0.01 * axis, base, axis, radius, height)[0] - tip),
                 0.0, 1e-16);
@@ -165,7 +166,7 @@ TEST(ClosedForms, TheCreaseOfTwoBallsIsFound) {
 TEST(ClosedForms, GrooveAndFold) {
   const Vec3 point(0.005, 0.01, -0.01);
   for (const double degrees : {10.0, 60.0, 90.0, 135.0, 170.0}) {
-    // Planes through the x axis direction, each half the opening off the vertical.
+    // Planes through the x axis, each tilted from the vertical by half the opening angle.
     const double half = radians(0.5 * degrees);
     const Vec3 n1(0.0, std::cos(half), std::sin(half));
     const Vec3 n2(0.0, -std::cos(half), std::sin(half));
@@ -183,8 +184,8 @@ TEST(ClosedForms, GrooveAndFold) {
 }
 
 TEST(ClosedForms, EllipsoidAgainstAMadeUpFoot) {
-  // From a surface point along its normal, both ways, up to the smallest radius of curvature: the
-  // closest point must be where the line began.
+  // From a surface point along its normal in both directions, up to the smallest radius of
+  // curvature: the closest point must be the starting point.
   Random random;
   const Vec3 radii(0.05, 0.02, 0.03);
   const double reach = 0.02 * 0.02 / 0.05;

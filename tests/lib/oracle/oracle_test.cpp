@@ -10,10 +10,10 @@
 namespace palpate::oracle {
 namespace {
 
-// Differences of order 4 over 1e-3 features are good to 1e-12 or so; a hand on a convex surface at
-// 0.9 of its radius makes ten times that of it.
+// Differences of order 4 over 1e-3 of the feature size are good to about 1e-12; for a hand on a
+// convex surface at 0.9 of its radius that error grows tenfold.
 constexpr double kSolver = 1e-9;
-// A cusp is found by searching directions, to the square root of rounding.
+// A cusp is found by a search over directions, which is exact to the square root of rounding.
 constexpr double kSearch = 2e-6;
 
 void expectProxy(const FeasibleSet& set, const Vec3& previous, const Vec3& hip, const Vec3& proxy,
@@ -44,7 +44,7 @@ TEST(Oracle, ConvexSphereUpToNineTenthsDeep) {
     for (const double depth : {1e-4, 0.02, 0.5, 0.9}) {
       const Vec3 out = random.unit();
       const Vec3 hip = center + (1.0 - depth) * radius * out;
-      // The proxy of the tick before: a little to the side.
+      // The proxy of the previous tick: slightly to the side.
       const Vec3 previous = center + radius * glm::normalize(out + 0.05 * random.unit());
       expectProxy(set, previous, hip, center + radius * out);
     }
@@ -67,14 +67,15 @@ TEST(Oracle, AProxyFarAroundASphereSlidesToItsFoot) {
 }
 
 TEST(Oracle, AProxyAboveAHipPastTheCenterRunsRoundToTheOtherSide) {
-  // Stationary but no minimum: only a second-order test leaves it, and it ends at the same place
-  // whichever way it falls.
+  // The point is stationary but not a minimum: only a second-order test makes the proxy leave it,
+  // and it ends at an equivalent place in whichever direction it falls.
   const FeasibleSet set = FeasibleSet::outside(ballField(Vec3(0.0), 0.05));
   expectProxy(set, Vec3(0.0, 0.0, 0.05), Vec3(0.0, 0.0, -0.02), Vec3(0.0, 0.0, -0.05));
 }
 
 TEST(Oracle, ATieIsAmbiguous) {
-  // Atop a tall thin ellipsoid, pressed beyond the tip's curvature: it falls to the left or right.
+  // On top of a tall thin ellipsoid, pressed beyond the tip's center of curvature: it falls to the
+  // left or right.
   const Vec3 radii(0.005, 0.012, 0.02);
   const FeasibleSet set = FeasibleSet::outside(ellipsoidField(radii, 0.00125));
   const OracleResult result = solveOracle(set, Vec3(0.0, 0.0, 0.02), Vec3(0.0, 0.0, 0.01));
@@ -120,7 +121,8 @@ TEST(Oracle, Torus) {
     const Vec3 hip = ring + random.real(0.2, 0.95) * 0.015 * out;
     const Vec3 x = torusMinima(hip, Vec3(0.0), axis, 0.04, 0.015, Held::kOutside)[0];
     expectProxy(FeasibleSet::outside(torus), x + 0.0005 * random.unit(), hip, x);
-    // From within the tube: the inner equator's side bends away, so only as deep as its reach.
+    // From inside the tube: the wall at the inner equator curves away, so the depth is limited by
+    // its reach.
     const Vec3 far = ring + 0.015 * 1.5 * out;
     const Vec3 y = torusMinima(far, Vec3(0.0), axis, 0.04, 0.015, Held::kInside)[0];
     expectProxy(FeasibleSet::inside(torus), y - 0.0002 * out, far, y);
@@ -170,9 +172,9 @@ TEST(Oracle, ABoxFromOutsideHoldsItsFaceUntilTheHipLeavesSideways) {
   const Vec3 lo(-0.01);
   const Vec3 hi(0.01);
   const FeasibleSet around = aroundBoxSet(lo, hi);
-  // Deep under the top, much nearer to the right face: the top still holds.
+  // Deep under the top, much nearer to the right face: the top still holds the proxy.
   expectProxy(around, Vec3(0.0, 0.0, 0.01), Vec3(0.009, 0.0, -0.005), Vec3(0.009, 0.0, 0.01));
-  // Out through the right: nothing holds any more.
+  // Out through the right face: nothing holds it any more.
   const Vec3 outside(0.012, 0.0, -0.005);
   expectProxy(around, Vec3(0.009, 0.0, 0.01), outside, outside);
 }
@@ -241,7 +243,7 @@ TEST(Oracle, TransformsAndComplementsAreTakenApart) {
   const FeasibleSet around = FeasibleSet::outside(bowl);
   EXPECT_EQ(around.sides().size(), 2U);
   EXPECT_EQ(around.branches().size(), 2U);
-  // Pressed from below onto its flat side, near the rim.
+  // Pressed from below onto the flat side, near the rim.
   const Vec3 hip = pose.apply(Vec3(0.015, 0.0, 0.001));
   const Vec3 x = pose.apply(Vec3(0.015, 0.0, 0.0));
   expectProxy(around, pose.apply(Vec3(0.014, 0.001, -0.001)), hip, x);
@@ -259,7 +261,7 @@ TEST(Oracle, FieldsThatTellTheirFacesAreTakenApart) {
 }
 
 TEST(Oracle, TheApexOfAHollowConeHolds) {
-  // A funnel: allowed where the radius is at most z tan 40 degrees.
+  // A funnel: the permitted points have a radius of at most z tan 40 degrees.
   const double slope = std::tan(radians(40.0));
   const FieldPtr cone =
       functionField([=](const Vec3& p) { return std::hypot(p.x, p.y) - slope * p.z; }, 0.01);

@@ -1,5 +1,5 @@
 #pragma once
-// Shapes as bare formulas, to try the oracle and the closed forms on.
+// Shapes as bare formulas, for testing the oracle and the closed forms.
 
 #include <cmath>
 #include <numbers>
@@ -61,7 +61,8 @@ inline FieldPtr torusField(const Vec3& center, const Vec3& axis, double major, d
       minor);
 }
 
-/// Not a distance: its gradient on the surface runs from 2 / largest to 2 / smallest radius.
+/// Not a distance: the length of its gradient on the surface varies from 2 / largest to 2 /
+/// smallest radius.
 inline FieldPtr ellipsoidField(const Vec3& radii, double feature) {
   return functionField(
       [=](const Vec3& p) {

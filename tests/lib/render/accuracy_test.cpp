@@ -19,7 +19,8 @@ std::string oneLayer(const std::string& field, bool from_within = false) {
          (from_within ? "start: {region: solid}\n" : "");
 }
 
-/// A random walk at `speed` [m/s] and 1 kHz; `keep` puts each point where the closed form is known.
+/// A random walk at `speed` [m/s] and 1 kHz; `keep` moves each point to where the closed form is
+/// known.
 void stroke(Drive& drive, double speed, int ticks, const std::function<Vec3(const Vec3&)>& keep,
             const std::function<Vec3(const Vec3&)>& closest, Vec3 p) {
   Random random(21);
@@ -44,10 +45,10 @@ void stroke(Drive& drive, double speed, int ticks, const std::function<Vec3(cons
 TEST(Accuracy, BallConvexAndHollowOfEverySize) {
   for (const double radius : {0.05, 0.01, 0.002, 0.0005}) {
     for (const bool hollow : {false, true}) {
-      // Up to 0.9 R deep on the outside; in the hollow to 20 R.
+      // Up to 0.9 R deep on the outside; up to 20 R in the hollow.
       for (const double share : {0.02, 0.5, hollow ? 20.0 : 0.9}) {
-        // A tick turns the hand by no more than 0.3 rad seen from the center: beyond that the way
-        // round is not unique.
+        // A tick turns the hand by at most 0.3 rad as seen from the center: for larger turns the
+        // direction around the ball is not unique.
         const double rho = radius * (hollow ? 1.0 + share : 1.0 - share);
         const double speed = std::min(0.2, 0.3 * rho / Drive::kTick);
         Drive drive(sceneOf(oneLayer(
@@ -114,7 +115,7 @@ TEST(Accuracy, BoxFacesFromOutside) {
       (void)drive.walk(out);
       (void)drive.walk(in);
       const auto keep = [&](Vec3 p) {
-        p = glm::clamp(p, -0.999 * kHalf, 0.999 * kHalf);  // over the whole face, to its edges
+        p = glm::clamp(p, -0.999 * kHalf, 0.999 * kHalf);  // on the whole face, up to its edges
         p[axis] = in[axis];
         return p;
       };
@@ -131,19 +132,20 @@ TEST(Accuracy, AConvexEdgeHoldsItsFaceAndThenLetsGo) {
   Drive drive(sceneOf(oneLayer(kBox)));
   (void)drive.walk(mm(0, 0, 12));
   (void)drive.walk(mm(0, 0, 8));
-  // Out over the edge at x = 30, 2 mm deep: K d on the top face until it ends, then nothing.
+  // Over the edge at x = 30, 2 mm deep: K d on the top face until it ends, then zero.
   for (double x = 0.0; x < 40.0; x += 0.25) {
     const TickResult& out = drive.to(mm(x, 0, 8));
-    if (x == 30.0) continue;  // the edge itself is either
+    if (x == 30.0) continue;  // exactly on the edge both are right
     if (x < 30.0) {
       ASSERT_TRUE(isNear(out.force, Vec3(0, 0, 2.0), 1e-9)) << x;
     } else {
       ASSERT_EQ(out.force, Vec3(0.0)) << x;
     }
   }
-  // Back again it meets the side face.
+  // On the way back it meets the side face.
   EXPECT_TRUE(isNear(drive.walk(mm(29, 0, 8)).force, Vec3(1.0, 0, 0), 1e-9));
-  // A corner met along its diagonal: some face holds it, and the force is finite and outward.
+  // A corner met along its diagonal: some face holds the proxy, and the force is finite and
+  // outward.
   Drive corner(sceneOf(oneLayer(kBox)));
   (void)corner.walk(1.2 * kHalf);
   const TickResult& out = corner.walk(0.97 * kHalf);
@@ -166,7 +168,7 @@ layers: [{name: table, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]
   Drive drive(sceneOf(text));
   (void)drive.walk(mm(0, 0, 5));
   (void)drive.walk(mm(0, 0, -2));
-  // 2 N down: sticks up to 1 N of pull, and drags with 0.6 N then.
+  // Pressed with 2 N: it sticks up to a pull of 1 N, and then drags with 0.6 N.
   bool slid = false;
   for (double x = 0.0; x < 5.0; x += 0.05) {
     const TickResult& out = drive.to(mm(x, 0, -2));
@@ -179,7 +181,7 @@ layers: [{name: table, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]
     }
   }
   EXPECT_TRUE(slid);
-  // At rest it sticks again, and breaks away by the static cone.
+  // At rest it sticks again, and breaks away at the static cone.
   (void)drive.to(drive.hip());
   const double stuck = drive.hip().x * 1e3 - 0.6;  // where the proxy is, mm
   for (double x = stuck + 0.65; x < stuck + 0.99; x += 0.05) {

@@ -1,5 +1,5 @@
-// Apexes from within, and countersinks: not only is the proxy at the tip, the force is the one that
-// it makes.
+// Apexes from inside, and countersinks: the proxy is at the tip, and the force is that of a proxy
+// there.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace palpate::test {
 namespace {
 
-/// Where a hand stands, beyond the tip, for the tip to be nearest: within the cone of the tip's
+/// A place of the hand, beyond the tip, for which the tip is nearest: within the cone of the tip's
 /// normals, whose half angle is 90 degrees minus the cone's own.
 Vec3 beyondTip(Random& random, double height, double half_angle, double depth) {
   const double most = 0.95 * (0.5 * std::numbers::pi - half_angle);
@@ -23,7 +23,7 @@ Vec3 beyondTip(Random& random, double height, double half_angle, double depth) {
                                            std::sin(lean) * std::sin(turn), std::cos(lean));
 }
 
-/// A hand that goes about beyond the tip; every force is K (tip - P).
+/// A hand that moves around beyond the tip; every force is K (tip - P).
 void feelTip(const ScenePtr& scene, const Vec3& free, double height, double half_angle,
              std::uint64_t seed) {
   Drive drive(scene);
@@ -68,7 +68,7 @@ TEST(Apex, OfAHollowConeGivesTheForceOfItsTip) {
 }
 
 TEST(Apex, OfACountersinkGivesTheForceOfItsTip) {
-  // A cone cut upside down into the top of a block: felt from above.
+  // A cone cut upside down into the top of a block, felt from above.
   for (const double degrees : {20.0, 45.0, 65.0}) {
     SCOPED_TRACE(::testing::Message() << "half angle " << degrees);
     const double half = degrees * kDegree;
@@ -81,7 +81,7 @@ TEST(Apex, OfACountersinkGivesTheForceOfItsTip) {
 }
 
 TEST(Apex, InThePlaneOfAnotherLayerAFrozenHandIsToldThatItRests) {
-  // Steps lead round the tip for ever there, within a nanometer.
+  // There, steps go around the tip for ever, within a nanometer.
   int unsettled = 0;
   double most = 0.0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
@@ -114,12 +114,12 @@ TEST(Apex, InThePlaneOfAnotherLayerAFrozenHandIsToldThatItRests) {
     }
   }
   EXPECT_EQ(unsettled, 0);
-  EXPECT_LE(most, 1e-5);  // [N] a hundredth of what is asked
+  EXPECT_LE(most, 1e-5);  // [N] a hundredth of what is required
 }
 
 TEST(Apex, CirclingInAConeGivesNoEnergy) {
   const ScenePtr scene = sceneOfSolid(cone(Vec3(0.0), Vec3(0, 0, 1), 0.010, 0.030), true);
-  // About the axis, from within the cone of normals to well outside of it.
+  // Around the axis, from within the cone of normals to well outside it.
   for (const double radius : {0.3e-3, 1e-3, 2e-3, 3e-3}) {
     for (const double height : {28e-3, 30.5e-3, 32e-3}) {
       if (kSanitized && radius != 1e-3) continue;
@@ -130,7 +130,7 @@ TEST(Apex, CirclingInAConeGivesNoEnergy) {
         (void)drive.to(Vec3(0, 0, 0.02));
         const auto at = [&](int i) {
           const double turn = 2.0 * std::numbers::pi * i / steps;
-          // Not a level circle, on which nothing could be lost or won.
+          // Not a level circle, on which no energy could be lost or gained.
           return Vec3(radius * std::cos(turn), radius * std::sin(turn),
                       height + 0.5 * radius * std::sin(2.0 * turn));
         };
@@ -147,7 +147,7 @@ TEST(Apex, CirclingInAConeGivesNoEnergy) {
         }
         return work;
       };
-      // The trapezoid's own error falls to a quarter with half the step.
+      // The error of the trapezoidal rule falls to a quarter when the step is halved.
       const double coarse = lap(8000);
       const double fine = lap(16'000);
       EXPECT_LE(std::min(fine, (4.0 * fine - coarse) / 3.0), 1e-9);

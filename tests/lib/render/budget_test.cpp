@@ -1,5 +1,5 @@
-// A tick that runs out of its budget: the proxy stays where it may be, never farther from the hand
-// than the tick before left it.
+// A tick that runs out of its budget: the proxy stays at a permitted point, never farther from the
+// hand than the proxy of the previous tick.
 
 #include <gtest/gtest.h>
 
@@ -16,13 +16,13 @@ namespace {
 struct Tally {
   long ticks = 0;
   long inside = 0;     ///< proxy inside a wall
-  long farther = 0;    ///< than the proxy of the tick before is
+  long farther = 0;    ///< proxy farther away than that of the previous tick
   double worst = 0.0;  ///< [m]
   long left_region = 0;
 };
 
-/// A hand that leaps about the scene and rests in between; what a tick cannot do, the next ones
-/// must.
+/// A hand that jumps around the scene and rests in between; the ticks after a jump must finish what
+/// one tick cannot.
 void leap(std::uint64_t number, Tally& tally) {
   const RandomScene scene = randomScene(number);
   const ScenePtr compiled = scene.compiled();
@@ -35,7 +35,7 @@ void leap(std::uint64_t number, Tally& tally) {
   Vec3 p = *start;
   for (int i = 0; i < 60; ++i) {
     if (i % 4 != 3) {
-      // From small steps to across the scene.
+      // From small steps to jumps across the scene.
       const double far = std::pow(10.0, random.uniform(-4.0, -1.3));
       p = last + far * random.direction();
     }
@@ -44,7 +44,7 @@ void leap(std::uint64_t number, Tally& tally) {
     const double on_surface = tree.onSurface();
     tally.inside += tree.value(out.proxy) < -2.0 * on_surface ? 1 : 0;
     const double more = glm::length(out.proxy - p) - glm::length(last - p);
-    // Being on a surface leaves that much room, and rounding of lengths.
+    // The tolerance on a surface, and the rounding of lengths, are granted.
     if (more > 2.0 * on_surface + 1e-15) {
       ++tally.farther;
       tally.worst = std::max(tally.worst, more);

@@ -1,4 +1,4 @@
-// A probe in a scene that is edited under it.
+// A probe in a scene that is edited while it is there.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace palpate::test {
 namespace {
 
-/// A ball in a ball; the inner one lets in who came by the skin.
+/// A ball in a ball; the inner one admits only a probe that came through the skin.
 std::string ballsText(const std::string& layers_before, const std::string& ports_before,
                       const std::string& shell = "shell", double radius = 40.0) {
   return R"(
@@ -51,8 +51,8 @@ std::vector<Vec3> thereAndBack() {
 
 TEST(CarriedState, GoesOnAsIfTheEditedSceneHadBeenThereFromTheStart) {
   const ScenePtr before = sceneOf(ballsText("", ""));
-  // What is new comes first, so that every number of a region, leaf, port and material is another
-  // one.
+  // New layers, ports and so on come first, so that all numbers of regions, leaves, ports and
+  // materials change.
   std::string text = ballsText(
       "  - {name: wart, inside: {box: {center: [-60, 0, 0], size: [4, 4, 4]}}, wall: horn}\n",
       "  - {name: pore, between: [outside, wart]}\n");
@@ -81,8 +81,8 @@ TEST(CarriedState, GoesOnAsIfTheEditedSceneHadBeenThereFromTheStart) {
       const TickResult now = edited.renderer().update({path[i], velocity});
       const TickResult then = wanted.to(path[i]);
       ASSERT_EQ(now.region, then.region) << "edited at " << edit << ", tick " << i;
-      // As states go on but for rounding: 1.5 kN/m of what two ways of meeting a wall may differ
-      // by.
+      // Carried states go on except for rounding: 1.5 kN/m times the difference between two ways of
+      // meeting a wall.
       ASSERT_TRUE(isNear(now.force, then.force, 1e-8)) << "edited at " << edit << ", tick " << i;
       ASSERT_EQ(now.event_count, then.event_count) << "edited at " << edit << ", tick " << i;
       passed += now.event_count;
@@ -121,7 +121,7 @@ TEST(CarriedState, WhatIsGoneIsToldAndTheProbeStartsAnewWithARamp) {
     for (const std::string& what : carried.lost) all += what + "; ";
     return all;
   };
-  // The skin does not give way here: the probe that starts anew is held outside.
+  // The skin does not open here: a probe that starts anew is held outside.
   const auto closed = [](std::string text) {
     const auto at = text.find("opens_at: 2 N");
     return text.replace(at, 13, "opens_at: 99 N");
@@ -164,13 +164,13 @@ TEST(CarriedState, IntoTheSameSceneEveryExampleGoesOn) {
       const TickResult now = other->update({p, Vec3(0.0)});
       const TickResult then = same->update({p, Vec3(0.0)});
       ASSERT_EQ(now.region, then.region) << ticks;
-      // As states go on but for rounding.
+      // Carried states go on except for rounding.
       ASSERT_TRUE(isNear(now.proxy, then.proxy, 1e-12)) << ticks;
     }
   }
 }
 
-/// Whether two renderers feel the same on the way to `goal` [m], from `from` at 0.1 m/s.
+/// Checks that two renderers feel the same on the way to `goal` [m], from `from` at 0.1 m/s.
 void expectTheSameOnTheWay(HapticRenderer& one, HapticRenderer& other, const Vec3& from,
                            const Vec3& goal) {
   const int ticks = static_cast<int>(std::ceil(glm::distance(from, goal) / 1e-4));
@@ -180,7 +180,7 @@ void expectTheSameOnTheWay(HapticRenderer& one, HapticRenderer& other, const Vec
     const TickResult now = one.update({p, velocity});
     const TickResult then = other.update({p, velocity});
     ASSERT_EQ(now.region, then.region) << i;
-    // As states go on but for rounding.
+    // Carried states go on except for rounding.
     ASSERT_TRUE(isNear(now.force, then.force, 1e-9)) << i;
   }
 }
@@ -212,7 +212,7 @@ TEST(CarriedState, TheContentBehindAnOpenMouthFadesAsItDid) {
       EXPECT_TRUE(carried.lost.empty());
       const auto edited = makeRenderer(to);
       ASSERT_TRUE(edited->setState(carried.state));
-      // The numbers of the regions differ: so do not compare them there.
+      // The numbers of the regions differ, so they are not compared there.
       if (to == before) expectTheSameOnTheWay(*edited, hand.renderer(), at, mm(0, 0, 35));
       for (int i = 0; to != before && i < 300; ++i) {
         at.z += 1e-4;
@@ -221,7 +221,7 @@ TEST(CarriedState, TheContentBehindAnOpenMouthFadesAsItDid) {
       }
     }
   }
-  // A mouth that is elsewhere is not known again, and that is said.
+  // A mouth that moved elsewhere is not recognized, and this is reported.
   std::string other = text("");
   other.replace(other.find("radius: 25"), 10, "radius: 26");
   Drive hand(before);
@@ -250,7 +250,7 @@ ports: [{name: c, between: [outside, side], opens_at: 0.5 N, rearm: 30}]
   EXPECT_TRUE(carried.lost.empty());
   const auto edited = makeRenderer(scene);
   ASSERT_TRUE(edited->setState(carried.state));
-  // Out again: 5 mm of 500 N/m, where a port that does not rest gives way to 0.5 N.
+  // Out again: 5 mm at 500 N/m, where a port that does not rest would open at 0.5 N.
   expectTheSameOnTheWay(*edited, hand.renderer(), mm(0, 0, 22.5), mm(0, 0, 30));
   EXPECT_NEAR(edited->update({mm(0, 0, 30), Vec3(0.0)}).force.z, -2.5, 1e-6);
 }

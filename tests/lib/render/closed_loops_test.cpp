@@ -1,4 +1,5 @@
-// Closed loops of the hand over random solids: one stiffness and no friction give it nothing.
+// Closed loops of the hand over random solids: with one stiffness and no friction they give it no
+// energy.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kStiffness = 1000.0;  // [N/m]
 
-/// A smooth closed way about a point.
+/// A smooth closed path around a point.
 class Loop {
  public:
   Loop(Random& random, const Vec3& center) : center_(center) {
@@ -34,13 +35,13 @@ class Loop {
 };
 
 struct Lap {
-  double given =
-      0.0;  ///< [J] to the hand, beyond what the wall had stored at the lap's begin and has no more
-  int leaps = 0;  ///< of the proxy off a wall, where energy is lost
+  double given = 0.0;  ///< [J] to the hand, beyond the energy that the wall stored at the lap's
+                       ///< beginning and lost by its end
+  int leaps = 0;       ///< jumps of the proxy off a wall, where energy is lost
   long contacts = 0;
 };
 
-/// The second lap; the first one brings the proxy to where the loop holds it.
+/// The second lap; the first one brings the proxy to its place on the loop.
 Lap lapOf(const ScenePtr& scene, const Vec3& start, const Loop& loop, int steps) {
   const auto renderer = makeRenderer(scene);
   const auto tick = [&](const Vec3& p) { return renderer->update({p, Vec3(0.0)}); };
@@ -61,7 +62,7 @@ Lap lapOf(const ScenePtr& scene, const Vec3& start, const Loop& loop, int steps)
     };
     const double change = stored(now, p) - stored(before, last);
     const bool is_leap = glm::length(now.proxy - before.proxy) > 1e3 * glm::length(step);
-    // Off a wall somewhere on the way: until then the force was that of before.
+    // The proxy left a wall somewhere during the step: until then the force was the previous one.
     const double work = is_leap ? std::min(glm::dot(before.force, step), -change)
                                 : 0.5 * glm::dot(before.force + now.force, step);
     out.leaps += is_leap ? 1 : 0;
@@ -89,7 +90,7 @@ TEST(ClosedLoops, OverRandomSolidsGiveNoEnergy) {
     const testing::RegionTree tree(*compiled, compiled->startRegion());
     const auto start = roomyPoint(tree, number);
     if (!start) continue;
-    // About where a pressed hand brought the proxy: often to where walls meet.
+    // Loops around the place to which a pressing hand brought the proxy: often where walls meet.
     Random random(number + 5);
     const auto renderer = makeRenderer(compiled);
     RandomHand hand(number, *start);
@@ -99,8 +100,8 @@ TEST(ClosedLoops, OverRandomSolidsGiveNoEnergy) {
     ++loops;
     Lap fine = lapOf(compiled, *start, loop, 2000);
     double given = kInfinity;
-    // The trapezoid's own error falls to a quarter with half the step where the force is smooth;
-    // where it has kinks the step is halved further.
+    // The error of the trapezoidal rule falls to a quarter when the step is halved, if the force is
+    // smooth; if it has kinks, the step is halved further.
     for (int steps = 4000; steps <= 16'000 && std::min(given, fine.given) > 1e-9; steps *= 2) {
       const Lap coarse = std::exchange(fine, lapOf(compiled, *start, loop, steps));
       given = (4.0 * fine.given - coarse.given) / 3.0;

@@ -1,5 +1,4 @@
-// A wall felt with what lies beneath, where the stiffness of the layers changes from place to
-// place.
+// A wall felt together with the layers beneath, whose stiffness varies from place to place.
 
 #include <gtest/gtest.h>
 
@@ -41,8 +40,8 @@ ScenePtr skinOnBone() {
   return compile(description);
 }
 
-/// What the stack's spring has stored [J] with the hand at `hip`, straight below its place on the
-/// skin.
+/// The energy [J] stored in the stack's spring with the hand at `hip`, straight below its place on
+/// the skin.
 double energyAt(const Vec3& hip) {
   const std::array<StackLayer, 2> stack = {StackLayer{skinAt(hip), kSkin}, {boneAt(hip), 0.0}};
   return 0.5 * stackStiffness(stack, kRadius).stiffness * hip.z * hip.z;
@@ -58,8 +57,8 @@ TEST(CompositeMaps, TheForceIsWhatTheEnergyOfTheStackFallsBy) {
     const Vec3 force = hand.walk(hip).force;
     const Vec3 expected = fallOf(energyAt, hip, kStep);
     for (int axis = 0; axis < 3; ++axis) {
-      // The third derivative of the energy is far below 1e-2 N/m^2, and the wall counts as met a
-      // billionth off.
+      // The third derivative of the energy is far below 1e-2 N/m^2, and the position of the wall is
+      // exact to 1e-9 of a feature.
       EXPECT_NEAR(force[axis], expected[axis], 1e-6) << axis;
     }
     EXPECT_GT(std::fabs(force.x), 1e-3) << "the maps are felt sideways";

@@ -1,4 +1,4 @@
-// What lies beneath a wall, felt through it: the stack along the inward normal, and its energy.
+// Layers beneath a wall, felt through it: the stack along the inward normal, and its energy.
 
 #include <cmath>
 #include <numbers>
@@ -51,8 +51,8 @@ TEST(Composite, IsOffUnlessAsked) {
 
 TEST(Composite, LooksNoFurtherThanItsDepthAndFadesBefore) {
   double last = 1e9;
-  // The plate's top is 8 mm down: of a depth of 8 mm nothing of it is left, and it comes in without
-  // a step.
+  // The plate's top is 8 mm down: a composite of 8 mm depth feels nothing of it, and a deeper one
+  // feels it without a step.
   for (double depth = 60.0; depth > 7.5; depth -= 0.05) {
     const std::string layers = R"(layers:
   - {name: tissue, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: skin}
@@ -84,12 +84,12 @@ TEST(Composite, OpensByTheForceThatIsFelt) {
 struct Loop {
   double felt = 0.0;  ///< [J] work on the hand
   double plain =
-      0.0;  ///< [J] without the term for what varies: the part of the force along the normal
+      0.0;  ///< [J] without the term for varying stiffness: from the force's part along the normal
   double stored = 0.0;  ///< [J]
 };
 
-/// Over the lump's middle and its rim, round and round at changing depth. The wall is a ball of
-/// `radius` [m] or, 0, a plane.
+/// Around and around over the lump's middle and its rim, at varying depth. The wall is a ball of
+/// `radius` [m], or a plane if that is 0.
 Loop goRound(const ScenePtr& scene, double radius, int ticks) {
   Drive hand(scene);
   Loop loop;
@@ -135,14 +135,14 @@ TEST(Composite, AClosedWayOverTheLumpCostsAndGivesNothing) {
     const Loop loop =
         goRound(sceneOf(lumpText(is_ball ? ball : plane, kOn)), is_ball ? 0.06 : 0.0, 20000);
     EXPECT_GT(std::fabs(loop.plain), 1e-3 * loop.stored) << "what there is to be made up for";
-    // What is left: the differences that the derivatives of the stack are taken by.
+    // The remainder comes from the differences by which the derivatives of the stack are computed.
     EXPECT_LT(std::fabs(loop.felt), 0.01 * std::fabs(loop.plain)) << is_ball;
   }
 }
 
 TEST(Composite, AcrossTheRimOfALumpLittleIsLeft) {
   // Over the rim of a ball the ray grazes it, and the depths of its interfaces have no slope there:
-  // nothing makes up for that part. This test counts it.
+  // that part of the force is missing. This test counts it.
   const std::string layers = R"(layers:
   - {name: tissue, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: skin}
   - {name: lump, inside: {sphere: {center: [0, 0, -13], radius: 5}}, wall: knot}
@@ -170,9 +170,9 @@ TEST(Composite, TheRimOfALumpIsNoEdge) {
     last = force;
   }
   // The stiffness rises by 270 N/m over 5 mm, at most by 2e5 N/m^2, times half the square of the
-  // depth. A sharp rim would have no bound.
+  // depth. With a sharp rim there would be no bound.
   EXPECT_LT(sideways, 0.1);
-  // 10 um on, less than can be felt (0.04 N).
+  // Over a way of 10 um; less than can be felt (0.04 N).
   EXPECT_LT(step, 0.02);
 }
 

@@ -1,4 +1,4 @@
-// The container of the paper's Table I, every row of it, by both renderers.
+// The container of the paper's Table I, every row of it, with both renderers.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@ class Container : public testing::TestWithParam<RendererKind> {
  protected:
   Container() : drive_(sceneOf(containerText()), GetParam()) {}
 
-  /// The paper bisects to a micrometer: that times K. The constraint renderer has no such excuse.
+  /// The paper's method bisects to a micrometer, so its tolerance is that times K. The constraint
+  /// renderer is exact.
   [[nodiscard]] static double tolerance() {
     return GetParam() == RendererKind::kPaper ? 2e-6 * kK : 1e-9;
   }
@@ -65,7 +66,7 @@ TEST_P(Container, EntersAndLeavesByTheMouth) {
   (void)drive_.walk(mm(5, 3, 5));
   EXPECT_EQ(drive_.events(), "mouth");
   EXPECT_EQ(drive_.region(), "liquid");
-  // Row 1, entered: the drag of the syrup and nothing else.
+  // Row 1, entered: only the drag of the syrup.
   const TickResult& moving = drive_.to(mm(5, 3.2, 4.9));
   EXPECT_TRUE(isNear(moving.force, -kBv * mm(0, 0.2, -0.1) / Drive::kTick, 1e-12));
   EXPECT_FALSE(moving.contact);
@@ -75,7 +76,7 @@ TEST_P(Container, EntersAndLeavesByTheMouth) {
   EXPECT_EQ(drive_.events(), "mouth");
   EXPECT_EQ(drive_.region(), "outside");
   EXPECT_EQ(drive_.to(mm(-5, 0, 29)).force, Vec3(0.0)) << "row 2: no syrup up here";
-  // Row 1 is the outside again, once the ball is met from outside.
+  // Outside again, met from outside, the ball is as in row 1.
   (void)drive_.walk(mm(-60, 0, 30));
   (void)drive_.walk(mm(-60, 0, 0));
   EXPECT_TRUE(isNear(drive_.walk(mm(-39, 0, 0)).force, Vec3(-kK * 1e-3, 0, 0), tolerance()));
@@ -101,7 +102,7 @@ TEST_P(Container, Row3EnteredIsTheWallFromWithin) {
 }
 
 TEST_P(Container, TheMouthIsNotEnteredWithoutPassingIt) {
-  // Through the glass sideways into the middle: never entered, and so no syrup.
+  // Sideways through the glass into the middle: it was never entered, so there is no syrup.
   (void)drive_.walk(mm(60, 0, 0));
   (void)drive_.walk(mm(10, 0, 0));
   EXPECT_EQ(drive_.region(), "outside");
@@ -113,7 +114,8 @@ TEST_P(Container, TheMouthIsNotEnteredWithoutPassingIt) {
 
 TEST(ContainerRim, TheProxySlidesOverItFromOutside) {
   Drive drive(sceneOf(containerText()));
-  // Up a meridian, 1 mm deep: pressed until the proxy stands on the rim (z = 15), then it drops in.
+  // Up a meridian, 1 mm deep: pressed until the proxy reaches the rim (z = 15), then the proxy
+  // drops in.
   const double rim = std::asin(15.0 / 40.0);
   (void)drive.walk(mm(39, 0, 0));
   for (double angle = 0.0; angle < rim + 0.1; angle += 1e-3) {
@@ -146,8 +148,8 @@ TEST(ContainerRim, TheProxySlidesOverItFromInside) {
     const Vec3 velocity = (0.041 * u - drive.hip()) / Drive::kTick;
     const TickResult& out = drive.to(0.041 * u);
     if (angle < rim - 1e-9) {
-      // The drag fades out with the distance to the mouth, so its size is known only away from
-      // there.
+      // The drag fades with the distance to the mouth, so its size is known only away from the
+      // mouth.
       const double drag = angle < rim - 0.02 ? kBv : 0.0;
       const double slack = angle < rim - 0.02 ? 1e-9 : kBv * glm::length(velocity) + 1e-9;
       ASSERT_TRUE(isNear(out.force, -kK * 1e-3 * u - drag * velocity, slack)) << angle;
@@ -159,7 +161,7 @@ TEST(ContainerRim, TheProxySlidesOverItFromInside) {
     }
   }
   EXPECT_EQ(drive.events(), "mouth");
-  // Out there the glass is felt from outside.
+  // Outside, the glass is felt from outside.
   (void)drive.walk(mm(60, 0, 20));
   (void)drive.walk(mm(60, 0, 0));
   EXPECT_TRUE(isNear(drive.walk(mm(39, 0, 0)).force, Vec3(kK * 1e-3, 0, 0), 1e-9));
@@ -199,7 +201,8 @@ TEST(ContainerFile, BothRenderersReadTheSceneOfTheProject) {
     (void)drive.walk(mm(60, 0, 0));
     const TickResult& out = drive.walk(mm(39, 0, 0));
     EXPECT_TRUE(isNear(out.force, Vec3(kK * 1e-3, 0, 0), 2e-6 * kK));
-    // Damping pushes against the motion: going in it adds, going out it never pulls.
+    // Damping acts against the motion: it adds on the way in, and on the way out the force never
+    // pulls.
     EXPECT_GT(drive.to(mm(38.9, 0, 0)).force.x, kK * 1.1e-3 + 0.05);
   }
 }

@@ -1,5 +1,5 @@
-// How far behind an opening a content fades in: a share of what the scene is made of, never a
-// length of its own.
+// The distance behind an opening over which a content fades in: a share of the scene's dimensions,
+// never a fixed length.
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 namespace palpate::test {
 namespace {
 
-/// [-] Share of the drag that is felt, moving along, `depth` units below the brim of a bowl of 40
-/// units.
+/// [-] Share of the drag that is felt when moving sideways `depth` units below the brim of a bowl
+/// of 40 units.
 double shareInABowl(const std::string& unit, double meters, double depth) {
   std::string text = containerText();
   text.replace(text.find("mm"), 2, unit);
@@ -32,8 +32,8 @@ TEST(ContentFade, IsTheSameInEveryUnit) {
 }
 
 TEST(ContentFade, AFilmIsFeltInFull) {
-  // A tenth of a millimeter thick, between two balls of 40 mm, open towards the outside: in its
-  // middle the drag is full.
+  // A film a tenth of a millimeter thick, between two balls of 40 mm, open towards the outside: in
+  // its middle the drag is felt in full.
   Drive hand(sceneOf(R"(
 palpate: 1
 length: mm

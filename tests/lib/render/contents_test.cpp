@@ -1,5 +1,5 @@
 // Contents: the lattice of data/scenes against its formula, contents changed while running, and the
-// energy of what is a source of it.
+// energy of contents that are sources.
 
 #include "palpate/render/contents.h"
 
@@ -41,8 +41,7 @@ TEST(Contents, LatticeSceneIsItsFormula) {
       before = p;
       if (p.z > 18e-3) {
         EXPECT_EQ(r.force, Vec3(0.0));
-      } else if (p.z <
-                 17.7e-3) {  // a quarter of a millimeter below the mouth the drag is there in full
+      } else if (p.z < 17.7e-3) {  // a quarter of a millimeter below the mouth the drag is full
         EXPECT_TRUE(isNear(r.force, latticeAt(p) - 0.5 * velocity, 1e-12)) << i;
         ++compared;
       }
@@ -60,7 +59,8 @@ TEST(Contents, OnAWallTheLatticePushesAlongItOnly) {
   EXPECT_TRUE(isNear(hand.last().force, Vec3(lattice.x, lattice.y, 1500.0 * 2e-3), 1e-9));
 }
 
-// A tank open above, whose lattice fades nowhere: the way in and out again may differ in potential.
+// A tank open above, whose lattice does not fade: on the way in and out again the potential may
+// differ.
 const char* const kTank = R"(
 palpate: 1
 length: mm
@@ -69,7 +69,7 @@ layers: [{name: tank, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}
 ports: [{name: mouth, between: [outside, tank]}]
 )";
 
-// [J] of kTank's lattice.
+// [J] Potential of kTank's lattice.
 double potential(const Vec3& p) {
   const Vec3 lengths(8e-3, 8e-3, 12e-3);
   const Vec3 from_origin = p - mm(1, 0, 3);
@@ -97,8 +97,8 @@ TEST(Contents, ALatticeIsConservativeInsideAndCountedWhereItIsNot) {
     v -= 0.25e-6 * p + 0.001 * v;
     p += v;
     const TickResult r = hand.to(p);
-    // Held for a tick, a force that changes is off by half of its change on the mean; where it
-    // jumps, within the tick that crosses the mouth, by up to all of it.
+    // A changing force that is held for a tick is wrong by half of its change on average; where it
+    // jumps, within the tick that crosses the mouth, by up to the whole change.
     const double change = glm::length(r.force - last_force);
     leak += (r.event_count > 0 ? 1.0 : 0.6) * change * glm::length(v);
     crossings += r.event_count;
@@ -106,12 +106,12 @@ TEST(Contents, ALatticeIsConservativeInsideAndCountedWhereItIsNot) {
     meter.add(p, r.force);
     const double source = hand.renderer().sourceWork();
     most = std::max(most, std::fabs(source));
-    // What the hand got is what came from nowhere, less what the lattice holds.
+    // The work on the hand equals the work of sources minus the potential that the lattice holds.
     const double held = r.region == kOutside ? 0.0 : potential(p);
     ASSERT_NEAR(meter.work(), source - held, leak) << i;
   }
   EXPECT_GT(crossings, 4);
-  // What crossings gave and took is far more than what the account may be off by.
+  // The energies gained and lost at crossings are far larger than the error of the account.
   EXPECT_LT(leak, 0.5 * most);
 }
 
@@ -124,8 +124,8 @@ layers: [{name: river, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]
 ports: [{name: bank, between: [outside, river]}]
 )"));
   EnergyMeter meter;
-  // With the flow, slower than it, in the river; back in the air. Each round it pushes the hand
-  // along.
+  // With the flow in the river, slower than it, and back through the air. In each round the flow
+  // pushes the hand along.
   for (int round = 0; round < 5; ++round) {
     for (int i = 0; i <= 1000; ++i) {
       const Vec3 p = mm(-20 + 0.04 * i, 0, -5);
@@ -139,8 +139,8 @@ ports: [{name: bank, between: [outside, river]}]
   EXPECT_GT(meter.work(), 0.02);
   const double source = hand.renderer().sourceWork();
   EXPECT_GT(source, meter.work());
-  // In full: 4 N s/m * 0.1 m/s = 0.4 N along 40 mm, five times; of it the first quarter millimeter
-  // fades.
+  // In full: 4 N s/m * 0.1 m/s = 0.4 N along 40 mm, five times; the first quarter millimeter of
+  // each fades.
   EXPECT_NEAR(source, 5 * 0.4 * 0.04, 5 * 0.4 * 0.5e-3);
   hand.renderer().reset();
   EXPECT_EQ(hand.renderer().sourceWork(), 0.0);
@@ -161,7 +161,7 @@ TEST(Contents, AreChangedWhileRunning) {
   EXPECT_TRUE(isNear(drag(), Vec3(-10.0 * 0.05, 0.0, 0.0), 1e-12));
   EXPECT_TRUE(hand.renderer().setContent(liquid, {.viscosity = 1.0, .flow = Vec3(0.0, 0.2, 0.0)}));
   EXPECT_TRUE(isNear(drag(), Vec3(-0.05, 0.2, 0.0), 1e-12));
-  // Not what it cannot be; then nothing changes.
+  // An invalid change is refused and changes nothing.
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(hand.renderer().setContent(liquid, {.viscosity = -1.0}));
   EXPECT_FALSE(hand.renderer().setContent(liquid, {.viscosity = nan}));
@@ -189,11 +189,11 @@ TEST(Contents, LatticeAndCuttingAreChangedWithinTheirLimits) {
   EXPECT_TRUE(needle.renderer().setContent(slab->regionNamed("fat"), {.cutting = 0.0}));
   (void)needle.walk(mm(0, 0, 5));
   (void)needle.walk(mm(0, 0, -12), 50e-6);
-  // At rest: friction of 2 mm of skin and 10 mm of fat, and nothing to cut.
+  // At rest: the friction of 2 mm of skin and 10 mm of fat, and no cutting.
   EXPECT_NEAR(needle.last().force.z, 2e-3 * 16 + 10e-3 * 3, 1e-6);
 }
 
-// What of a needle's tissue varies, along its way by so much per meter.
+// Properties of a needle's tissue vary, by a given amount per meter along its way.
 TEST(Contents, WhatHoldsANeedleMayVaryFromPlaceToPlace) {
   SceneDescription description = parseScene(R"(
 palpate: 1
@@ -213,8 +213,8 @@ ports: [{name: top, between: [outside, jelly]}]
   for (double z = 2.0; z > -20.0; z -= 0.05) {
     const double depth = -1e-3 * z;
     const double force = hand.to(mm(0, 0, z)).force.z;
-    if (depth < 2e-3) continue;  // pressed, and not sliding yet
-    // The force to cut at the tip, and the friction of each slice of the shaft: 5 N/m + 400 N/m^2
+    if (depth < 2e-3) continue;  // pressed, but not yet sliding
+    // The cutting force at the tip, and the friction of each slice of the shaft: 5 N/m + 400 N/m^2
     // s.
     EXPECT_NEAR(force, 0.2 + 10.0 * depth + 5.0 * depth + 200.0 * depth * depth, 1e-9);
   }

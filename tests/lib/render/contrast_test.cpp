@@ -1,5 +1,5 @@
-// Stiffness that changes within a short way: felt over a patch that grows with the depth, and told
-// at set-up.
+// Stiffness that changes within a short distance: felt over a patch that grows with the depth, and
+// reported at set-up.
 
 #include "palpate/render/contrast.h"
 
@@ -47,8 +47,8 @@ ScenePtr sceneWith(const FieldPtr& field, const Parameter& stiffness) {
 
 const FieldPtr kFloor = halfSpace(Vec3(0.0), Vec3(0, 0, 1));
 
-// Ten times as stiff from one voxel to the next: the term for the slope alone pushed sideways with
-// 60 N where the wall pushed back with 15 N.
+// Ten times as stiff from one voxel to the next: read at a point, the gradient term would push
+// sideways with 60 N where the wall pushes back with 15 N.
 TEST(Contrasts, NeverPushSidewaysAsHardAsTheWallPushesBack) {
   for (const double width : {0.5e-3, 1e-3, 2e-3}) {
     Drive hand(sceneWith(kFloor, step(width)));
@@ -67,12 +67,12 @@ TEST(Contrasts, NeverPushSidewaysAsHardAsTheWallPushesBack) {
       std::printf(
           "  over %.2f mm, %4.1f mm deep: sideways over back %.3f, largest step in 1 um %.3g N\n",
           1e3 * width, 1e3 * depth, most, jump);
-      // Deeper than fourteen times what a contrast is wide, the hand feels single places of the
-      // patch; the set-up reports that (below).
+      // If the depth is more than fourteen times the width of a contrast, the hand feels single
+      // places of the patch; the set-up reports that (below).
       if (depth <= 14.01 * width) {
         EXPECT_LT(most, 1.0) << width << " " << depth;
       }
-      // Beside it, each is what it is.
+      // Away from the contrast each side has its own stiffness.
       EXPECT_NEAR(hand.last().force.z, 3000.0 * depth, 1e-9);
     }
   }
@@ -105,13 +105,13 @@ TEST(Contrasts, AreToldWithWhatRemains) {
   ASSERT_EQ(sharp.size(), 1U);
   EXPECT_EQ(sharp[0].material, 0);
   EXPECT_NEAR(sharp[0].at.x, 0.0, 0.25e-3);
-  // Steepest where K / K' is least, a little on the soft side of the middle.
+  // It is steepest where K / K' is smallest, slightly on the soft side of the middle.
   EXPECT_LT(sharp[0].length, 0.2e-3);
   EXPECT_GT(sharp[0].length, 0.05e-3);
   EXPECT_GT(sharp[0].sideways, 0.05);
 }
 
-/// The energy [J] over the patch that a floor is felt by, with the hand at `hip` beneath it.
+/// The energy [J] of a floor, averaged over the patch, with the hand at `hip` beneath it.
 double energyAt(const Parameter& stiffness, const Vec3& hip, double contrast) {
   const Vec3 press(0, 0, -hip.z);
   const PatchSample felt = overPatch(stiffness, Vec3(hip.x, hip.y, 0.0), press, contrast);
@@ -130,16 +130,16 @@ TEST(Contrasts, TheForceIsWhatTheEnergyOverThePatchFallsBy) {
     const Vec3 expected =
         fallOf([&](const Vec3& p) { return energyAt(stiffness, p, contrast); }, hip, kStep);
     for (int axis = 0; axis < 3; ++axis) {
-      // Of the energy, a millijoule, 1e-13 is rounding: over the step 1e-8 N. The wall is met a
-      // billionth of a meter off.
+      // Rounding of the energy, a millijoule, is 1e-13, over the step 1e-8 N. The position of the
+      // wall is exact to 1e-9 m.
       EXPECT_NEAR(force[axis], expected[axis], 1e-5) << axis << " " << hip.z;
     }
   }
 }
 
 TEST(Contrasts, ASharpStepIsFoundBesideALargerGentleOne) {
-  // Within a ball of 50 mm the logarithm rises evenly by 9, and by 0.1 more within 0.2 mm: there it
-  // is steepest.
+  // Within a ball of 50 mm the logarithm of the stiffness rises evenly by 9, and by a further 0.1
+  // within 0.2 mm, where it is steepest.
   constexpr double kHalf = 0.05;
   constexpr double kGentle = 9.0 / (2.0 * kHalf);  // [1/m]
   constexpr double kWidth = 0.2e-3;
@@ -147,7 +147,7 @@ TEST(Contrasts, ASharpStepIsFoundBesideALargerGentleOne) {
   const auto map = std::make_shared<FunctionMap>(
       [](const Vec3& p) {
         MaterialMap::Sample out{1.0, Vec3(0.0)};
-        // Beside the ball's bounds there is nothing to find.
+        // Outside the ball's bounds there is nothing to find.
         if (std::max(std::fabs(p.y), std::fabs(p.z)) > 1.001 * kHalf) return out;
         const double t = std::clamp((p.x - kAt) / kWidth + 0.5, 0.0, 1.0);
         out.value = std::exp(kGentle * (p.x + kHalf) + 0.1 * t * t * (3.0 - 2.0 * t));
@@ -159,8 +159,8 @@ TEST(Contrasts, ASharpStepIsFoundBesideALargerGentleOne) {
       contrastsOf(*sceneWith(sphere(Vec3(0.0), kHalf), MaterialMapPtr(map)));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].at.x, kAt, kWidth);
-  // In the step's middle; a secant is nowhere steeper, and over half of the step not less than half
-  // as steep.
+  // It must be found in the middle of the step; a secant is nowhere steeper, and over half of the
+  // step at least half as steep.
   const double steepest = kGentle + 0.1 * 1.5 / kWidth;
   EXPECT_GE(found[0].length, (1.0 - 1e-6) / steepest);
   EXPECT_LE(found[0].length, 2.0 / steepest);

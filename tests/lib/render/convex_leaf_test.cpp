@@ -1,5 +1,5 @@
-// Which leaves bend outward all over: all principal minors of the Hessian are asked, not the
-// determinant alone.
+// Which leaves are convex everywhere: all principal minors of the Hessian are checked, not only the
+// determinant.
 
 #include "render/convex_leaf.h"
 
@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-// Off the centers of the shapes below, so that every place has a normal.
+// Off the centers of the shapes below, so that every sampled place has a normal.
 const Box3 kBox{Vec3(-0.031, -0.029, -0.033), Vec3(0.027, 0.031, 0.03)};
 const Vec3 kTilted = glm::normalize(Vec3(0.3, -0.5, 0.8));
 
@@ -22,7 +22,8 @@ TEST(ConvexLeaf, BallsCylindersAndConesAre) {
   EXPECT_TRUE(isConvex(*halfSpace(Vec3(0.0), kTilted), kBox));
 }
 
-// (-, -, 0), (-, 0, 0) and (-, -, +): determinants that a convex leaf may have.
+// Signs of the curvatures (-, -, 0), (-, 0, 0) and (-, -, +): the determinants are possible for a
+// convex leaf.
 TEST(ConvexLeaf, WhatBendsInwardOneWayOrTwoIsNot) {
   EXPECT_FALSE(isConvex(*complement(sphere(Vec3(0.0), 0.02)), kBox));
   EXPECT_FALSE(isConvex(*complement(cylinder(Vec3(0.0), kTilted, 0.01, 1.0)), kBox));
@@ -38,7 +39,7 @@ TEST(ConvexLeaf, WhatBendsInwardOneWayOrTwoIsNot) {
   EXPECT_FALSE(is_quadric_convex(-1, 1, -1, 0, 0, 0));
   EXPECT_FALSE(is_quadric_convex(-1, -1, 1, 0, 0, 0));
   EXPECT_FALSE(is_quadric_convex(-1, 1, 1, 0, 0, 0));
-  // No diagonal is negative, and one minor is; the determinant is zero.
+  // No diagonal element is negative, but one minor is; the determinant is zero.
   EXPECT_FALSE(is_quadric_convex(1, 1, 0, 4, 0, 0));
   EXPECT_FALSE(is_quadric_convex(0, 1, 1, 0, 4, 0));
   EXPECT_FALSE(is_quadric_convex(1, 0, 1, 0, 0, 4));

@@ -1,5 +1,5 @@
-// Creases inside one leaf that tells its contact one gradient at a time: a black box, a mesh, a
-// baked edge. The proxy must rest where it would if the leaves were shown, and the force be the
+// Creases inside one leaf, which reports only one gradient at a time: a black box, a mesh, a baked
+// edge. The proxy must rest where it would if both faces were leaves, and the force must be the
 // same.
 
 #include <gtest/gtest.h>
@@ -18,10 +18,10 @@ namespace palpate::test {
 namespace {
 
 constexpr double kK = 1000.0;  // [N/m], the default wall
-/// |x - z| / |z - P| at a crease of a black box.
+/// Bound of |x - z| / |z - P| at a crease of a black box.
 constexpr double kCrease = 1e-4;
 
-/// Worst |x - z| / |z - P| against the oracle over a path; also feasibility and force.
+/// Largest |x - z| / |z - P| against the oracle along a path; also feasibility and force.
 struct Worst {
   double error = 0.0;
   double sunk = 0.0;  ///< [m]
@@ -37,7 +37,7 @@ Worst follow(Drive& drive, const FieldPtr& open, const std::vector<Vec3>& path, 
   for (const Vec3& p : path) {
     const TickResult& out = drive.to(p);
     worst.sunk = std::max(worst.sunk, -set.value(out.proxy));
-    // 1e-12 N: rounding, where the hand is at the crease.
+    // 1e-12 N is rounding, for a hand at the crease.
     EXPECT_TRUE(
         isNear(out.force, kK * (out.proxy - p), 1e-4 * kK * glm::length(out.proxy - p) + 1e-12))
         << "tick " << i;
@@ -77,12 +77,12 @@ struct Case {
   const char* name;
   FieldPtr field;
   double feature;
-  Box3 box;  ///< [m] of the hand
+  Box3 box;  ///< [m] for the hand
   Vec3 from;
 };
 
 FieldPtr valley(double degrees) {
-  // Solid on both sides, air between: the groove opens along +z.
+  // Solid on both sides, air between: the groove opens towards +z.
   const double a = 0.5 * degrees * 0.017453292519943295;
   return unite({halfSpace(Vec3(0.0), Vec3(std::cos(a), 0, std::sin(a))),
                 halfSpace(Vec3(0.0), Vec3(-std::cos(a), 0, std::sin(a)))});
@@ -128,7 +128,7 @@ std::vector<Case> cases() {
 TEST(Crease, ABlackBoxIsFeltAsIfItsLeavesWereShown) {
   for (const Case& each : cases()) {
     SCOPED_TRACE(each.name);
-    // Along a circle's crease the hidden wall is known by its bend at one place: 3.3e-4 was
+    // Along a circular crease the hidden wall's curvature is known at only one place: 3.3e-4 was
     // measured, 0.02 degree.
     const double most = each.name == std::string_view("ball and plane") ? 5e-4 : kCrease;
     Drive drive(sceneOfLeaf(each.field, each.feature));

@@ -1,5 +1,5 @@
 #pragma once
-// Random scenes, each felt by a random hand and judged at every tick.
+// Random scenes, each felt by a random hand and checked at every tick.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 
 namespace palpate::test {
 
-/// A tick at fault, with what it takes to see it again.
+/// A faulty tick, with everything needed to reproduce it.
 struct CsgFault {
   testing::Fault fault = testing::Fault::kNone;
   std::uint64_t scene = 0;
@@ -47,9 +47,9 @@ struct CsgCounts {
   long oracle_runs = 0;
   long ambiguous = 0;
   long unjudged = 0;
-  int given_up = 0;           ///< scenes ended early: the oracle does not settle where the hand is
-  long unsettled = 0;         ///< ticks in contact that say so
-  int longest_unsettled = 0;  ///< in a row
+  int given_up = 0;    ///< scenes ended early: the oracle does not converge where the hand is
+  long unsettled = 0;  ///< ticks in contact that report it
+  int longest_unsettled = 0;  ///< most of these in a row
   long frozen = 0;            ///< times that the hand stood still in contact
   std::array<long, static_cast<std::size_t>(testing::Fault::kCount)> faults{};
   std::vector<CsgFault> list = {};  ///< the first 200
@@ -92,7 +92,7 @@ class CsgRun {
     }
   }
 
-  /// `compiled`: what became of `scene`, some of its fields in another form.
+  /// `compiled` is `scene`, compiled with some of its fields in another form.
   void run(const RandomScene& scene, const ScenePtr& compiled) {
     ++counts_.scenes;
     const testing::RegionTree tree(*compiled, compiled->startRegion());
@@ -106,7 +106,7 @@ class CsgRun {
 
  private:
   static constexpr double kStiffness = 1000.0;  // [N/m] of the default wall
-  static constexpr int kPatience = 5;  // ticks that the oracle has no answer for, in one scene
+  static constexpr int kPatience = 5;  // ticks that the oracle may fail to answer in one scene
 
   void feel(const RandomScene& scene, const ScenePtr& compiled, const testing::RegionTree& tree,
             const Vec3& start) {
@@ -142,7 +142,7 @@ class CsgRun {
       }
       note(scene, verdict, tick, now, hip);
       if (verdict.is_contact) ++contacts;
-      // An oracle that does not settle takes seconds a tick to say so.
+      // An oracle that does not converge takes seconds for a tick.
       if (verdict.ran_oracle && verdict.is_unjudged && ++lost == kPatience) {
         ++counts_.given_up;
         return;
@@ -164,13 +164,13 @@ class CsgRun {
     if (counts_.list.size() < 200) {
       counts_.list.push_back({verdict.fault, scene.number, tick, verdict.off,
                               glm::length(now.proxy - hip), causeOf(verdict), hip});
-      // At once: a long run may be ended before it has told all.
+      // Printed at once: a long run may be killed before its end.
       std::fprintf(stderr, "%s", counts_.list.back().text().c_str());
     }
     if (const char* folder = std::getenv("PALPATE_CSG_KEEP")) keep(folder, scene);
   }
 
-  /// The scene file and the hand's way so far, for `palpate touch SCENE --path FILE.csv`.
+  /// Stores the scene file and the hand's path so far, for `palpate touch SCENE --path FILE.csv`.
   void keep(const std::string& folder, const RandomScene& scene) const {
     const std::string name = folder + "/csg" + std::to_string(scene.number);
     std::ofstream(name + ".yaml") << scene.yaml;

@@ -1,4 +1,4 @@
-// States with wrong bytes in them: refused, or gone on from without harm.
+// States with wrong bytes in them are refused, or used without harm.
 
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ RendererState damaged(const RendererState& state, std::mt19937& random) {
   std::memcpy(bytes.data(), &state, sizeof state);
   const unsigned count = 1 + random() % 4;
   for (unsigned i = 0; i < count; ++i) {
-    // Most of what stands for a part of the scene is at the front, and in the last part behind the
-    // needle's.
+    // Most of the numbers that stand for parts of the scene are at the front, and at the end behind
+    // the needle's.
     const std::size_t at = random() % (random() % 2 == 0 ? 600 : bytes.size());
     unsigned char& byte = bytes[at];
     const unsigned how = random() % 4;
@@ -49,7 +49,7 @@ TEST(DamagedState, IsRefusedOrGoneOnFromWithoutHarm) {
       try {
         hand = makeRenderer(scene, settings);
       } catch (const Error&) {
-        continue;  // what the paper's renderer does not have
+        continue;  // not supported by the paper's renderer
       }
       const auto other = makeRenderer(scene, settings);
       int ticks = 0;

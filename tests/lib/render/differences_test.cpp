@@ -1,5 +1,5 @@
-// Where the paper's renderer and the constraint renderer differ on the container, and why: a list,
-// kept by tests, not hidden.
+// Where and why the paper's renderer and the constraint renderer differ on the container: a list
+// kept up to date by tests, not hidden.
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 namespace palpate::test {
 namespace {
 
-/// What a tick felt like: region (o, l), then 0 for nothing, + pushed away from the ball's center,
-/// - towards it, ~ anything else (drag). Runs of the same are written once.
+/// The kind of force in each tick: the region (o, l), followed by 0 for none, + away from the
+/// ball's center, - towards it, ~ for anything else (drag). Repeated entries are written once.
 std::string classesOf(RendererKind kind, const std::vector<Vec3>& path, const std::string& scene) {
   Drive drive(sceneOf(scene), kind);
   std::string all;
@@ -87,8 +87,8 @@ TEST(Differences, TickClassesOnTheContainer) {
 }
 
 TEST(Differences, AJumpOverRow2MissesThePaperPort) {
-  // From (out, out) to (in, in) in one tick: Table I saw no row 2, the proxy went through the
-  // mouth.
+  // From (out, out) to (in, in) in one tick: Table I does not see its row 2, the proxy went through
+  // the mouth.
   Drive paper(sceneOf(containerText()), RendererKind::kPaper);
   Drive constraint(sceneOf(containerText()));
   for (Drive* drive : {&paper, &constraint}) {
@@ -105,7 +105,8 @@ TEST(Differences, TheContactPointOfThePaperDriftsAndTheProxyDoesNot) {
   Drive paper(sceneOf(containerText()), RendererKind::kPaper);
   Drive constraint(sceneOf(containerText()));
   for (Drive* drive : {&paper, &constraint}) (void)drive->walk(mm(39.2, 0, 0));
-  // A turn around the equator at depth 0.8 mm: d/R = 0.02, so some 8 degrees of lag by the paper.
+  // A turn around the equator at a depth of 0.8 mm: d/R = 0.02, so the paper's method lags by some
+  // 8 degrees.
   for (double angle = 0.0; angle < 6.283; angle += 0.005) {
     for (Drive* drive : {&paper, &constraint}) {
       (void)drive->to(0.0392 * Vec3(std::cos(angle), std::sin(angle), 0));
@@ -136,7 +137,7 @@ TEST(Differences, ThePaperPullsWithFullDampingAndTheConstraintNeverPulls) {
   EXPECT_TRUE(constraint.last().contact);
 }
 
-// The paper's prose has wall and syrup together, its table the wall alone: the scene may say which.
+// The paper's text has wall and syrup together, its table the wall alone: the scene may choose.
 TEST(Differences, InTheWallFromWithinBothFeelTheSyrup) {
   Drive paper(sceneOf(containerText()), RendererKind::kPaper);
   Drive constraint(sceneOf(containerText()));

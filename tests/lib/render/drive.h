@@ -1,5 +1,5 @@
 #pragma once
-// What renderer tests share: scenes from text, and a hand that moves the HIP tick by tick.
+// Shared by renderer tests: scenes from text, and a hand that moves the HIP tick by tick.
 
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ class Drive {
     for (int i = 1; i <= n; ++i) (void)to(from + (static_cast<double>(i) / n) * (hip - from));
     return to(hip);
   }
-  /// Names of the ports passed since it was last asked.
+  /// Names of the ports passed since the last call.
   std::string events() { return std::exchange(events_, {}); }
 
   [[nodiscard]] std::string region() const { return scene_->regions()[last_.region].name; }

@@ -1,5 +1,6 @@
-// Where two regions that lead freely into each other end at walls: at an edge that is made of two
-// layers the hand draws the proxy into each region from the other. It crosses once, and goes on.
+// Two regions that lead freely into each other both end at walls. At an edge formed by the two
+// layers the hand draws the proxy from each region into the other: the proxy must cross once, and
+// go on.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +13,8 @@
 namespace palpate::test {
 namespace {
 
-/// A solid wedge with its edge along y: below z = 0 and below a plane that falls by `angle` [rad]
-/// beyond the edge, where `pit` begins. Between pit and outside there is `opening`.
+/// A solid wedge with its edge along y: it fills z < 0 and the space below a plane that falls by
+/// `angle` [rad] beyond the edge, where `pit` begins. `opening` is between pit and outside.
 ScenePtr wedge(double angle, const std::string& opening) {
   const std::string normal =
       "[" + std::to_string(-std::sin(angle)) + ", 0, " + std::to_string(-std::cos(angle)) + "]";
@@ -27,7 +28,7 @@ ScenePtr wedge(double angle, const std::string& opening) {
 constexpr const char* kAbsent = "walls:\n  - {between: [outside, pit], wall: absent}\n";
 constexpr const char* kPort = "ports:\n  - {name: p, between: [outside, pit]}\n";
 
-/// [m] Outside the wedge, the nearest place to a hand at `x`, `z` [m], beyond the edge.
+/// [m] The place outside the wedge nearest to a hand at `x`, `z` [m], beyond the edge.
 Vec3 nearestOnWedge(double angle, double x, double z) {
   const Vec3 down(std::cos(angle), 0.0, -std::sin(angle));
   const Vec3 hand(x, 0.0, z);
@@ -35,7 +36,7 @@ Vec3 nearestOnWedge(double angle, double x, double z) {
   return std::max(0.0, glm::dot(hand, down)) * down;
 }
 
-/// Along z = -0.5 mm over the edge, then still.
+/// Moves along z = -0.5 mm over the edge, then rests.
 void expectOverTheEdge(const std::string& opening, double degrees, double offset) {
   const double angle = degrees * std::numbers::pi / 180.0;
   const auto renderer = makeRenderer(wedge(angle, opening));
@@ -73,8 +74,8 @@ TEST(EdgeOfTwoLayers, IsPassedThroughAnOpenPortOnce) {
   }
 }
 
-// It begins outside its region, at a corner of boxes, a cone and a half space; felt nothing there,
-// for good.
+// The proxy used to begin outside its region, at a corner of boxes, a cone and a half space, and
+// felt nothing there.
 TEST(EdgeOfTwoLayers, AStartAtACornerFindsItsPlace) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -111,7 +112,7 @@ walls:
   EXPECT_TRUE(r.settled);
   EXPECT_TRUE(r.contact);
   EXPECT_LT(glm::length(r.force - 1000.0 * (r.proxy - hand)), 1e-6);
-  // It began 3.5 N away.
+  // The force used to begin at 3.5 N.
   EXPECT_LT(glm::length(r.force), 2.0);
 }
 

@@ -1,5 +1,5 @@
-// Every key of a wall's and a content's material: over closed ways of the hand, at random and
-// looked for, it gives nothing beyond counted sources.
+// Every key of a wall's and a content's material: over closed paths of the hand, random ones and
+// ones found by a search, it gives no energy beyond counted sources.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ struct Place {
   const char* name;
   const char* layers;
   Vec3 start;   // [m]
-  Vec3 center;  // [m] about which loops go
+  Vec3 center;  // [m] center of the loops
 };
 
 const Place kPlaces[] = {
@@ -121,8 +121,7 @@ TEST_P(EnergyGates, TheKeyGivesNoEnergyThere) {
     EnergyLoop loop = randomLoop(random, place.center, 0.05e-3, 0.7e-3);
     loop = worstLoop(scene, place.start, loop, 0.3e-3, tries, random);
     EnergyGiven given = energyGiven(scene, place.start, loop);
-    // Two numbers of steps may be off by the same, and friction may not have found its loop by the
-    // second lap.
+    // Two step counts may have the same error, and friction may not have settled by the second lap.
     if (given.work > 1e-9 + given.change) given = energyGivenAtLast(scene, place.start, loop);
     if (given.work - given.change > most) worst = given;
     most = std::max(most, given.work - given.change);
@@ -140,13 +139,13 @@ std::string nameOf(const ::testing::TestParamInfo<std::tuple<std::size_t, std::s
   return out;
 }
 
-/// A layer that dips below a wall under any angle, or a ball in it: as far as the crease with it,
-/// and beyond, the wall is as stiff as both.
+/// A layer that goes down below a wall at any angle, or a ball in it: up to the crease between
+/// them, and beyond, the wall has the stiffness of both.
 TEST(EnergyGatesOfComposite, WallsAtACreaseWithWhatLiesBehindThemGiveNoEnergy) {
   const int scenes = std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 300 : kSanitized ? 2 : 12;
   for (int i = 0; i < scenes; ++i) {
     Random random(400 + static_cast<std::uint64_t>(i));
-    const double angle = random.uniform(0.1, 3.0);  // of the crease, within the hand's region
+    const double angle = random.uniform(0.1, 3.0);  // of the crease, measured in the hand's region
     const Vec3 along = random.direction();
     const Vec3 up = glm::normalize(glm::cross(along, random.direction()));
     const Vec3 other = -std::cos(angle) * up + std::sin(angle) * glm::cross(along, up);
@@ -167,12 +166,12 @@ TEST(EnergyGatesOfComposite, WallsAtACreaseWithWhatLiesBehindThemGiveNoEnergy) {
         "}}\n  b: {stiffness: " + std::to_string(random.uniform(100.0, 3000.0)) +
         " N/m}\nlayers:\n  - {name: a, inside: {half_space: {point: [0, 0, 0], normal: " +
         text(up) + "}}, wall: a}\n  - {name: b, inside: {" + second + "}, wall: b}\n");
-    // Into the crease, along the middle of what is open there.
+    // Into the crease, along the bisector of the open angle.
     const Vec3 out = glm::normalize(up + other);
     const Vec3 center = random.uniform(-1.2e-3, -0.2e-3) * out;
     const EnergyLoop loop = randomLoop(random, center, 0.05e-3, 0.7e-3);
     EnergyGiven given = energyGiven(scene, 10e-3 * out, loop);
-    // Two numbers of steps may be off by the same.
+    // Two step counts may have the same error.
     if (given.work > 1e-9 + given.change) given = energyGivenAtLast(scene, 10e-3 * out, loop);
     EXPECT_LE(given.work, 1e-9 + given.change)
         << "scene " << i << ", open by " << angle << " rad: " << second;

@@ -1,5 +1,5 @@
 #pragma once
-// The work that a rendered world does on a hand which goes round a closed way.
+// The work that a rendered world does on a hand that moves along a closed path.
 
 #include <array>
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace palpate::test {
 
-/// A smooth closed way about a point.
+/// A smooth closed path around a point.
 struct EnergyLoop {
   Vec3 center{0.0, 0.0, 0.0};  // [m]
   std::array<Vec3, 4> wave{};  // [m]
@@ -26,10 +26,10 @@ struct EnergyLoop {
   }
 };
 
-/// A hand on its way round a loop, and what was done on it.
+/// A hand on its way around a loop, and the work done on it.
 class LoopHand {
  public:
-  /// Goes from `start` [m] to where the loop begins. A lap takes `lap` [s].
+  /// Moves from `start` [m] to where the loop begins. A lap takes `lap` [s].
   LoopHand(const ScenePtr& scene, const Vec3& start, EnergyLoop loop, int steps, double lap = 1.0)
       : renderer_(makeRenderer(scene)),
         loop_(std::move(loop)),
@@ -43,19 +43,19 @@ class LoopHand {
     }
   }
 
-  /// Once round; steps in which the force changes by more than kStepped are halved up to `halvings`
-  /// times, so that where in the step it does counts for nothing.
+  /// One lap; steps in which the force changes by more than kStepped are halved up to `halvings`
+  /// times, so that it does not matter where within a step the force jumps.
   void lap(int halvings = 0) {
     for (int i = 1; i <= steps_; ++i) {
       goTo(loop_.at(i == steps_ ? 0.0 : static_cast<double>(i) / steps_), dt_, halvings);
     }
   }
 
-  /// [J] done on the hand since it was at `start`, by the trapezium rule, beyond counted sources
-  /// ...
+  /// [J] Work done on the hand since it was at `start`, by the trapezoidal rule, beyond counted
+  /// sources ...
   [[nodiscard]] double work() const { return work_ - renderer_->sourceWork(); }
-  /// [J] ... and what tissue about a needle holds, which the hand gave to it: it gives that back
-  /// over many laps.
+  /// [J] ... and the energy that tissue around a needle holds, which the hand gave to it: the
+  /// tissue returns it over many laps.
   [[nodiscard]] double inTissue() const {
     return TickState::of(renderer_->state()).needle.stored();
   }
@@ -87,10 +87,10 @@ class LoopHand {
   double work_ = 0.0;  // [J]
 };
 
-/// Where a force steps within a step of the hand: so short are the last ones about it.
+/// The number of halvings of a step in which the force jumps.
 inline constexpr int kHalvings = 20;
 
-/// [J] Done on the hand in the lap after `before` others, beyond counted sources. A lap takes `lap`
+/// [J] Work on the hand in the lap after `before` others, beyond counted sources. A lap takes `lap`
 /// [s].
 inline double workOfLap(const ScenePtr& scene, const Vec3& start, const EnergyLoop& loop, int steps,
                         double lap = 1.0, int before = 1) {
@@ -101,7 +101,7 @@ inline double workOfLap(const ScenePtr& scene, const Vec3& start, const EnergyLo
   return hand.work() - work;
 }
 
-/// [N] What the energy [J] falls by around `hand` [m], by central differences over `step` [m].
+/// [N] Minus the gradient of the energy [J] at `hand` [m], by central differences over `step` [m].
 template <typename Energy>
 Vec3 fallOf(const Energy& energy, const Vec3& hand, double step) {
   Vec3 out(0.0);
@@ -115,13 +115,13 @@ Vec3 fallOf(const Energy& energy, const Vec3& hand, double step) {
 
 struct EnergyGiven {
   double work = 0.0;    // [J] in the limit of short steps
-  double change = 0.0;  // [J] by the last halving of the step
-  double moved = 0.0;   // [J] of half the absolute work of the lap: what went to and fro
+  double change = 0.0;  // [J] change by the last halving of the step
+  double moved = 0.0;   // [J] half the absolute work of the lap: the energy that went to and fro
 };
 
-/// The same, with the step halved until that changes it by less than 1e-10 J, or the steps are as
-/// many as `most`. Two laps of coarse steps may agree by chance: what seems to be given is looked
-/// at to the end.
+/// The same, with the step halved until the result changes by less than 1e-10 J, or there are
+/// `most` steps. Two laps with coarse steps may agree by chance, so a positive result is refined up
+/// to `most`.
 inline EnergyGiven energyGiven(const ScenePtr& scene, const Vec3& start, const EnergyLoop& loop,
                                int most = 64'000, double lap = 1.0) {
   EnergyGiven out;
@@ -136,11 +136,11 @@ inline EnergyGiven energyGiven(const ScenePtr& scene, const Vec3& start, const E
   return out;
 }
 
-/// The same of the eighth lap, in short steps, and where the force steps in the shortest: by then
-/// friction holds the proxy at the same places in every lap, so that what it has stored at a lap's
-/// end is what it had stored at its begin. Tissue about a needle is cut or slips a little in every
-/// lap and gives back less and less of what the hand gave to it on its way in: what it holds less
-/// at the lap's end is the hand's own.
+/// The same for the eighth lap, in short steps, and the shortest where the force jumps. By then
+/// friction holds the proxy at the same places in every lap, so that the energy stored at a lap's
+/// end is that stored at its beginning. Tissue around a needle is cut or slips a little in every
+/// lap and returns less and less of the energy that the hand put in on its way in: the decrease
+/// during the lap is the hand's own energy.
 inline EnergyGiven energyGivenAtLast(const ScenePtr& scene, const Vec3& start,
                                      const EnergyLoop& loop) {
   const auto work = [&](int steps) {
@@ -156,7 +156,7 @@ inline EnergyGiven energyGivenAtLast(const ScenePtr& scene, const Vec3& start,
   return out;
 }
 
-/// A loop about `center` whose waves are from `least` to `most` [m] long.
+/// A loop around `center` whose waves are `least` to `most` [m] long.
 inline EnergyLoop randomLoop(Random& random, const Vec3& center, double least, double most) {
   EnergyLoop out;
   out.center = center;
@@ -164,7 +164,7 @@ inline EnergyLoop randomLoop(Random& random, const Vec3& center, double least, d
   return out;
 }
 
-/// Twelve small loops about `center` [m] in a world with friction: none may give more than 1 nJ.
+/// Twelve small loops around `center` [m] in a world with friction: none may give more than 1 nJ.
 inline void expectFrictionTakes(const char* name, const ScenePtr& scene, Random& random,
                                 const Vec3& center) {
   double most = -kInfinity;
@@ -176,7 +176,8 @@ inline void expectFrictionTakes(const char* name, const ScenePtr& scene, Random&
   EXPECT_LE(most, 1e-9) << name;
 }
 
-/// Looks for the loop that gives most, by changing the best one of before a little, `tries` times.
+/// Searches the loop that gives the most energy, by changing the best one so far slightly, `tries`
+/// times.
 inline EnergyLoop worstLoop(const ScenePtr& scene, const Vec3& start, EnergyLoop best, double size,
                             int tries, Random& random) {
   constexpr int kSteps = 2000;

@@ -1,4 +1,4 @@
-// The example scenes of shapes and sheets, felt: what stands in them holds the probe where it is.
+// The example scenes of shapes and sheets, felt: the objects in them hold the probe where it is.
 
 #include <gtest/gtest.h>
 
@@ -11,11 +11,11 @@ namespace {
 
 struct Thing {
   const char* layer;
-  double x, y;  ///< [mm] where it is pressed from above
+  double x, y;  ///< [mm] place where it is pressed from above
 };
 
-// [m] Height at which `layer` begins, below (x, y) from above; on a line that meets it from
-// outside.
+// [m] Height at which `layer` begins when (x, y) is approached from above; the line must begin
+// outside it.
 double topOf(const Scene& scene, const Thing& thing) {
   const RegionId region = scene.regionNamed(thing.layer);
   double z = 70.0;
@@ -45,13 +45,15 @@ TEST(ExampleScenes, EveryThingOnTheTableIsFelt) {
     const TickResult pressed = hand.walk({1e-3 * thing.x, 1e-3 * thing.y, top - 0.001}, 0.05e-3);
     EXPECT_TRUE(pressed.contact);
     EXPECT_EQ(hand.region(), "outside");
-    // It pushes up, by no more than its spring at this depth, or twice that where two walls meet.
+    // The force is upward, and at most that of its spring at this depth, or twice that where two
+    // walls meet.
     const Region& region = scene->regions()[scene->regionNamed(thing.layer)];
     const Material& wall = scene->materials()[static_cast<std::size_t>(region.wall)];
     const double stiffness = wall.stiffness.at(pressed.proxy);
     EXPECT_GT(pressed.force.z, 0.02 * stiffness * 0.001);
     EXPECT_LT(glm::length(pressed.force), 2.0 * stiffness * 0.001);
-    // The proxy is on the surface: within a hundredth of a micrometer, or its share of the feature.
+    // The proxy is on the surface: within a hundredth of a micrometer, or the corresponding share
+    // of the feature size.
     const FieldSample s = region.field->sample(pressed.proxy);
     EXPECT_LT(std::fabs(s.value) / std::max(glm::length(s.gradient), 1e-9), 1e-7);
     const TickResult gone = hand.walk({1e-3 * thing.x, 1e-3 * thing.y, top + 0.005});
@@ -59,8 +61,8 @@ TEST(ExampleScenes, EveryThingOnTheTableIsFelt) {
   }
 }
 
-// The gyroid parts the block into two mazes: the proxy goes deep into one, and never into foam or,
-// as long as it stays in the block, into the other.
+// The gyroid divides the block into two mazes: the proxy goes deep into one, and never into the
+// foam or, while it stays in the block, into the other maze.
 TEST(ExampleScenes, TheSpongesMazesAreApart) {
   const ScenePtr scene = sceneNamed("sponge");
   const FieldPtr foam = scene->regions()[scene->regionNamed("sponge")].field;
@@ -85,7 +87,7 @@ TEST(ExampleScenes, TheSpongesMazesAreApart) {
     ASSERT_EQ(hand.region(), "jelly");
     if (tick.contact) ++contacts;
     ASSERT_GT(foam->value(tick.proxy), -1e-9) << i;
-    // Well within: from a face of the block the proxy may go around outside in one tick.
+    // Well inside: near a face of the block the proxy may go around outside in one tick.
     const bool in_block = block->value(tick.proxy) < -0.5e-3;
     const bool on_side = side->value(tick.proxy) > 0.0;
     if (in_block) ++ticks_in_block;
@@ -112,14 +114,14 @@ TEST(ExampleScenes, TheFlagHoldsInAirAndWater) {
   EXPECT_TRUE(hand.last().contact);
   EXPECT_GT(hand.last().force.x, 0.4);
   EXPECT_GE(hand.last().proxy.x, -1e-8);
-  // Below its hem the way is free, and behind it the other side is felt.
+  // Below the flag's hem the way is free, and behind it the other side is felt.
   (void)hand.walk(mm(-1, 0, -30));
   EXPECT_FALSE(hand.last().contact);
   (void)hand.walk(mm(-10, 0, -15));
   (void)hand.walk(mm(1, 0, -15));
   EXPECT_TRUE(hand.last().contact);
   EXPECT_LT(hand.last().force.x, -0.4);
-  // The membrane over the bottom.
+  // Next, the membrane over the bottom.
   (void)hand.walk(mm(-10, 0, -30));
   (void)hand.walk(mm(-10, 0, -50));
   EXPECT_TRUE(hand.last().contact);

@@ -1,4 +1,4 @@
-// Textures and shading: heights at which a wall is felt, whose force along the wall goes with them.
+// Textures and shading: heights added to a wall, which also cause a force along the wall.
 
 #include "palpate/contact/felt_height.h"
 
@@ -22,7 +22,7 @@ TEST(WallLaw, ForceAndRisesAreTheSlopesOfTheEnergy) {
   for (const WallSpring& spring : springs) {
     for (const double height : {0.0, 0.15e-3, -0.2e-3}) {
       const WallLaw law{spring, height, 0.5, 0.6e-3};
-      // In and beyond each of the pieces: held by the depth, in full, fading, faded.
+      // Depths in and beyond each of the pieces: limited by the depth, in full, fading, faded.
       for (const double d : {0.1e-3, 0.33e-3, 0.5e-3, 0.7e-3, 1.1e-3, 1.5e-3}) {
         const double by = 1e-8;
         const double force = (law.energy(d + by) - law.energy(d - by)) / (2.0 * by);
@@ -34,7 +34,7 @@ TEST(WallLaw, ForceAndRisesAreTheSlopesOfTheEnergy) {
         up.height += by;
         down.height -= by;
         const double per_height = (up.energy(d) - down.energy(d)) / (2.0 * by);
-        // The slope has a corner where the height is 0 only.
+        // The derivative has a corner only where the height is 0.
         EXPECT_NEAR(law.energyPerHeight(d), per_height, 1e-4 * law.force(d) + 1e-9) << d << height;
         up = down = law;
         up.spring.stiffness += 1.0;
@@ -86,17 +86,16 @@ TEST(SmoothedField, GradientIsThatOfTheValueAndHasNoStep) {
         const double slope =
             (smoothed.at(*box, radius, p + by).value - smoothed.at(*box, radius, p - by).value) /
             2e-8;
-        // Over 0.02 um the slope of an edge of 90 degrees changes by 2e-5 of what the radius turns
-        // it by.
+        // Over 0.02 um the slope of a 90 degree edge changes by 2e-5 of the turn over the radius.
         ASSERT_NEAR(here.gradient[axis], slope, 2e-5) << i;
       }
     }
     if (i > 0) steepest = std::max(steepest, glm::length(here.gradient - last));
     last = here.gradient;
   }
-  // A way of 1.4 um: an edge turns by 90 degrees over about the radius.
+  // Over a way of 1.4 um: an edge turns by 90 degrees over about the radius.
   EXPECT_LT(steepest, 1.6 * 1.5 * 1.5e-6 / radius);
-  // A plane is itself.
+  // A plane is unchanged.
   const FieldPtr plane = halfSpace(mm(1, 2, 3), glm::normalize(Vec3(1, 2, -2)));
   for (int i = 0; i < 50; ++i) {
     const Vec3 p = mm(1.0 + 0.1 * i, 2.0 - 0.05 * i, 3.1);
@@ -121,12 +120,12 @@ void expectNothingGiven(const char* what, const ScenePtr& scene, const Vec3& sta
                         const EnergyLoop& loop, double most = 1e-9) {
   const EnergyGiven given = energyGiven(scene, start, loop);
   std::printf("  %-34s %10.3g J (last halving %.2g J)\n", what, given.work, given.change);
-  // Where the proxy comes to a crease what varies along the walls has a corner: the sum converges
-  // with the step there.
+  // Where the proxy comes to a crease, properties that vary along the walls have a corner: there
+  // the sum converges only linearly with the step.
   EXPECT_LE(given.work, most + given.change) << what;
 }
 
-/// A plane whose values are not distances, as those of implicit fields.
+/// A plane whose values are not distances, as in implicit fields.
 class SteepPlane final : public Field {
  public:
   SteepPlane(const Vec3& normal, double slope) : normal_(normal), slope_(slope) {}
@@ -154,7 +153,7 @@ TEST(SmoothedField, OfAnImplicitPlaneIsItsDistanceHoweverSteepItsValuesAre) {
     SmoothedField smoothed;
     for (const double height : {-0.4e-3, 0.0, 0.3e-3}) {
       const Vec3 p = height * normal + 0.013 * glm::normalize(Vec3(2.0, 1.0, 0.0));
-      // The B-spline gives linear data back, so only rounding is left.
+      // The B-spline reproduces linear data, so only rounding is left.
       const FeltHeight felt = smoothed.at(plane, 1e-3, p);
       EXPECT_NEAR(felt.value, height, 1e-15) << slope;
       EXPECT_TRUE(isNear(felt.gradient, normal, 1e-12)) << slope;
@@ -183,14 +182,14 @@ TEST(TexturedWalls, GiveNoEnergy) {
 }
 
 TEST(TexturedWalls, PushAlongTheWallAsTheBumpsSlope) {
-  // 2 mm deep, at x = 0 of sin(2 pi x / 4 mm): the bump rises by A k / 3 and is felt over 2 mm of
-  // depth.
+  // 2 mm deep, at x = 0 of sin(2 pi x / 4 mm): the slope of the bump is A k / 3, and it counts over
+  // 2 mm of depth.
   Drive hand(sceneOf(solid("stiffness: 1000 N/m, texture: {amplitude: 0.1 mm, wavelength: 4}",
                            "{half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}")));
   (void)hand.to(mm(0, 1, 1));
   (void)hand.walk(mm(0, 1, -2));
   const double k = 2.0 * std::numbers::pi / 4e-3;
-  const double height = 0.1e-3 / 3.0;  // sin in y is 1
+  const double height = 0.1e-3 / 3.0;  // the sine of y is 1
   const double along = -1000.0 * (2e-3 - 2.0 * height) * 0.1e-3 * k / 3.0;
   EXPECT_NEAR(hand.last().force.x, along, 1e-6);
   EXPECT_NEAR(hand.last().force.y, 0.0, 1e-6);

@@ -1,5 +1,5 @@
-// The usual ticks ask the fields as rarely as their quick ways promise. A way that is left to the
-// general one ends at the same place and feels the same, so only its cost shows that it was.
+// The usual ticks evaluate the fields as rarely as the fast ways promise. If the fast way gives up,
+// the general one ends at the same place with the same force, so only the cost shows it.
 
 #include <gtest/gtest.h>
 
@@ -16,12 +16,12 @@ namespace {
 
 struct Calls {
   int jets = 0;
-  int others = 0;  ///< samples and values
+  int others = 0;  ///< calls of sample() and value()
 
   [[nodiscard]] int all() const { return jets + others; }
 };
 
-/// A field that counts how often it is asked. For one thread.
+/// A field that counts its evaluations. For one thread.
 class Counted final : public Field {
  public:
   Counted(FieldPtr field, Calls& calls) : field_(std::move(field)), calls_(calls) {}
@@ -48,8 +48,8 @@ class Counted final : public Field {
   Calls& calls_;
 };
 
-/// Most calls of one tick while the hand goes along `way`, a place for each tick; the first ticks
-/// bring it there.
+/// The most calls of one tick while the hand moves along `way`, one place for each tick; the first
+/// ticks bring the hand there.
 struct Most {
   int jets = 0;
   int all = 0;
@@ -74,7 +74,7 @@ Most mostCalls(const ScenePtr& scene, Calls& calls, const Vec3& from,
 class FieldCalls : public ::testing::Test {
  protected:
   FieldPtr counted(FieldPtr field) { return std::make_shared<Counted>(std::move(field), calls_); }
-  /// The most that a tick asks for along `way`, of which there are `ticks`.
+  /// Checks the most evaluations in a tick along `way` of `ticks` ticks.
   void expect(const ScenePtr& scene, const Vec3& from, const std::function<Vec3(int)>& way,
               int ticks, int jets, int all) {
     const Most most = mostCalls(scene, calls_, from, way, ticks);
@@ -85,7 +85,7 @@ class FieldCalls : public ::testing::Test {
   Calls calls_;
 };
 
-/// On a circle of `radius` [m], not in a plane of the axes.
+/// On a circle of `radius` [m] that is not in a coordinate plane.
 std::function<Vec3(int)> circle(double radius, double step) {
   return [=](int i) {
     const double turn = step * i;
@@ -121,7 +121,7 @@ TEST_F(FieldCalls, AWallThatBendsUnevenlyIsAskedTwice) {
         return radii * u - 1e-3 * glm::normalize(u / radii);
       },
       1000, 2, 2);
-  // Over a ring the chord is looked at as well.
+  // Along a ring, the chord is checked as well.
   expect(
       sceneOfSolid(counted(torus(Vec3(0.0), Vec3(0, 0, 1), 0.04, 0.01))), mm(60, 0, 0),
       [](int i) {
@@ -149,7 +149,7 @@ TEST_F(FieldCalls, AlongACreaseEachOfTwoWallsIsAskedTwice) {
                                               counted(halfSpace(Vec3(0.0), Vec3(-0.6, 0, 0.8)))}));
   expect(
       groove, mm(0, 0, 5), [](int i) { return mm(0, 0.2 * i, -1); }, 200, 2, 6);
-  // Into the crease and out of it by either wall.
+  // Into the crease, and out of it along either wall.
   expect(
       groove, mm(0, 0, 5), [](int i) { return mm(4.0 * std::sin(0.05 * i), 0.2 * i, -1); }, 400, 4,
       8);

@@ -1,6 +1,6 @@
 // Random ticks in the scenes of the source paper's figures: whatever the hand does, the renderer
-// makes the crossings of its way in their order, none that the table of ports does not have, and
-// goes through no wall.
+// makes the crossings along its way in their order, only those that the table of ports permits, and
+// passes no wall.
 
 #include <gtest/gtest.h>
 
@@ -17,12 +17,12 @@ namespace {
 class RandomFigure : public testing::TestWithParam<Figure> {};
 INSTANTIATE_TEST_SUITE_P(Figures, RandomFigure, testing::ValuesIn(figures()), figureName);
 
-/// Within 2e-5 mm of p [mm] there is a place of this region: a proxy at a wall is on the side it is
-/// on.
+/// Whether a place of this region is within 2e-5 mm of p [mm]: a proxy at a wall counts as on its
+/// own side.
 bool isAtRegion(const Figure& figure, int region, const Vec3& p) {
   if (figure.region(p) == region) return true;
-  // The felt heart and the polynomial differ by up to a hundredth of the half width at tip and
-  // dimple.
+  // The heart of the renderer and the polynomial differ by up to a hundredth of the half width at
+  // tip and dimple.
   const double reach = figure.name == "heart" ? 0.3 : 2e-5;
   for (int i = 0; i < 27; ++i) {
     const Vec3 u(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
@@ -31,8 +31,8 @@ bool isAtRegion(const Figure& figure, int region, const Vec3& p) {
   return false;
 }
 
-/// Places just behind the crossings told, where these lie on the straight way from a to b [mm]: a
-/// way that cuts a corner by micrometers is seen there, and nowhere else. (0 at a, 1 at b)
+/// Places just behind the reported crossings, if these lie on the straight way from a to b [mm]:
+/// only these samples detect a way that cuts a corner by micrometers. (0 at a, 1 at b)
 std::vector<double> behind(std::span<const PortCrossing> told, const Vec3& a, const Vec3& b) {
   std::vector<double> places;
   const Vec3 way = b - a;
@@ -65,7 +65,7 @@ TEST_P(RandomFigure, CrossesAsItsTableSaysInPathOrderAndThroughNoWall) {
     const Vec3 hip = hand.next();
     const TickResult out = drive.renderer().update({hip, Vec3(0.0)});
     SCOPED_TRACE(testing::Message() << figure.name << " tick " << i);
-    // Every crossing told is one that the table has, in the state that those before it left.
+    // Every reported crossing is permitted by the table, in the state that those before it left.
     const PassedNames before = passed;
     const int came_from = region;
     std::string events;
@@ -85,7 +85,7 @@ TEST_P(RandomFigure, CrossesAsItsTableSaysInPathOrderAndThroughNoWall) {
       region = out.region;
     }
     ASSERT_TRUE(isAtRegion(figure, region, 1e3 * out.proxy));
-    // A hand that was free and whose way has no wall in it goes that way, port by port.
+    // If the hand was free and no wall is on its way, it goes that way, port by port.
     if (was_free) {
       auto way = passageOf(figure, 1e3 * last, 1e3 * hip, came_from, before, 32);
       if (way && (way->events != events || way->region != region || out.proxy != hip)) {
@@ -115,10 +115,10 @@ TEST_P(RandomFigure, CrossesAsItsTableSaysInPathOrderAndThroughNoWall) {
   }
 }
 
-/// A hand that trembles by 0.1 mm about `point` [mm], after it came there from `free` by way of
-/// `through`: changes of region beyond those that its own straight ways explain, or its ways
-/// through z = `level` [mm], where a hand that presses on the glass moves the proxy through the
-/// liquid's surface.
+/// A hand that trembles by 0.1 mm around `point` [mm], after it came there from `free` through
+/// `through`. Returns the number of changes of region beyond those explained by its own straight
+/// ways, or by its ways through z = `level` [mm], where a hand that presses on the glass moves the
+/// proxy through the liquid's surface.
 int chatter(const Figure& figure, const ScenePtr& scene, const std::vector<Vec3>& through,
             const Vec3& point, double level, std::uint64_t seed) {
   Drive drive(scene);
@@ -139,7 +139,7 @@ int chatter(const Figure& figure, const ScenePtr& scene, const std::vector<Vec3>
       last = p;
       continue;
     }
-    // What a free hand would do on this way; with everything passed before.
+    // The crossings of a free hand on this way, with all ports passed before.
     PassedNames all;
     for (const Port& port : scene->ports()) all.pass(port.name, 9, 1);
     for (const Crossing& crossing : crossingsOf(figure, last, p, 32)) {
@@ -168,8 +168,8 @@ TEST(FigureRims, NothingChattersAtThem) {
       }
     }
   };
-  // The mouths of the tubes, and where the liquid's surface meets the glass, and the glass's own
-  // rim.
+  // The mouths of the tubes, the line where the liquid's surface meets the glass, and the rim of
+  // the glass.
   try_all(figures()[1], {{-60, 0, 0}, {-35, 0, 0}}, {{-40, 0, 25}}, -45, 15, false);
   try_all(figures()[2], {{-60, 0, 0}, {-30, 0, 0}}, {{-35, 0, 25}}, -40, 12, false);
   try_all(figures()[3], {{0, 0, 60}, {0, 0, 25}}, {{0, 0, 60}, {0, 0, 22}}, 20, 29, true, 20);

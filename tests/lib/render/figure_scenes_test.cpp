@@ -15,7 +15,7 @@ namespace {
 class EveryFigure : public testing::TestWithParam<Figure> {};
 INSTANTIATE_TEST_SUITE_P(Figures, EveryFigure, testing::ValuesIn(figures()), figureName);
 
-/// Evenly spread over the sphere (Fibonacci lattice).
+/// Element i of directions that are evenly spread over the sphere (Fibonacci lattice).
 Vec3 directionOf(int i, int count) {
   const double z = 1.0 - (2.0 * i + 1.0) / count;
   const double r = std::sqrt(1.0 - z * z);
@@ -23,8 +23,8 @@ Vec3 directionOf(int i, int count) {
   return {r * std::cos(around), r * std::sin(around), z};
 }
 
-/// Nowhere near the proxy, in its region, is it closer to the hand: the proxy minimizes the
-/// distance.
+/// Checks that no place near the proxy, in its region, is closer to the hand: the proxy minimizes
+/// the distance.
 void expectNoCloserPlace(const Figure& figure, const Drive& drive, Random& random) {
   const Vec3 proxy = 1e3 * drive.last().proxy;
   const Vec3 hip = 1e3 * drive.hip();
@@ -33,17 +33,18 @@ void expectNoCloserPlace(const Figure& figure, const Drive& drive, Random& rando
     const double r = i % 2 == 0 ? 0.02 : 0.4;  // [mm]
     const Vec3 beside = proxy + r * random.direction();
     if (figure.region(beside) != drive.last().region) continue;
-    // Only what can be got to: a thin wall's far side is in the same region too.
+    // Only places that can be reached count: the far side of a thin wall is in the same region too.
     if (!crossingsOf(figure, beside, proxy + 1e-5 * (beside - proxy), 8).empty()) continue;
-    // The hearts' polynomial and the felt one differ by a few micrometers off the tip.
+    // The polynomial of the heart and the renderer's heart differ by a few micrometers away from
+    // the tip.
     const double slack = figure.name == "heart" ? 0.02 : 1e-5;
     EXPECT_GT(glm::length(hip - beside), distance - slack) << figure.name << " beside by " << r;
   }
 }
 
-// Straight in and through from all directions, onto several targets: free ways are free, with the
-// ports in the order of the path, and where a wall is in the way the force is its spring's and the
-// proxy the closest point.
+// Straight in and through from all directions, towards several targets: on free ways the ports are
+// passed in the order of the path, and where a wall is in the way the force is that of its spring
+// and the proxy is the closest point.
 TEST_P(EveryFigure, FromEverySideTheTraceIsTheClosedForms) {
   const Figure& figure = GetParam();
   const ScenePtr scene = figure.springs();
@@ -82,7 +83,8 @@ TEST_P(EveryFigure, FromEverySideTheTraceIsTheClosedForms) {
           if (is_free) ++pressed;
           is_free = false;
           const Vec3 rest = out.proxy - drive.hip();
-          // Springs of one stiffness: exact to the tolerance of a proxy at rest, 1e-6 of the depth.
+          // All springs have one stiffness: exact to the tolerance of a proxy at rest, 1e-6 of the
+          // depth.
           ASSERT_TRUE(isNear(out.force, 1000.0 * rest, 1e-6 + 1e-3 * glm::length(rest)));
         }
         last = hip;
@@ -101,12 +103,13 @@ TEST_P(EveryFigure, FromEverySideTheTraceIsTheClosedForms) {
   }
 }
 
-/// The composite tube's hand: it tries a way, and where it is refused goes back.
+/// A hand at the composite tube: it tries a way, and goes back if it is refused.
 class TubeHand {
  public:
   TubeHand() : drive_(sceneNamed("composite_tube")) { (void)drive_.to(mm(-60, 0, 30)); }
 
-  /// Outside: into the tube's `side` (0 left, 1 right, 2 to 4 through the skin of filling 1 to 3).
+  /// From outside, tries to enter the tube at `side` (0 left, 1 right, 2 to 4 through the skin of
+  /// filling 1 to 3).
   void tryIn(int side) {
     const double x = side == 0 ? -60.0 : side == 1 ? 60.0 : 30.0 * (side - 3);
     (void)drive_.walk(1e3 * drive_.hip().z < 29.0 ? mm(1e3 * drive_.hip().x, 0, 30) : drive_.hip(),
@@ -115,7 +118,8 @@ class TubeHand {
     if (side < 2) (void)drive_.walk(mm(x, 0, 0), 10e-3);
     attempt(side < 2 ? mm(x < 0 ? -30 : 30, 0, 0) : mm(x, 0, 0));
   }
-  /// Inside: on to the right (0), back to the left (1), or out through the skin (2).
+  /// From inside, tries to go on to the right (0), back to the left (1), or out through the skin
+  /// (2).
   void tryOn(int way) {
     const double x = 1e3 * drive_.hip().x;
     attempt(way == 2 ? mm(x, 0, 30) : mm(way == 0 ? x + 30 : x - 30, 0, 0));
@@ -128,7 +132,7 @@ class TubeHand {
     const Vec3 from = drive_.hip();
     (void)drive_.walk(to, 10e-3);
     if (!drive_.last().contact) return;
-    // Refused: at rest, the steel holds it back by its spring.
+    // Refused: at rest, the spring of the steel holds it back.
     EXPECT_NEAR(glm::length(drive_.last().force), 1500.0 * glm::length(drive_.last().proxy - to),
                 1e-6);
     (void)drive_.walk(from, 10e-3);
@@ -138,7 +142,7 @@ class TubeHand {
 };
 
 TEST(CompositeTube, ThePortsOpenInTheirOrderAndInNoOther) {
-  // Every sequence of four tries (slow form: six), five ways each.
+  // Every sequence of four tries (slow form: six), with five ways each.
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   const int tries = slow ? 6 : 4;
   const int sequences = slow ? 15625 : 625;
@@ -196,7 +200,7 @@ TEST(CupWithLiquid, IsGlassAroundAndDragsWithin) {
   EXPECT_EQ(drive.events(), "") << "its surface is not a port";
   (void)drive.to(mm(0, 0.2, 10));
   EXPECT_TRUE(isNear(drive.last().force, {0, -2.0 * 0.2, 0}, 1e-9));
-  // The glass from within: bottom and side; and over the rim by its flat top.
+  // The glass from inside: bottom and side; and over the flat top of the rim.
   (void)drive.walk(mm(0, 0, -38));
   EXPECT_NEAR(drive.last().force.z, 1500.0 * 2e-3, 1e-6);
   (void)drive.walk(mm(0, 0, 10));

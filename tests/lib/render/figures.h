@@ -1,7 +1,7 @@
 #pragma once
-// The scenes of the source paper's figures, told a second time: their regions by formulas of their
-// own, their ports by a machine of its own, to judge the renderer's trace by. Lengths in mm, as in
-// the scene files.
+// The scenes of the source paper's figures, described a second time: their regions by separate
+// formulas, their ports by a separate machine, in order to check the renderer's trace. Lengths in
+// mm, as in the scene files.
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,8 @@
 
 namespace palpate::test {
 
-/// The ports passed, as the scene file's page says it: how often one way, less the other.
+/// The ports passed, as the scene file's documentation defines it: how often in one direction minus
+/// the other.
 class PassedNames {
  public:
   [[nodiscard]] bool has(const std::string& port) const {
@@ -38,13 +39,13 @@ struct Figure {
   std::string name;
   /// Region at a point [mm], 0 is outside.
   int (*region)(const Vec3& p);
-  /// Name of the port that lets from region a to b at a point of the wall [mm]; "" where no wall
-  /// is; nothing where it is closed.
+  /// Name of the port that leads from region a to b at a point of the wall [mm]; "" where there is
+  /// no wall; no value where it is closed.
   std::optional<std::string> (*way)(int a, int b, const Vec3& p, const PassedNames& passed);
 
   [[nodiscard]] ScenePtr scene() const { return sceneNamed(name); }
-  /// The same without friction, damping and contents, and all walls of 1000 N/m: forces are
-  /// springs.
+  /// The same without friction, damping and contents, and with all walls at 1000 N/m: all forces
+  /// are spring forces.
   [[nodiscard]] ScenePtr springs() const {
     SceneDescription description =
         readScene(test::sourceFolder() + "/data/scenes/" + name + ".yaml");
@@ -61,7 +62,7 @@ struct Figure {
 using Way = std::optional<std::string>;
 inline const Way kShut = std::nullopt;
 
-/// [mm] At a rim rounding decides which of two faces is nearer.
+/// [mm] At a rim, rounding decides which of two faces is nearer.
 constexpr double kRim = 1e-6;
 
 inline int containerRegion(const Vec3& p) { return glm::length(p) < 40.0 && p.z < 15.0 ? 1 : 0; }
@@ -165,13 +166,14 @@ inline std::string figureName(const ::testing::TestParamInfo<Figure>& figure) {
   return figure.param.name;
 }
 
-/// Where the straight way from a to b [mm] goes from one region into another.
+/// A point where the straight way from a to b [mm] goes from one region into another.
 struct Crossing {
   int from = 0;
   int to = 0;
   Vec3 point{0.0};  ///< [mm]
 };
-/// Seen by equal steps, and at `more` places (0 at a, 1 at b) where steps may pass a corner by.
+/// Found by equal steps, and at the places `more` (0 at a, 1 at b), where equal steps may miss a
+/// corner.
 inline std::vector<Crossing> crossingsOf(const Figure& figure, const Vec3& a, const Vec3& b,
                                          int samples, std::vector<double> more = {}) {
   std::vector<Crossing> all;
@@ -199,8 +201,8 @@ inline std::vector<Crossing> crossingsOf(const Figure& figure, const Vec3& a, co
   return all;
 }
 
-/// What a free straight way comes to: the ports passed and the last region, or nothing if a wall is
-/// in it.
+/// The result of a free straight way: the ports passed and the last region, or no value if a wall
+/// is in the way.
 struct Passage {
   std::string events;
   int region = 0;

@@ -22,7 +22,7 @@ TEST(ForceGuard, AForceThatTurnsRoundGoesToZeroAndGrowsByTheSlewRate) {
   ForceGuard guard({.max_growth = 100.0});  // 0.1 N a tick
   for (int i = 0; i < 100; ++i) (void)guard.apply(push(2.0), kTick);
   ASSERT_EQ(guard.apply(push(2.0), kTick), push(2.0));
-  // Without the limit on the vector all of -2 N came in this tick.
+  // Without the limit on the change of the vector, all of -2 N would come in this tick.
   EXPECT_NEAR(guard.apply(push(-2.0), kTick).x, -0.1, 1e-15);
   for (int i = 2; i <= 20; ++i) {
     EXPECT_NEAR(guard.apply(push(-2.0), kTick).x, -0.1 * i, 1e-13);
@@ -46,22 +46,22 @@ TEST(ForceGuard, LettingGoIsNeverDelayed) {
 TEST(ForceGuard, AGapBringsNoMoreThanANominalPeriod) {
   ForceGuard guard({.max_growth = 100.0});
   (void)guard.apply(push(0.0), kTick);
-  EXPECT_NEAR(guard.apply(push(15.0), 0.15).x, 0.1, 1e-15);  // 15 N came at once
+  EXPECT_NEAR(guard.apply(push(15.0), 0.15).x, 0.1, 1e-15);  // 15 N would come at once
   ForceGuard slow({.max_growth = 100.0, .period = 0.01});
   EXPECT_NEAR(slow.apply(push(15.0), 0.15).x, 1.0, 1e-14);
   EXPECT_NEAR(slow.apply(push(15.0), 1e-3).x, 1.1, 1e-14) << "an early tick counts as it is";
 }
 
 TEST(ForceGuard, TheRampAndTheSlewRateDoNotFeedOnEachOther) {
-  // 2 N, a ramp of 1 s: 1 N is due half-way. The slew rate allows 50 N/s, and never holds 2 N/s
-  // back.
+  // 2 N, with a ramp of 1 s: 1 N is due half-way. The slew rate allows 50 N/s, so it never limits a
+  // rise of 2 N/s.
   ForceGuard guard({.max_growth = 50.0, .ramp = 1.0});
   double force = 0.0;
   for (int i = 0; i <= 500; ++i) force = guard.apply(push(2.0), kTick).x;
   EXPECT_NEAR(force, 1.0, 1e-12);  // 501 additions of a double's rounding
   for (int i = 501; i <= 1001; ++i) force = guard.apply(push(2.0), kTick).x;
   EXPECT_EQ(force, 2.0);
-  // And a slow one is not made slower by the ramp: 1 N/s from the start.
+  // The ramp does not make a slow rise slower: 1 N/s from the start.
   ForceGuard slow({.max_growth = 1.0, .ramp = 0.1});
   for (int i = 0; i <= 500; ++i) force = slow.apply(push(2.0), kTick).x;
   EXPECT_NEAR(force, 0.5, 2e-3);  // within two ticks: the ramp's first force is zero
@@ -147,15 +147,14 @@ TEST(ForceGuard, TheLimitsOfASceneHoldWhereTheSettingsGiveNone) {
     // There the paper's renderer finds the contact point within its epsilon of 1 um: 1 mN.
     EXPECT_NEAR(forceIn({.slew = 10.0}, {}, kind), 0.4, 1e-3);
     EXPECT_NEAR(forceIn({.slew = 10.0}, {.max_growth = 20.0}, kind), 0.8, 1e-3);
-    // Half of the ramp is over after 50 of 100 ticks.
+    // After 50 of 100 ticks the ramp is half over.
     EXPECT_NEAR(forceIn({.ramp = 0.1}, {}, kind), 2.0, 1e-9);
     EXPECT_NEAR(forceIn({.ramp = 0.1}, {.ramp = 0.2}, kind), 1.0, 1e-9);
   }
 }
 
-/// What the limits mean, written down in another way: a force is sent if it is not longer than the
-/// maximum and if some share of the last one is within reach of it. Shares are looked for one after
-/// the other.
+/// The limits in another formulation: a force may be sent if it is not longer than the maximum and
+/// if some share of the last force is within reach of it. Shares are tried one after the other.
 struct Model {
   ForceLimits limits;
   Vec3 last{0.0};
@@ -174,7 +173,7 @@ struct Model {
     if (length > limits.max_force) force = force * limits.max_force / length;
     return limits.ramp > 0.0 ? force * std::min(1.0, age / limits.ramp) : force;
   }
-  /// How far `force` is from the nearest share of the last one.
+  /// Distance from `force` to the nearest share of the last force.
   [[nodiscard]] double away(const Vec3& force) const {
     double nearest = kInfinity;
     for (int i = 0; i <= 2000; ++i) {
@@ -231,14 +230,14 @@ TEST(ForceGuard, KeepsItsWordOnRandomSequences) {
       const Vec3 sent = guard.apply(asked, dt);
       ASSERT_TRUE(isFinite(sent));
       ASSERT_LE(glm::length(sent), limits.max_force * (1.0 + 1e-12));
-      // Shares stand 1/2000 apart: half of that of at most 14 N.
+      // Shares are 1/2000 apart: half of that, of at most 14 N.
       constexpr double kGrain = 14.0 / 4000.0;
       ASSERT_LE(model.away(sent), reach + kGrain) << sequence << " " << tick;
       if (model.away(due) <= reach - kGrain) {
         ASSERT_LE(glm::length(sent - due), 1e-12) << "held back without need";
       } else if (reach > 0.0 && sent != due) {
         ++held_back;
-        // None of the forces that are allowed is nearer to the one that is due.
+        // No permitted force is nearer to the one that is due.
         const double missed = glm::length(due - sent);
         for (int i = 0; i < 40; ++i) {
           Vec3 way(uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 1.0));

@@ -14,7 +14,7 @@
 namespace palpate::test {
 namespace {
 
-/// The oracle is run at every tick, at 0.05 to 2 ms each.
+/// The oracle runs at every tick, which takes 0.05 to 2 ms.
 int strokeTicks() { return std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 20'000 : 600; }
 
 struct Curved {
@@ -24,11 +24,11 @@ struct Curved {
   Vec3 free;      ///< [m] where the hand begins
   Vec3 lo, hi;    ///< [m] box between whose faces it wanders
   double speed;   ///< [m/s]
-  int share = 1;  ///< 1 of so many ticks: where the curvature jumps the oracle takes 30 ms
+  int share = 1;  ///< judge 1 of this many ticks: where the curvature jumps the oracle takes 30 ms
   std::function<bool(const Vec3&)> judged{};
 };
 
-/// A smooth random walk from face to face of a box.
+/// A smooth random walk between the faces of a box.
 void wander(const Curved& c, int seed) {
   SCOPED_TRACE(::testing::Message()
                << c.name << (c.from_within ? " from within" : " from outside"));
@@ -60,7 +60,7 @@ TEST(HardCurved, EllipsoidAsAQuadric) {
 }
 
 TEST(HardCurved, Hyperboloid) {
-  // x^2 + y^2 - z^2 = (20 mm)^2: a waist, curved both ways; felt from both sides.
+  // x^2 + y^2 - z^2 = (20 mm)^2: a waist with curvatures of both signs; felt from both sides.
   QuadricCoefficients c;
   c.xx = c.yy = 1.0;
   c.zz = -1.0;
@@ -90,8 +90,8 @@ TEST(HardCurved, Capsule) {
 }
 
 TEST(HardCurved, RoundedBoxWithinByClosedForm) {
-  // Beyond a rounded room the nearest point is unique: from the core box outward by the rounding.
-  // Its curvature jumps where faces, edges and corners meet.
+  // Beyond the wall of a rounded room the nearest point is unique: from the core box outward by the
+  // rounding radius. Its curvature jumps where faces, edges and corners meet.
   const double r = 0.005;
   const Vec3 core = mm(25, 15, 5);
   Drive drive(sceneOfSolid(roundedBox(Vec3(0.0), mm(60, 40, 20), r), true));

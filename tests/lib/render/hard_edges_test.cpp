@@ -18,7 +18,7 @@ struct Walk {
   const char* name;
   FieldPtr field;
   bool from_within;
-  Vec3 free;  ///< [m] where the hand begins, and where it comes back to
+  Vec3 free;  ///< [m] where the hand begins, and to which it returns
   Vec3 lo, hi;
   double speed = 0.2;           ///< [m/s]
   double oracle_step = 200e-6;  ///< [m]
@@ -26,7 +26,7 @@ struct Walk {
   double grant = 1.0;
 };
 
-/// From face to face of a box, and now and then out to the free point.
+/// Between the faces of a box, and now and then out to the free point.
 void judgeWalk(const Walk& w, int seed) {
   SCOPED_TRACE(::testing::Message()
                << w.name << (w.from_within ? " from within" : " from outside"));
@@ -57,7 +57,8 @@ TEST(HardEdges, CylinderRimsFromBothSides) {
   judgeWalk({"within a can", solid, true, mm(0, 0, 0), mm(-28, -28, -25), mm(28, 28, 25), 1.0}, 6);
 }
 
-/// Air between two planes that meet at 0, `degrees` apart, opening along +z; 10 mm is its feature.
+/// Air between two planes that meet at 0, `degrees` apart, opening towards +z; its feature size is
+/// 10 mm.
 FieldPtr wedge(double degrees) {
   const double a = 0.5 * degrees * kDegree;
   return intersect({halfSpace(Vec3(0.0), Vec3(std::cos(a), 0, -std::sin(a))),
@@ -79,7 +80,7 @@ TEST(HardEdges, GrooveOfTenDegrees) {
 }
 
 TEST(HardEdges, GrooveOfTenDegreesByClosedForm) {
-  // Depths of up to 20 mm and any lean: one minimum, so no tick is excused.
+  // Depths of up to 20 mm and any tilt: there is one minimum, so every tick is judged.
   const double a = 5.0 * kDegree;
   const Vec3 n1(-std::cos(a), 0, std::sin(a));
   const Vec3 n2(std::cos(a), 0, std::sin(a));
@@ -88,7 +89,7 @@ TEST(HardEdges, GrooveOfTenDegreesByClosedForm) {
   Random random(8);
   for (int i = 0; i < 3000; ++i) {
     const Vec3 p = random.in({mm(-20, -20, -20), mm(20, 20, 20)});
-    // The way there may be long: a hand that jumps about, then rests.
+    // The way there may be long: a hand that jumps around, then rests.
     (void)drive.to(p);
     const Vec3 z = oracle::grooveMinima(p, Vec3(0.0), n1, n2).front();
     ASSERT_TRUE(isNear(drive.last().proxy, z, 1e-6 * glm::length(z - p) + 1e-9)) << i;
@@ -96,7 +97,8 @@ TEST(HardEdges, GrooveOfTenDegreesByClosedForm) {
 }
 
 TEST(HardEdges, FoldOfEveryAngle) {
-  // Around a blade whose two sides lean by half the angle: held on either side, let go at its edge.
+  // Around a blade whose two sides are each tilted by half the angle: held on either side, released
+  // at its edge.
   for (const double degrees : {10.0, 90.0, 170.0}) {
     SCOPED_TRACE(degrees);
     judgeWalk(

@@ -1,5 +1,5 @@
-// Whatever the scene: two runs of a long mixed trajectory agree bit for bit, and no tick allocates,
-// locks or throws.
+// In any scene, two runs of a long mixed trajectory agree bit for bit, and no tick allocates, locks
+// or throws.
 
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ std::vector<Golden> goldens() {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Walks, presses, jumps and rests about the scene; now and then a broken position, or a reset.
+/// Walks, presses, jumps and rests around the scene; now and then a broken position, or a reset.
 std::vector<Vec3> mixed(const Scene& scene, int ticks) {
   Box3 box = scene.bounds();
   if (!box.isBounded()) box = {Vec3(-0.04), Vec3(0.04)};
@@ -89,7 +89,7 @@ std::array<std::uint64_t, 6> bitsOf(const TickResult& r) {
 
 TEST(HardGolden, TwoRunsAreBitEqualAndNoTickAllocates) {
   const std::vector<Golden> once = goldens();
-  const std::vector<Golden> again = goldens();  // compiled anew, so that nothing hangs on addresses
+  const std::vector<Golden> again = goldens();  // compiled anew: addresses must not matter
   for (std::size_t s = 0; s < once.size(); ++s) {
     SCOPED_TRACE(once[s].name);
     const std::vector<Vec3> path = mixed(*once[s].scene, kTicks / 25);

@@ -1,5 +1,5 @@
-// A hand in the loop: no limit cycle that a perfect renderer would not have, and the slide off a
-// ball that even a perfect renderer has.
+// A hand in the loop: no limit cycle beyond those of a perfect renderer, and the slide off a ball
+// that even a perfect renderer shows.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ constexpr double kSeconds = 2.0;
 struct SimulatedHand {
   double mass = 0.1;         // [kg]
   double stiffness = 400.0;  // [N/m]
-  double damping = 4.0;      // [N s/m]: above K T / 2, what a wall of 3000 N/m at 1 kHz asks for
+  double damping = 4.0;      // [N s/m]: above K T / 2, the minimum for a wall of 3000 N/m at 1 kHz
   Vec3 position{0.0};
   Vec3 velocity{0.0};
 
@@ -45,7 +45,7 @@ struct Felt {
 
 using Renderer = std::function<Vec3(const Vec3&)>;  ///< HIP to force
 
-/// Goes from `from` to `to` in a second, and stays. `encoder` [m]: positions are rounded to it.
+/// Moves from `from` to `to` in a second, and stays. `encoder` [m]: positions are rounded to it.
 Felt press(SimulatedHand hand, const Vec3& from, const Vec3& to, double encoder,
            const Renderer& render) {
   hand.position = from;
@@ -72,7 +72,7 @@ Renderer rendererOf(Drive& drive) {
   return [&drive](const Vec3& p) { return drive.to(p).force; };
 }
 
-/// The closed form in the same loop; of several minima the one nearest to its own last proxy.
+/// The closed form in the same loop; of several minima it takes the one nearest to its last proxy.
 Renderer oracleOf(double stiffness, std::function<Minima(const Vec3&)> minima, const Vec3& start) {
   auto proxy = std::make_shared<Vec3>(start);
   return [=](const Vec3& p) {
@@ -141,7 +141,7 @@ TEST(HardHand, NoLimitCycleThatAPerfectRendererHasNot) {
 }
 
 TEST(HardHand, InDeepHollowsThePaperSwingsAndTheConstraintRendererRests) {
-  // A light hand pressed `share` R beyond the wall of a hollow of 5 mm, a millimeter aside of its
+  // A light hand pressed `share` R beyond the wall of a hollow of 5 mm, a millimeter off its
   // middle.
   const double radius = 0.005;
   SimulatedHand hand;
@@ -178,8 +178,8 @@ TEST(HardHand, InDeepHollowsThePaperSwingsAndTheConstraintRendererRests) {
 }
 
 TEST(HardHand, SlidesOffABallBelowTheLateralStiffnessOfTheContact) {
-  // Pressed d deep with F = K d, a ball of R pushes sideways by F / (R - d) a meter: a hand softer
-  // than that slides off, whatever the renderer, and a stiffer one stays.
+  // Pressed d deep with F = K d, a ball of radius R pushes sideways with F / (R - d) per meter: a
+  // hand softer than that slides off, whatever the renderer, and a stiffer one stays.
   const double radius = 0.02;
   const double depth = 2e-3;
   const double force = kDefaultK * depth;
@@ -188,7 +188,7 @@ TEST(HardHand, SlidesOffABallBelowTheLateralStiffnessOfTheContact) {
     SimulatedHand hand;
     hand.stiffness = share * critical;
     hand.damping = 1.0;
-    // A commanded point at which the hand, were it held sideways, would rest `depth` deep.
+    // A commanded point at which the hand would rest `depth` deep if it were held sideways.
     const Vec3 to(2e-6, 0, radius - depth - force / hand.stiffness);  // 2 um off the axis
     const Vec3 from(2e-6, 0, radius * 1.01);
     Drive drive(sceneOfSolid(sphere(Vec3(0.0), radius)));
@@ -207,8 +207,8 @@ TEST(HardHand, SlidesOffABallBelowTheLateralStiffnessOfTheContact) {
       EXPECT_LT(off, 1e-4) << "stays";
       EXPECT_NEAR(felt.end.z, radius - depth, 1e-5);
     } else {
-      // The commanded point has passed the center: the probe comes to rest on the far side, still
-      // touching.
+      // The commanded point is beyond the center: the probe comes to rest on the far side, still in
+      // contact.
       EXPECT_LT(felt.end.z, -0.5 * radius) << "slides off";
       EXPECT_TRUE(drive.last().contact);
     }

@@ -1,6 +1,5 @@
 #pragma once
-// What the hard cases share: scenes of one solid, and a judge that compares a drive with the
-// oracle.
+// Shared by the hard cases: scenes of one solid, and a judge that compares a drive with the oracle.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +16,7 @@ namespace palpate::test {
 constexpr double kDegree = std::numbers::pi / 180.0;  // [rad]
 constexpr double kDefaultK = 1000.0;                  // [N/m] of a wall whose layer names none
 
-/// One layer, `solid`, made of `field`, with the default wall; the hand is held outside or within
+/// One layer, `solid`, made of `field`, with the default wall; the hand is held outside or inside
 /// it.
 inline ScenePtr sceneOfSolid(FieldPtr field, bool from_within = false, Material wall = {}) {
   SceneDescription description;
@@ -38,43 +37,44 @@ inline oracle::FeasibleSet heldBy(const FieldPtr& field, bool from_within) {
   return from_within ? oracle::FeasibleSet::inside(field) : oracle::FeasibleSet::outside(field);
 }
 
-/// Drives a renderer and runs the oracle beside it, from the renderer's own proxy of the tick
-/// before.
+/// Drives a renderer and runs the oracle in parallel, starting from the renderer's own proxy of the
+/// previous tick.
 class Judge {
  public:
   Judge(ScenePtr scene, oracle::FeasibleSet set, double stiffness = kDefaultK)
       : drive_(std::move(scene)),
         set_(std::move(set)),
         stiffness_(stiffness),
-        wall_slack_(4e-9 * set_.feature()) {}  // of the smallest feature; a leaf's may be larger
+        wall_slack_(4e-9 * set_.feature()) {}  // of the smallest feature; a leaf may have more
   Judge(const FieldPtr& field, bool from_within)
       : Judge(sceneOfSolid(field, from_within), heldBy(field, from_within)) {}
 
-  /// The oracle's step h [m]; near an edge h and h / 10 must be shorter than the way to it.
+  /// The oracle's step h [m]; near an edge, h and h / 10 must be shorter than the distance to it.
   void stepOracleBy(double step) { oracle_.step = step; }
 
-  /// Only there is the proxy compared with the oracle's: near a medial axis, beyond 0.9 of the
-  /// reach, the minimum is too flat for 1e-6. Finite and allowed it must be everywhere.
+  /// Compares the proxy with the oracle's only where `judged` is true: near a medial axis, beyond
+  /// 0.9 of the reach, the minimum is too flat for 1e-6. Everywhere it must be finite and
+  /// permitted.
   void onlyWhere(std::function<bool(const Vec3&)> judged) { judged_ = std::move(judged); }
-  /// Grants `times` as much distance to the walls: in a sharp groove a corner is that much further
-  /// off.
+  /// Grants `times` as much distance to the walls: in a sharp groove a corner is further away by
+  /// that factor.
   void grant(double times) { wall_slack_ *= times; }
 
-  /// To where the hand begins; not judged.
+  /// Moves to where the hand begins; not judged.
   void begin(const Vec3& hip) {
     (void)drive_.to(hip);
     (void)drive_.to(hip);
   }
 
-  /// One tick, judged: |F / K - (z - P)| and |x - z| at most `tolerance` of |z - P|, and x allowed.
-  /// Being on a surface means within a billionth of the feature size of its leaf, so that much is
-  /// granted to x.
+  /// One tick, judged: |F / K - (z - P)| and |x - z| are at most `tolerance` of |z - P|, and x is
+  /// permitted. On a surface means within a billionth of the feature size of its leaf, so x is
+  /// granted that much.
   void to(const Vec3& hip, double tolerance) {
     const Vec3 previous = drive_.last().proxy;
     oracle::OracleResult oracle = oracle::solveOracle(set_, previous, hip, oracle_);
     const TickResult& out = drive_.to(hip);
     if (oracle.converged && !oracle.ambiguous && oracle.errorOf(out.proxy, hip, 1e-5) > tolerance) {
-      // Nearer to an edge than its steps, the oracle leaps over it. Shorter ones decide.
+      // If an edge is nearer than its steps, the oracle jumps over it. Then shorter steps decide.
       oracle::OracleSettings finer = oracle_;
       finer.step = (oracle_.step > 0.0 ? oracle_.step : 0.02 * set_.feature()) / 100.0;
       oracle = oracle::solveOracle(set_, previous, hip, finer);
@@ -99,7 +99,7 @@ class Judge {
     const double depth = glm::length(oracle.proxy - hip);
     const double off = glm::length(out.proxy - oracle.proxy);
     ASSERT_LE(off, tolerance * depth + on_wall);
-    // What is felt, where the depth is above the oracle's own rounding.
+    // Compares the force where the depth is above the oracle's own rounding.
     const double felt = glm::length(out.force / stiffness_ - (oracle.proxy - hip));
     ASSERT_LE(felt, tolerance * depth + 1e-5 * on_wall + 1e-12);
     if (depth > 1e-5) worst_ = std::max(worst_, felt / depth);
@@ -130,14 +130,15 @@ class Judge {
   double worst_ = 0.0;
 };
 
-/// How a hand wanders.
+/// The motion of a wandering hand.
 struct Pace {
   double speed;    ///< [m/s]
-  double inertia;  ///< share of a tick's velocity that stays to the next
+  double inertia;  ///< share of a tick's velocity that is kept in the next
   int ticks;
 };
 
-/// A smooth way from `from` to one goal after another, as next_goal() tells them; each tick judged.
+/// A smooth way from `from` to one goal after another, as next_goal() returns them; each tick is
+/// judged.
 template <typename NextGoal>
 void judgeSmoothWay(Judge& judge, const Vec3& from, const Pace& pace, NextGoal&& next_goal) {
   judge.begin(from);

@@ -1,5 +1,5 @@
-// Deep pushes, jumps across the object, broken positions: the force is finite and capped, the proxy
-// goes where the oracle's goes, and contact is as before afterwards.
+// Deep pushes, jumps across the object, broken positions: the force is finite and limited, the
+// proxy goes where the oracle's goes, and contact is as before afterwards.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ TEST(HardJumps, FiveCentimetersDeepSlowlyAndAtOnce) {
       SCOPED_TRACE(::testing::Message() << solid.name << " step " << step);
       Drive drive(sceneOfSolid(solid.field));
       (void)drive.to(solid.free);
-      // Straight down, a little off every symmetry, until 50 mm below where the surface was met.
+      // Straight down, slightly off every symmetry, until 50 mm below where the surface was met.
       const Vec3 down = glm::normalize(Vec3(0.011, 0.007, -1.0));
       double met = 0.0;
       while (solid.field->value(solid.free + met * down) > 0.0) met += 1e-5;
@@ -77,8 +77,8 @@ TEST(HardJumps, AcrossTheObjectAsTheOracleJumps) {
       const Vec3 hip = random.in(around);
       const auto oracle =
           oracle::solveOracle(heldBy(solid.field, false), judge.drive().last().proxy, hip);
-      // The first tick after the gap, and a few at rest: what one tick's budget leaves, the next
-      // ones do.
+      // The first tick after the gap, and a few at rest: they finish what one tick's budget does
+      // not suffice for.
       const Vec3 first = judge.drive().to(hip).proxy;
       ASSERT_GE(solid.field->value(first), -1e-9) << i;
       for (int k = 0; k < 5; ++k) (void)judge.drive().to(hip);
@@ -142,8 +142,8 @@ TEST(HardJumps, ContactIsAsBeforeAfterABadDevice) {
         const TickResult out = drive.renderer().update({p, velocity});
         ASSERT_TRUE(isFinite(out.force) && isFinite(out.proxy));
       }
-      // A jump may have led to a flat face on the far side, which holds the hand there: it comes
-      // back beside it.
+      // A jump may have led to a flat face on the far side, which holds the hand there, so the hand
+      // comes back around the solid.
       for (const Vec3& stop : {mm(300, 0, -300), mm(300, 0, 300), solid.free}) {
         for (int i = 0; i < 3; ++i) (void)drive.to(stop);
         EXPECT_EQ(drive.last().force, Vec3(0.0)) << Judge::text(p);
@@ -158,7 +158,7 @@ TEST(HardJumps, StartsInsideAndExactlyOnTheSurface) {
     SCOPED_TRACE(solid.name);
     Random random(7);
     for (int i = 0; i < 20; ++i) {
-      // On the surface: a ray from outside, and the last point that is outside.
+      // A point on the surface: along a ray from outside, the last point that is outside.
       Vec3 p = random.in(solid.field->bounds());
       const bool on_surface = i % 2 == 0;
       if (on_surface) {

@@ -1,5 +1,5 @@
-// A field that lies about its Lipschitz bound: the contract suite says so, and a renderer that was
-// led through its wall by the lie finds back.
+// A field with a false Lipschitz bound: the contract suite reports it, and a renderer that passed
+// through its wall because of it finds its way back.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace palpate::test {
 namespace {
 
-/// A plate of 2 mm, 200 mm across, whose value rises ten times faster than it says.
+/// A plate of 2 mm, 200 mm across, whose value rises ten times faster than it states.
 FieldPtr lyingPlate(double declared) {
   UserFunction f;
   f.value = [](const Vec3& p) {
@@ -48,20 +48,19 @@ TEST(HardLipschitz, AProxyLedThroughTheWallFindsBack) {
   Random random(4);
   int led_inside = 0;
   for (int run = 0; run < 300; ++run) {
-    // Wild ticks through and about the plate, in which the lie may do what it will ...
+    // Wild ticks through and around the plate, in which anything may go wrong ...
     for (int i = 0; i < 20; ++i) {
       const TickResult& out = drive.to(random.in({mm(-80, -80, -15), mm(80, 80, 15)}));
       ASSERT_TRUE(isFinite(out.force) && isFinite(out.proxy));
       led_inside += field->value(out.proxy) < -1e-6 ? 1 : 0;
     }
-    // ... then the hand leaves, and is free
-    // (from beneath the plate, around its edge) ...
+    // ... then the hand leaves, and is free (from beneath the plate, around its edge) ...
     for (const Vec3& stop : {mm(300, 0, -60), mm(300, 0, 60), mm(0, 0, 60)}) {
       for (int i = 0; i < 3; ++i) (void)drive.to(stop);
     }
     ASSERT_EQ(drive.last().force, Vec3(0.0)) << run;
     ASSERT_EQ(drive.last().proxy, mm(0, 0, 60)) << run;
-    // ... and slowly pressed, the plate is felt as if nothing had been.
+    // ... and when it presses slowly, the plate feels as if nothing had happened.
     (void)drive.to(mm(5, 5, 3));
     const TickResult& out = drive.walk(mm(5, 5, 0.5), 0.05e-3);
     ASSERT_TRUE(isNear(out.force, Vec3(0, 0, 0.5), 1e-6)) << run;

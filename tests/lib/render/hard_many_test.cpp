@@ -1,4 +1,4 @@
-// Many objects: what is far away changes nothing.
+// Many objects: those far away change nothing.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ std::vector<FieldPtr> balls(int count) {
   return out;
 }
 
-/// Presses, strokes around and leaves, on the ball at the origin.
+/// Presses, strokes around and leaves the ball at the origin.
 void compare(const ScenePtr& one, const ScenePtr& many) {
   Drive alone(one);
   Drive among(many);

@@ -1,5 +1,5 @@
-// What the source paper's algorithm does wrong where the constraint renderer does not: it drifts,
-// swings in hollows; and what it does right: the crossing point of its figure 2.1.
+// What the source paper's algorithm does wrong and the constraint renderer does not: it drifts, and
+// it oscillates in hollows; and what it does right: the crossing point of its figure 2.1.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,8 @@
 namespace palpate::test {
 namespace {
 
-/// Degrees between force and its truth after one turn about a ball of 50 mm, `share` R deep.
+/// Angle [degrees] between the force and the true direction after one turn around a ball of 50 mm,
+/// `share` R deep.
 double driftOf(RendererKind kind, double share) {
   const double radius = 0.05;
   const double rho = radius * (1.0 - share);
@@ -37,7 +38,7 @@ TEST(HardPaper, DriftsOnABallTheMoreTheDeeper) {
   }
 }
 
-/// Largest and smallest magnitude of the force over a stroke at constant depth around a hollow of 5
+/// Smallest and largest magnitude of the force over a stroke at constant depth around a hollow of 5
 /// mm, K = 3000 N/m, `share` R deep.
 std::pair<double, double> forcesInHollow(RendererKind kind, double share) {
   const double radius = 0.005;
@@ -70,20 +71,21 @@ TEST(HardPaper, InAHollowItsForceVanishesAlongAStroke) {
 }
 
 TEST(HardPaper, Figure21TheCrossingPointNotTheClosest) {
-  // A convex surface met far off its normal: the hand goes along x through a ball, 30 mm above its
-  // center. The closest point lies ahead of the hand (60 degrees up); the path came in at the side.
+  // A convex surface met far from its normal: the hand moves along x through a ball, 30 mm above
+  // its center. The closest point is ahead of the hand (60 degrees up); the path entered at the
+  // side.
   const double radius = 0.05;
   const Vec3 from = mm(-60, 30, 0);
   const Vec3 to = mm(-12, 30, 0);
   const Vec3 crossing = mm(-40, 30, 0);
   const Vec3 closest = radius * glm::normalize(to);
   ASSERT_GT(glm::length(closest - crossing), 0.02);
-  // In one tick the paper has the crossing point ...
+  // In one tick the paper's renderer finds the crossing point ...
   Drive paper(sceneOfSolid(sphere(Vec3(0.0), radius)), RendererKind::kPaper);
   (void)paper.to(from);
   EXPECT_TRUE(isNear(paper.to(to).proxy, crossing, 2e-6));
-  // ... and so does a rule that forgets the path not: the constraint renderer goes through it, on
-  // the side where the hand came in, and slides on from there to the one nearest point of this
+  // ... which a rule that forgets the path does not: the constraint renderer goes through it, on
+  // the side where the hand entered, and slides on from there to the one nearest point of this
   // convex surface.
   Drive constraint(sceneOfSolid(sphere(Vec3(0.0), radius)));
   (void)constraint.to(from);
@@ -91,9 +93,9 @@ TEST(HardPaper, Figure21TheCrossingPointNotTheClosest) {
 }
 
 TEST(HardPaper, Figure21WhereTheClosestPointIsWrong) {
-  // The case the figure warns of: a flat body entered through its wide face, so deep that the far
-  // face is the closest. The path decides for both renderers; the closest point would push the hand
-  // out behind.
+  // The case of which the figure warns: a flat body entered through its wide face, so deep that the
+  // far face is the closest. The path decides for both renderers; the closest point would push the
+  // hand out at the back.
   const FieldPtr plate = box(Vec3(0.0), mm(200, 200, 20));
   const Vec3 from = mm(0, 0, 15);
   const Vec3 to = mm(4, 0, -6);

@@ -1,5 +1,4 @@
-// Nothing is passed through at any speed: thin plates and sheets, obliquely, at every phase of the
-// tick.
+// Nothing is passed at any speed: thin plates and sheets, obliquely, at every phase of the tick.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +23,7 @@ ScenePtr sheetScene() {
 }
 
 /// Counts the runs in which the proxy came out on the other side of z = 0 in the frame `pose`. The
-/// hand comes from above (or below), `slant` degrees off the normal, and goes on to 60 mm beyond.
+/// hand comes from above (or below), `slant` degrees from the normal, and goes on to 60 mm beyond.
 int tunnelled(const ScenePtr& scene, const Pose& pose, double half, double speed, double slant,
               bool from_below) {
   int passed = 0;
@@ -41,7 +40,7 @@ int tunnelled(const ScenePtr& scene, const Pose& pose, double half, double speed
       const TickResult& out = drive.to(pose.apply(hit + s * way));
       through = through || side * pose.applyInverse(out.proxy).z < half - 1e-9;
     }
-    // Held where it was hit, and pushed back out: the closest point of the near face.
+    // Held where it hit, and pushed back out: the proxy is the closest point of the near face.
     const Vec3 hip = pose.applyInverse(drive.hip());
     const Vec3 force = glm::transpose(pose.rotation) * drive.last().force;
     const Vec3 expected(0, 0, kDefaultK * (side * half - hip.z));
@@ -82,10 +81,10 @@ TEST(HardPlates, BeyondItsEdgeASheetLetsPass) {
   Drive drive(sheetScene());
   (void)drive.to(mm(160, 0, 20));
   EXPECT_EQ(drive.walk(mm(160, 0, -20)).force, Vec3(0.0)) << "beside it";
-  // From below it holds as well.
+  // From below the plate holds as well.
   EXPECT_EQ(drive.walk(mm(100, 0, -20)).force, Vec3(0.0));
   EXPECT_TRUE(isNear(drive.walk(mm(100, 0, 2)).force, Vec3(0, 0, -2.0), 1e-9));
-  // Slid over the edge, 2 mm deep, it lets go.
+  // Slid over the edge, 2 mm deep, the proxy is released.
   for (double x = 100.0; x < 149.9; x += 0.5) {
     ASSERT_TRUE(isNear(drive.to(mm(x, 0, 2)).force, Vec3(0, 0, -2.0), 1e-9)) << x;
   }

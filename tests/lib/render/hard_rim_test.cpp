@@ -1,5 +1,5 @@
-// The container: whatever the hand does it never goes through the glass, and at the rim nothing
-// chatters.
+// The container: whatever the hand does it never passes through the glass, and nothing chatters at
+// the rim.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ bool crossesMouth(const Vec3& a, const Vec3& b) {
 }
 
 TEST(HardRim, FreeTicksChangeRegionOnlyThroughTheMouth) {
-  // Where the proxy is free before and after a tick, it went straight: an independent account of
+  // If the proxy is free before and after a tick, it went straight: an independent count of
   // crossings.
   const ScenePtr scene = sceneOf(containerText());
   Drive drive(scene);
@@ -50,7 +50,7 @@ TEST(HardRim, FreeTicksChangeRegionOnlyThroughTheMouth) {
     }
     if (out.region != before.region) {
       ASSERT_GT(out.event_count, 0) << i;
-      // It passed by the plane of the brim, within the rim or over it.
+      // It passed through the plane of the brim, inside the rim or above it.
       ASSERT_TRUE(glm::length(out.proxy) < kRadius + 1e-9 || out.region == kOutside) << i;
     }
     if (out.region != kOutside) {
@@ -65,7 +65,7 @@ TEST(HardRim, FreeTicksChangeRegionOnlyThroughTheMouth) {
   EXPECT_GT(judged, 100);
 }
 
-/// Events of a hand that trembles by up to 0.1 mm about a point near the rim, and true crossings:
+/// Events of a hand that trembles by up to 0.1 mm around a point near the rim, and true crossings:
 /// ticks in which the hand itself goes through the mouth, or over the sphere below the brim.
 struct Chatter {
   int events = 0;
@@ -74,7 +74,7 @@ struct Chatter {
 Chatter trembleAt(const Vec3& free, const Vec3& point, std::uint64_t seed) {
   Drive drive(sceneOf(containerText()));
   (void)drive.to(free);
-  if (glm::length(free) < kRadius) {  // within: by the mouth
+  if (glm::length(free) < kRadius) {  // inside: through the mouth
     drive.renderer().reset();
     (void)drive.to(mm(0, 0, 30));
     (void)drive.walk(free);
@@ -115,7 +115,7 @@ TEST(HardRim, PressingAtItFromBothSidesDoesNotChatter) {
 }
 
 TEST(HardRim, SlidingAlongItFromBothSidesDoesNotChatter) {
-  // Around the rim, weaving across it: one event at most for every time the hand's way leads over
+  // Around the rim, weaving across it: at most one event for each time that the hand's way crosses
   // the edge.
   const double rim = std::asin(kBrim / kRadius);
   for (const bool inside : {false, true}) {
@@ -138,8 +138,8 @@ TEST(HardRim, SlidingAlongItFromBothSidesDoesNotChatter) {
                                   std::cos(rim + off) * std::sin(around), std::sin(rim + off)) +
                        random.uniform(0.0, 20e-6) * random.direction();
         events += drive.to(p).event_count;
-        // Over the edge: by the angle at which the rim stands, and through the mouth where the hand
-        // is in it.
+        // It crosses the edge when its angle passes that of the rim, and through the mouth if the
+        // hand is in the mouth.
         if (off * was < 0.0) ++over;
         if (i > 0 && crossesMouth(last, p)) ++over;
         was = off;

@@ -1,4 +1,4 @@
-// Where a surface has no normal or the field no scale: apexes, cusps, saddles, gradients that vary
+// Where a surface has no normal, or the field no scale: apexes, cusps, saddles, gradients that vary
 // a hundredfold.
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 int walkTicks() { return std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 20'000 : 600; }
 
 TEST(HardSingular, MetaballSaddle) {
-  // Two balls that flow together: the neck between them is curved both ways.
+  // Two balls that blend into each other: the neck between them has curvatures of both signs.
   const FieldPtr field =
       metaballs({{mm(-15, 0, 0), 0.04, 1.0}, {mm(15, 0, 0), 0.04, 1.0}}, FallOff::kWyvill, 0.6);
   {
@@ -28,7 +28,7 @@ TEST(HardSingular, MetaballSaddle) {
   }
 }
 
-/// A ball whose value is a distance times a factor that runs from 1 to 100 over its surface.
+/// A ball whose value is the distance times a factor that varies from 1 to 100 over its surface.
 FieldPtr unevenBall(double radius) {
   UserFunction f;
   f.value = [=](const Vec3& p) {
@@ -37,7 +37,7 @@ FieldPtr unevenBall(double radius) {
   };
   f.bounds = {Vec3(-1.01 * radius), Vec3(1.01 * radius)};
   f.feature_size = radius;
-  f.lipschitz = 8.0;  // factor 1, plus its own growth of 3 ln 10 / R over what lies within 2 R
+  f.lipschitz = 8.0;  // factor 1, plus its own growth of 3 ln 10 / R over the space within 2 R
   f.lipschitz_domain = {Vec3(-2.0 * radius), Vec3(2.0 * radius)};
   return userField(std::move(f));
 }
@@ -55,8 +55,8 @@ TEST(HardSingular, GradientMagnitudeVariesAHundredTimes) {
 }
 
 TEST(HardSingular, ConeApexFromOutside) {
-  // Pressed on the tip, 40 mm high on a disc of 15 mm: held by the slant on the side where it slid
-  // down.
+  // Pressed on the tip of a cone, 40 mm high on a disc of 15 mm: held by the slant on the side
+  // where it slid down.
   const FieldPtr field = cone(Vec3(0.0), Vec3(0, 0, 1), 0.015, 0.04);
   Judge judge(field, false);
   judge.stepOracleBy(100e-6);
@@ -67,7 +67,7 @@ TEST(HardSingular, ConeApexFromOutside) {
 }
 
 TEST(HardSingular, ConeApexStraightOn) {
-  // Exactly on the axis: any side is right; the force is finite, does not pull, and the proxy stays
+  // Exactly on the axis any side is right; the force is finite, does not pull, and the proxy stays
   // outside.
   const FieldPtr field = cone(Vec3(0.0), Vec3(0, 0, 1), 0.015, 0.04);
   Drive drive(sceneOfSolid(field));
@@ -77,7 +77,7 @@ TEST(HardSingular, ConeApexStraightOn) {
     ASSERT_TRUE(isFinite(out.force));
     ASSERT_GE(field->value(out.proxy), -1e-9);
     ASSERT_GE(glm::dot(out.force, out.proxy - drive.hip()), 0.0);
-    // The slant is 0.351 of the depth along the axis away: (40 - z) sin(half angle).
+    // The distance to the slant is 0.351 of the depth along the axis: (40 - z) sin(half angle).
     if (z < 39.9) {
       ASSERT_LE(glm::length(out.force), kDefaultK * 1e-3 * (40.0 - z) + 1e-9) << z;
       ASSERT_GE(glm::length(out.force), kDefaultK * 1e-3 * (40.0 - z) * 0.351) << z;
@@ -87,8 +87,7 @@ TEST(HardSingular, ConeApexStraightOn) {
 }
 
 TEST(HardSingular, StraightThroughABallsCenterTheNearSideIsFelt) {
-  // Beyond the center the place where the hand went in is stationary, but the farthest of all: 35
-  // N.
+  // Beyond the center the entry point is stationary, but it is the farthest point of all: 35 N.
   for (const Vec3& way : {Vec3(0, 0, 1), Vec3(1, 0, 0), glm::normalize(Vec3(1, 2, 3))}) {
     Drive drive(sceneOfSolid(sphere(Vec3(0.0), 0.02)));
     (void)drive.to(0.03 * way);
@@ -100,8 +99,7 @@ TEST(HardSingular, StraightThroughABallsCenterTheNearSideIsFelt) {
 }
 
 TEST(HardSingular, HollowConeApex) {
-  // From within: beyond the tip the tip itself is nearest, as long as P lies in the cone of
-  // normals.
+  // From inside: beyond the tip the tip itself is nearest, as long as P is in the cone of normals.
   const FieldPtr field = cone(Vec3(0.0), Vec3(0, 0, 1), 0.015, 0.04);
   Drive drive(sceneOfSolid(field, true));
   (void)drive.walk(mm(0, 0, 10));
@@ -122,12 +120,13 @@ TEST(HardSingular, HeartFromOutside) {
   const FieldPtr field = heart(Vec3(0.0), 0.06);
   Judge judge(field, false);
   judge.stepOracleBy(
-      200e-6);  // its feature, the radius of the tip, is a hundredth of what matters here
+      200e-6);  // its feature size, the tip's radius, is a hundredth of what matters here
   judgeWalk(judge, mm(0, 30, 10), {mm(-26, -10, -22), mm(26, 10, 25)}, 0.4, 7, walkTicks() / 3);
 }
 
 TEST(HardSingular, HeartCuspPressed) {
-  // Into the dimple between the lobes, and onto the tip below: finite, steady, never inside.
+  // Into the dimple between the lobes, and onto the tip below: finite, steady, and the proxy never
+  // inside.
   const FieldPtr field = heart(Vec3(0.0), 0.06);
   for (const double up : {1.0, -1.0}) {
     Drive drive(sceneOfSolid(field));
@@ -140,7 +139,7 @@ TEST(HardSingular, HeartCuspPressed) {
       ASSERT_LE(glm::length(out.force), kDefaultK * glm::length(out.proxy - drive.hip()) + 1e-9);
     }
     EXPECT_TRUE(drive.last().contact);
-    // At rest it stays where it is.
+    // At rest the force stays the same.
     last = drive.last().force;
     for (int i = 0; i < 20; ++i) {
       const Vec3 force = drive.to(drive.hip()).force;

@@ -1,5 +1,4 @@
-// The stroke by which renderers are compared: a ball of 50 mm, 1 mm deep, 0.2 m/s, 1 kHz, ten
-// revolutions.
+// The stroke for comparing renderers: a ball of 50 mm, 1 mm deep, 0.2 m/s, 1 kHz, ten revolutions.
 
 #include <gtest/gtest.h>
 
@@ -17,16 +16,16 @@ constexpr double kDepth = 1e-3;
 constexpr double kTurn = 0.2e-3 / (kRadius - kDepth);  // [rad] a tick
 
 struct Errors {
-  double direction = 0.0;  ///< [degree] largest
-  double magnitude = 0.0;  ///< [-] largest, relative
-  double step = 0.0;       ///< [degree] by which the force turns between two ticks, largest
+  double direction = 0.0;  ///< [degree] largest error
+  double magnitude = 0.0;  ///< [-] largest relative error
+  double step = 0.0;       ///< [degree] largest turn of the force between two ticks
 };
 
 double degreesBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) / kDegree;
 }
 
-/// Around a circle that no axis of the ball lies in.
+/// Along a circle whose plane contains no axis of the ball.
 Errors strokeAround(RendererKind kind, double revolutions) {
   const Vec3 center = mm(3, -2, 7);
   const Vec3 a = glm::normalize(Vec3(1, 2, -0.5));
@@ -56,21 +55,21 @@ TEST(HardStroke, TenRevolutionsByTheConstraintRendererAreExact) {
   const Errors worst = strokeAround(RendererKind::kConstraint, 10.0);
   EXPECT_LE(worst.direction, 1e-6) << "degree";
   EXPECT_LE(worst.magnitude, 1e-6);
-  // The hand itself turns by 0.2 mm in 49 mm a tick: 0.234 degree.
+  // The hand itself turns by 0.2 mm / 49 mm in a tick: 0.234 degree.
   EXPECT_LE(worst.step, 0.245);
   EXPECT_NEAR(worst.step, kTurn / kDegree, 1e-5);
 }
 
 TEST(HardStroke, OneRevolutionByThePaperIsNot) {
-  // Its contact point falls behind by 2 pi d/R a turn and more: 7.2 degrees at least, 8.4 as
-  // measured.
+  // The contact point of the paper's method falls behind by 2 pi d/R and more in a turn: at least
+  // 7.2 degrees, measured 8.4.
   const Errors worst = strokeAround(RendererKind::kPaper, 1.0);
   EXPECT_GT(worst.direction, 7.2);
   EXPECT_LT(worst.direction, 9.5);
 }
 
 TEST(HardStroke, TheSameMotionAtOneAndAtTenKilohertz) {
-  // What is felt at a place does not depend on how often it is asked.
+  // The force at a place does not depend on the number of ticks.
   Drive slow(sceneOfSolid(sphere(Vec3(0.0), kRadius)));
   Drive fast(sceneOfSolid(sphere(Vec3(0.0), kRadius)));
   const auto at = [](double t) {

@@ -1,4 +1,4 @@
-// What a wall's material adds to its spring: friction by its cone, damping, textures, shading.
+// What a wall's material adds to its spring: a friction cone, damping, textures, shading.
 
 #include <gtest/gtest.h>
 
@@ -25,8 +25,9 @@ Drive onFloor(const Material& wall) {
 }
 
 TEST(HardFriction, HysteresisLoopByClosedForm) {
-  // Pressed 2 mm deep and pulled to and fro by 10 mm. Stuck, the proxy lags by at most 0.4 x 2 mm;
-  // sliding, by 0.3 x 2 mm; turned around it sticks until the lag is 0.8 mm the other way.
+  // Pressed 2 mm deep and pulled back and forth by 10 mm. While it sticks, the proxy lags by at
+  // most 0.4 x 2 mm; while it slides, by 0.3 x 2 mm; after it turns around it sticks until the lag
+  // is 0.8 mm in the other direction.
   Material wall = wallOf(1000.0);
   wall.friction = {0.4, 0.3};
   Drive drive = onFloor(wall);
@@ -38,7 +39,7 @@ TEST(HardFriction, HysteresisLoopByClosedForm) {
   double last_force = 0.0;
   for (int i = 0; i <= 4000; ++i) {
     const double x = 10.0 * std::sin(0.01 * i);
-    // The rule of the cone, one line a state.
+    // The friction cone's rule, one line for each state.
     const double lag = x - proxy;
     if (sticks && std::fabs(lag) > 0.8) sticks = false;
     if (!sticks && std::fabs(lag) <= 0.6) sticks = true;
@@ -74,8 +75,8 @@ TEST(HardFriction, AStuckProxyDoesNotCreep) {
 }
 
 TEST(HardFriction, SlidesAtTheKineticConeOnABall) {
-  // Along a meridian at constant depth: the force leans back from the normal at the proxy by
-  // atan(mu_k).
+  // Along a meridian at constant depth: the force is tilted backward from the normal at the proxy
+  // by atan(mu_k).
   Material wall = wallOf(1000.0);
   wall.friction = {0.3, 0.2};
   const double radius = 0.05;
@@ -129,19 +130,21 @@ TEST(HardTexture, IsCappedByAmplitudeAndDepth) {
       const double added = out.force.z - 1000.0 * depth;
       ASSERT_LE(std::fabs(added), 1000.0 * 0.2e-3 + 1e-9) << depth;
       ASSERT_LE(std::fabs(added), 0.5 * 1000.0 * depth + 1e-9) << depth;
-      // Along the wall they push as they slope, by amplitude k / 3 along two axes at most.
+      // The force along the wall follows the slope of the bumps: amplitude k / 3 along at most two
+      // axes.
       const double slope = 0.2e-3 * 2.0 * std::numbers::pi / 3e-3 / 3.0 * std::sqrt(2.0);
       ASSERT_LE(glm::length(Vec3(out.force.x, out.force.y, 0)), 1000.0 * depth * slope + 1e-9);
       highest = std::max(highest, added);
       lowest = std::min(lowest, added);
     }
   }
-  // z = 0 adds no wave of its own, so two of the three reach.
+  // At z = 0 the wave along z is zero, so two of the three contribute.
   EXPECT_GT(highest, 0.9 * 1000.0 * 0.2e-3 * 2.0 / 3.0);
   EXPECT_LT(lowest, -0.9 * 1000.0 * 0.2e-3 * 2.0 / 3.0);
 }
 
-/// A rod of 24 flat sides about z, 30 mm thick; `one_leaf`: felt as a mesh is, without its faces.
+/// A rod with 24 flat sides about z, 30 mm thick; `one_leaf`: without its faces as structure, as a
+/// mesh is felt.
 FieldPtr facetedRod() {
   std::vector<FieldPtr> sides;
   for (int i = 0; i < 24; ++i) {
@@ -152,7 +155,7 @@ FieldPtr facetedRod() {
   return intersect(std::move(sides));
 }
 
-/// Largest turn of the force between two ticks of a stroke around the rod [degree].
+/// Largest turn of the force between two ticks during a stroke around the rod [degree].
 double largestTurn(double shading) {
   Material wall = wallOf(1000.0);
   wall.shading = shading;
@@ -171,10 +174,10 @@ double largestTurn(double shading) {
 
 TEST(HardShading, FacetsFeelRound) {
   EXPECT_NEAR(largestTurn(0.0), 15.0, 0.1) << "without it every edge is felt";
-  // With it what is left is how far the smoothed surface turns while the proxy goes over an edge,
-  // from 0.13 mm before it to 0.13 mm behind it: 0.4 degree of the 15 over 10 mm, up to twice that
-  // for how it bends, and half a degree because the bevel lies lower than the faces; and the hand's
-  // own 0.11 degree.
+  // With shading, the remaining turn is that of the smoothed surface while the proxy goes over an
+  // edge, from 0.13 mm before it to 0.13 mm behind it: 0.4 degree of the 15 over 10 mm, up to twice
+  // that because of its curvature, half a degree more because the bevel lies lower than the faces,
+  // and the hand's own 0.11 degree.
   EXPECT_LE(largestTurn(5e-3), 2.0);
 }
 
@@ -190,8 +193,9 @@ TEST(HardShading, LeavesSmoothWallsAlone) {
     const Vec3 p = 0.049 * Vec3(std::cos(t) * std::cos(0.7 * t), std::sin(t) * std::cos(0.7 * t),
                                 std::sin(0.7 * t));
     const Vec3 force = drive.to(p).force;
-    // The smoothed ball is smaller by a ninth of radius^2 / (2 R) for each of the two ways in which
-    // it bends; as the smoothing's lattice lies in it, its surface waves by a hundredth of that.
+    // The smoothed ball is smaller by a ninth of radius^2 / (2 R) for each of its two curvatures;
+    // depending on the position of the smoothing's lattice, its surface waves by a hundredth of
+    // that.
     const double lower = 1e-3 * 1e-3 / 9.0 / 0.05;
     ASSERT_TRUE(
         isNear(force, kDefaultK * (0.001 - lower) * glm::normalize(p), 0.1 * kDefaultK * lower))

@@ -1,5 +1,5 @@
-// Needle insertion: the slab of data/scenes against its stated model, tick by tick; what a needle's
-// contents do on ways that are not straight; and their energy.
+// Needle insertion: the slab of data/scenes against its model, tick by tick; a needle's contents on
+// ways that are not straight; and their energy.
 
 #include "palpate/render/insertion.h"
 
@@ -19,13 +19,13 @@ using testing::EnergyMeter;
 
 constexpr double kStep = 50e-6;  // [m] a tick: 50 mm/s
 
-/// Runs the slab along (x, 0, -depth) and holds each tick against the model.
+/// Moves through the slab along (x, 0, -depth) and compares each tick with the model.
 struct SlabRun {
   Drive hand{sceneNamed("slab")};
   SlabModel model;
   EnergyMeter meter;
   double x = 0.0;
-  double worst = 0.0;     // [N] difference
+  double worst = 0.0;     // [N] largest difference
   double sideways = 0.0;  // [N] force off the needle's axis
   double last = 0.0;      // [m] depth
   std::vector<double> force, shaft, cut;
@@ -52,7 +52,7 @@ TEST(Insertion, SlabIsItsModelThereAndBackAndInAgain) {
   EXPECT_LT(run.worst, 1e-6);
   EXPECT_LT(run.sideways, 1e-9);
   EXPECT_EQ(run.force.back(), 0.0);
-  // Once more by the same holes, which open easily, and through what is cut.
+  // Once more through the same holes, which open easily, and through the cut.
   const std::size_t first = run.force.size();
   for (const double depth : way) run.to(depth);
   EXPECT_LT(run.worst, 1e-6);
@@ -95,11 +95,12 @@ TEST(Insertion, EachInterfaceIsAnEventAndADropWithinATick) {
             "fat_entry/ skin_puncture/ ");
   ASSERT_EQ(drops.size(), 7U);
   EXPECT_GT(drops[0], 2.5);  // from 2.8 N of skin to cutting and friction
-  EXPECT_GT(drops[1], 0.2);  // 0.9 N of fascia, less what muscle takes
+  EXPECT_GT(drops[1], 0.2);  // 0.9 N of fascia, minus what muscle adds
   EXPECT_GT(drops[2], 1.0);  // 0.7 N of the far side and 0.6 N of cutting
 }
 
-// SOFA's needles have none after a puncture (haptic toolkits compared: their second defect).
+// SOFA's needles have no cutting force after a puncture (haptic toolkits compared: their second
+// defect).
 TEST(Insertion, CuttingForceGoesOnAfterThePuncture) {
   SlabRun run;
   for (const double depth : thereAndBack(-0.005, 0.030, kStep, 0)) {
@@ -134,7 +135,7 @@ TEST(Insertion, BoneStopsIt) {
   EXPECT_TRUE(hand.last().contact);
   EXPECT_EQ(hand.region(), "muscle");
   EXPECT_NEAR(hand.last().proxy.z, -0.019, 1e-9);
-  // 3000 N/m of bone, friction of skin, fat and 5 mm of muscle; nothing of muscle is cut any more.
+  // 3000 N/m of bone, and friction of skin, fat and 5 mm of muscle; no more muscle is cut.
   const double speed = kStep / Drive::kTick;
   const double bone = 3000.0 * (-hand.hip().z - 0.019);
   const double shaft =
@@ -142,7 +143,7 @@ TEST(Insertion, BoneStopsIt) {
   EXPECT_NEAR(hand.last().force.z, bone + shaft, 1e-6);
 }
 
-// The limit of growth lets a puncture drop at once, and holds back only what comes after.
+// The slew rate permits a puncture's drop at once, and limits only the force after it.
 TEST(Insertion, SlewLimitLetsThePunctureDrop) {
   RendererSettings settings;
   settings.limits.max_growth = 200.0;  // [N/s]: 0.2 N a tick, faster than the skin is pressed
@@ -161,7 +162,7 @@ TEST(Insertion, SlewLimitLetsThePunctureDrop) {
   EXPECT_TRUE(dropped);
 }
 
-// A hand that trembles at the depth where the skin gave way.
+// A hand that trembles at the depth where the skin opened.
 TEST(Insertion, DoesNotFireAgainWhileTheHandTrembles) {
   Drive hand(sceneNamed("slab"));
   double depth = -0.005;
@@ -179,8 +180,8 @@ TEST(Insertion, ThereAndBackTakesEnergyAndGivesNone) {
   SlabRun run;
   const std::vector<double> way = thereAndBack(-0.005, 0.045, kStep, 50);
   for (const double depth : way) run.to(depth);
-  // A force held for a tick leaks up to half a tick's way times its change: of 150 N/m to 300 N/m
-  // springs and a way of 50 um, some 1e-9 J a tick; while it is pressed, 1e-6 J in all.
+  // A force held for a tick leaks up to half a tick's way times its change: for springs of 150 N/m
+  // to 300 N/m and a way of 50 um, some 1e-9 J in a tick; while it is pressed, 1e-6 J in total.
   EXPECT_LT(run.meter.gained(), 1e-6);
   EXPECT_LT(run.meter.work(), -0.02);
 }
@@ -200,7 +201,7 @@ const char* const kNeedled =
     "stiffness: 300 N/m, cutting: 0.5 N, shaft: {stiffness: 1e5 N/m^2, in: {static: 12 N/m, "
     "kinetic: 8 N/m, damping: 50 N.s/m^2}}";
 
-// Any way, in and out and round: summed from what was sent to the hand.
+// Any way, in, out and around: the work summed from the force sent to the hand.
 TEST(Insertion, WanderingNeverGivesEnergy) {
   std::mt19937 random(5);
   std::normal_distribution<double> push(0.0, 1.0);
@@ -216,7 +217,7 @@ TEST(Insertion, WanderingNeverGivesEnergy) {
     const Vec3 way = v;
     p += way;
     const TickResult r = hand.to(p);
-    // Held for a tick, a force that changes leaks up to its change times the way.
+    // A changing force that is held for a tick leaks up to its change times the way.
     leak += glm::length(r.force - last_force) * glm::length(way);
     last_force = r.force;
     meter.add(p, r.force);
@@ -250,7 +251,7 @@ TEST(Insertion, AnotherPlaceIsNotCutYet) {
     return highest;
   };
   EXPECT_NEAR(peak(0.0), 0.5, 1e-9);
-  EXPECT_NEAR(peak(0.0), 0.5, 1e-9);  // the last 1.7 mm it only pressed
+  EXPECT_NEAR(peak(0.0), 0.5, 1e-9);  // on the last 1.7 mm it only pressed, without cutting
   EXPECT_NEAR(peak(5.0), 0.5, 1e-9);
   double highest = 0.0;
   for (double z = 2.0; z > -8.0; z -= 0.05) {
@@ -259,8 +260,8 @@ TEST(Insertion, AnotherPlaceIsNotCutYet) {
   EXPECT_NEAR(highest, 0.0, 1e-12);
 }
 
-// Begun inside, or held since the content was changed: where the shaft came in is not known, and it
-// comes out.
+// The needle began inside, or the content was changed and holds needles now: where the shaft
+// entered is not known, and it comes out free.
 TEST(Insertion, BegunInsideItComesOutFree) {
   Drive hand(sceneOf(jelly(kNeedled) + "start: {region: jelly}\n"));
   (void)hand.to(mm(0, 0, -5));
@@ -281,7 +282,8 @@ TEST(Insertion, BegunInsideItComesOutFree) {
   EXPECT_EQ(soft.last().force, Vec3(0.0));
 }
 
-// More tissues than it holds at a time, and more cuts than it remembers: bounded, and no harm done.
+// More tissues than it can hold at a time, and more cuts than it can remember: bounded, and
+// harmless.
 TEST(Insertion, HundredLayersAndHundredCuts) {
   std::string text =
       "palpate: 1\nlength: mm\nmaterials: {a: {stiffness: 200 N/m, cutting: 0.1 N, shaft: "
@@ -297,14 +299,15 @@ TEST(Insertion, HundredLayersAndHundredCuts) {
     (void)hand.walk(mm(2.0 * i, 0, 3));
     (void)hand.walk(mm(2.0 * i, 0, i % 10 == 0 ? -45.0 : -3.45), 0.2e-3);
     EXPECT_TRUE(isFinite(hand.last().force));
-    // 3.45 mm of shaft, and pressed 0.45 mm in the last layer; or so many that all let go.
+    // 3.45 mm of shaft, with the tip pressed 0.45 mm in the last layer; or so many layers that all
+    // let go.
     EXPECT_NEAR(hand.last().force.z, i % 10 == 0 ? 0.0 : 0.09 + 0.00345 * 5.0, 1e-6);
     (void)hand.walk(mm(2.0 * i, 0, 3), 0.2e-3);
     EXPECT_EQ(hand.last().force, Vec3(0.0));
   }
 }
 
-// Beyond the far side the tip walks round the slab: the needle is out, without a kick.
+// Beyond the far side the tip moves around the slab: the needle is out, without a kick.
 TEST(Insertion, WalkingRoundTheFarSideLetsGo) {
   Drive hand(sceneNamed("slab"));
   (void)hand.walk(mm(0, 0, 5));
@@ -318,9 +321,9 @@ TEST(Insertion, WalkingRoundTheFarSideLetsGo) {
   EXPECT_EQ(hand.region(), "outside");
 }
 
-// What a file of states holds may be anything. Each of its words is set beyond what any count or
-// region is: that of the layers, those of the cuts and of the next one, and the region's, which
-// alone tell whether it is of the scene.
+// A file of states may contain anything. Here each of these words is set to a value beyond any
+// valid count or region: the number of layers, that of cuts, the index of the next cut, and the
+// region. These alone decide whether the state fits the scene.
 TEST(Insertion, AStateIsRefusedForEachCountThatIsBeyondItsRoom) {
   static_assert(std::is_trivially_copyable_v<Insertion>);
   constexpr std::uint64_t kMuch = 0x0101010101010101;

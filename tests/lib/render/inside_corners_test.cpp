@@ -1,4 +1,5 @@
-// Edges, corners and rims felt from within: several faces hold at once, and the force is exact.
+// Edges, corners and rims felt from inside: several faces hold the proxy at once, and the force is
+// exact.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ TEST(InsideCorners, BoxFacesEdgesAndCorners) {
   Vec3 p(0.0);
   Vec3 heading = random.direction();
   for (int i = 0; i < 20000; ++i) {
-    // 1 mm a tick, in and around the box up to 10 mm beyond.
+    // 1 mm a tick, inside and around the box, up to 10 mm beyond it.
     heading = glm::normalize(heading + 0.3 * random.direction());
     const Vec3 next = p + 1e-3 * heading;
     p = glm::clamp(next, -half - Vec3(0.01), half + Vec3(0.01));
@@ -37,7 +38,7 @@ TEST(InsideCorners, BoxFacesEdgesAndCorners) {
     for (int axis = 0; axis < 3; ++axis) walls += inside[axis] != p[axis] ? 1 : 0;
     ++held[walls];
     ASSERT_TRUE(isNear(out.proxy, inside, 1e-9)) << "tick " << i << ", " << walls << " walls";
-    // The proxy stands a little off the walls. The force is measured from these, to rounding.
+    // The proxy stands slightly off the walls. The force is measured from the walls, to rounding.
     ASSERT_TRUE(isNear(out.force, kK * (inside - p), 1e-11)) << "tick " << i << ", " << walls;
     ASSERT_EQ(out.contact, walls > 0) << "tick " << i;
   }
@@ -71,8 +72,8 @@ TEST(InsideCorners, CylinderRims) {
 }
 
 TEST(InsideCorners, ConcaveCreaseOfTwoBallsFromOutside) {
-  // The ring where two balls meet holds a hand that presses between them: x = 0, and the radius of
-  // the ring.
+  // The ring where two balls meet holds a hand that presses between them: at x = 0, with the radius
+  // of the ring.
   Drive drive(
       sceneOf(room("complement: {union: [{sphere: {center: [-15, 0, 0], radius: 25}}, "
                    "{sphere: {center: [15, 0, 0], radius: 25}}]}")));
@@ -90,7 +91,8 @@ TEST(InsideCorners, ConcaveCreaseOfTwoBallsFromOutside) {
 TEST(InsideCorners, VGroovesOfEveryAngle) {
   for (const double degrees : {10.0, 45.0, 90.0, 170.0}) {
     const double a = degrees * 0.5 * 0.017453292519943295;
-    // The groove opens along +z: its walls lean by a from it, the air is between them.
+    // The groove opens towards +z: its walls are tilted from that direction by a, and the air is
+    // between them.
     const auto plane = [&](double side) {
       return "{half_space: {point: [0, 0, 0], normal: [" + std::to_string(side * std::cos(a)) +
              ", 0, " + std::to_string(-std::sin(a)) + "]}}";
@@ -99,9 +101,10 @@ TEST(InsideCorners, VGroovesOfEveryAngle) {
     (void)drive.to(mm(0, 0, 20));
     const TickResult& down = drive.walk(mm(0, 0, -3));
     EXPECT_TRUE(isNear(down.force, Vec3(0, 0, 3), 1e-5)) << degrees;
-    // Along the groove, and leaning a little to one side.
+    // Along the groove, with the hand moving slightly to the sides.
     for (double y = 0.0; y < 20.0; y += 0.5) {
-      // The bottom holds while P leans out of it by less than the walls' normals do: 3 / tan a.
+      // The bottom holds the proxy while P is off the middle by less than the walls' normals
+      // permit: 3 / tan a.
       const double lean = 0.9 * 3.0 / std::tan(a) * std::sin(y);
       const TickResult& out = drive.to(mm(lean, y, -3));
       ASSERT_TRUE(isNear(out.proxy, mm(0, y, 0), 1e-8)) << degrees << " " << y;
@@ -110,8 +113,8 @@ TEST(InsideCorners, VGroovesOfEveryAngle) {
   }
 }
 
-/// Two solid quadrants that meet at their edge, and two of air. Held by both walls of one of them,
-/// the proxy is at a place of the other one as well, where the hand is.
+/// Two solid quadrants that meet at their edges, and two of air. If both walls of one air quadrant
+/// hold the proxy, the proxy is at a point of the other air quadrant as well, where the hand is.
 TEST(InsideCorners, QuadrantsOfAirThatMeetAtTheirEdgeAreOneRegion) {
   Drive drive(sceneOf(R"(
 palpate: 1
@@ -128,7 +131,7 @@ layers:
   for (double x = 2.0; x > -2.0; x -= 0.03) {
     const TickResult& out = drive.to(mm(x, 0, 0.5));
     const Vec3 held = mm(x, 0, x > 0.0 ? 0.0 : 0.5);
-    if (std::fabs(x) < 0.05) continue;  // in the tick that reaches the edge, or the one behind it
+    if (std::fabs(x) < 0.05) continue;  // in the tick that reaches the edge, or the next one
     ASSERT_TRUE(isNear(out.proxy, held, 1e-9)) << x;
     ASSERT_TRUE(isNear(out.force, kK * (held - mm(x, 0, 0.5)), 1e-6)) << x;
   }

@@ -1,4 +1,4 @@
-// Touching labels of one image, felt: the crease where the wall between them meets the skin of
+// Touching labels of one image, felt: the crease where the wall between them meets the surface of
 // both.
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(LabelGroupFelt, FromOneLabelIntoTheOtherByTheirOneWall) {
   (void)closed.to(mm(-10, 3, 0));
   EXPECT_TRUE(isNear(closed.walk(mm(3, 3, 0)).force, Vec3(-3, 0, 0), 1e-7));
   EXPECT_EQ(closed.region(), "a");
-  // Within a, up along the shared wall to the rim: held by the wall and the skin together.
+  // Inside a, up along the shared wall to the rim: held by the wall and the surface together.
   const TickResult& corner = closed.walk(mm(3, 23, 0));
   EXPECT_TRUE(isNear(corner.proxy, mm(0, 20, 0), 1e-7));
   EXPECT_TRUE(isNear(corner.force, 1000.0 * (corner.proxy - closed.hip()), 1e-4));
@@ -79,8 +79,8 @@ TEST(LabelGroupFelt, RandomTicks) {
     out.opens_at = force;
     description.ports.push_back(out);
   };
-  // Hard enough that the hand, which wanders through all of the scene, is held for a tenth of the
-  // time.
+  // A high enough force that the hand, which wanders through the whole scene, is held for a tenth
+  // of the time.
   port("skin", "outside", "?", 12.0);
   port("ab", "a", "b", 0.0);
   port("bc", "b", "c", 2.0);

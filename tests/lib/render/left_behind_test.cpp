@@ -1,5 +1,5 @@
-// A hand in the plane of an adjacent face, or a rounding beside it: the proxy follows it along the
-// edge.
+// A hand in the plane of an adjacent face, or off it by rounding: the proxy follows the hand along
+// the edge.
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ namespace palpate::test {
 namespace {
 
 struct Behind {
-  double most = 0.0;  ///< [m] of the proxy, off where it belongs
-  int ticks = 0;      ///< in which that was more than allowed
+  double most = 0.0;  ///< [m] distance of the proxy from its correct place
+  int ticks = 0;      ///< number in which that was more than allowed
 };
 
-/// Inside a box of 60 x 40 x 20 mm, 3 mm beyond x = 30 mm and `aside` beyond z = 10 mm, along y by
-/// 20 mm.
+/// Inside a box of 60 x 40 x 20 mm, with the hand 3 mm beyond x = 30 mm and `aside` beyond z = 10
+/// mm, moving along y by 20 mm.
 Behind alongEdge(double aside, const Material& wall, double allowed, double rest_from_y) {
   Drive drive(sceneOfSolid(box(Vec3(0.0), mm(60, 40, 20)), true, wall));
   (void)drive.to(Vec3(0.0));
@@ -49,13 +49,13 @@ TEST_P(LeftBehind, NotWithFrictionByMoreThanItsCone) {
   Material wall;
   wall.stiffness = kDefaultK;
   wall.friction = {0.3, 0.2};
-  // Sticks up to 0.3 of the depth of 3 mm.
+  // The proxy sticks up to a lag of 0.3 of the depth of 3 mm.
   const Behind behind = alongEdge(GetParam(), wall, 0.3 * 0.003 * (1.0 + 1e-6) + 1e-9, -1.0);
   EXPECT_EQ(behind.ticks, 0) << "of 400, " << behind.most << " m behind";
 }
 
 TEST_P(LeftBehind, NotOutsideABoxPressedBesideItsEdge) {
-  // Outside: on the face x = 30 mm, along the edge, with the hand in the plane of the top.
+  // Outside: on the face x = 30 mm, along the edge, with the hand in the plane of the top face.
   Drive drive(sceneOfSolid(box(Vec3(0.0), mm(60, 40, 20))));
   const double z = 0.010 - std::fabs(GetParam());
   (void)drive.to({0.033, -0.010, z});
@@ -64,7 +64,7 @@ TEST_P(LeftBehind, NotOutsideABoxPressedBesideItsEdge) {
   for (int i = 1; i <= 400; ++i) {
     const double y = -0.010 + 0.05e-3 * i;
     const TickResult& tick = drive.to({0.028, y, z});
-    // Either it is held by the face, or it slipped over the edge onto the hand: never on the way.
+    // Either the face holds it, or it slipped over the edge to the hand: never in between.
     const bool is_held = glm::length(tick.proxy - Vec3(0.030, y, z)) <= 3e-9;
     const bool is_free = glm::length(tick.proxy - drive.hip()) <= 3e-9;
     behind += is_held || is_free ? 0 : 1;
@@ -76,7 +76,7 @@ std::string asideName(const ::testing::TestParamInfo<double>& info) {
   return "case" + std::to_string(info.index);
 }
 
-// In the plane; beyond it and before it by what an encoder's rounding is.
+// In the plane, and beyond or before it by an encoder's rounding.
 INSTANTIATE_TEST_SUITE_P(Aside, LeftBehind,
                          ::testing::Values(0.0, 5e-11, -5e-11, 1e-13, -1e-13, 1e-16, -1e-16, 1e-9),
                          asideName);
@@ -98,8 +98,8 @@ TEST(LeftBehindInACorner, NotWhereTwoPlanesAreMet) {
 }
 
 TEST(LeftBehindAtARim, NotJustBeforeASharpEdgeWhoseFieldIsNotADistance) {
-  // A cone taken in by 1 mm, as one leaf: beyond its rim of 60 degrees the field is that of the
-  // side alone.
+  // A cone shrunk by 1 mm, as one leaf: beyond its rim, whose angle is 60 degrees, the field is
+  // that of the side alone.
   const double slope = std::sqrt(3.0);
   const FieldPtr solid = offset(cone(Vec3(0.0), Vec3(0.0, 0.0, 1.0), 0.010, 0.010 * slope), -0.001);
   const double rim = 0.010 - 3.0 * 0.001 / slope;
@@ -112,10 +112,10 @@ TEST(LeftBehindAtARim, NotJustBeforeASharpEdgeWhoseFieldIsNotADistance) {
       Drive drive(sceneOfLeaf(solid, solid->featureSize()));
       (void)drive.to(at(0.006, 0.0, 0.0));
       (void)drive.walk(at(0.006, 0.0, 0.0012));
-      // Held by the base, which lies at 1 mm, up to where the hand is this far from the rim, ...
+      // The base, which is at 1 mm, holds it until the hand is this far from the rim, ...
       (void)drive.walk(at(rim - before, 0.0, 0.0012), 1e-4);
       ASSERT_TRUE(isNear(drive.last().proxy, at(rim - before, 0.0, 0.001), 3e-9)) << before;
-      // ... and over the rim onto the hand.
+      // ... and then it goes over the rim to the hand.
       const TickResult& tick = drive.to(at(rim + 1e-4, turn, 0.0012));
       EXPECT_TRUE(tick.settled) << before << " m before the rim, turned by " << turn;
       EXPECT_TRUE(isNear(tick.proxy, drive.hip(), 3e-9)) << before << " " << turn;

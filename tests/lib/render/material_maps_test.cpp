@@ -1,5 +1,4 @@
-// Parameters that differ from place to place: what the hand feels is what the map says at the
-// proxy.
+// Parameters that differ from place to place: the hand feels the map's value at the proxy.
 
 #include <cmath>
 #include <numbers>
@@ -16,7 +15,7 @@ namespace {
 using testing::flatMap;
 using testing::linearMap;
 
-/// The half-space z < 0 as the layer `body`, of wall and content `material`.
+/// The half-space z < 0 as the layer `body`, with `material` for its wall and content.
 SceneDescription body(const Material& material) {
   SceneDescription description;
   description.materials = {material};
@@ -119,7 +118,7 @@ TEST(MaterialMaps, FrictionIsThatOfThePlace) {
   for (const double x : {-0.03, 0.0, 0.03}) {
     (void)hand.to({x, 0, 0.01});
     (void)hand.walk({x, 0, -2e-3});
-    // The proxy stays where it is until the cone ends: the largest lag is static * depth.
+    // The proxy stays where it is up to the cone: the largest lag is static * depth.
     double lag = 0.0;
     for (int i = 1; i < 2000; ++i) {
       const TickResult out = hand.to({x, 1e-6 * i, -2e-3});
@@ -133,7 +132,7 @@ TEST(MaterialMaps, FrictionIsThatOfThePlace) {
 
 TEST(MaterialMaps, KineticFrictionNeverExceedsStatic) {
   Material wall = named("skin");
-  // At x = -30 mm the kinetic map has 0.25 and the static one 0.15.
+  // At x = -30 mm the kinetic map has 0.25, more than the static one, which has 0.15.
   wall.friction = {linearMap(0.3, {5, 0, 0}, {0.1, 0.5}), flatMap(0.25)};
   wall.friction.static_ratio = linearMap(0.3, {5, 0, 0}, {0.1, 0.5});
   wall.friction.kinetic_ratio = linearMap(0.25, {0, 0, 0}, {0.1, 0.25});
@@ -154,7 +153,7 @@ TEST(MaterialMaps, TextureIsAsHighAsThePlaceHasIt) {
     const double k = 2.0 * std::numbers::pi / 2e-3;
     const double wave = (std::sin(k * x) + std::sin(k * 0.5e-3)) / 3.0;
     const double amplitude = std::clamp(0.05e-3 + 1e-3 * x, 0.0, 0.1e-3);
-    // The proxy is on the plane to 1e-9 m, and the waves along z begin there.
+    // The proxy is on the plane to 1e-9 m, and the waves along z are zero there.
     EXPECT_NEAR(force, 1000.0 * (1e-3 + amplitude * wave), 2e-8) << x;
     (void)hand.walk({x, 0, 0.01});
   }
@@ -204,7 +203,7 @@ TEST(MaterialMaps, AHoleReopensAtTheForceOfThePlaceWhereItWasMade) {
   port.reopens_at = linearMap(1.0, {50, 0, 0}, {0.0, 4.0});
   description.ports = {port};
   const ScenePtr scene = compile(description);
-  // The force [N] at which the wall gives way at `x`, from outside.
+  // The force [N] at which the wall ruptures at `x`, from outside.
   const auto gives_way = [](Drive& hand, double x) {
     (void)hand.walk({x, 0, 1e-3});
     double most = 0.0;
@@ -219,8 +218,8 @@ TEST(MaterialMaps, AHoleReopensAtTheForceOfThePlaceWhereItWasMade) {
     Drive hand(scene);
     (void)hand.to({x, 0, 0.001});
     EXPECT_NEAR(gives_way(hand, x), 3.0, 2e-3) << x;
-    // Out again, and in a second time beside the middle of the hole: it keeps the force of where it
-    // was made.
+    // Out again, and in a second time beside the middle of the hole: the hole keeps the force of
+    // the place where it was made.
     (void)hand.walk({x, 0, 8e-3});
     ASSERT_EQ(hand.region(), "outside");
     EXPECT_NEAR(gives_way(hand, x + 1e-3), std::clamp(1.0 + 50.0 * x, 0.0, 4.0), 2e-3) << x;
@@ -233,7 +232,7 @@ TEST(MaterialMaps, AHoleReopensAtTheForceOfThePlaceWhereItWasMade) {
 TEST(MaterialMaps, TheMediumFlowsAsTheMapOfThePlaceSays) {
   Material stream = named("stream");
   stream.viscosity = 3.0;
-  // Two directions at once, below 0 too; the third stands still.
+  // In two directions at once, with negative values too; the third component is zero.
   stream.flow = {linearMap(0.1, {20, 0, 0}, {-1.0, 1.0}), linearMap(-0.05, {0, 0, 10}, {-2.0, 2.0}),
                  0.0};
   for (const RendererKind kind : {RendererKind::kConstraint, RendererKind::kPaper}) {
@@ -251,7 +250,7 @@ TEST(MaterialMaps, TheMediumFlowsAsTheMapOfThePlaceSays) {
       const Vec3 p(0.03 * std::sin(0.1 * i), 0.01 * std::cos(0.2 * i),
                    -0.02 - 0.01 * std::sin(0.3 * i));
       (void)hand.walk(p);
-      // At rest: what is left is the medium's own push.
+      // At rest, only the push of the medium is left.
       const TickResult tick = hand.to(p);
       const Vec3 flow(0.1 + 20.0 * p.x, -0.05 + 10.0 * p.z, 0.0);
       EXPECT_TRUE(isNear(tick.force, 3.0 * flow, 1e-12)) << i;
@@ -274,7 +273,7 @@ TEST(MaterialMaps, AFlowOfOneValueIsFeltAsTheConstantBitForBit) {
 }
 
 TEST(MaterialMaps, OnePressedFacetOpensWhereItsForceFallsWhileSliding) {
-  // Pressed with 2 N and drawn along the wall: it gives way where the map has come down to that.
+  // Pressed with 2 N and drawn along the wall: it ruptures where the map has fallen to that.
   SceneDescription description = body(named("skin"));
   PortDescription port = cut();
   port.opens_at = linearMap(3.0, {-50, 0, 0}, {0.5, 6.0});

@@ -10,7 +10,7 @@
 namespace palpate::test {
 namespace {
 
-/// A floor below z = 0 and a wall left of x = 0; the hand is in the corner that they leave.
+/// A floor below z = 0 and a wall left of x = 0; the hand is in the corner between them.
 std::string cornerText(const std::string& floor, const std::string& wall) {
   return R"(
 palpate: 1
@@ -59,7 +59,7 @@ TEST(MixedCorner, AHertzianWallDoesToo) {
 }
 
 TEST(MixedCorner, EachOfThreeIsItselfWhereTheProxyCameAlongOneInATick) {
-  // From each of the walls, in one tick to the corner of all three.
+  // From each of the walls to the corner of all three, in one tick.
   const std::string text = cornerText("stiffness: 3000 N/m", "stiffness: 500 N/m") +
                            "  - {name: back, inside: {half_space: {point: [0, 0, 0], normal: "
                            "[0, 1, 0]}}, wall: wall}\n";
@@ -74,7 +74,8 @@ TEST(MixedCorner, EachOfThreeIsItselfWhereTheProxyCameAlongOneInATick) {
   }
 }
 
-/// Within a cone, whose wall meets that of a cylinder in a shallow valley; `third` is a layer more.
+/// Inside a cone, whose wall meets that of a cylinder in a shallow valley; `third` is a further
+/// layer.
 ScenePtr valley(const char* third) {
   return sceneOf(std::string(R"(
 palpate: 1
@@ -92,9 +93,8 @@ layers:
 )");
 }
 
-// A lid 15 um behind the proxy leaves so little room that the scene's own look at itself finds no
-// place where cone and cylinder meet. They are felt together all the same, as if the lid were far
-// away.
+// A lid 15 um behind the proxy leaves so little room that the scene's sampling finds no place where
+// cone and cylinder meet. They must still be felt together, as if the lid were far away.
 TEST(MixedCorner, WallsThatMeetInALittleGapAreFeltTogether) {
   const auto lid = makeRenderer(
       valley("{half_space: {point: [-2.989895, -4.624097, -4.937474], normal: [0.782617, "
@@ -111,7 +111,8 @@ TEST(MixedCorner, WallsThatMeetInALittleGapAreFeltTogether) {
     without = far->update({hand});
     EXPECT_LT(glm::length(with.force - without.force), 1e-6) << "step " << i;
   }
-  // The cone's law alone would be 2.04 N along its normal; by springs in series it is this.
+  // The cone's law alone would give 2.04 N along its normal; with springs in series the force is
+  // this.
   EXPECT_LT(glm::length(without.force - Vec3(-1.698, 1.367, -0.155)), 2e-3);
 }
 

@@ -1,6 +1,6 @@
-// Where walls of different stiffness are pressed about as deep as they are large, by brute force:
-// the least of what their springs and the stop can store, over all places of the point between
-// them.
+// Walls of different stiffness, pressed about as deep as they are large, checked by brute force:
+// the minimum of the energy that their springs and the stop can store, over all places of the point
+// between them.
 
 #include <gtest/gtest.h>
 
@@ -38,9 +38,9 @@ layers:
 )");
 }
 
-/// A bar along y as it is felt with the proxy at `proxy`, the hand `deep` [m] from there: by a
-/// share it lies in its plane there. So its section is a conic about its center, R / ((1 - share) +
-/// share cos(angle to the normal)) away.
+/// A bar along y as it is felt with the proxy at `proxy`, the hand `deep` [m] away: it is blended
+/// with its tangent plane there by a share. So its section is a conic about its center, with the
+/// radius R / ((1 - share) + share cos(angle to the normal)).
 class FeltBar {
  public:
   FeltBar(const Bar& bar, const Vec3& proxy, double deep)
@@ -49,14 +49,14 @@ class FeltBar {
     share_ = q * q * (3.0 - 2.0 * q);
   }
 
-  /// [J] What its spring, in series with the stop, stores at `p` [m].
+  /// [J] The energy at `p` [m] of its spring in series with the stop.
   [[nodiscard]] double stored(const Vec3& p) const {
     const double way = depth(p);
     return 0.5 * bar_.stiffness * kStop / (kStop - bar_.stiffness) * way * way;
   }
 
  private:
-  /// [m] From `p` to the nearest place outside: looked for all round, and then closely.
+  /// [m] Distance from `p` to the nearest place outside: searched in all directions, then refined.
   [[nodiscard]] double depth(const Vec3& p) const {
     const Vec3 off(p.x - bar_.center.x, 0.0, p.z - bar_.center.z);
     const double y = glm::dot(off, up_);
@@ -98,8 +98,7 @@ struct Rest {
   double energy;  // [J]
 };
 
-/// All places about `proxy` where what is stored is least around, found by going downhill from 25
-/// of them.
+/// All local minima of the stored energy around `proxy`, found by descents from 25 places.
 std::vector<Rest> restsOf(const Vec3& proxy, const Vec3& hand) {
   const double deep = glm::length(hand - proxy);
   const std::array<FeltBar, 2> felt{FeltBar(kBars[0], proxy, deep), FeltBar(kBars[1], proxy, deep)};
@@ -123,7 +122,7 @@ std::vector<Rest> restsOf(const Vec3& proxy, const Vec3& hand) {
       }
       step *= is_lower ? 1.5 : 0.5;
     }
-    // Along a valley a walk by the axes ends a little short.
+    // In a valley a descent along the axes ends slightly before the minimum.
     const bool is_known = std::any_of(out.begin(), out.end(), [&](const Rest& each) {
       return glm::length(each.place - rest.place) < 1e-2 * deep;
     });
@@ -159,13 +158,13 @@ TEST(MixedOracle, WhatIsStoredIsTheLeastThatCanBeHoweverDeepThePressIs) {
   EXPECT_GT(deep, 3);
 }
 
-/// Along the soft bar the planes turn with the proxy, and at the crease it stops: deep in a bar
-/// neither the force nor what is stored steps there.
+/// Along the soft bar the planes turn with the proxy, and at the crease the proxy stops: deep in a
+/// bar neither the force nor the stored energy may jump there.
 TEST(MixedOracle, WhereACreaseIsReachedDeepNothingStepsAndNothingIsGiven) {
   Drive drive(bars());
   (void)drive.walk(mm(-1.4, 0, 4), 1e-3);
   (void)drive.walk(mm(-1.4, 0, 1), 20e-6);
-  // Where the two circles cut each other.
+  // The place where the two circles intersect.
   const double x = 0.138e-3;
   const Vec3 edge(x, 0.0, std::sqrt(4e-6 - (x + 1.4e-3) * (x + 1.4e-3)));
   constexpr double kStep = 0.25e-6;

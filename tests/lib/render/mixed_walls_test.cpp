@@ -1,4 +1,4 @@
-// Walls of different stiffness or of curved springs that meet: what is felt has a potential.
+// Walls of different stiffness or with nonlinear springs that meet: the force has a potential.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace palpate::test {
 namespace {
 
-/// A groove that opens upwards, `degrees` wide, its left wall of one material and its right one of
+/// A groove that opens upwards, `degrees` wide, its left wall of one material and its right wall of
 /// another.
 std::string grooveText(double degrees, const std::string& left, const std::string& right) {
   const double half = 0.5 * degrees * std::numbers::pi / 180.0;
@@ -85,7 +85,7 @@ layers:
   - {name: b, inside: second, wall: right}
 )";
   if (!hollow) return text;
-  // From within the part that two balls share: beyond each wall there is another layer.
+  // From inside the part that two balls share: beyond each wall there is another layer.
   return text + R"(  - {name: lens, inside: {intersection: [first, second]}, wall: left}
 walls:
   - {between: [lens, a], wall: left}
@@ -103,7 +103,7 @@ TEST(MixedWalls, CurvedWallsOfTwoStiffnessesGiveNoEnergy) {
                      mm(0, 0, 0), circle(mm(0, 0, 8.3), 1.2e-3));
 }
 
-/// One of the two walls is before the outside, the other one before a layer.
+/// One of the two walls borders on the outside, the other one on a layer.
 TEST(MixedWalls, TheOutsideIsBeyondAWallLikeAnyLayer) {
   expectNothingGiven("hollow ball and one that cuts it",
                      sceneOf(ballsText("stiffness: 700 N/m", "stiffness: 2500 N/m", false) +
@@ -111,12 +111,12 @@ TEST(MixedWalls, TheOutsideIsBeyondAWallLikeAnyLayer) {
                      mm(-6, 0, 0), circle(mm(-0.3, 0, 8.0), 1.2e-3));
 }
 
-/// What a wall pushes with differs from place to place. While the other wall alone holds the proxy,
-/// this one is felt at its foot there, which goes along it as the proxy goes.
+/// The law of one wall differs from place to place. While only the other wall holds the proxy, this
+/// one is felt at the foot of the proxy on it, which moves as the proxy moves.
 TEST(MixedWalls, AValleyOfWallsThatVaryGivesNoEnergy) {
   const EnergyLoop loop = circle(mm(0.4, 0, 7.5), 1.2e-3);
   const Vec3 start = mm(0, 0, 20);
-  // One material, but the shading of each ball is its own.
+  // One material, but each ball is shaded by its own shape.
   const std::string shaded = "stiffness: 900 N/m, shading: 1.5 mm";
   expectNothingGiven("shaded", sceneOf(ballsText(shaded, shaded, false)), start, loop);
   const std::string bumpy = "stiffness: 900 N/m, texture: {amplitude: 0.03 mm, wavelength: 4}";
@@ -130,10 +130,10 @@ TEST(MixedWalls, AValleyOfWallsThatVaryGivesNoEnergy) {
 
 struct Lap {
   double work = 0.0;     // [J] done on the hand
-  double sources = 0.0;  // [J] counted meanwhile
+  double sources = 0.0;  // [J] counted during the lap
 };
 
-/// The second of two laps along the straight ways between `corners` [m], with `steps` on each.
+/// The second of two laps along the straight lines between `corners` [m], with `steps` on each.
 Lap lapAlong(const ScenePtr& scene, const std::vector<Vec3>& corners, int steps) {
   Drive drive(scene);
   Vec3 force = drive.to(corners[0]).force;
@@ -156,8 +156,8 @@ Lap lapAlong(const ScenePtr& scene, const std::vector<Vec3>& corners, int steps)
   return lap;
 }
 
-/// Pressed 1 mm into a soft pad, over its edge, and up: there the hand is 0.8 mm deep in hard
-/// ground at once.
+/// Pressed 1 mm into a soft pad, over its edge, and up: there the hand is suddenly 0.8 mm deep in
+/// hard ground.
 TEST(MixedWalls, WhatALeapFromSoftToHardStoresIsCounted) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -171,12 +171,13 @@ layers:
       lapAlong(scene, {mm(-2, 0, 1), mm(-2, 0, -0.8), mm(1, 0, -0.8), mm(1, 0, 1)}, 4000);
   const double in_ground = 0.5 * 5000.0 * 0.8e-3 * 0.8e-3;
   const double in_pad = 0.5 * 100.0 * 1e-3 * 1e-3;
-  // A tick's way of 0.75 um along, against 4 N: what the trapezium knows of the leap's tick.
+  // The way in a tick, 0.75 um, times 4 N: the error of the trapezoidal rule in the tick of the
+  // jump.
   EXPECT_NEAR(lap.sources, in_ground - in_pad, 4e-6);
   EXPECT_LE(lap.work - lap.sources, 1e-8);
 }
 
-/// The same where the pad ends at a face without a wall: the proxy leaps into another region.
+/// The same where the pad ends at a face without a wall: the proxy jumps into another region.
 TEST(MixedWalls, WhatALeapIntoAnotherRegionStoresIsCounted) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -197,8 +198,8 @@ walls:
   EXPECT_LE(lap.work - lap.sources, 1e-8);
 }
 
-/// Friction holds the proxy a few micrometers beside a crease, until the hand is far within the
-/// other wall. A loop that a search found: 69 uJ a lap, not counted.
+/// Friction holds the proxy a few micrometers beside a crease, until the hand is far inside the
+/// other wall. A search found this loop, which gave 69 uJ a lap that was not counted.
 TEST(MixedWalls, WhatFrictionLetsGoOntoAnotherWallIsCounted) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -217,7 +218,7 @@ layers:
   EXPECT_LE(workOfLap(scene, mm(0, 0, 10), loop, 16'000), 1e-9);
 }
 
-/// Side and floor of a hollow cylinder are one leaf, which folds at its rim; the third wall is
+/// Side and floor of a hollow cylinder are one leaf, which has a fold at its rim; the third wall is
 /// stiffer.
 TEST(MixedWalls, TheRimOfOneSolidBesideAnotherWallGivesNoEnergy) {
   const ScenePtr scene = sceneOf(R"(
@@ -229,8 +230,8 @@ layers:
   - {name: block, inside: {half_space: {point: [-3, 4, 0], normal: [0.8, -0.6, 0]}}, wall: hard}
 start: {region: can}
 )");
-  // Where the block's face, n x = -4.8 mm, comes to the rim: 10 mm along the axis and 10 mm away
-  // from it.
+  // The point where the block's face, n x = -4.8 mm, meets the rim: 10 mm along the axis and 10 mm
+  // away from it.
   const Vec3 axis(0.48, 0.36, 0.8);
   const Vec3 face(0.8, -0.6, 0.0);
   const double lean = glm::dot(face, axis);
@@ -244,8 +245,8 @@ start: {region: can}
   expectNothingGiven("rim and block", scene, Vec3(0.0), loop);
 }
 
-/// A ridge runs through a bone's plane where skin covers both: no wall of the bone bounds the
-/// outside.
+/// A ridge crosses a bone's plane where skin covers both: no wall of the bone bounds the outside
+/// there.
 TEST(MixedWalls, AWallThatAnotherLayerCoversWhereItMeetsAThirdIsNotFelt) {
   const auto scene_of = [](const std::string& bone) {
     return sceneOf(R"(
@@ -274,7 +275,7 @@ TEST(MixedWalls, OneWallFarFromTheOthersFollowsItsOwnLaw) {
   const std::string hertz = "stiffness: 800 N/m, curve: {exponent: 1.5, reference: 1 mm}";
   Drive hand(sceneOf(grooveText(90, hertz, "stiffness: 3000 N/m")));
   (void)hand.to(mm(0, 0, 30));
-  // 20 mm up each wall, along its normal.
+  // 20 mm up along each wall, and then along its normal.
   const double s = std::sqrt(0.5);
   for (double d = 0.1e-3; d < 3e-3; d += 0.1e-3) {
     (void)hand.walk(Vec3(-0.02 * s, 0, 0.02 * s) - d * Vec3(s, 0, s), 1e-3);
@@ -288,8 +289,8 @@ TEST(MixedWalls, OneWallFarFromTheOthersFollowsItsOwnLaw) {
 }
 
 TEST(MixedWalls, AreNowhereStifferThanTheStop) {
-  // 1.05 times the stiffer wall: and the force has no step, however the hand goes through the
-  // groove.
+  // At most 1.05 times the stiffer wall; so the force has no jump, however the hand goes through
+  // the groove.
   Drive hand(sceneOf(grooveText(60, "stiffness: 1000 N/m", "stiffness: 3000 N/m")));
   (void)hand.to(mm(0, 0, 10));
   double most = 0.0;
@@ -325,12 +326,13 @@ TEST(MixedWalls, FrictionOnlyTakesWhereStiffnessesMeet) {
       sceneOf(grooveText(60, "stiffness: 1000 N/m, friction: {static: 0.4, kinetic: 0.3}",
                          "stiffness: 3000 N/m, friction: {static: 0.2}"));
   expectFrictionTakes("in a groove", scene, random, mm(0, 0, -0.3));
-  // Within the cone it sticks, and that is a spring: it gives back what it was given.
+  // Within the friction cone the proxy sticks, which acts like a spring: it gives back what it was
+  // given.
   EnergyLoop small = randomLoop(random, mm(0, 0, -1.0), 0.005e-3, 0.015e-3);
   expectNothingGiven("stuck in the groove", scene, mm(0, 0, 10), small);
 }
 
-/// Walls of all sorts: in series, bumpy, shaded.
+/// Walls of many kinds: in series, bumpy, shaded.
 ScenePtr allSorts() {
   return sceneOf(grooveText(
       60, "stiffness: 1000 N/m, shading: 0.5 mm, curve: {exponent: 1.5, reference: 1 mm}",
@@ -348,7 +350,8 @@ TEST(MixedWalls, NothingIsAllocatedLockedOrThrown) {
 }
 
 TEST(MixedWalls, ATickDependsOnTheStateAlone) {
-  // One renderer goes on, another that has felt other places is given its state before every tick.
+  // One renderer goes on; another, which has felt other places, is given its state before every
+  // tick.
   const ScenePtr scene = allSorts();
   const auto one = makeRenderer(scene);
   const auto other = makeRenderer(scene);
@@ -361,7 +364,7 @@ TEST(MixedWalls, ATickDependsOnTheStateAlone) {
     ASSERT_TRUE(other->setState(one->state()));
     const TickResult a = one->update({p, Vec3(0.0)});
     const TickResult b = other->update({p, Vec3(0.0)});
-    // Within what a renderer that goes on may differ by from one that was set: rounding of where
+    // A renderer that goes on may differ from one whose state was set by this: rounding of where
     // the proxy rests.
     ASSERT_TRUE(isNear(a.force, b.force, 1e-6)) << i;
   }

@@ -1,7 +1,7 @@
-// Random stacks of layers under a needle whose hand is anywhere, also far ahead, against a machine
-// in one dimension that is written from the page of the scene file alone: which wall gives way to
-// what force at what depth, in one tick or in many, what stops the tip, and what each tissue does
-// to tip and shaft.
+// Random stacks of layers under a needle whose hand is anywhere, also far ahead, against a
+// one-dimensional machine that is written only from the scene file's documentation: which wall
+// ruptures at which force and depth, in one tick or in many, what stops the tip, and how each
+// tissue acts on tip and shaft.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 enum class Kind { kPierced, kOpen, kAbsent, kClosed };
 
 struct Tissue {
-  double top = 0.0;  // [m] of depth
+  double top = 0.0;  // [m] depth
   Kind kind = Kind::kPierced;
   double stiffness = 0.0, stiffening = 0.0;  // [N/m], [N/m^2]
   double opens_at = 0.0, back = 0.0;         // [N]
@@ -33,22 +33,23 @@ struct Tissue {
   double damping = 0.0;                          // [N s/m^2]
 };
 
-/// What one tick of the machine came to.
+/// The machine's result for one tick.
 struct Expected {
   struct Entry {
     int to = 0;
     double depth = 0.0;  // [m] of the wall
-    double force = 0.0;  // [N] that it gave way to
+    double force = 0.0;  // [N] at which it ruptured
   };
   std::vector<Entry> entries;
-  double tip = 0.0;    // [m] of depth
+  double tip = 0.0;    // [m] depth
   int region = 0;      // 0: outside
   double force = 0.0;  // [N] against going in
   bool contact = false;
-  double margin = kInfinity;  // [N] by how much a wall held, or gave way, at least
+  double margin = kInfinity;  // [N] the smallest difference between a force and the force at which
+                              // a wall ruptures
 };
 
-/// The needle on its way along one axis.
+/// A needle that moves along one axis.
 class Machine {
  public:
   explicit Machine(std::vector<Tissue> tissues) : tissues_(std::move(tissues)) {
@@ -101,7 +102,7 @@ class Machine {
         }
         torn_[static_cast<std::size_t>(wall)] = true;
       }
-      // Gone through, all of the tissue is cut; backwards it was cut before.
+      // A tissue that was passed is cut completely; on the way back it was cut before.
       if (down && wall > 0) end_[static_cast<std::size_t>(wall) - 1] = t.top;
       region_ += down ? 1 : -1;
       out.entries.push_back({region_, t.top, push});
@@ -116,16 +117,16 @@ class Machine {
  private:
   [[nodiscard]] const Tissue& at(int i) const { return tissues_[static_cast<std::size_t>(i)]; }
 
-  /// Karnopp with a spring for what sticks, per length of the shaft in each tissue.
+  /// Karnopp's friction with a spring while it sticks, per length of the shaft in each tissue.
   double shaft(double before, double speed) {
     double sum = 0.0;
-    // From where the shaft first went in to the tip.
+    // Measured from where the shaft first went in to the tip.
     const double first = tissues_.front().top;
     const double advance = std::max(tip_, first) - std::max(before, first);
     for (std::size_t i = 0; i < tissues_.size(); ++i) {
       const Tissue& t = tissues_[i];
       const double bottom = i + 1 < tissues_.size() ? tissues_[i + 1].top : kInfinity;
-      // On the wall that it came in by the tip is still within, by next to nothing.
+      // On the wall by which it came in, the tip is still inside by a tiny length.
       const double length = static_cast<int>(i) < region_
                                 ? std::max(std::clamp(tip_, t.top, bottom) - t.top, 1e-15)
                                 : 0.0;
@@ -182,7 +183,7 @@ std::vector<Tissue> randomTissues(Random& random) {
   for (int i = 0; i < count; ++i) {
     Tissue t;
     t.top = top;
-    // From a film of 20 um, which a hand goes through within a tick, to centimeters.
+    // From a film of 20 um, which a hand crosses within a tick, to centimeters.
     top += 2e-5 * std::pow(1000.0, random.uniform(0.0, 1.0));
     const double which = random.uniform(0.0, 1.0);
     t.kind = which < 0.7 ? Kind::kPierced : which < 0.85 ? Kind::kOpen : Kind::kAbsent;
@@ -197,7 +198,7 @@ std::vector<Tissue> randomTissues(Random& random) {
     }
     t.has_hole = random.uniform(0.0, 1.0) < 0.5;
     if (t.has_hole) t.reopens_at = random.uniform(0.0, 0.05);
-    // The first holds the needle, or its way in would be further down.
+    // The first tissue must hold the needle, or the shaft would begin further down.
     if (i == 0 || random.uniform(0.0, 1.0) < 0.8) t.cutting = random.uniform(0.02, 0.7);
     if (random.uniform(0.0, 1.0) < 0.7) {
       t.shaft = random.uniform(1e4, 1e5);
@@ -210,7 +211,7 @@ std::vector<Tissue> randomTissues(Random& random) {
   return out;
 }
 
-/// `point - depth * normal` are the walls.
+/// The walls are at `point - depth * normal`.
 ScenePtr sceneOf(const std::vector<Tissue>& tissues, const Vec3& point, const Vec3& normal) {
   std::string materials, layers, ports;
   for (std::size_t i = 0; i < tissues.size(); ++i) {
@@ -275,7 +276,7 @@ TEST(NeedleLayers, OneAfterTheOtherWithinATickAsTheMachineSays) {
     double pace = 1e-4;
     for (int i = 0; i < kTicks; ++i, ++ticks) {
       if (depth == target) {
-        // Slow, fast, or at once to anywhere.
+        // Slowly, fast, or in one tick to anywhere.
         target = random.uniform(-0.004, most);
         pace = 1e-5 * std::pow(1e4, random.uniform(0.0, 1.0));
       }
@@ -289,7 +290,7 @@ TEST(NeedleLayers, OneAfterTheOtherWithinATickAsTheMachineSays) {
         ASSERT_EQ(guard.violations(), 0);
       }
       const Expected want = machine.step(depth, speed);
-      // So near to the force that opens it, rounding may decide.
+      // The force is so close to the one that opens the wall that rounding may decide.
       if (want.margin < 1e-6) break;
       ASSERT_EQ(r.region, want.region) << "run " << run << ", tick " << i;
       ASSERT_EQ(r.contact, want.contact) << "run " << run << ", tick " << i;
@@ -315,8 +316,8 @@ TEST(NeedleLayers, OneAfterTheOtherWithinATickAsTheMachineSays) {
   EXPECT_GT(many, runs * 5);
 }
 
-// In fine steps, in and out as it comes: what the hand got back, beyond what is counted, it had
-// given.
+// In fine steps, in and out at random: the hand never gets back more than it gave, beyond counted
+// sources.
 TEST(NeedleLayers, NoWayInAndOutGivesEnergyBeyondCountedSources) {
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   const int runs = slow ? 400 : 25;
@@ -329,12 +330,12 @@ TEST(NeedleLayers, NoWayInAndOutGivesEnergyBeyondCountedSources) {
     const Vec3 normal = random.direction();
     const auto renderer = makeRenderer(sceneOf(tissues, Vec3(0.0), normal));
     const double most = tissues.back().top + 0.01;
-    constexpr double kPace = 1e-5;  // [m] a tick
+    constexpr double kPace = 1e-5;  // [m] in a tick
     double depth = -0.001;
     double target = depth;
     double work = 0.0;
     double slack =
-        1e-9;  // [J] what the trapezium may be off where a wall gives way within a tick, ...
+        1e-9;  // [J] error of the trapezoidal rule where a wall ruptures within a tick, ...
     Vec3 force(0.0);
     for (int i = 0; i < 20'000; ++i) {
       if (depth == target) target = random.uniform(-0.001, most);
@@ -353,15 +354,15 @@ TEST(NeedleLayers, NoWayInAndOutGivesEnergyBeyondCountedSources) {
     all_work += std::fabs(work);
     counted += renderer->sourceWork();
   }
-  // Or the bound would say little.
+  // Otherwise the bound would mean little.
   EXPECT_LT(all_slack, 0.2 * all_work);
   EXPECT_GT(counted, 0.0);
 }
 
-/// A hand on its way along the axis, and the work that is done on it.
+/// A hand that moves along the axis, and the work done on it.
 struct AxisHand {
   HapticRenderer& renderer;
-  double pace = 1e-5;  // [m] a tick, at most
+  double pace = 1e-5;  // [m] the most in a tick
   double at = 0.0;     // [m]
   double work = 0.0;   // [J]
   double force = 0.0;  // [N] at the last tick
@@ -379,8 +380,8 @@ struct AxisHand {
   }
 };
 
-// A stiff wall 10 mm behind a soft one that gives way at 30 mm: what it gives the hand on its way
-// back is counted.
+// A stiff wall 10 mm behind a soft one that ruptures at 30 mm: the energy that it gives the hand on
+// its way back is counted.
 TEST(NeedleLayers, AStiffWallMetBehindASoftOneIsACountedSource) {
   std::vector<Tissue> tissues(2);
   tissues[0].stiffness = 100.0;
@@ -397,9 +398,9 @@ TEST(NeedleLayers, AStiffWallMetBehindASoftOneIsACountedSource) {
   EXPECT_LE(hand.work, renderer->sourceWork() + 2e-4);
 }
 
-// 10 mm of a shaft in tissue that sticks to it, held back by a skin which lets go at 0.05 N: as the
-// tip comes on by 0.625 mm, the tissue is drawn along. What it gives the hand on its way back is
-// counted.
+// 10 mm of a shaft in tissue that sticks to it, held back by a skin which ruptures at 0.05 N: as
+// the tip moves on by 0.625 mm, the tissue is drawn along. The energy that it gives the hand on its
+// way back is counted.
 TEST(NeedleLayers, AShaftThatASkinLetsGoOfStretchesItsTissueAsACountedSource) {
   std::vector<Tissue> tissues(2);
   tissues[0].kind = Kind::kOpen;
@@ -424,7 +425,7 @@ TEST(NeedleLayers, AShaftThatASkinLetsGoOfStretchesItsTissueAsACountedSource) {
   EXPECT_LE(hand.work, renderer->sourceWork() + 1e-7);
 }
 
-// Five skins of 1 mm: each its own force, all in one tick of a hand that is 30 mm ahead.
+// Five skins of 1 mm, each with its own force, ruptured in one tick by a hand that is 30 mm ahead.
 TEST(NeedleLayers, FiveWallsGiveWayInOneTickEachToItsOwnForce) {
   std::vector<Tissue> tissues(5);
   for (std::size_t i = 0; i < tissues.size(); ++i) {
@@ -444,10 +445,10 @@ TEST(NeedleLayers, FiveWallsGiveWayInOneTickEachToItsOwnForce) {
     EXPECT_EQ(entry.to, i + 1);
     EXPECT_NEAR(entry.point.z, -tissues[i].top, 1e-9);
     EXPECT_NEAR(entry.force, tissues[i].stiffness * (0.030 - tissues[i].top), 1e-5);
-    // 1 mm of the tissue before it, which 0.05 N cut.
+    // 1 mm of the tissue before it, which is cut with 0.05 N.
     EXPECT_NEAR(entry.cut, i == 0 ? 0.0 : 0.05, 1e-12);
   }
-  // The same with the third one too strong: there the tip stops, with what it is pressed by.
+  // The same with a third skin that is too strong: there the tip stops, pressed by the hand.
   tissues[2].opens_at = 9.0;
   const auto held = makeRenderer(sceneOf(tissues, Vec3(0.0), Vec3(0.0, 0.0, 1.0)));
   (void)held->update({mm(0, 0, 5)});

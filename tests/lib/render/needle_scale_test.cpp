@@ -1,5 +1,5 @@
-// A needle in a scene in micrometers is the needle of that scene in millimeters: no length is its
-// own.
+// A needle in a scene in micrometers behaves like that in the same scene in millimeters: nothing
+// depends on a fixed length.
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 namespace palpate::test {
 namespace {
 
-/// A block of tissue 4 units deep under a skin, on bone. Forces go with the unit, stiffnesses do
-/// not, and what is per length of the shaft goes against it.
+/// A block of tissue 4 units deep under a skin, on bone. Forces are proportional to the unit,
+/// stiffnesses do not change, and quantities per length of the shaft are inversely proportional.
 ScenePtr block(const std::string& unit, double scale) {
   const auto force = [&](double value) { return std::to_string(scale * value) + " N"; };
   const auto modulus = [&](double value) { return std::to_string(value / scale) + " N/m^2"; };
@@ -35,8 +35,8 @@ TEST(NeedleScale, InMicrometersItFeelsWhatItFeelsInMillimeters) {
   const ScenePtr small = block("um", 1e-3);
   const auto one = makeRenderer(large);
   const auto other = makeRenderer(small);
-  // In and out; beside that by less than the needle is wide, where the way is cut already; by more,
-  // where it is not; and askew.
+  // In and out; once more beside that by less than the needle's width, where the way is cut
+  // already; by more than that, where it is not; and at an angle.
   const std::vector<Vec3> corners = {mm(0, 0, 3),      mm(0, 0, -3),  mm(0, 0, 3),  mm(0.3, 0, 3),
                                      mm(0.3, 0, -3),   mm(0.3, 0, 3), mm(2, 0, 3),  mm(2, 0, -3.5),
                                      mm(3, 0.5, -3.5), mm(3, 0.5, 3), mm(-4, 0, 3), mm(-5, 1, -5),

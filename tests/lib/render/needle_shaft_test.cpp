@@ -1,4 +1,4 @@
-// A needle's shaft pushed sideways, felt at the tip; what a tip cuts that rests on bone; and the
+// A needle's shaft pushed sideways, felt at the tip; the cut of a tip that rests on bone; and the
 // energy of both.
 
 #include <gtest/gtest.h>
@@ -12,13 +12,14 @@
 namespace palpate::test {
 namespace {
 
-/// Tissue that holds the shaft sideways and neither cuts nor rubs.
+/// Tissue that holds the shaft sideways, without cutting or friction.
 std::string tissue(const std::string& lateral, const std::string& more = {}) {
   return "{stiffness: 300 N/m" + more +
          ", shaft: {stiffness: 1e5 N/m^2, in: {static: 0 N/m}, lateral: " + lateral + "}}";
 }
 
-/// Layers of 10 mm and what is below, in the order of `materials`, with open walls between.
+/// Layers of 10 mm each, the last one without end, in the order of `materials`, with open walls
+/// between.
 ScenePtr stack(const std::vector<std::string>& materials, const std::string& more = {}) {
   std::string text = "palpate: 1\nlength: mm\nmaterials:\n";
   std::string layers = "layers:\n";
@@ -32,13 +33,13 @@ ScenePtr stack(const std::vector<std::string>& materials, const std::string& mor
   return sceneOf(text + layers + more + "ports: [{name: all, between: [\"*\", \"*\"]}]\n");
 }
 
-// 25 mm deep and 3 mm sideways with 36 kN/m^2: K L u / 3 = 0.9 N, where the issue had 0.
+// 25 mm deep and 3 mm sideways with 36 kN/m^2: K L u / 3 = 0.9 N, where an earlier version had 0.
 TEST(NeedleShaft, SidewaysItPushesBackByItsClosedForm) {
   Drive hand(stack({tissue("{stiffness: 3.6e4 N/m^2}")}));
   (void)hand.walk(mm(0, 0, 5));
   (void)hand.walk(mm(0, 0, -25), 50e-6);
   EXPECT_EQ(hand.last().force, Vec3(0.0));
-  // On the arc about the hole no more of the shaft comes in: exact.
+  // On an arc about the hole the length of the shaft inside is constant: exact.
   const double reach = 0.025;
   const double last = std::asin(3.0 / 25.0);
   for (int i = 1; i <= 60; ++i) {
@@ -50,7 +51,7 @@ TEST(NeedleShaft, SidewaysItPushesBackByItsClosedForm) {
         isNear(hand.last().force, 3.6e4 * reach * reach * std::sin(angle) / 3.0 * back, 1e-7));
   }
   EXPECT_NEAR(glm::length(hand.last().force), 0.9, 1e-6);
-  // Back to where it was cut: nothing is left.
+  // Back to where it was cut: no force is left.
   for (int i = 59; i >= 0; --i) {
     const double angle = last * i / 60.0;
     (void)hand.to(reach * Vec3(std::sin(angle), 0.0, -std::cos(angle)));
@@ -58,8 +59,8 @@ TEST(NeedleShaft, SidewaysItPushesBackByItsClosedForm) {
   EXPECT_LT(glm::length(hand.last().force), 1e-9);
 }
 
-// Straight sideways at the same depth 0.18 mm of shaft come in on the way, where the needle lies
-// then.
+// Moving straight sideways at the same depth, a further 0.18 mm of shaft comes in on the way, at
+// the needle's direction then.
 TEST(NeedleShaft, StraightSidewaysItIsWithinTwoPercentOfTheClosedForm) {
   for (const bool cuts : {false, true}) {
     Drive hand(stack({tissue("{stiffness: 3.6e4 N/m^2}", cuts ? ", cutting: 0.4 N" : "")}));
@@ -67,14 +68,14 @@ TEST(NeedleShaft, StraightSidewaysItIsWithinTwoPercentOfTheClosedForm) {
     (void)hand.walk(mm(0, 0, -25), 50e-6);
     (void)hand.walk(mm(3, 0, -25), 50e-6);
     const Vec3 force = hand.last().force;
-    // The tip's cutting comes on top, with the 0.4 N that were all there was.
+    // The cutting force of the tip is added: the 0.4 N that were the only force before.
     EXPECT_NEAR(-force.x, 0.9 + (cuts ? 0.4 : 0.0), 0.02 * 0.9 + (cuts ? 0.03 : 0.0));
     EXPECT_LT(std::fabs(force.y), 1e-12);
   }
 }
 
 TEST(NeedleShaft, EachTissueHoldsThePartThatIsInIt) {
-  // 10 mm of each of three, the middle one free; the tip beyond the last one's top by 7 mm.
+  // Three layers of 10 mm, the middle one free; the tip is 7 mm below the top of the last one.
   Drive hand(stack({tissue("{stiffness: 2e4 N/m^2}"), "{stiffness: 300 N/m}",
                     tissue("{stiffness: 5e4 N/m^2}")}));
   (void)hand.walk(mm(0, 0, 5));
@@ -98,7 +99,7 @@ TEST(NeedleShaft, ThroughTheFarSideAllOfItStillHolds) {
   ASSERT_EQ(hand.region(), "outside");
   const double angle = 0.06;
   (void)hand.to(0.040 * Vec3(std::sin(angle), 0.0, -std::cos(angle)));
-  // 20 mm of it, felt at 40 mm: a lever.
+  // 20 mm of shaft in the tissue, felt at 40 mm: a lever.
   const double expected = 3e4 * std::pow(0.02, 3) / 3.0 * std::sin(angle) / 0.04;
   EXPECT_NEAR(glm::length(hand.last().force), expected, 1e-6);
 }
@@ -113,8 +114,8 @@ TEST(NeedleShaft, ItTearsAtItsStrengthAndIsBounded) {
     (void)hand.to(0.025 * Vec3(std::sin(angle), 0.0, -std::cos(angle)));
     most = std::max(most, glm::length(hand.last().force));
   }
-  // The mean load is at the middle of the shaft, and it acts at two thirds of the length: 2/3
-  // strength L.
+  // The load grows linearly along the shaft, so its resultant acts at two thirds of the length: the
+  // tip feels 2/3 strength L.
   EXPECT_NEAR(most, 2.0 / 3.0 * 40.0 * 0.025, 0.005);
   EXPECT_NEAR(glm::length(hand.last().force), most, 0.005);
 }
@@ -131,8 +132,8 @@ TEST(NeedleShaft, DrawnOutAndInAgainTheChannelIsNew) {
   EXPECT_LT(glm::length(hand.last().force), 1e-9);
 }
 
-// The tip on a wall that closes the tissue: what is stored sideways is by the place of the tip,
-// which the hand moves along the wall only. Round about in any way, nothing is gained.
+// The tip is on a wall that closes the tissue: the sideways energy depends on the place of the tip,
+// which the hand moves only along the wall. On any closed path nothing is gained.
 TEST(NeedleShaft, NoLoopGivesEnergyFreeOrOnAWall) {
   const ScenePtr scene =
       sceneOf("palpate: 1\nlength: mm\nmaterials: {m: " + tissue("{stiffness: 3.6e4 N/m^2}") +
@@ -155,7 +156,7 @@ TEST(NeedleShaft, NoLoopGivesEnergyFreeOrOnAWall) {
     double moved = 0.0;
     int pressed = 0;
     for (int i = 0; i < 20'000; ++i) {
-      // About a place 3 mm within the bone, every other time.
+      // Every other time around a place 3 mm inside the bone.
       const Vec3 middle = mm(0, 0, seed % 2 == 0 ? -23 : -16);
       way += 3e-6 * random.direction() - 2e-5 * (p - middle) - 0.01 * way;
       const Vec3 last = p;
@@ -185,7 +186,8 @@ std::string overBone(const std::string& muscle) {
          "ports: [{name: p, between: [outside, muscle]}]\n";
 }
 
-// Muscle's 0.6 N of cutting do not add to a press on the bone behind it, be it light or heavy.
+// Muscle's cutting force of 0.6 N does not add to a press on the bone behind it, whether light or
+// heavy.
 TEST(NeedleOnBone, NothingIsCutWhereTheTipRestsOnIt) {
   Drive hand(sceneOf(overBone("stiffness: 150 N/m, cutting: 0.6 N")));
   (void)hand.walk(mm(0, 0, 5));
@@ -199,7 +201,7 @@ TEST(NeedleOnBone, NothingIsCutWhereTheTipRestsOnIt) {
   }
   EXPECT_GE(pressed, 39);
   EXPECT_LT(worst, 1e-5);
-  // All before it is cut: the tip comes off freely, and is stopped by the bone again.
+  // Everything before the bone is cut: the tip comes off freely, and is stopped by the bone again.
   (void)hand.walk(mm(0, 0, -19.9), 50e-6);
   EXPECT_EQ(hand.last().force, Vec3(0.0));
   (void)hand.walk(mm(0, 0, -20.5), 50e-6);
@@ -217,7 +219,7 @@ TEST(NeedleOnBone, AlongItTheTissueIsCutAsEver) {
   EXPECT_TRUE(isNear(hand.last().force, Vec3(-0.6, 0.0, 3.0), 1e-5));
 }
 
-// A wall that a force opens can be cut: there the tissue before it is pressed on as before.
+// A wall that force can open can be pierced: the tissue in front of it is still pressed.
 TEST(NeedleOnBone, BeforeAWallThatCanBePiercedItIsPressedOn) {
   std::string text = overBone("stiffness: 150 N/m, cutting: 0.6 N");
   text.replace(text.find("ports: ["), 8,

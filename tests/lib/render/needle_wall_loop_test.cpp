@@ -1,5 +1,5 @@
-// A needle whose tip is held by a wall while the hand goes on: friction along the shaft must not
-// give energy there.
+// A wall holds a needle's tip while the hand goes on: friction along the shaft must not give energy
+// there.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace palpate::test {
 namespace {
 
 // Along a slanting wall the shaft is drawn in or out a little, with the hand near the wall or far
-// beyond it: friction that turned round out there would be given back over the way to the wall.
+// beyond it: if friction reversed out there, it would give energy on the way back to the wall.
 TEST(NeedleOnWall, FrictionThatTurnsRoundBeyondAWallGivesNoEnergy) {
   for (const double damping : {0.0, 100.0}) {
     Drive hand(sceneOf(
@@ -52,8 +52,8 @@ TEST(NeedleOnWall, FrictionThatTurnsRoundBeyondAWallGivesNoEnergy) {
   }
 }
 
-// Tissue that is drawn along in every lap, and cut a little, gives back what it was given on the
-// way in: lap after lap the hand gets a little, and never more than it gave.
+// Tissue that is drawn along in every lap, and cut a little, gives back the energy that it got on
+// the way in: in each lap the hand gets a little, and in total never more than it gave.
 TEST(NeedleOnWall, TissueGivesBackOverManyLapsWhatItWasGivenOnTheWayIn) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -81,7 +81,7 @@ ports: [{name: p, between: [outside, a]}]
     EXPECT_LE(hand.work() - work, held - hand.inTissue() + 1e-9) << "lap " << lap;
     EXPECT_LE(hand.work() + hand.inTissue(), 1e-9) << "lap " << lap;
   }
-  // The laps did press on the wall: 2.3e-7 J a lap, of 7.1e-5 J.
+  // The laps did press on the wall: 2.3e-7 J a lap, out of 7.1e-5 J.
   EXPECT_EQ(giving, 7);
 }
 

@@ -1,5 +1,5 @@
-// Solids that are one leaf but have several sheets: meshes, grids and implicit shapes look like
-// this to contact. The wall that holds the proxy is also the wall that stands in its way.
+// Solids that are one leaf but have several sheets, as meshes, grids and implicit shapes have. The
+// wall that holds the proxy is also the wall that stands in its way.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ TEST(OneLeaf, SlidingOnAFloorDoesNotPassTheThinWallThatStandsOnIt) {
 }
 
 TEST(OneLeaf, AHollowRoomHoldsItsCorners) {
-  // The inside of a box as one leaf: the gradient tells one face at a time.
+  // The inside of a box as one leaf: its gradient shows one face at a time.
   const auto room = complement(box(Vec3(0.0), mm(60, 60, 60)));
   Drive drive(sceneOfLeaf(room, 60e-3));
   (void)drive.to(Vec3(0.0));
@@ -48,7 +48,8 @@ TEST(OneLeaf, TwoBallsAndTheCreaseBetweenThem) {
   Drive drive(sceneOfLeaf(balls, 0.025));
   (void)drive.to(mm(-15, 40, 0));
   (void)drive.walk(mm(-15, 22, 0));
-  // Along the top, 3 mm deep, over the crease: always outside both, and pressed.
+  // Along the top, 3 mm deep, over the crease: the proxy is always outside both, and the wall is
+  // pressed.
   for (double x = -15.0; x <= 15.0; x += 0.25) {
     const TickResult& out = drive.to(mm(x, 17, 0));
     ASSERT_GE(balls->value(out.proxy), -1e-8) << x;

@@ -1,11 +1,11 @@
 #pragma once
-// Fields that do not tell what they are made of, as a mesh or a grid does not.
+// Fields that hide their structure, as a mesh or a grid does.
 
 #include "lib/render/drive.h"
 
 namespace palpate::test {
 
-/// A field whose structure is not told.
+/// A field with a hidden structure.
 class Opaque final : public Field {
  public:
   Opaque(FieldPtr field, double feature) : field_(std::move(field)), feature_(feature) {}
@@ -22,7 +22,7 @@ class Opaque final : public Field {
   double feature_;
 };
 
-/// The field as a black box, in a scene that starts outside of it.
+/// The field as a black box, in a scene that starts outside it.
 inline ScenePtr sceneOfLeaf(FieldPtr field, double feature) {
   SceneDescription description;
   LayerDescription layer;

@@ -1,6 +1,6 @@
 // The paper's renderer on the paper's figures, against tables of states and Algorithms I and II
-// written from the paper and its page (tools/docs/paper.md) alone: the same state, ports and force
-// in every tick of a wandering hand.
+// written only from the paper and its documentation (tools/docs/paper.md): the same state, ports
+// and force in every tick of a wandering hand.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace palpate::test {
 namespace {
 
-/// A figure by its surfaces; what its ports do is said in code, figure by figure.
+/// A figure given by its surfaces; the effect of its ports is in code, figure by figure.
 class Figured {
  public:
   virtual ~Figured() = default;
@@ -23,17 +23,17 @@ class Figured {
     double viscosity = 0.0;
   };
   std::vector<FieldPtr> fields;
-  std::vector<double> signs;  ///< by field: -1 where the solid is outside of it
+  std::vector<double> signs;  ///< by field: -1 where the solid is outside it
   std::vector<Layer> layers;
   double stiffness = 1000.0;
   double damping = 0.5;
   int state = 0;
 
-  /// What the table of ports does; the names of the ports passed.
+  /// Applies the table of ports; returns the names of the ports passed.
   virtual std::string ports(const Vec3& last, const Vec3& now) = 0;
   /// Whether the face of a layer is an open port in the present state.
   [[nodiscard]] virtual bool isOpen(int layer, int face) const = 0;
-  /// What the content does besides its drag.
+  /// The force of the content besides its drag.
   [[nodiscard]] virtual Vec3 push(const Vec3&) const { return Vec3(0.0); }
   [[nodiscard]] virtual Vec3 flow() const { return Vec3(0.0); }
 
@@ -100,14 +100,14 @@ class Figured {
     return d;
   }
   [[nodiscard]] virtual bool hasNoWall(int) const { return false; }
-  /// Whether the surface in contact is a wall where its contact point is, for a probe at `now`.
+  /// Whether the surface in contact is a wall at its contact point, for a probe at `now`.
   [[nodiscard]] virtual bool isWallAt(const Display&, const Vec3& /*po*/,
                                       const Vec3& /*now*/) const {
     return true;
   }
 };
 
-/// Table I: A is face 0, B face 1.
+/// Table I: face 0 is A, face 1 is B.
 class Container : public Figured {
  public:
   Container(FieldPtr a, FieldPtr b) {
@@ -134,7 +134,7 @@ class Container : public Figured {
   std::string name = "mouth";
 };
 
-/// The grid-like interior: Table I with a tank for the sphere.
+/// The grid-like interior: Table I with a tank instead of the sphere.
 class Tank : public Container {
  public:
   Tank() : Container(box(Vec3(0.0), mm(80, 80, 40)), halfSpace(mm(0, 0, 18), Vec3(0, 0, 1))) {
@@ -149,8 +149,8 @@ class Tank : public Container {
   }
 };
 
-/// Figure 2.7: faces are the tube (0) and what is right of -45, -15, 15 mm (1, 2, 3) and left of 45
-/// mm (4).
+/// Figure 2.7. The faces are the tube (0), the space right of -45, -15, 15 mm (1, 2, 3), and left
+/// of 45 mm (4).
 class Tube : public Figured {
  public:
   Tube() {
@@ -190,10 +190,10 @@ class Tube : public Figured {
   [[nodiscard]] bool isOpen(int layer, int face) const override {
     if (face == 0) return false;
     const bool is_due = face == 1 || passed_[static_cast<std::size_t>(face - 1)] != 0;
-    if (state == layer + 1) {  // out of one's own filling
+    if (state == layer + 1) {  // out of its own filling
       return is_due && (face != 4 || layer == 2);
     }
-    // Into another, through the port that joins the two.
+    // Into another filling, through the port that joins the two.
     const int before = face == 4 ? -1 : face - 1;
     return is_due && face == layer + 1 && state == before;
   }
@@ -202,8 +202,8 @@ class Tube : public Figured {
   std::vector<int> passed_ = std::vector<int>(5, 0);
 };
 
-/// Flow in one direction: faces are the bore (0), right of -40 (1), right of 0 (2), left of 40 mm
-/// (3).
+/// Flow in one direction. The faces are the bore (0), the space right of -40 mm (1), right of 0
+/// (2), and left of 40 mm (3).
 class Valve : public Figured {
  public:
   Valve() {
@@ -261,8 +261,8 @@ class Cup : public Figured {
   }
   [[nodiscard]] bool isOpen(int, int) const override { return false; }
   [[nodiscard]] bool hasNoWall(int layer) const override { return layer == 1; }
-  /// Of the liquid's surface, felt from within, only that towards the glass is one: where glass
-  /// lies just beyond the contact point, or, on the rim between both, where the probe is in it.
+  /// Felt from inside, only the part of the liquid's surface towards the glass is a wall: where
+  /// glass is just beyond the contact point, or, on the rim between both, where the probe is in it.
   [[nodiscard]] bool isWallAt(const Display& d, const Vec3& po, const Vec3& now) const override {
     if (d.surface != 1) return true;
     return place(po + 4e-6 * glm::normalize(surfaceOf(1)(po).gradient)) == 1 || place(now) == 1;
@@ -274,7 +274,7 @@ class Cup : public Figured {
   }
 };
 
-/// Solids that nothing enters, each with its faces.
+/// Solids that cannot be entered, each with its faces.
 class Solids : public Figured {
  public:
   Solids(std::vector<std::vector<FieldPtr>> all, double k) {
@@ -354,7 +354,7 @@ TEST_P(PaperFigures, EveryTickIsAsTheTableAndTheAlgorithmsSay) {
   int touched = 0;
   int passed = 0;
   for (int tick = 0; tick < 40'000; ++tick) {
-    // Along the tubes' axis now and then, or no port would ever be met.
+    // Now and then along the tubes' axis, or no port would ever be met.
     if (glm::length(goal - hand) < 1e-9 || tick % 400 == 0) {
       goal = anywhere();
       if (unit(random) < 0.4) goal.y = goal.z = 0.002 * unit(random);
@@ -400,11 +400,11 @@ TEST_P(PaperFigures, EveryTickIsAsTheTableAndTheAlgorithmsSay) {
       last_side = expected.is_reversed;
       last_open = open;
       ++touched;
-      // Both do the same sums in another order; where those differ, a search may end a halving
-      // apart.
+      // Both compute the same sums in different orders; where those differ, a search may end one
+      // halving apart.
       ASSERT_TRUE(isNear(out.proxy, contact.po, 4e-6));
       ASSERT_TRUE(isNear(out.force, force, 8e-6 * figure->stiffness + 1e-9));
-      contact.po = out.proxy;  // or they would drift apart with the contact point
+      contact.po = out.proxy;  // otherwise they would drift apart with the contact point
     } else {
       ASSERT_EQ(out.proxy, hand);
       ASSERT_TRUE(isNear(out.force, force, 1e-9));
@@ -423,7 +423,7 @@ TEST(PaperFigure27, TheTubesPortsArePassedInTheirOrderAndTheProbeIsOutBehindIt) 
   EXPECT_EQ(drive.events(), "port 1 port 2 port 3 port 4");
   EXPECT_EQ(drive.region(), "outside");
   EXPECT_EQ(drive.last().force, Vec3(0.0));
-  // From behind it is shut: steel, at the plane of port 4.
+  // From behind it is shut by steel, at the plane of port 4.
   (void)drive.walk(mm(44, 0, 0));
   EXPECT_EQ(drive.events(), "");
   EXPECT_TRUE(isNear(drive.last().force, {1.5, 0, 0}, 3e-3));
@@ -472,7 +472,8 @@ TEST(PaperParameters, AreThoseOfTheSceneAndThoseGivenGoBeforeThem) {
   EXPECT_NEAR(in_wall(containerText(), {}).force.x, -4 * 0.1, 1e-2) << "wall and syrup";
   EXPECT_NEAR(in_wall(text, {}).force.x, 0.0, 1e-2) << "the wall alone";
   EXPECT_NEAR(in_wall(text, {.interior = PaperInterior::kTogether}).force.x, -4 * 0.1, 1e-2);
-  // So coarse an epsilon is seen: contact points are up to 0.1 mm off, unless a finer one is given.
+  // Such a large epsilon has a visible effect: contact points are off by up to 0.1 mm, unless a
+  // finer one is given.
   const auto off = [&](PaperParameters given) {
     RendererSettings settings;
     settings.paper = given;

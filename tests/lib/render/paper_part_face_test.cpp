@@ -1,4 +1,4 @@
-// The paper's renderer where a port is on a part of what it has as one face: the face stays a wall.
+// The paper's renderer with a port on a part of what it treats as one face: the face stays a wall.
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 namespace palpate::test {
 namespace {
 
-// A union is one face of the layer: the paper's table of states has intersections alone. The port
-// is on the left ball.
+// A union is one face of the layer, since the paper's table of states has only intersections. The
+// port is on the left ball.
 const char* const kTwoBalls = R"(
 palpate: 1
 length: mm

@@ -1,7 +1,7 @@
 #pragma once
-// The source paper told a second time, from its text alone: Algorithms I and II, and the rule by
-// which its tables of states display surfaces. Figures add their own tables of ports. Lengths in mm
-// for tables, in m for surfaces.
+// A second implementation of the source paper, from its text alone: Algorithms I and II, and the
+// rule by which its tables of states display surfaces. Figures add their own tables of ports.
+// Lengths are in mm for tables, in m for surfaces.
 
 #include <cmath>
 #include <functional>
@@ -26,7 +26,7 @@ inline Surface reversed(const Surface& surface) {
   };
 }
 
-/// All of several surfaces at once: where the point is inside of all of them.
+/// The intersection of several surfaces: where the point is inside all of them.
 inline Surface insideAll(std::vector<Surface> all) {
   return [all = std::move(all)](const Vec3& p) {
     FieldSample most = all.front()(p);
@@ -39,7 +39,7 @@ inline Surface insideAll(std::vector<Surface> all) {
 }
 
 struct PaperNumbers {
-  double epsilon = 1e-6;  ///< of |S|
+  double epsilon = 1e-6;  ///< bound of |S|
   int max_n = 48;
   double alpha = 1.0;
   bool newton = false;
@@ -66,7 +66,7 @@ class PaperText {
         }
       }
     } else {
-      // Nothing to search between: the page says down the gradient.
+      // There is no segment to search: the documentation says to follow the gradient.
       po = probe;
       for (int i = 0; i < 32; ++i) {
         const FieldSample at = s(po);
@@ -114,25 +114,25 @@ class PaperText {
   }
 };
 
-/// What a table says of one tick.
+/// The result of a table for one tick.
 struct Display {
   int state = 0;
   std::string passed;    ///< ports, in order
   bool is_free = false;  ///< F = 0
-  int surface = -1;      ///< which one is in contact; -1: none
+  int surface = -1;      ///< index of the one in contact; -1: none
   bool is_reversed = false;
-  double viscosity = 0.0;  ///< [N s/m] of the content felt
+  double viscosity = 0.0;  ///< [N s/m] of the content that is felt
 };
 
 /// One figure of the paper: its surfaces, and its table.
 class PrintedFigure {
  public:
   virtual ~PrintedFigure() = default;
-  /// From the previous and the present probe [m].
+  /// The result of a tick with the previous and the present probe [m].
   [[nodiscard]] virtual Display tick(const Vec3& last, const Vec3& now) = 0;
-  /// The surface of that number in the present state of the table.
+  /// The surface with that number in the present state of the table.
   [[nodiscard]] virtual Surface surface(int number) const = 0;
-  /// Changes when the surface of a number becomes another.
+  /// Changes when the surface of some number becomes another one.
   [[nodiscard]] virtual int version() const { return 0; }
 };
 

@@ -1,5 +1,5 @@
-// A part that decides nothing where the hand is has no part in what it feels: the planes of its
-// faces end where it does.
+// A part of a solid that decides nothing where the hand is has no effect on the force: the planes
+// of its faces end where the faces do.
 
 #include <gtest/gtest.h>
 
@@ -12,11 +12,11 @@
 namespace palpate::test {
 namespace {
 
-/// 1e-6 of 2 mm, and two walls' billionth of their feature sizes.
+/// 1e-6 of 2 mm, plus a billionth of two walls' feature sizes.
 constexpr double kClose = 2.5e-9;  // [m]
 
-/// A hand within a ball of radius `ball` [m], pressed 2 mm into the wall of a bore of 6 mm, around
-/// it and along it.
+/// A hand inside a ball of radius `ball` [m], pressed 2 mm into the wall of a bore of 6 mm, moving
+/// around the bore and along it.
 void circleOneBore(const FieldPtr& far_part, double ball, double radius, int steps_around) {
   SCOPED_TRACE(::testing::Message() << "bore of radius " << radius << ", " << steps_around);
   const FieldPtr bore = cylinder(Vec3(0.0), Vec3(0, 0, 1), radius, 0.060);
@@ -33,7 +33,7 @@ void circleOneBore(const FieldPtr& far_part, double ball, double radius, int ste
   for (int i = 0; i < ticks; ++i) {
     const double turn = 2.0 * std::numbers::pi * i / steps_around;
     const Vec3 u(std::cos(turn), std::sin(turn), 0.0);
-    const double pressed = std::min(0.002, 0.004 * i / ticks);  // all that while going around
+    const double pressed = std::min(0.002, 0.004 * i / ticks);  // growing while it goes around
     const Vec3 p = (radius - pressed) * u + Vec3(0, 0, 0.004 * std::sin(0.37 * turn));
     const Vec3 right = radius * u + Vec3(0, 0, p.z);
     const TickResult& out = drive.to(p);
@@ -44,7 +44,7 @@ void circleOneBore(const FieldPtr& far_part, double ball, double radius, int ste
   }
   EXPECT_LE(worst, kClose);
   EXPECT_LE(worst_force, kDefaultK * kClose);
-  // 2 N turn by a share of a circle a tick, and the press grows by 4 N in all of them.
+  // A force of 2 N turns by its share of a circle in a tick, and the press grows by 4 N in total.
   EXPECT_LE(largest_step, 2.0 * 2.0 * std::numbers::pi / steps_around + 5.0 / ticks);
 }
 

@@ -1,5 +1,6 @@
-// Every key of a port: over closed ways of the hand, at random and looked for, through walls that
-// give way and holes that are found again, nothing is given beyond counted sources.
+// Every key of a port: over closed paths of the hand, random ones and ones found by a search,
+// through walls that rupture and holes that are used again, no energy is given beyond counted
+// sources.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@
 namespace palpate::test {
 namespace {
 
-/// Between outside, `skin` and, within that, `flesh`; `left` is where x < 0.
+/// A port between outside, `skin` and, within that, `flesh`; `left` is where x < 0.
 struct Key {
   const char* name;
   const char* ports;
@@ -99,8 +100,8 @@ ScenePtr sceneOf(const char* ports, const Place& place) {
       ports + "]\n");
 }
 
-/// A hand that goes round. What it was given, less counted sources, and what the walls hold may
-/// never rise in sum.
+/// A hand that goes around. The sum of the energy given to it, minus counted sources, and the
+/// energy that the walls hold must never rise.
 class Laps {
  public:
   Laps(const ScenePtr& scene, const EnergyLoop& loop, int steps) : renderer_(makeRenderer(scene)) {
@@ -116,7 +117,7 @@ class Laps {
       most_ = std::max(most_, now - lowest_);
     }
   }
-  /// [J] How much the sum ever rose.
+  /// [J] The most by which the sum ever rose.
   [[nodiscard]] double most() const { return most_; }
   [[nodiscard]] long entries() const { return entries_; }
 
@@ -124,7 +125,7 @@ class Laps {
   static constexpr double kTick = 1e-3;     // [s]
   static constexpr double kStepped = 0.01;  // [N]
 
-  /// [J] Half the force times its way where one straight spring is pressed.
+  /// [J] Half the force times its way, valid if one linear spring is pressed.
   [[nodiscard]] double stored() const {
     const StoredState held = TickState::of(renderer_->state()).source.stored;
     if (held.leaves.count > 0) return held.energy;
@@ -195,7 +196,7 @@ void expectNothingGiven(const ScenePtr& scene, const char* name, const char* pla
                            << change;
   }
   std::printf("  %-34s %-8s %10.3g J, %ld regions entered\n", name, place, worst, entries);
-  // One loop that was not searched for, as the sanitizers have it, may enter once.
+  // A single loop without a search, as under the sanitizers, enters perhaps once.
   EXPECT_GE(entries, kSanitized ? 1 : loops + 1) << name << ", " << place;
 }
 
@@ -222,7 +223,7 @@ TEST(PortEnergyGatesOfMaps, AForceThatVariesGivesNone) {
   }
 }
 
-/// A plate with an opening that gives way, over a floor.
+/// A plate with an opening that ruptures, over a floor.
 TEST(PortEnergyGatesOfSheets, AnOpeningInASheetGivesNone) {
   for (const char* keys : {"", ", opens_at: 0.5 N",
                            ", opens_at: 0.5 N, back: 0.1 N, hole: {radius: "

@@ -1,6 +1,6 @@
 // Random walks through mazes of nine chambers, felt by both renderers, against a machine written
-// from the rules of the scene file's page alone: where a wall lets through, to which region, and by
-// which port.
+// only from the rules in the scene file's documentation: where a wall lets the probe through, to
+// which region, and by which port.
 
 #include <gtest/gtest.h>
 
@@ -17,12 +17,12 @@
 namespace palpate::test {
 namespace {
 
-constexpr double kCell = 40.0;  // [mm] chambers are so wide, 3 x 3 of them
+constexpr double kCell = 40.0;  // [mm] width of a chamber, 3 x 3 of them
 constexpr int kOut = -1;
 
 struct Door {
   std::string name;
-  int a = kOut, b = kOut;  ///< chambers, or outside
+  int a = kOut, b = kOut;  ///< chamber numbers, or outside
   int half = 0;            ///< 1: where z > 0 only; -1: where z < 0; 0: everywhere
   char direction = 'b';
   std::vector<std::pair<std::string, int>> after;
@@ -72,7 +72,7 @@ class Maze {
     (void)drive_->to(place());
   }
 
-  /// Tries the wall on one side of where the probe is. Ticks are counted.
+  /// Tries the wall on one side of the probe's chamber. Counts the ticks.
   void leg() {
     const int direction = pick(4);
     const int nx = x_ + (direction == 0) - (direction == 1);
@@ -119,7 +119,8 @@ class Maze {
     ticks_ += kSteps;
   }
 
-  /// The rules: the name of the port that lets through here and now, and what that does.
+  /// The rules: returns the name of the port that lets the probe through here and now, and applies
+  /// its effect.
   std::string through(int from, int to) {
     const Door* best = nullptr;
     double least = 0.0;
@@ -135,7 +136,7 @@ class Maze {
       if (!is_due) continue;
       double force = door.force;
       if (std::find(holes_.begin(), holes_.end(), spotOf(door)) != holes_.end()) force = 0.0;
-      // The first that is open; else the one that opens first.
+      // The first port that is open; if none is, the one that opens first.
       if (best == nullptr || (least > 0.0 && force < least)) {
         best = &door;
         least = force;
@@ -145,7 +146,7 @@ class Maze {
     if (best == nullptr) return {};
     ++passings_;
     if (least > 0.0 && best->has_hole) holes_.push_back(spotOf(*best));
-    if (holes_.size() > 32) holes_.pop_front();  // the oldest is forgotten
+    if (holes_.size() > 32) holes_.pop_front();  // the oldest one is forgotten
     if (keep_) {
       ++net_[best->name];
     } else if (to == kOut) {
@@ -155,7 +156,7 @@ class Maze {
     }
     return best->name;
   }
-  /// Places on a wall are 5 mm apart or more, and holes 1 mm wide.
+  /// Places on a wall are at least 5 mm apart, and holes are 1 mm wide.
   [[nodiscard]] std::string spotOf(const Door& door) const {
     return door.name + " " + std::to_string(off_) + " " + std::to_string(z_);
   }

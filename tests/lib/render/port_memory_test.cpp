@@ -1,5 +1,5 @@
-// What the renderers remember of ports: many laps of a ring, ports that lead back, numbers of
-// passings, absent walls that clear, and ports in sheets.
+// The renderers' memory of ports: many laps of a ring, ports that lead back, counts of passings,
+// absent walls that clear the memory, and ports in sheets.
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ INSTANTIATE_TEST_SUITE_P(Renderers, PortMemory,
                          testing::Values(RendererKind::kPaper, RendererKind::kConstraint),
                          kindName);
 
-/// Three chambers around the z axis, walls between them at y = 0 (x > 0) and at x = 0: a is where x
-/// > 0, y > 0, b where x < 0, c where x > 0, y < 0. From outside one comes into a from above;
+/// Three chambers around the z axis, with walls between them at y = 0 (x > 0) and at x = 0: a is
+/// where x > 0, y > 0; b where x < 0; c where x > 0, y < 0. From outside, a is entered from above;
 /// `vault` is below a.
 std::string ring(const std::string& ports) {
   return R"(
@@ -42,7 +42,7 @@ const Vec3 kB = mm(-20, 0, 0);
 const Vec3 kC = mm(20, -20, 0);
 constexpr double kStep = 5e-3;
 
-/// To b and c by way of the middles of the walls.
+/// To b and c through the middles of the walls.
 void lap(Drive& drive) {
   (void)drive.walk(mm(-20, 20, 0), kStep);
   (void)drive.walk(mm(-20, -20, 0), kStep);
@@ -110,8 +110,8 @@ TEST_P(PortMemory, AtLeastSoManyTimes) {
 }
 
 TEST_P(PortMemory, AnAbsentWallToOutsideClearsWhatWasPassed) {
-  // Into a by its port, out where b has no wall: what comes after the port is shut then, from
-  // outside too.
+  // Into a by its port, and out where b has no wall: after that, the port that requires the first
+  // one is shut, from outside too.
   for (const bool keep : {false, true}) {
     Drive drive(sceneOf(ring(R"(
   - {name: ab, between: [a, b]}
@@ -134,7 +134,7 @@ walls:
   }
 }
 
-/// A plate at z = 0 in the air, with an opening in the middle; a box beneath.
+/// A plate at z = 0 in air, with an opening in the middle; a box beneath it.
 std::string plate(const std::string& port, const std::string& more = {}) {
   return R"(
 palpate: 1

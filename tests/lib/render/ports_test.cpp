@@ -1,4 +1,5 @@
-// Ports felt through the renderers: one way, in order, by force; absent walls; start and memory.
+// Ports felt through the renderers: one-way, ordered, and opened by force; absent walls; start and
+// memory.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ TEST(ValveTube, LetsThroughOneWayAndRefusesTheOther) {
   (void)drive.walk(mm(-5, 0, 0));
   EXPECT_EQ(drive.region(), "downstream") << "the valve refuses the way back";
   EXPECT_EQ(drive.events(), "");
-  (void)drive.to(mm(-5, 0, 0));  // at rest: behind a shut valve the drag is there in full
+  (void)drive.to(mm(-5, 0, 0));  // at rest: behind a shut valve the drag is felt in full
   EXPECT_NEAR(drive.last().force.x, 800.0 * 5e-3 + 1.0 * 20e-3, 1e-6) << "wall and current";
   EXPECT_EQ(drive.events(), "");
   (void)drive.walk(mm(60, 0, 0));
@@ -38,7 +39,7 @@ TEST(ValveTube, LetsThroughOneWayAndRefusesTheOther) {
   EXPECT_NEAR(drive.last().force.x, 800.0 * 10e-3, 1e-6);
 }
 
-/// Three segments in a row; each has a window to the outside beside the ports between them.
+/// Three segments in a row; each has a window to the outside, besides the ports between them.
 std::string segments(const std::string& memory = {}) {
   return R"(
 palpate: 1
@@ -130,8 +131,8 @@ TEST(Memory, KeptPortsOpenWindowsFromOutside) {
 }
 
 TEST(Memory, ARoomsDoorsOpenInOrderOnly) {
-  // A ball with three rooms' doors around it, all from outside: every order of visits, against the
-  // rule.
+  // A ball with the doors of three rooms around it, all from outside: every order of visits,
+  // against the rule.
   std::string text = "palpate: 1\nlength: mm\nmemory: keep\nlayers:\n";
   for (int i = 0; i < 3; ++i) {
     text += "  - {name: room" + std::to_string(i) + ", inside: {sphere: {center: [" +
@@ -185,7 +186,7 @@ walls:
   EXPECT_EQ(drive.region(), "tea");
   (void)drive.walk(mm(0, 0, 30));
   EXPECT_EQ(drive.region(), "outside");
-  // From outside: the outer glass, and the flat ring of the rim.
+  // From outside: the outer glass, and the flat ring on the rim.
   (void)drive.walk(mm(60, 0, 30));
   (void)drive.walk(mm(60, 0, 0));
   EXPECT_TRUE(isNear(drive.walk(mm(41, 0, 0)).force, Vec3(1, 0, 0), 1e-9));
@@ -208,7 +209,7 @@ ports: [{name: cut, between: [outside, body], opens_at: 2 N, back: 0.5 N}]
 )";
 
 /// Into a box through the absent wall at x = 0 and out through a port at x = 10 mm, in steps that
-/// end beside both.
+/// end near both.
 TEST_P(BothRenderers, APassingHasItsPlaceOnTheWallAndNotAtTheHand) {
   Drive drive(sceneOf(R"(
 palpate: 1
@@ -230,7 +231,7 @@ ports:
     const std::span<const RegionEntry> entries = drive.renderer().entries();
     return entries.size() == 1 ? entries[0].point.x * 1e3 : std::nan("");
   };
-  // Halvings of 0.4 mm, and the proxy's rest on a wall, both end within 1e-9 m.
+  // Bisection of 0.4 mm, and the proxy's rest on a wall, both end within 1e-9 m.
   EXPECT_NEAR(passes(-0.3, 0.1), 0.0, 1e-6);
   EXPECT_NEAR(passes(9.9, 10.3), 10.0, 1e-6);
   EXPECT_NEAR(passes(10.1, 9.7), 10.0, 1e-6) << "on the way back";
@@ -248,7 +249,7 @@ TEST(OpeningForce, OpensAtKTimesDepthAndNotBefore) {
     EXPECT_EQ(drive.region(), enough ? "body" : "outside");
     if (enough) {
       EXPECT_EQ(drive.last().force, Vec3(0.0));
-      // Back it takes its own force.
+      // On the way back it needs its own force.
       (void)drive.walk(Vec3(0, 0, 0.04 + 0.49e-3), 0.05e-3);
       EXPECT_EQ(drive.region(), "body");
       EXPECT_NEAR(drive.last().force.z, -0.49, 1e-9);
@@ -270,8 +271,8 @@ TEST(OpeningForce, DampingAndFrictionDoNotOpen) {
 }
 
 TEST(OpeningForce, AFastStrokeAlongTheSkinDoesNotOpenWhatItNeverPresses) {
-  // 1.5 mm deep all the way: 1.5 N, whatever the speed. Only a tangent plane left behind by one
-  // tick's motion would be pressed harder.
+  // 1.5 mm deep all the way: 1.5 N at any speed. Only a tangent plane left from the last tick would
+  // be pressed harder.
   for (const double step : {0.02, 0.1, 0.3}) {
     Drive drive(sceneOf(kSkin));
     (void)drive.walk(mm(50, 0, 0));
@@ -284,7 +285,8 @@ TEST(OpeningForce, AFastStrokeAlongTheSkinDoesNotOpenWhatItNeverPresses) {
 }
 
 TEST(OpeningForce, AnObliqueLandingDoesNotOpenWhatItNeverPresses) {
-  // In one tick from outside to 1.5 mm below the top, the path meeting the ball far down its side.
+  // In one tick from outside to 1.5 mm below the top, on a path that meets the ball far down its
+  // side.
   Drive drive(sceneOf(kSkin));
   (void)drive.to(mm(45, 0, 10));
   (void)drive.to(mm(0, 0, 38.5));
@@ -308,8 +310,8 @@ TEST(Start, AHipElsewhereGetsANearPointOfTheRegion) {
     Drive drive(sceneOf(containerText("start: {region: liquid}\n")));
     const TickResult& out = drive.to(hip);
     EXPECT_TRUE(isFinite(out.force));
-    // At once or after a few ticks at rest: the closest point of the liquid, through the mouth if
-    // that is open.
+    // At once or after a few ticks at rest the proxy is the closest point of the liquid, reached
+    // through the mouth if that is open.
     for (int i = 0; i < 20; ++i) (void)drive.to(hip);
     if (hip.z > 0.015 && glm::length(hip) < 0.05) {
       EXPECT_EQ(drive.region(), "outside");
@@ -318,7 +320,7 @@ TEST(Start, AHipElsewhereGetsANearPointOfTheRegion) {
       EXPECT_TRUE(isNear(out.proxy, 0.04 * glm::normalize(hip), 1e-9));
     }
   }
-  // And the other way about: a HIP that begins inside, while the scene starts outside.
+  // And the opposite: a HIP that begins inside, while the scene starts outside.
   Drive drive(sceneOf(containerText()));
   const TickResult& out = drive.to(mm(0, 0, -35));
   EXPECT_EQ(out.region, kOutside);
@@ -337,8 +339,8 @@ TEST(Start, ResetIsAFreshStart) {
 }
 
 TEST(Sheets, NestedFacesThatCoincideAreCrossedInOneStepIntoTheRightRegion) {
-  // An inner box that shares its top, a right face and an edge with the outer one; both have a port
-  // on top.
+  // An inner box that shares its top face, right face and an edge with the outer one; both have a
+  // port on top.
   Drive drive(sceneOf(R"(
 palpate: 1
 length: mm

@@ -1,5 +1,5 @@
-// Walls that give way to a force: when they do, what they leave behind, and what the result says of
-// it.
+// Walls that rupture under a force: when they do, what they leave behind, and what the result
+// reports of it.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using How = PortCrossing::How;
 
 constexpr double kStiffness = 1000.0;  // [N/m]
 constexpr double kStep =
-    0.01e-3;  // [m] a tick: the force at which a wall gives way is off by up to 0.01 N
+    0.01e-3;  // [m] in a tick: the force at which a wall ruptures is off by up to 0.01 N
 
 /// Flesh below z = 0, under a skin of 1000 N/m with one port.
 std::string skin(const std::string& port, const std::string& material = {}) {
@@ -30,7 +30,7 @@ ports: [{name: cut, between: [outside, flesh], )" +
          port + "}]\n";
 }
 
-/// Straight to `hip` in small steps until a port is passed: the crossing, or none.
+/// Straight to `hip` in small steps until a port is passed: the crossing, or no value.
 std::optional<PortCrossing> pressTo(Drive& drive, const Vec3& hip, double step = kStep) {
   const Vec3 from = drive.hip();
   const int n = static_cast<int>(std::ceil(glm::length(hip - from) / step));
@@ -79,8 +79,8 @@ TEST(Puncture, InAHoleTheReopeningForceCountsBesideItTheWalls) {
     ASSERT_TRUE(crossing);
     EXPECT_EQ(crossing->how, How::kPuncture);
     (void)drive.walk(mm(0, 0, -5));
-    // Back by the hole, and in and out of it again off its middle, to the left and right of its
-    // rim.
+    // Back by the hole, and in and out through it again off its middle, to the left and right of
+    // its rim.
     crossing = pressTo(drive, mm(0, 0, 5));
     ASSERT_TRUE(crossing);
     EXPECT_EQ(crossing->how, How::kHole);
@@ -122,8 +122,8 @@ TEST(Puncture, AnOpenHoleIsAnOpeningFromEverySideAndSpeed) {
     const bool was_free = drive.last().proxy == from;
     const TickResult out = drive.to(hip);
     if (!was_free || from.z * hip.z > 0.0) continue;
-    // It went straight: through the hole, or against the wall beside it (and along that to the
-    // hole).
+    // The proxy went straight: through the hole, or against the wall beside it (and along that to
+    // the hole).
     const Vec3 p = from - from.z / (hip.z - from.z) * (hip - from);
     const double off = std::hypot(p.x, p.y);
     if (off < 3e-3 - 1e-8) {
@@ -143,7 +143,7 @@ TEST(Puncture, AnOpenHoleIsAnOpeningFromEverySideAndSpeed) {
 }
 
 TEST(Puncture, TwoPortsInOneWallTheHoleOfTheHarderOneCounts) {
-  // In by 2 N of `a`, whose hole is loose; back, `b` alone would be the weaker one.
+  // In through `a` with 2 N, whose hole opens easily; on the way back, `b` alone would be weaker.
   Drive drive(
       sceneOf(skin("opens_at: 2 N, back: 1.5 N, hole: {radius: 2, reopens_at: 0.1 N}},\n"
                    "  {name: b, between: [outside, flesh], opens_at: 3 N, back: 1 N")));
@@ -164,7 +164,7 @@ TEST(Puncture, TwoPortsInOneWallTheHoleOfTheHarderOneCounts) {
   EXPECT_EQ(drive.events(), "b") << "far from every hole";
 }
 
-/// Ports passed by a hand that trembles about the skin.
+/// Number of ports passed by a hand that trembles around the skin.
 int tremble(const std::string& port, double amplitude, std::uint64_t seed) {
   Drive drive(sceneOf(skin(port)));
   (void)drive.to(mm(0, 0, 2));
@@ -178,7 +178,7 @@ int tremble(const std::string& port, double amplitude, std::uint64_t seed) {
 }
 
 TEST(Puncture, APortThatRestsDoesNotChatter) {
-  // The wall gives way 0.05 mm deep, and the hand trembles by 0.24 mm about it.
+  // The wall ruptures at a depth of 0.05 mm, and the hand trembles by 0.24 mm around that.
   const std::string weak = "opens_at: 0.05 N, back: 0.05 N";
   const double amplitude = 0.24e-3;
   EXPECT_GT(tremble(weak, amplitude, 3), 1000) << "what rearm is for";
@@ -193,7 +193,7 @@ TEST(Puncture, ARestEndsFarAwayOrUnderAHandFarBeyondTheWall) {
   Drive drive(sceneOf(skin("opens_at: 0.1 N, back: 0.1 N, rearm: 0.5 mm")));
   (void)drive.to(mm(0, 0, 1));
   ASSERT_TRUE(pressTo(drive, mm(0, 0, -0.3)));
-  // Never far in: the way out takes a pull of as many millimeters.
+  // Never far inside: the way out takes a pull of that many millimeters.
   auto crossing = pressTo(drive, mm(0, 0, 2));
   ASSERT_TRUE(crossing);
   EXPECT_NEAR(crossing->force, 0.5, 0.011);
@@ -204,21 +204,20 @@ TEST(Puncture, ARestEndsFarAwayOrUnderAHandFarBeyondTheWall) {
 }
 
 TEST(Puncture, OnlyTheElasticNormalForceOfThisTickCounts) {
-  // Friction, damping and the motion along the wall make the whole force several times larger than
-  // 2 N.
+  // Friction, damping and motion along the wall make the total force several times larger than 2 N.
   Drive drive(sceneOf(skin("opens_at: 2 N", ", damping: 10 N.s/m, friction: {static: 1.5}")));
   (void)drive.to(mm(0, 0, 1));
   (void)drive.walk(mm(0, 0, -1.9));
   double most = 0.0;
   for (int i = 1; i <= 200; ++i) {
-    const double side = i % 2 == 0 ? 2.0 : -2.0;  // [mm] to and fro, 4 m/s
+    const double side = i % 2 == 0 ? 2.0 : -2.0;  // [mm] back and forth, 4 m/s
     const TickResult out = drive.to(mm(side, 0, -1.9));
     most = std::max(most, glm::length(out.force));
     ASSERT_EQ(out.event_count, 0) << i;
   }
   EXPECT_GT(most, 20.0);
-  // Nor does the tick before count: let go and press less, then enough, which opens it in that
-  // tick.
+  // The previous tick does not count either: after a lighter press, a sufficient one opens the wall
+  // in that tick.
   (void)drive.to(mm(0, 0, 1));
   EXPECT_EQ(drive.to(mm(0, 0, -1.99)).event_count, 0);
   EXPECT_EQ(drive.to(mm(0, 0, 0.1)).event_count, 0);
@@ -227,7 +226,7 @@ TEST(Puncture, OnlyTheElasticNormalForceOfThisTickCounts) {
 }
 
 TEST(Puncture, ForceLimitsDoNotHoldBackWhatOpensAWall) {
-  // The hand feels no more than 0.5 N, softly; the wall gives way to what its spring has.
+  // The hand feels at most 0.5 N, limited; the wall ruptures by the force of its spring.
   RendererSettings settings;
   settings.limits.max_force = 0.5;
   settings.limits.max_growth = 10.0;

@@ -1,8 +1,8 @@
 // Random constructive solid geometry: at every tick the proxy is where an oracle comes to rest that
-// starts from the proxy of the tick before.
+// starts from the proxy of the previous tick.
 //
-// One scene by its number: PALPATE_CSG_FIRST=14 PALPATE_CSG_SCENES=1; more ticks:
-// PALPATE_CSG_CONTACTS=300000. PALPATE_CSG_KEEP=FOLDER keeps scene and path of what fails, for
+// To run one scene by its number: PALPATE_CSG_FIRST=14 PALPATE_CSG_SCENES=1; for more ticks:
+// PALPATE_CSG_CONTACTS=300000. PALPATE_CSG_KEEP=FOLDER stores scene and path of each failure, for
 // `palpate touch SCENE --path PATH`.
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ long numberFrom(const char* name, long otherwise) {
   return text != nullptr ? std::atol(text) : otherwise;
 }
 
-/// The counts, and of the first faults the scene file, once.
+/// Prints the counts and, for the first faults, the scene file, once.
 void tell(const CsgCounts& counts) {
   std::printf("%s", counts.text().c_str());
   std::set<std::uint64_t> told;
@@ -39,18 +39,18 @@ void expectRight(const CsgCounts& counts, long wanted) {
                             Fault::kContact, Fault::kStep, Fault::kFrozen}) {
     EXPECT_EQ(counts.of(never), 0) << nameOf(never);
   }
-  // 99.99 % of the ticks are at the minimum within 1e-6 of the depth; the list above has the rest.
+  // 99.99 % of the ticks are at the minimum within 1e-6 of the depth; the list above shows the
+  // others.
   EXPECT_LE(counts.of(Fault::kPlace), 1 + counts.contacts / 10'000);
-  // What passes unseen stays rare: two ends within the oracle's own noise, and kinks that it cannot
-  // tell.
+  // Ticks that cannot be judged must stay rare: two minima within the oracle's own noise, and kinks
+  // that it cannot resolve.
   EXPECT_LE(counts.ambiguous, 5 + counts.contacts / 1'000);
   EXPECT_LE(counts.unjudged, 5 + counts.contacts / 1'000);
   EXPECT_LE(counts.given_up, 1 + counts.scenes / 50);
   EXPECT_LE(counts.empty, 1 + counts.scenes / 10);
 }
 
-/// Parts of the sweep, so that none takes more than some minutes where there are ten million ticks
-/// to judge.
+/// The sweep in parts, so that none takes more than some minutes when ten million ticks are judged.
 class RandomCsg : public ::testing::TestWithParam<int> {};
 
 constexpr int kParts = 4;
@@ -84,7 +84,7 @@ TEST(RandomCsgMaterials, OneThatNoWallHasIsNeverFelt) {
     other.stiffness = 1e5;
     Material wall;
     wall.name = "wall";
-    wall.stiffness = 1000.0;  // [N/m] as those that the scene does not name
+    wall.stiffness = 1000.0;  // [N/m] like those that the scene does not name
     description.materials = {other, wall};
     for (LayerDescription& layer : description.layers) layer.wall.material = "wall";
     CsgRun(counts, 150, 1200).run(scene, compile(description));
@@ -93,7 +93,7 @@ TEST(RandomCsgMaterials, OneThatNoWallHasIsNeverFelt) {
   expectRight(counts, 32'000);
 }
 
-/// Scenes that runs of millions of ticks found.
+/// Scenes found by runs of millions of ticks.
 struct FoundScene {
   const char* name;
   std::uint64_t number;

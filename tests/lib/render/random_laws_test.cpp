@@ -1,7 +1,7 @@
-// Random scenes of a few parts, some of them flush with others, each with a stiffness of its own:
-// where one wall alone is pressed the force is its law at the proxy, reckoned here from the
-// regions' fields; turned, mirrored, scaled and moved, the scene feels the same; and closed ways
-// give nothing.
+// Random scenes of a few parts, some of them flush with others, each with its own stiffness. Where
+// only one wall is pressed, the force is its law at the proxy, computed here from the regions'
+// fields; a scene that is turned, mirrored, scaled and moved feels the same; and closed paths give
+// no energy.
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@
 namespace palpate::test {
 namespace {
 
-/// Of the scenes by number those that are asked for: PALPATE_PARTS_FIRST=100
-/// PALPATE_PARTS_SCENES=1; else `usual` of them.
+/// The numbers of the scenes to run: PALPATE_PARTS_FIRST=100 PALPATE_PARTS_SCENES=1 select them;
+/// otherwise the first `usual` ones.
 struct Numbers {
   std::uint64_t first = 0;
   std::uint64_t count;
@@ -29,7 +29,7 @@ struct Numbers {
   }
 };
 
-/// Where the scene lies in space: turned by quarters, mirrored, scaled, moved.
+/// The pose of the scene in space: turned by quarters, mirrored, scaled, moved.
 struct Pose {
   Mat3 turn{1.0};  // a signed permutation
   double scale = 1.0;
@@ -38,7 +38,7 @@ struct Pose {
   [[nodiscard]] Vec3 point(const Vec3& p) const { return scale * (turn * p) + move; }
 };
 
-/// A scene from its number; the same number is the same scene, at any pose.
+/// A scene made from its number; the same number gives the same scene, in any pose.
 class Parts {
  public:
   explicit Parts(std::uint64_t number, const Pose& pose = {}) : random_(number), pose_(pose) {
@@ -78,7 +78,7 @@ class Parts {
     return "{half_space: {point: " + point(at) + ", normal: " + direction(normal) + "}}";
   }
 
-  /// A body, or a part of the body before it, flush with its surface.
+  /// A body, or a part of the previous body that is flush with its surface.
   std::string shape(int level) {
     const bool is_part = level > 0 && pick(2) == 0;
     const Vec3 normal = random_.direction();
@@ -113,7 +113,7 @@ class Parts {
   ScenePtr scene_;
 };
 
-/// A hand that wanders about the parts, mostly where it presses on them a millimeter or two.
+/// A hand that wanders around the parts, mostly pressing on them by a millimeter or two.
 std::vector<Vec3> wander(std::uint64_t seed, int ticks) {
   Random random(seed * 31 + 5);
   std::vector<Vec3> out;
@@ -148,9 +148,9 @@ TEST(RandomParts, EachWallAlonePushesByItsOwnLaw) {
       const TickResult r = renderer->update({p, Vec3(0.0), 1e-3});
       const Vec3 press = r.proxy - p;
       const double depth = glm::length(press);
-      // Whatever walls there are: no more than the stop, 1.05 times the stiffest, and square to
-      // that 3/8 of a difference across a seam, times R / (R - depth) where the wall bulges: the
-      // proxy goes that much farther than the hand. R is 6 mm or more.
+      // For any walls: the stiffness is at most that of the stop, 1.05 times the stiffest; and
+      // perpendicular to that, 3/8 of a difference across a seam, times R / (R - depth) where the
+      // wall bulges, as the proxy moves farther than the hand by that factor. R is at least 6 mm.
       if (depth < 2e-3) {
         ASSERT_LE(glm::length(r.force), 1.2 * stiffest * depth + 1e-9);
       }
@@ -158,7 +158,7 @@ TEST(RandomParts, EachWallAlonePushesByItsOwnLaw) {
       int near = 0;
       RegionId wall = kOutside;
       for (RegionId region = 1; region < scene.regions().size(); ++region) {
-        // Never more than the distance: what is not within the press has no part in it.
+        // Walls farther away than the depth do not take part in the press.
         if (std::fabs(scene.regions()[region].field->value(r.proxy)) > depth) continue;
         ++near;
         wall = region;
@@ -217,8 +217,8 @@ void expectTheSameAtEveryPose(const Numbers& scenes) {
         const double size = 1e-6 + glm::length(a.force);
         const double error =
             glm::length(b.force - pose.scale * (pose.turn * a.force)) / (pose.scale * size);
-        // The proxy rests within 1e-9 of the feature size of where it should: 1e-11 m, of a press
-        // of 0.1 mm 1e-7.
+        // The proxy rests within 1e-9 of the feature size of its correct place: 1e-11 m, which is
+        // 1e-7 of a press of 0.1 mm.
         if (error > 1e-7 && off++ == 0)
           std::printf("  %s: first off in scene %d\n", name, static_cast<int>(number));
         worst = std::max(worst, error);
@@ -235,8 +235,8 @@ TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
   expectTheSameAtEveryPose(Numbers(slow ? 300 : 15));
 }
 
-// Two faces of the box lead on equally well when the hand breaks through, 12 mm deep: their order
-// chose, another one in the scene that is turned, and the proxy ended 10 mm apart.
+// Two faces of the box lead on equally well when the hand breaks through, 12 mm deep. The order of
+// the faces decided, which differs in the turned scene, and the proxy ended 10 mm apart.
 TEST(RandomParts, TheOrderOfABoxsFacesChoosesNoWay) {
   Numbers scene(1);
   scene.first = 94;
@@ -251,7 +251,7 @@ TEST(RandomParts, GiveNoEnergy) {
   for (std::uint64_t number = scenes.first; number < scenes.first + scenes.count; ++number) {
     const Parts parts(number);
     Random random(number + 77);
-    // About a place on the surface of the last part.
+    // Around a place on the surface of the last part.
     const Field& field = *parts.scene()->regions().back().field;
     Vec3 at = 8e-3 * random.direction();
     for (int i = 0; i < 60; ++i) {

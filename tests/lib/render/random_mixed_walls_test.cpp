@@ -1,6 +1,6 @@
-// Walls of different stiffness at random, pressed about as deep as the shapes are large: the hand
-// is held as long as the proxy is elsewhere, no step of the force goes beyond what the walls'
-// stiffness explains, and closed ways give no energy.
+// Random walls of different stiffness, pressed about as deep as the shapes are large: the hand is
+// held as long as the proxy is elsewhere, no jump of the force exceeds what the walls' stiffness
+// explains, and closed paths give no energy.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ struct MixedScene {
   Vec3 start = mm(0, 0, 20);
   Vec3 rest = mm(0, 0, 8);
   Box3 wander{Vec3(-3.0, -3.0, -5.5), Vec3(3.0, 3.0, 0.5)};  // [mm]
-  Vec3 back = mm(0, 0, 6);                                   // on the way to a place now and then
+  Vec3 back = mm(0, 0, 6);  // visited now and then on the way to a place
 };
 
 class Maker {
@@ -44,8 +44,8 @@ class Maker {
     }
   }
 
-  /// A tilted ground and one or two solids in it, each with a stiffness of its own; or a room, from
-  /// within, that two solids reach into.
+  /// A tilted ground with one or two solids in it, each with its own stiffness; or a room, from
+  /// inside, that two solids reach into.
   MixedScene scene(bool from_within = false) {
     MixedScene out;
     std::string materials;
@@ -123,20 +123,21 @@ class Maker {
 };
 
 constexpr double kStep = 20e-6;  // [m] a tick
-/// What the walls explain: the rigid stop in series is 1.05 of the stiffest wall; where a press as
-/// deep as a bulge is large takes it for flat, that adds as much again and some more. A hand let go
-/// of changes by a hundred times that in a tick.
+/// What the walls explain: the rigid stop in series has 1.05 times the stiffness of the stiffest
+/// wall; where the press is as deep as a bulge is large, the bulge is treated as flat, which adds
+/// the same again and more. A force on a hand that loses contact changes by a hundred times that in
+/// a tick.
 constexpr double kExplained = 4.0;
 
-/// A tick's way, gone in short parts.
+/// The way of a tick, divided into small parts.
 struct InParts {
-  double most = 0.0;    // [N] the force changed by within a part
-  double change = 0.0;  // [N] all in all
+  double most = 0.0;    // [N] largest change of the force within a part
+  double change = 0.0;  // [N] total change
   double work = 0.0;    // [J] done on the hand
-  double lost = 0.0;    // [J] what is stored fell by
+  double lost = 0.0;    // [J] decrease of the stored energy
 };
 
-/// From `before` on, to `next` [m].
+/// Moves from the state `before` to `next` [m].
 InParts inParts(const ScenePtr& scene, const RendererState& before, const Vec3& next) {
   constexpr int kParts = 1000;
   InParts out;
@@ -162,12 +163,12 @@ struct Tick {
   RendererState before;
   TickResult last;
   TickResult now;
-  Vec3 hand;  // [m] before
-  Vec3 next;  // [m] now
+  Vec3 hand;  // [m] before the tick
+  Vec3 next;  // [m] after the tick
 
   [[nodiscard]] double way() const { return glm::length(next - hand); }
   [[nodiscard]] double moved() const { return glm::length(now.proxy - last.proxy); }
-  /// [N] beyond what the walls explain of a way of `length` [m]
+  /// [N] The change that the walls do not explain on a way of `length` [m].
   [[nodiscard]] double kick(const MixedScene& made, double length) const {
     if (!last.contact || !now.contact || now.region != last.region) return 0.0;
     return glm::length(now.force - last.force) - kExplained * made.most * length - 1e-5;
@@ -204,9 +205,9 @@ void wander(const ScenePtr& scene, const MixedScene& made, unsigned seed, double
   }
 }
 
-/// Where the proxy rests, the force may be steep, but it has no step: where the springs store about
-/// the same over a wide range of places, a little way of the hand moves the place far. Nothing is
-/// won by that: what they store falls by the work that is done.
+/// Where the proxy rests, the force may be steep, but it does not jump: where the springs store
+/// about the same energy over a wide range of places, a small motion of the hand moves the place
+/// far. Nothing is gained by that: the stored energy falls by the work that is done.
 void expectHeldWithoutSteps(const MixedScene& made, unsigned seed, double deep, int ticks) {
   const ScenePtr scene = sceneOf(made.text);
   wander(scene, made, seed, deep, ticks, [&](const Tick& tick) {
@@ -241,8 +242,8 @@ TEST(RandomMixedWalls, FromWithinARoomTheyNeverKickEither) {
   }
 }
 
-/// At the tip of a hollow cone, 2.6 mm deep in a softer wall and a box: 107 steps of up to 2.5 N,
-/// and 6 mJ from nowhere, where the tip's plane was any.
+/// At the tip of a hollow cone, 2.6 mm deep in a softer wall and a box: there were 107 jumps of up
+/// to 2.5 N, and 6 mJ from nowhere, when the plane at the tip was arbitrary.
 TEST(RandomMixedWalls, AtTheTipOfAHollowConeTheyNeverKick) {
   MixedScene made;
   made.most = 3000.0;
@@ -268,9 +269,9 @@ start: {region: l0}
   EXPECT_LE(given.work, 1e-9 + given.change);
 }
 
-/// Deep in a wall that bends, the proxy comes to where another stiffness holds it too, and stops.
-/// What is stored has a fold there, by the hand: the force steps, 0.17 of 1.2 N, and what is stored
-/// does not.
+/// Deep in a curved wall, the proxy comes to where a second stiffness holds it too, and stops. The
+/// stored energy as a function of the hand has a fold there: the force jumps, by 0.17 of 1.2 N, and
+/// the energy does not.
 TEST(RandomMixedWalls, WhereAnEdgeStopsTheProxyTheForceStepsAndNothingIsGiven) {
   constexpr unsigned kSeed = 9;
   const MixedScene made = Maker(kSeed).scene();
@@ -285,7 +286,7 @@ TEST(RandomMixedWalls, WhereAnEdgeStopsTheProxyTheForceStepsAndNothingIsGiven) {
     ++steps;
     const InParts parts = inParts(scene, tick.before, tick.next);
     EXPECT_GT(parts.most, 0.5 * parts.change) << "no step";
-    // A part's way of 20 nm, where the force steps.
+    // The length of a part, 20 nm, where the force jumps.
     EXPECT_NEAR(parts.work, parts.lost, parts.most * 20e-9);
   });
   EXPECT_EQ(steps, 1);
@@ -306,7 +307,7 @@ TEST(RandomMixedWalls, GiveNoEnergy) {
     }
     const EnergyGiven given =
         energyGiven(sceneOf(made.text), mm(0, 0, 8), loop, is_long ? 64'000 : 16'000);
-    // A lap in which the force steps, where an edge is reached, converges slowly.
+    // In a lap the force jumps where an edge is reached, so it converges slowly.
     EXPECT_LE(given.work, 1e-9 + 3.0 * given.change) << "seed " << seed << "\n" << made.text;
     worst = std::max(worst, given.work - 3.0 * given.change);
   }
@@ -314,7 +315,7 @@ TEST(RandomMixedWalls, GiveNoEnergy) {
 }
 
 /// A bar of bone on soft ground. The hand goes on beneath it, past its middle and out on the other
-/// side, while the proxy stays where ground and bar meet: it is held back all the way.
+/// side, while the proxy stays where ground and bar meet: the hand is held back all the way.
 TEST(RandomMixedWalls, ABarOnSoftGroundHoldsAHandThatIsPastIt) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -338,7 +339,7 @@ layers:
     last = out.force;
     if (x < -0.6) continue;
     EXPECT_TRUE(isNear(out.proxy, edge, 1e-8)) << x;
-    // Back, and at least as hard as the softer of the two would.
+    // The force points back, and is at least as large as that of the softer of the two.
     EXPECT_LE(out.force.x, -500.0 * (hand.x - edge.x)) << x;
   }
   const Vec3 above = mm(1.5, 0, 0.1);

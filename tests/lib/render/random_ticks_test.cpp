@@ -1,5 +1,5 @@
-// A bag of random ticks: whatever the hand does, the proxy goes through no wall, no region changes
-// without an event, and the force is what the proxy says.
+// Random ticks: whatever the hand does, the proxy passes through no wall, no region changes without
+// an event, and the force agrees with the proxy.
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-// Random scenes of nested layers whose walls and contents have any of the keys there are: friction,
-// damping, relaxation, curves, maps, composites, shading, textures, lattices, flows, needles; with
-// absent walls, ports, valves, holes and memory. Whatever comes together, in both renderers: every
-// tick is finite and allocates nothing, regions follow one another by ports that lead there and
-// walls that are absent, and where all walls are one plain spring the force is that spring; the
-// constraint renderer gives no energy beyond counted sources.
+// Random scenes of nested layers whose walls and contents have any of the keys: friction, damping,
+// relaxation, curves, maps, composites, shading, textures, lattices, flows, needles; with absent
+// walls, ports, valves, holes and memory. For any combination and both renderers: every tick is
+// finite and allocates nothing; regions follow one another by ports that lead there and by absent
+// walls; and where all walls are one linear spring the force is that of the spring. The constraint
+// renderer gives no energy beyond counted sources.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kPlain = 1200.0;  // [N/m]
 
-/// A scene from its number.
+/// A scene made from its number.
 class World {
  public:
   World(std::uint64_t number, RendererKind kind)
@@ -60,7 +60,7 @@ class World {
            number(-reach, reach) + "]";
   }
 
-  /// The further in, the smaller; now and then it sticks out.
+  /// Inner layers are smaller; now and then one sticks out.
   std::string shape(int level) {
     const double size = 20.0 / (1.0 + 0.6 * level);
     const double off = level == 0 ? 2.0 : 5.0;
@@ -132,7 +132,7 @@ class World {
   void addMaps(SceneDescription& description) {
     for (Material& material : description.materials) {
       if (pick(4) != 0) continue;
-      // Over the scene's 40 mm it goes from a third to all of it.
+      // Over the scene's 40 mm the stiffness rises from a third to its maximum.
       const double most = material.stiffness.range().most;
       const Vec3 slope = most / 60e-3 * random_.direction();
       if (material.lattice.hasWaves()) continue;
@@ -147,7 +147,7 @@ class World {
   ScenePtr scene_;
 };
 
-/// A hand on a smooth way within 25 mm, at up to some 50 mm/s.
+/// A hand on a smooth path within 25 mm, at up to some 50 mm/s.
 class SmoothHand {
  public:
   explicit SmoothHand(std::uint64_t seed) : random_(seed * 7 + 3) { choose(); }
@@ -171,7 +171,7 @@ class SmoothHand {
   int left_ = 0;
 };
 
-/// Regions follow one another by ports that lead there and walls that are absent.
+/// Checks that regions follow one another by ports that lead there and by absent walls.
 ::testing::AssertionResult isExplained(const HapticRenderer& renderer, const Scene& scene,
                                        RegionId from, RegionId to) {
   RegionId now = from;
@@ -228,9 +228,9 @@ TEST(RandomWorlds, AnyKeysTogetherKeepToTheRules) {
         const double done = 0.5 * glm::dot(force + r.force, way);
         work += done;
         moved += std::fabs(done);
-        // Where the force steps within a tick, as a wall gives way or a content begins or ends, the
-        // trapezium is off by up to that. World 81 goes from 20 mN of a lattice to none: 28 nJ at 1
-        // kHz, -16 nJ at 8 kHz.
+        // Where the force jumps within a tick, because a wall ruptures or a content begins or ends,
+        // the error of the trapezoidal rule is up to that. In world 81 it falls from 20 mN of a
+        // lattice to zero: 28 nJ at 1 kHz, -16 nJ at 8 kHz.
         const double change = glm::length(r.force - force);
         const bool steps = change > 1e4 * glm::length(way) || !renderer->entries().empty();
         if (steps) slack += 0.5 * change * glm::length(way);

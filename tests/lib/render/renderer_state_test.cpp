@@ -1,5 +1,5 @@
-// All that a tick leaves for the next is one value: given to another renderer of the scene, it goes
-// on the same.
+// All that a tick leaves for the next is one value: another renderer of the scene that is given it
+// goes on in the same way.
 
 #include <gtest/gtest.h>
 
@@ -65,7 +65,7 @@ TEST_P(RendererStates, GivenToAnotherRendererGoOnTheSame) {
     states.push_back(first->state());
     felt.push_back(first->update(hip));
   }
-  // One that has been elsewhere before must not remember it.
+  // A renderer that has been elsewhere before must not remember it.
   const auto second = makeRenderer(scene, settings);
   for (const HipState& hip : wander(*scene, 78, 200)) (void)second->update(hip);
   for (std::size_t at = 0; at < path.size(); at += 149) {
@@ -77,8 +77,8 @@ TEST_P(RendererStates, GivenToAnotherRendererGoOnTheSame) {
     }
     for (std::size_t i = at; i < std::min(at + 300, path.size()); ++i) {
       const TickResult again = second->update(path[i]);
-      // Rounding of coordinates of 0.1 m is 1e-17 m; a corner of 1 degree makes 60 times that of
-      // it, 1 kN/m 1e-12 N.
+      // Rounding of coordinates of 0.1 m is 1e-17 m; a corner of 1 degree amplifies that by 60, and
+      // 1 kN/m turns it into 1e-12 N.
       ASSERT_LE(glm::length(again.force - felt[i].force), 1e-11)
           << "from tick " << at << ", at " << i;
       ASSERT_LE(glm::length(again.proxy - felt[i].proxy), 1e-14)

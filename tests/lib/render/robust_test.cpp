@@ -1,5 +1,5 @@
-// What a device may do to a renderer: broken numbers, jumps; and what the loop asks of it: no
-// allocation, and the same again.
+// What a device may do to a renderer: broken numbers, jumps; and what the loop requires of it: no
+// allocation, and reproducible results.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ const std::vector<HipState> kBroken = {
     {Vec3(0, 0, -1e300), Vec3(0.0)}};
 
 TEST_P(Robust, BrokenTicksGiveNoForceAndChangeNothing) {
-  // Two drives side by side; one hears broken ticks in between, and must not differ in the good
+  // Two drives side by side; one receives broken ticks in between, and must not differ in the good
   // ones.
   const ScenePtr scene = sceneOf(containerText());
   Drive clean(scene, GetParam());
@@ -104,7 +104,7 @@ TEST_P(Robust, HugeJumpsAreFiniteAndForgotten) {
 }
 
 TEST(Plate, IsNeverPassedWhateverTheJump) {
-  // A thin plate wider than all jumps: the proxy's side never changes.
+  // A thin plate wider than all jumps: the proxy never changes its side.
   for (const double thickness : {1.0, 0.1, 0.001}) {
     const ScenePtr scene = sceneOf(
         "palpate: 1\nlength: mm\nlayers: [{name: plate, inside: {box: {center: [0, 0, 0], size: "
@@ -124,7 +124,7 @@ TEST(Plate, IsNeverPassedWhateverTheJump) {
   }
 }
 
-/// Everything the hand does in the container: all rows, both ways over the rim.
+/// Everything the hand can do in the container: all rows, both ways over the rim.
 std::vector<Vec3> everything() {
   std::vector<Vec3> path;
   Random random(9);
@@ -132,7 +132,8 @@ std::vector<Vec3> everything() {
   Vec3 drift(0.0);
   for (int i = 0; i < 20000; ++i) {
     drift = 0.95 * drift + 0.1 * random.direction();
-    // Along the ball, half a millimeter in or out of it, and now and then somewhere else.
+    // Along the ball, up to half a millimeter inside or outside it, and now and then somewhere
+    // else.
     p = glm::normalize(p + 2e-3 * drift) * (0.04 + 0.001 * std::sin(0.01 * i));
     path.push_back(i % 100 > 97 ? random.in({Vec3(-0.06), Vec3(0.06)}) : p);
   }
@@ -180,7 +181,7 @@ TEST_P(Robust, TheSameAgainBitForBit) {
     ASSERT_EQ(a.region, b.region);
     ASSERT_EQ(a.event_count, b.event_count);
   }
-  // After a reset too, but for -0: the first tick's velocity is 0 there as well.
+  // The same after a reset, except for -0: the first tick's velocity is 0 there as well.
   Drive third(sceneNamed("container"), GetParam());
   for (const Vec3& p : path) (void)third.to(p);
   third.renderer().reset();

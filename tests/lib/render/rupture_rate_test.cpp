@@ -1,4 +1,4 @@
-// Walls that give way at a force that depends on how fast they are pressed.
+// Walls whose rupture force depends on the speed of the press.
 
 #include <gtest/gtest.h>
 
@@ -19,10 +19,10 @@ ports: [{name: cut, between: [outside, flesh], opens_at: 2 N, back: 1 N, hole: {
          rate + "}]\n";
 }
 
-/// [N] at which the wall gives way to a hand that goes along z at `speed` [m/s], from `from` to
+/// [N] at which the wall ruptures under a hand that moves along z at `speed` [m/s], from `from` to
 /// `to` [m].
 double ruptureOf(HapticRenderer& renderer, double x, double from, double to, double speed) {
-  const double dt = 1e-6 / speed;  // a micrometer a tick: the force is off by 1 mN at most
+  const double dt = 1e-6 / speed;  // a micrometer in a tick: the force is off by at most 1 mN
   const double way = to > from ? 1.0 : -1.0;
   for (double z = from; way * z < way * to; z += way * 1e-6) {
     const TickResult r = renderer.update({Vec3(x, 0.0, z), Vec3(0.0, 0.0, way * speed), dt});
@@ -48,10 +48,10 @@ TEST(RuptureRate, FollowsItsCurveBothWays) {
       renderer->reset();
       EXPECT_NEAR(ruptureOf(*renderer, x, 1e-4, -0.01, speed), share * 2.0, kStiffness * 1.1e-6)
           << rate.text << " at " << speed;
-      // In its hole nothing is torn.
+      // In its hole the speed does not matter, since nothing is torn.
       (void)renderer->update({Vec3(x, 0.0, -1e-4)});
       EXPECT_NEAR(ruptureOf(*renderer, x, -1e-4, 0.01, speed), 0.5, kStiffness * 1.1e-6);
-      // Beside it there is a wall to come back through.
+      // Beside the hole there is a wall on the way back.
       (void)renderer->update({Vec3(x, 0.0, 1e-4)});
       EXPECT_NEAR(ruptureOf(*renderer, x, 1e-4, -0.01, speed), 0.5, kStiffness * 1.1e-6);
       (void)renderer->update({Vec3(x, 0.0, -1e-4)});
@@ -62,8 +62,8 @@ TEST(RuptureRate, FollowsItsCurveBothWays) {
   }
 }
 
-// What counts is the speed into the wall, now: a fast hand beside it, or one that stopped, tears
-// nothing.
+// Only the present speed into the wall counts: a hand that moves fast along it, or that has
+// stopped, does not change the rupture force.
 TEST(RuptureRate, IsOfTheSpeedIntoTheWall) {
   const auto renderer = makeRenderer(sceneOf(skin(", rate: {ratio: 0.4, speed: 20 mm/s}")));
   const auto press = [&](const Vec3& velocity) {

@@ -1,6 +1,5 @@
 // Walls of different materials beside each other on one surface: the press is shared over a patch
-// as wide as it is deep, so that what is felt has a potential, and each wall alone keeps its own
-// law.
+// as wide as it is deep, so that the force has a potential, and each wall alone keeps its own law.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +15,7 @@ struct Place {
   const char* name;
   const char* layers;
   Vec3 start;   // [m]
-  Vec3 center;  // [m] about which loops go
+  Vec3 center;  // [m] center of the loops
   double reach = 0.7e-3;
 };
 
@@ -137,7 +136,7 @@ TEST(Seams, GiveNoEnergy) {
   for (const Place& place : kPlaces) {
     ++turn;
     for (std::size_t k = 0; k < std::size(kPairs); ++k) {
-      // Each place with one pair of walls in turn, unless there is time for all.
+      // In turn one pair of walls for each place, unless there is time for all.
       if (!slow && k != turn % std::size(kPairs)) continue;
       const Pair& pair = kPairs[k];
       const ScenePtr scene = sceneOf(place, pair.soft, pair.stiff);
@@ -182,7 +181,8 @@ TEST(Seams, AreCrossedUnderAPressWithoutGainOrStep) {
   // The kinks where a wall is met and left: half a step's change of force times a step, 3000 N/m
   // (0.3 um)^2 / 2 each.
   EXPECT_NEAR(work, 0.0, 1e-9);
-  // No stiffer than the stiffer wall: the shares add at most 3/4 of the difference along the wall.
+  // The stiffness is at most that of the stiffer wall: along the wall the shares add at most 3/4 of
+  // the difference.
   EXPECT_LE(steepest, 3000.0 * (1.0 + 1e-6));
 }
 
@@ -218,7 +218,7 @@ TEST(Seams, SharesAreThoseOfAHertzianPressure) {
     EXPECT_NEAR(r.force.x, -0.5 * difference * rate * d, 1e-8) << s;
     sideways = std::max(sideways, std::fabs(r.force.x) / r.force.z);
   }
-  // 3/8 of the difference over the mean, and a little more where the soft side bears more.
+  // 3/8 of the difference over the mean, and slightly more where the soft side bears more.
   EXPECT_LE(sideways, 0.4);
 }
 
@@ -242,8 +242,8 @@ TEST(Seams, FrictionOnlyTakesThere) {
 }
 
 TEST(Seams, AWallThatGivesWayBesideOneGivesBackNoMoreThanWasStored) {
-  // In by the soft half, which opens at 1 N, out elsewhere; the whole way gives at most what is
-  // counted as a source.
+  // In through the soft half, which opens at 1 N, and out elsewhere; the whole way gives at most
+  // what is counted as a source.
   const ScenePtr scene = test::sceneOf(R"(
 palpate: 1
 length: mm
@@ -272,7 +272,7 @@ ports:
         const Vec3 now = renderer->update({p, Vec3(0.0), 1e-3}).force;
         const double step = glm::length(p - last);
         work += 0.5 * glm::dot(force + now, p - last);
-        // Where a wall gives way the force steps within the tick.
+        // Where a wall ruptures the force jumps within the tick.
         if (!renderer->entries().empty()) slack += 0.5 * glm::length(now - force) * step;
         force = now;
         last = p;
@@ -282,8 +282,8 @@ ports:
   }
 }
 
-// Neither a circle within a union nor the line where one more seam comes within the patch is a
-// wall.
+// A circle inside a union is not a wall, and neither is the line where one more seam comes into the
+// patch.
 TEST(Seams, AcrossALineWithinAUnionNothingSteps) {
   const ScenePtr scene = palpate::test::sceneOf(R"(
 palpate: 1

@@ -1,5 +1,5 @@
-// What of friction, damping and relaxing is felt where several walls hold the proxy, or one hands
-// it on to the next.
+// Friction, damping and relaxation where several walls hold the proxy, or one hands it on to the
+// next.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ TEST(SeveralWalls, TheRoughestHoldsForTheLoadOfAll) {
     (void)hand.walk(mm(0, 0, -2));
     TickResult out;
     for (int i = 1; i <= 4000; ++i) out = hand.to(mm(0, 2e-3 * i, -2));
-    // Straight down the load is that of one wall pressed 2 mm deep.
+    // Straight down, the load is that of one wall pressed 2 mm deep.
     EXPECT_NEAR(out.force.z, 2.0, 1e-6);
     EXPECT_NEAR(-out.force.y, 0.4 * 2.0, 1e-5);
   }
@@ -47,9 +47,10 @@ TEST(SeveralWalls, DampingIsTheMeanByHowHardEachIsPressed) {
     return -hand.renderer().update({p, Vec3(0, 0.1, 0)}).force.y / 0.1;
   };
   EXPECT_NEAR(damping_at(mm(0, 0, -2)), 6.0, 1e-6);
-  // The left wall is pressed three times as hard as the right one: 1.5 and 0.5 over sqrt 2 deep.
+  // The left wall is pressed three times as hard as the right one: their depths are 1.5 and 0.5
+  // over sqrt 2.
   EXPECT_NEAR(damping_at(mm(-0.5, 0, -1)), (3.0 * 0.75 + 9.0 * 0.25), 1e-6);
-  // Never the sum.
+  // The damping is never the sum of both.
   EXPECT_LE(damping_at(mm(0.3, 0, -1)), 9.0);
 }
 
@@ -75,7 +76,7 @@ TEST(SeveralWalls, WhatRelaxesAlikeIsHandedOn) {
     // A tick of 1 ms relaxes 0.2 % of the branch's force.
     EXPECT_LT(largest, 0.03) << other;
   }
-  // Another one begins relaxed: nothing comes from nowhere.
+  // A branch with other parameters begins relaxed, so that no energy appears.
   Drive hand(
       sceneOf(blocks(soft, "stiffness: 1000 N/m, maxwell: {stiffness: 9000 N/m, time: 500 ms}")));
   (void)hand.to(mm(-1, 0, 1));

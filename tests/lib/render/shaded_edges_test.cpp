@@ -1,4 +1,5 @@
-// Shaded walls where surfaces end at edges: what is stored has folds there, and gives nothing.
+// Shaded walls where surfaces end at edges: the stored energy has folds there, and no energy is
+// gained.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ namespace {
 void expectNothingGiven(const std::string& what, const ScenePtr& scene, const EnergyLoop& loop) {
   const Vec3 start = mm(0, 0, 40);
   EnergyGiven given = energyGiven(scene, start, loop, 32'000);
-  // Two numbers of steps may be off by the same.
+  // Two step counts may have the same error.
   if (given.work > 1e-9 + given.change) given = energyGivenAtLast(scene, start, loop);
   EXPECT_LE(given.work, 1e-9 + given.change) << what;
 }
@@ -35,8 +36,8 @@ std::string halfSpaceText(const Vec3& normal) {
 }
 
 /// Two boxes that cross, each shaded by its own shape: where the edge between their tops ends at a
-/// face of the one, what the other one's top stores comes into play at once. Counted as a leap of
-/// springs alone it gave up to 0.24 mJ a lap.
+/// face of one, the energy of the other's top is suddenly added. When that was counted like a jump
+/// of springs alone, it gave up to 0.24 mJ a lap.
 TEST(ShadedWalls, WhatComesIntoPlayWhereTheirEdgeEndsIsCounted) {
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
@@ -55,11 +56,11 @@ layers:
   for (int i = 0; i <= 4000; ++i) {
     (void)renderer->update({loop.at(i / 4000.0), Vec3(0.0)});
   }
-  // It does come into play, twice in that lap, as deep as 1.4 mm.
+  // That does happen, twice in this lap, as deep as 1.4 mm.
   EXPECT_GT(renderer->sourceWork(), 1e-4);
 }
 
-/// Boxes of any size and tilt, and loops about where their surfaces cross.
+/// Boxes of any size and tilt, and loops around places where their surfaces cross.
 TEST(ShadedWalls, WhereTwoBoxesCrossGiveNoEnergy) {
   const int scenes = std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 200 : kSanitized ? 2 : 6;
   for (int i = 0; i < scenes; ++i) {
@@ -95,11 +96,11 @@ TEST(ShadedWalls, WhereTwoBoxesCrossGiveNoEnergy) {
   }
 }
 
-/// In a hollow edge the proxy stands still, while beside it the smoothed surface slopes: what is
-/// stored has a fold where the proxy comes into the edge, and the force steps there.
+/// In a hollow edge the proxy stands still, while beside it the smoothed surface slopes: the stored
+/// energy has a fold where the proxy enters the edge, and the force jumps there.
 TEST(ShadedWalls, AHollowEdgeHasAFoldOfWhatTheSmoothedSurfaceSlopesBesideIt) {
   constexpr double kStiffness = 1000.0;  // [N/m]
-  constexpr double kHeld = 0.9;          // of the depth: more of a height is not felt
+  constexpr double kHeld = 0.9;          // of the depth: the limit of the height
   for (const double tilt : {5.0, 15.0, 30.0, 45.0}) {
     const double angle = tilt * std::numbers::pi / 180.0;
     const Vec3 normal(std::sin(angle), 0.0, std::cos(angle));
@@ -120,12 +121,13 @@ TEST(ShadedWalls, AHollowEdgeHasAFoldOfWhatTheSmoothedSurfaceSlopesBesideIt) {
       (void)hand.walk(0.1e-3 * uphill - deep * normal, 0.05e-3);
       const Vec3 beside = hand.walk(1e-9 * uphill - deep * normal, 0.01e-3).force;
       const Vec3 within = hand.walk(-1e-9 * uphill - deep * normal).force;
-      // What is stored changes by the stiffness times what of the depth feels all of the height.
+      // The stored energy changes by the stiffness times the part of the depth at which the full
+      // height counts.
       const double due = kStiffness * (deep - std::fabs(there.value) / kHeld) * slope;
       EXPECT_NEAR(glm::length(beside - within), due, 1e-4 * due) << tilt << " degrees";
       EXPECT_LE(glm::length(beside - within), slope * glm::length(within)) << tilt << " degrees";
-      // From the edge it pushes along the wall, uphill, and from within the edge square to the
-      // wall.
+      // Beside the edge the wall also pushes along itself, uphill; in the edge it pushes only
+      // perpendicular to itself.
       EXPECT_NEAR(glm::dot(beside - within, uphill), due, 1e-4 * due) << tilt << " degrees";
     }
   }

@@ -1,5 +1,5 @@
-// The set-up of a scene reports shading that looks further than its surface is known; the hand
-// feels it all the same.
+// The set-up of a scene reports shading over a larger radius than its surface is known; the hand
+// still feels it.
 
 #include "palpate/render/shading_gap.h"
 
@@ -11,7 +11,7 @@
 namespace palpate::test {
 namespace {
 
-/// A ball that is known as a grid knows it: within `band` of its surface.
+/// A ball that is known only as a grid knows it: within `band` of its surface.
 class BandedBall final : public Field {
  public:
   BandedBall(double radius, double band) : ball_(sphere(Vec3(0.0), radius)), band_(band) {}
@@ -80,8 +80,8 @@ TEST(ShadingGaps, NameTheMaterialAmongOthersThatAreNotShaded) {
 }
 
 TEST(ShadingGaps, ShadingIsFeltAllTheSame) {
-  // A ball seen smoothed is smaller: with a band that is too narrow by a little less or more, never
-  // as if it were off.
+  // Smoothing makes a ball smaller: with a band that is too narrow the effect is slightly smaller
+  // or larger, but it never vanishes.
   for (const double band : {2e-3, 20e-3}) {
     Drive hand(bandedScene(band, 3e-3));
     (void)hand.to(mm(0, 0, 22));

@@ -1,5 +1,5 @@
 #pragma once
-// A hand that does anything, and what must hold whatever it does.
+// A hand that does anything, and the properties that must hold whatever it does.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class Hand {
   Vec3 next() {
     if (--left_ <= 0) {
       left_ = static_cast<int>(random_.uniform(1, 80));
-      speed_ = std::pow(10.0, random_.uniform(-1.3, 1.7)) * 1e-3;  // [m] a tick
+      speed_ = std::pow(10.0, random_.uniform(-1.3, 1.7)) * 1e-3;  // [m] in a tick
       goal_ = random_.in(box_);
       kind_ = static_cast<int>(random_.uniform(0, 4));
     }
@@ -56,7 +56,7 @@ inline bool isAt(const Scene& scene, RegionId region, const Vec3& p, double reac
   return false;
 }
 
-/// Whether the events explain the way from one region to the other where no wall is absent.
+/// Whether the events explain the way from one region to the other, if no wall is absent.
 inline bool isExplained(const Scene& scene, RegionId from, const TickResult& out) {
   std::vector<RegionId> now{from};
   for (int i = 0; i < out.event_count; ++i) {
@@ -79,7 +79,8 @@ struct Bag {
   double stiffness;          ///< [N/m] of all walls, which have no friction and no damping
   int rare = kTicks / 1000;  ///< ticks in which the proxy may still be on its way
   int ticks = kTicks;
-  /// [N] at rest outside, where every wall gives way above a force: the sum of two of them
+  /// [N] largest force at rest outside, if every wall ruptures above a force: the sum of two of
+  /// them
   double most_outside = std::numeric_limits<double>::infinity();
 };
 
@@ -93,7 +94,7 @@ inline void shake(const Bag& bag) {
   int unsettled = 0;
   for (int i = 0; i < bag.ticks; ++i) {
     const Vec3 hip = hand.next();
-    // No velocity: drag has no part in it.
+    // The velocity is zero, so that drag has no part in the force.
     const TickResult out = drive.renderer().update({hip, Vec3(0.0)});
     SCOPED_TRACE(::testing::Message() << bag.name << " tick " << i);
     ASSERT_TRUE(isFinite(out.force));
@@ -116,7 +117,7 @@ inline void shake(const Bag& bag) {
     }
   }
   EXPECT_GT(events, bag.ticks / 500) << bag.name;
-  EXPECT_GT(contacts, bag.ticks / 10) << bag.name;  // enough to mean something
+  EXPECT_GT(contacts, bag.ticks / 10) << bag.name;  // enough to be meaningful
   EXPECT_LE(unsettled, bag.rare) << bag.name;
 }
 

@@ -1,5 +1,5 @@
-// Sheets of a scene file: felt from both sides, never passed, free past their edge; and the paper's
-// renderer, which has none.
+// Sheets of a scene file: felt from both sides, never passed through, with free space beyond their
+// edge; and the paper's renderer, which refuses them.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace palpate::test {
 namespace {
 
-// A disc of 30 mm without thickness in the plane z = 0, of 800 N/m, in the open.
+// A disc of 30 mm without thickness in the plane z = 0, of 800 N/m, in free space.
 const std::string kDisc = R"(
 palpate: 1
 length: mm
@@ -50,17 +50,17 @@ TEST(SceneSheets, AreFeltFromBothSides) {
     (void)hand.walk(mm(3, 4, 10 * side));
     const TickResult pressed = hand.walk(mm(3, 4, -2 * side));
     EXPECT_TRUE(pressed.contact);
-    // 800 N/m, 2 mm deep; flat, so all but rounding.
+    // 800 N/m, 2 mm deep; flat, so exact except for rounding.
     EXPECT_TRUE(isNear(pressed.force, Vec3(0, 0, 1.6 * side), 1e-9));
     EXPECT_EQ(hand.region(), "outside");
   }
 }
 
 TEST(SceneSheets, HoldAtAnySpeed) {
-  // Whole jumps through it, at many phases of the step.
+  // Jumps straight through it, at many phases of the step.
   for (int phase = 0; phase < 200; ++phase) {
     Drive hand(sceneOf(kDisc));
-    const double step = 20.0;  // [mm] a tick: 20 m/s
+    const double step = 20.0;  // [mm] in a tick: 20 m/s
     double z = 50.0 + step * phase / 200.0;
     for (; z > -60.0; z -= step) (void)hand.to(mm(1 + 0.01 * z, 2, z));
     EXPECT_TRUE(hand.last().contact) << phase;
@@ -78,7 +78,7 @@ TEST(SceneSheets, LetGoPastTheirEdge) {
   const TickResult beyond = hand.walk(mm(33, 0, -2));
   EXPECT_FALSE(beyond.contact);
   EXPECT_TRUE(isNear(beyond.proxy, mm(33, 0, -2), 1e-9));
-  // And from below against the other side.
+  // And from below, against the other side.
   const TickResult below = hand.walk(mm(0, 0, 2));
   EXPECT_TRUE(below.contact);
   EXPECT_TRUE(isNear(below.force, Vec3(0, 0, -1.6), 1e-9));
@@ -103,11 +103,11 @@ layers: [{name: floor, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]
   EXPECT_EQ(file.texture.wavelength, 0.008);
   Drive hand(scene);
   (void)hand.walk(mm(0, 0, 5));
-  // A crest in x and y: sin = 1 at a quarter of the wave; z is 0. The proxy stands some nanometers
-  // above the plane, and the wave in z there counts K 2 pi amplitude / wavelength / 3 of that.
+  // A crest in x and y: the sine is 1 at a quarter of the wavelength; z is 0. The proxy stands some
+  // nanometers above the plane, and the wave in z adds K 2 pi amplitude / wavelength / 3 of that.
   EXPECT_NEAR(hand.walk(mm(2, 2, -2)).force.z, 1000 * (0.002 + 0.0003 * 2 / 3), 1e-7);
   EXPECT_NEAR(hand.walk(mm(6, 6, -2)).force.z, 1000 * (0.002 - 0.0003 * 2 / 3), 1e-7);
-  // Never more than half of what a light touch gives.
+  // At most half of the force of a light touch.
   EXPECT_NEAR(hand.walk(mm(2, 2, -0.1)).force.z, 1000 * 0.00015, 1e-9);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// A needle on the straight way down into data/scenes/slab.yaml, in one dimension and by closed
-// forms: what the constraint renderer is held against. Depths in [m] below the skin; nothing here
-// is of the library.
+// A one-dimensional needle on the straight way down into data/scenes/slab.yaml, by closed forms,
+// with which the constraint renderer is compared. Depths in [m] below the skin; no part of the
+// library is used.
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@ namespace palpate::test {
 
 struct SlabTissue {
   double top, bottom;  // [m]
-  double stiffness;    // [N/m] of what the tip presses on before it cuts
+  double stiffness;    // [N/m] that the tip presses against before it cuts
   double cutting;      // [N]
   double shaft;        // [N/m^2]
   double in_static, in_kinetic, in_damping;
@@ -21,14 +21,14 @@ struct SlabTissue {
 
 struct SlabWall {
   double at;          // [m]
-  double a1, a2;      // [N/m], [N/m^2]: pressed d deep it pushes with a1 d + a2 d^2
-  double opens_at;    // [N] at first
-  double reopens_at;  // [N] after that, either way
+  double a1, a2;      // [N/m], [N/m^2]: at depth d the force is a1 d + a2 d^2
+  double opens_at;    // [N] the first time
+  double reopens_at;  // [N] after that, in both directions
   bool open = false;
 };
 
-/// Where the tip is, which walls were pierced, how far was cut, and how each tissue holds the
-/// shaft.
+/// The state: where the tip is, which walls were pierced, how far was cut, and how each tissue
+/// holds the shaft.
 class SlabModel {
  public:
   std::array<SlabTissue, 3> tissues{{
@@ -42,13 +42,13 @@ class SlabModel {
       {0.032, 150.0, 0.0, 0.7, 0.05, false},
   }};
 
-  double tip = -1.0;      // [m] at the hand in air
-  double wall_force = 0;  // [N] upward is positive, as all forces here
+  double tip = -1.0;      // [m] equal to the hand's depth in air
+  double wall_force = 0;  // [N] upward is positive, as for all forces here
   double cut_force = 0;
   double shaft_force = 0;
-  int pierced = 0;  // walls that gave way in the last step
+  int pierced = 0;  // walls that ruptured in the last step
 
-  /// [N] upward, with the hand at `hand` and its velocity `speed` downward.
+  /// [N] upward, for the hand at `hand` and its downward velocity `speed`.
   double step(double hand, double speed) {
     const double before = tip;
     moveTip(hand);
@@ -70,7 +70,8 @@ class SlabModel {
     wall_force = 0.0;
     double from = tip;
     for (;;) {
-      // The first wall between the tip and the hand; a tip on a wall is on the side it came from.
+      // The first wall between the tip and the hand; a tip on a wall is on the side that it came
+      // from.
       int hit = -1;
       const bool down = hand > from;
       for (int i = 0; i < static_cast<int>(walls.size()); ++i) {
@@ -98,7 +99,7 @@ class SlabModel {
     }
   }
 
-  // Karnopp with a spring for what sticks, per length of shaft in the tissue.
+  // Karnopp's friction with a spring while it sticks, per length of shaft in the tissue.
   double shaft(std::size_t i, double tip_before, double speed) {
     const SlabTissue& t = tissues[i];
     const auto length_at = [&](double depth) { return std::clamp(depth, t.top, t.bottom) - t.top; };
@@ -126,7 +127,7 @@ class SlabModel {
     return is * (t.shaft * stretch + damping);
   }
 
-  // The deepest cut of each tissue; the tip presses on what is below it.
+  // The deepest cut of each tissue; the tip presses on the tissue below that.
   double cut() {
     double force = 0.0;
     for (std::size_t i = 0; i < tissues.size(); ++i) {
@@ -145,19 +146,18 @@ class SlabModel {
     }
     return force;
   }
-  // On the wall at the bottom of tissue i, and not through it.
+  // True if the tip is on the wall at the bottom of tissue i, and not through it.
   [[nodiscard]] bool insideLast(std::size_t i) const {
     return static_cast<std::size_t>(side_) == (i == 0 ? 1U : i);
   }
 
-  int side_ = 0;  // walls that lie above the tip
+  int side_ = 0;  // number of walls above the tip
   std::array<double, 3> stretch_{};
   std::array<bool, 3> slides_{};
   std::array<double, 3> end_{};
 };
 
-/// Depths of the hand, tick by tick: down from `from` to `to`, and back, at rest for a while at
-/// both.
+/// Depths of the hand, tick by tick: down from `from` to `to`, and back, with a rest at both.
 inline std::vector<double> thereAndBack(double from, double to, double step, int rest) {
   std::vector<double> out;
   const int n = static_cast<int>(std::lround((to - from) / step));

@@ -1,5 +1,4 @@
-// Where the proxy begins when no leaf's field leads to its region, as a grid's does not out of its
-// band.
+// Where the proxy begins if no leaf's field leads to its region, as with a grid outside its band.
 
 #include <gtest/gtest.h>
 
@@ -9,8 +8,8 @@
 namespace palpate::test {
 namespace {
 
-/// Right in its sign everywhere, and in its value and gradient within `band` [m] of its surface
-/// alone.
+/// A field that has the right sign everywhere, but the right value and gradient only within `band`
+/// [m] of its surface.
 class NarrowBand final : public Field {
  public:
   NarrowBand(FieldPtr whole, double band) : whole_(std::move(whole)), band_(band) {}
@@ -31,7 +30,8 @@ class NarrowBand final : public Field {
   double band_;
 };
 
-/// In the first tick the hand is at `hip`, and the proxy where the region `solid` was found.
+/// Makes the first tick with the hand at `hip`; returns the proxy, the place found in the region
+/// `solid`.
 Vec3 begunAt(const FieldPtr& solid, const Vec3& hip) {
   Drive hand(sceneOfSolid(std::make_shared<NarrowBand>(solid, 1e-3), true));
   const TickResult out = hand.to(hip);
@@ -40,8 +40,8 @@ Vec3 begunAt(const FieldPtr& solid, const Vec3& hip) {
 }
 
 TEST(StartPoint, ARegionWithoutBoundsIsFoundAMeterOff) {
-  // Nine tenths of a meter away, to whatever side: 48 directions leave nothing wider than 25
-  // degrees between them.
+  // Nine tenths of a meter away, in any direction: between the 48 directions of the search there is
+  // no gap wider than 25 degrees.
   for (const Vec3& side : {Vec3(1, -1, 0), Vec3(-1, 1, 0), Vec3(1, 1, 1), Vec3(-1, 1, 1),
                            Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, -1, 0)}) {
     const Vec3 u = glm::normalize(side);
@@ -56,7 +56,7 @@ TEST(StartPoint, ABallIsFoundFromAllSides) {
   constexpr double kRadius = 0.03;
   Random random(2);
   for (int i = 0; i < 50; ++i) {
-    // From two radii off it is 30 degrees wide to each side.
+    // Seen from two radii away, the ball extends 30 degrees to each side.
     const Vec3 hip = center + 2.0 * kRadius * random.direction();
     const Vec3 found = begunAt(sphere(center, kRadius), hip);
     EXPECT_LE(glm::length(found - center), kRadius * (1.0 + 1e-6)) << Judge::text(hip);
@@ -64,7 +64,7 @@ TEST(StartPoint, ABallIsFoundFromAllSides) {
 }
 
 TEST(StartPoint, ABallThatNoLookAroundWouldHitIsFoundByItsField) {
-  // From 300 radii off it is 0.2 degrees wide: what looks about in 48 directions passes it by.
+  // Seen from 300 radii away, it extends 0.2 degrees: a search in 48 directions misses it.
   constexpr double kRadius = 0.2e-3;
   Random random(3);
   for (int i = 0; i < 50; ++i) {

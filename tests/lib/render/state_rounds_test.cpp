@@ -1,5 +1,5 @@
-// The state of every example scene that needs neither scans nor grids, saved and given back at
-// random ticks, to the last bit.
+// The state of every example scene that needs neither scans nor grids, saved and restored at random
+// ticks: all results agree to the last bit.
 
 #include "support/state_rounds.h"
 
@@ -31,7 +31,7 @@ TEST_P(StateRounds, OfTwoRenderersFedInTurnsAreApart) {
 
 std::vector<Case> casesOfAll() {
   std::vector<Case> out;
-  // Those of images are tested with vdb.
+  // Scenes with images are tested with vdb.
   for (const char* scene : {"composite_tube", "container", "crease", "csg", "csg_part", "cup",
                             "fields", "flag", "flank", "heart", "lattice", "lump", "metaballs",
                             "reference", "slab", "sponge", "valve_tube"}) {
@@ -52,7 +52,7 @@ TEST(StateRoundsOfAll, TheStateIsOneValueOfThisSize) {
   std::cout << "sizeof(RendererState): " << sizeof(RendererState) << " bytes\n";
   RecordProperty("bytes", static_cast<int>(sizeof(RendererState)));
   EXPECT_TRUE(std::is_trivially_copyable_v<RendererState>);
-  // What its description says.
+  // The size that its documentation states.
   EXPECT_NEAR(static_cast<double>(sizeof(RendererState)), 24e3, 1.5e3);
 }
 

@@ -1,4 +1,4 @@
-// What content does at its openings, what a tick makes of many crossings, and where a scene starts.
+// How content fades at openings, a tick with many crossings, and where a scene starts.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ TEST(Content, IsFullBehindAValveThatHasShut) {
   ASSERT_EQ(drive.region(), "liquid");
   (void)drive.walk(mm(0, 0, 16), 0.1e-3);  // against the shut valve, 1 mm deep
   ASSERT_EQ(drive.region(), "liquid");
-  const TickResult& out = drive.to(mm(0.1, 0, 16));  // 0.1 m/s along it
+  const TickResult& out = drive.to(mm(0.1, 0, 16));  // 0.1 m/s along the valve
   EXPECT_NEAR(out.force.x, -4.0 * 0.1, 1e-9);
   EXPECT_NEAR(out.force.z, -1500.0 * 1e-3, 1e-6);
 }
@@ -53,8 +53,8 @@ ports: [{name: mouth, between: [outside, liquid], where: gate}]
 }
 
 TEST(Events, NoneOfManyCrossingsIsLost) {
-  // Forty shells in one another, a port between each two: where a tick's list or work is full the
-  // proxy waits for the next.
+  // Forty nested shells, with a port between each two: where a tick's list or budget is full, the
+  // proxy waits for the next tick.
   std::string text = "palpate: 1\nlength: mm\nlayers:\n";
   std::string ports = "ports: [{name: p0, between: [outside, s0]}";
   for (int i = 0; i < 40; ++i) {
@@ -100,7 +100,7 @@ TEST(Start, TheNearestPointOfSimpleRegions) {
 }
 
 TEST(LipschitzDomain, OutsideOfItTheBoundIsNotTrusted) {
-  // A ball whose value grows like the square: the bound of 1 holds within 20 mm only.
+  // A ball whose value is quadratic: the bound of 1 holds only within 20 mm.
   UserFunction function;
   function.value = [](const Vec3& p) { return (glm::dot(p, p) - 1e-4) / 0.04; };
   function.bounds = {Vec3(-0.01), Vec3(0.01)};
@@ -115,7 +115,8 @@ TEST(LipschitzDomain, OutsideOfItTheBoundIsNotTrusted) {
   for (const double from : {0.03, 0.1, 0.5, 3.0}) {
     Drive drive(compile(description));
     (void)drive.to(Vec3(-from, 0.001, 0.0));
-    // Its value at the start, trusted, would clear the way right into it.
+    // If the bound were trusted out there, the value at the start would permit the whole way into
+    // the ball.
     const TickResult& out = drive.to(Vec3(-0.002, 0.001, 0.0));
     EXPECT_EQ(out.region, kOutside) << from;
     EXPECT_TRUE(isNear(out.proxy, 0.01 * glm::normalize(Vec3(-2, 1, 0)), 1e-7)) << from;

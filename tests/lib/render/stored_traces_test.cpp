@@ -1,5 +1,5 @@
-// The example scenes feel as they did when their traces were stored. A change of numbers is to be
-// explained, then stored: PALPATE_REWRITE_TRACES=1 palpate_lib_tests
+// The example scenes feel as they did when their traces were stored. Explain a change of numbers
+// before storing new ones: PALPATE_REWRITE_TRACES=1 palpate_lib_tests
 // --gtest_filter='*StoredTraces*'.
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 const std::string kSource = test::sourceFolder();
 
-/// Those that need neither scans nor grids.
+/// The scenes that need neither scans nor grids.
 const std::vector<std::string>& analyticScenes() {
   static const std::vector<std::string> all = {
       "composite_tube", "container", "crease", "csg",    "csg_part",  "cup",
@@ -25,7 +25,7 @@ const std::vector<std::string>& analyticScenes() {
   return all;
 }
 
-/// gtest's own printer of texts puts them in quotes.
+/// gtest's own printer puts texts in quotes.
 std::string nameOfExample(const ::testing::TestParamInfo<std::string>& example) {
   return example.param;
 }
@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Examples, StoredTraces, ::testing::ValuesIn(analyticSce
                          nameOfExample);
 
 TEST(StoredTracesOfAll, NoExampleIsForgotten) {
-  // The others are of images.
+  // The others use images.
   std::set<std::string> known(analyticScenes().begin(), analyticScenes().end());
   for (const char* other : {"contrast", "five_layers", "head", "needle"}) known.insert(other);
   for (const auto& file : std::filesystem::directory_iterator(kSource + "/data/scenes")) {

@@ -1,4 +1,4 @@
-// Whole scenes turned, mirrored, scaled, moved and sampled otherwise: the same is felt.
+// Whole scenes turned, mirrored, scaled, moved and sampled at another rate feel the same.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ constexpr int kScenes = 80;
 constexpr int kTicks = 250;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-/// The scene as it is, and what a random hand did there.
+/// The original scene, and the trace of a random hand in it.
 struct Trace {
   RandomScene scene;
   ScenePtr compiled;
@@ -30,7 +30,7 @@ std::optional<Trace> traceOf(std::uint64_t number) {
   Trace out;
   out.scene = randomScene(number);
   if (out.scene.is_label_group)
-    return std::nullopt;  // its layers share an image, which is not a file's to move
+    return std::nullopt;  // its layers share an image, which a scene file cannot move
   out.compiled = out.scene.compiled();
   const testing::RegionTree tree(*out.compiled, out.compiled->startRegion());
   const auto start = roomyPoint(tree, number);
@@ -57,13 +57,13 @@ const std::vector<Trace>& traces() {
   return all;
 }
 
-/// How the other scene lies in the world, and how often it is looked at.
+/// The pose of the other scene in the world, and its sampling rate.
 struct Elsewhere {
   RandomSceneOptions options;
   double scale = 1.0;
   Mat3 turn{1.0};
   Vec3 shift{0.0};  ///< [m]
-  int samples = 1;  ///< a tick of the trace is that many of its ticks
+  int samples = 1;  ///< number of its ticks in a tick of the trace
 
   [[nodiscard]] Vec3 of(const Vec3& p) const { return scale * (turn * p) + shift; }
 };
@@ -71,14 +71,14 @@ struct Elsewhere {
 struct Difference {
   long ticks = 0;
   long contacts = 0;
-  long beyond = 0;     ///< the bound, where the oracle knows one end only
-  long forked = 0;     ///< the bound, where it knows several
-  double worst = 0.0;  ///< of the bound, where not forked
+  long beyond = 0;     ///< differences beyond the bound, where the oracle knows only one end
+  long forked = 0;     ///< differences beyond the bound, where it knows several
+  double worst = 0.0;  ///< largest difference over its bound, where not forked
 };
 
-/// Both runs may be off the minimum by 1e-6 of the depth; walls are met to a billionth of their
-/// features, and to rounding of the coordinates, of which a value of a field takes about ten; in a
-/// wedge both grow by 1 / sine.
+/// Each run may be off the minimum by 1e-6 of the depth; walls are met to a billionth of their
+/// feature sizes, and to the rounding of coordinates, of which a field's value has about ten. In a
+/// wedge all of this grows by 1 / sine.
 double boundOf(double on_surface, const Elsewhere& other, double depth, double blunt) {
   const double rounding = 16.0 * kEps * glm::length(other.shift) / other.scale + 16.0 * kEps * 0.05;
   return 2e-6 * depth + (8.0 * on_surface + rounding) / std::max(blunt, 1e-3);
@@ -93,7 +93,7 @@ Difference compare(const Elsewhere& other) {
     const testing::RegionTree there(*compiled, compiled->startRegion());
     const testing::RegionTree tree(*trace.compiled, trace.compiled->startRegion());
     const testing::RestOracle oracle(tree);
-    // A plane has a billionth of 0.1 m for its tolerance, whatever the size of the scene.
+    // A plane's tolerance is a billionth of 0.1 m, whatever the size of the scene.
     const double on_surface = std::max(tree.onSurface(), there.onSurface() / other.scale);
     (void)renderer->update({other.of(trace.path[0]), Vec3(0.0), 1e-3});
     for (std::size_t i = 1; i < trace.path.size(); ++i) {
@@ -113,8 +113,8 @@ Difference compare(const Elsewhere& other) {
         out.worst = std::max(out.worst, off / boundOf(on_surface, other, depth, 1.0));
         continue;
       }
-      // Deep in a wedge, or one of several ends that rounding chose between: then both go on from
-      // different places, and the rest of the trace is not compared.
+      // Either it is deep in a wedge, or rounding chose one of several ends: in that case both go
+      // on from different places, and the rest of the trace is not compared.
       const testing::Rest rest = oracle.solve(trace.ticks[i - 1].proxy, trace.path[i]);
       const double bound = boundOf(on_surface, other, depth, rest.blunt);
       if (off <= bound) continue;

@@ -1,4 +1,4 @@
-// Shells of random solids, a thousandth of a millimeter thin: no hand gets through, slow or fast.
+// Shells of random solids, a thousandth of a millimeter thin: no hand passes through, slow or fast.
 
 #include <gtest/gtest.h>
 
@@ -23,10 +23,10 @@ struct Passage {
 /// [m] Within a nanometer of the surface the side is remembered, not measured.
 constexpr double kOnSide = 1e-9;
 
-/// [m] Where the proxy is: positive outside of the solid, negative in its hollow.
+/// [m] Signed distance of the proxy: positive outside the solid, negative in its hollow.
 using Side = std::function<double(const Vec3&)>;
 
-/// Flies about the solid at `speed` [m/s], at rest now and then; true if the proxy came to the
+/// Flies around the solid at `speed` [m/s], with rests now and then; true if the proxy came to the
 /// other side.
 bool crosses(const ScenePtr& scene, const Side& side, const Vec3& start, double speed,
              double thickness, std::uint64_t seed, int ticks, long& contacts) {
@@ -70,7 +70,7 @@ Passage feelShells(double thickness_mm, double speed, int scenes, int ticks, std
     const testing::RegionTree tree(*compiled, kOutside);
     const auto start = roomyPoint(tree, number);
     if (!start) continue;
-    // What the shell is the skin of: positive outside, negative in the hollow.
+    // The solid whose surface the shell covers: positive outside, negative in the hollow.
     const FieldPtr solid = randomScene(number, hollow).solid();
     const Side side = [&](const Vec3& p) { return solid->value(p); };
     ++out.scenes;
@@ -96,7 +96,7 @@ TEST(ThinCsgShells, OneMicrometerFast) { expectNonePasses(1e-3, 5.0, 60); }
 TEST(ThinCsgShells, ATenthOfAMillimeterFast) { expectNonePasses(0.1, 5.0, 60); }
 
 TEST(ThinCsgShells, HollowToriFast) {
-  // Thin everywhere, and hollow all around.
+  // The shell must be thin everywhere, and enclose a hollow.
   int crossed = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed);

@@ -1,4 +1,4 @@
-// Three curved walls at a point: the hand pressed into their corner is held there by one steady
+// Three curved walls at a point: a hand pressed into their corner is held there by one steady
 // force.
 
 #include <gtest/gtest.h>
@@ -15,15 +15,15 @@
 namespace palpate::test {
 namespace {
 
-constexpr double kTick = 0.05e-3;  // [m] that the hand goes in a tick
+constexpr double kTick = 0.05e-3;  // [m] way of the hand in a tick
 
-/// What is seen of a hand that is pressed to `goal` and held there, where `corner` is the point
+/// Observations of a hand that is pressed to `goal` and held there, where `corner` is the point
 /// that holds it.
 struct Held {
-  double worst_proxy = 0.0;  ///< [m] off the corner, at rest
-  double worst_force = 0.0;  ///< [N] off K (corner - P), at rest
+  double worst_proxy = 0.0;  ///< [m] distance from the corner, at rest
+  double worst_force = 0.0;  ///< [N] difference from K (corner - P), at rest
   double largest_step =
-      0.0;  ///< [N] from tick to tick on the way in, beyond what the hand's way makes
+      0.0;  ///< [N] largest change between ticks on the way in, beyond that due to the hand's way
   int without_contact = 0;
 };
 
@@ -39,7 +39,7 @@ Held press(Drive& drive, const Vec3& from, const Vec3& goal, const Vec3& corner,
   const Vec3 right = kDefaultK * (corner - goal);
   for (int i = 0; i < held_ticks; ++i) {
     const TickResult& now = drive.to(goal);
-    if (i < 5) continue;  // what is left of the way may take a few ticks
+    if (i < 5) continue;  // the rest of the way may take a few ticks
     out.worst_proxy = std::max(out.worst_proxy, glm::length(now.proxy - corner));
     out.worst_force = std::max(out.worst_force, glm::length(now.force - right));
     out.without_contact += now.contact ? 0 : 1;
@@ -47,20 +47,20 @@ Held press(Drive& drive, const Vec3& from, const Vec3& goal, const Vec3& corner,
   return out;
 }
 
-/// At rest within 1e-6 of the depth, and what walls that are rounded by a billionth of 20 mm leave.
+/// At rest to 1e-6 of the depth, plus the rounding of walls at a billionth of 20 mm.
 void expectSteady(const Held& held, double depth) {
   EXPECT_LE(held.worst_proxy, 1e-6 * depth);
   EXPECT_LE(held.worst_force, 1e-6 * kDefaultK * depth);
   EXPECT_EQ(held.without_contact, 0);
 }
 
-/// Presses that did not end as they should.
+/// Presses that did not end correctly.
 struct Tally {
   int pressed = 0;
   int wrong =
       0;  ///< not at rest after 30 ticks, or its force is not K (x - P), or it reports no contact
   int unsteady = 0;  ///< the force changes by 1 mN in the next 30
-  int first = 0;     ///< which one was wrong first
+  int first = 0;     ///< index of the first wrong one
 
   void expectNone() const {
     EXPECT_EQ(wrong, 0) << "of " << pressed << ", the first: " << first;
@@ -68,8 +68,8 @@ struct Tally {
   }
 };
 
-/// The hand goes straight to `goal` and stays. It may have come to rest elsewhere than meant;
-/// wherever that is, it rests, which an oracle tells.
+/// The hand goes straight to `goal` and stays. The proxy may have come to rest elsewhere than
+/// intended; wherever that is, an oracle confirms that it rests.
 void pressAndJudge(const ScenePtr& scene, const testing::RegionTree& tree, const Vec3& from,
                    const Vec3& goal, Tally& tally) {
   const testing::RestOracle oracle(tree);
@@ -101,7 +101,7 @@ const Vec3& ballsCorner() {
   return corner;
 }
 
-/// Away from all that is allowed at that corner, each wall with its weight.
+/// A direction away from everything permitted at that corner, with a weight for each wall.
 Vec3 intoBallsCorner(double first, double second, double third) {
   const Vec3& c = ballsCorner();
   return glm::normalize(first * c / 0.020 - second * (c - mm(20, 0, 0)) / 0.015 -
@@ -119,8 +119,8 @@ layers:
   - {name: third, inside: {sphere: {center: [10, 18, 0], radius: 12}}, wall: wall}
 start: {region: first}
 )");
-  // Straight from the first ball's middle, so that the other two walls hold with no force of their
-  // own; and leaning to each of them.
+  // Straight from the first ball's middle, so that the other two walls exert no force; and tilted
+  // towards each of them.
   for (const Vec3& weights :
        {Vec3(1, 0, 0), Vec3(1, 0.02, 0.02), Vec3(1, 0.3, 0.1), Vec3(1, 0.1, 0.3), Vec3(1, 1, 1)}) {
     SCOPED_TRACE(::testing::Message() << "weights " << Judge::text(weights));
@@ -135,8 +135,8 @@ start: {region: first}
 }
 
 TEST(ThreeWalls, ThreeBallsAreMetFromAllSides) {
-  // Not straight into the corner: along one wall or two of them, so that the proxy slides to where
-  // the third is.
+  // Not straight into the corner: along one or two walls, so that the proxy slides to the third
+  // one.
   const ScenePtr scene = sceneOf(R"(
 palpate: 1
 length: mm
@@ -171,11 +171,11 @@ TEST(ThreeWalls, ABallMinusTwoBallsWithTheHandDeadStill) {
   EXPECT_NEAR(glm::length(drive.last().force), 3.0, 3e-6);
 }
 
-/// Three balls through the origin, each felt from within (its center is on the allowed side) or
+/// Three balls through the origin, each felt from inside (its center is on the permitted side) or
 /// from outside.
 struct Corner {
-  FieldPtr solid;               ///< what the hand is within
-  std::array<Vec3, 3> normals;  ///< [-] to where it is allowed
+  FieldPtr solid;               ///< the solid that the hand is in
+  std::array<Vec3, 3> normals;  ///< [-] towards the permitted side
 };
 
 Corner randomCorner(Random& random, int hollow) {
@@ -190,7 +190,7 @@ Corner randomCorner(Random& random, int hollow) {
     parts.push_back(i < hollow ? sphere(radius * n, radius)
                                : complement(sphere(-radius * n, radius)));
   }
-  // Within something, so that the solid has bounds.
+  // Inside a larger ball, so that the solid has bounds.
   parts.push_back(sphere(Vec3(0.0), 0.2));
   out.solid = intersect(parts);
   return out;

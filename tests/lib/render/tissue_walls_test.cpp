@@ -1,4 +1,4 @@
-// Walls whose springs are curved or relax, and friction that is what its name says, at every tick
+// Walls with nonlinear or relaxing springs, and friction that agrees with its ratio, at every tick
 // rate.
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ materials: {m: {stiffness: 300 N/m, curve: {exponent: 2, reference: 2 mm, stiffe
 layers: [{name: ball, inside: {sphere: {center: [0, 0, 0], radius: 30}}, wall: m}]
 )"));
   EnergyMeter meter;
-  // In, round at another depth, out, and back through the air: a closed way.
+  // In, sideways at another depth, out, and back through the air: a closed path.
   double lowest = 0.0;
   const auto go = [&](double r0, double r1, double a0, double a1) {
     constexpr int kTicks = 4000;
@@ -56,7 +56,7 @@ layers: [{name: ball, inside: {sphere: {center: [0, 0, 0], radius: 30}}, wall: m
   go(26, 28, 0.0, 1.0);
   go(28, 32, 1.0, 1.0);
   EXPECT_LT(lowest, -2e-3);
-  // A force held for a tick: half of its change times the way, on 6 mm in 4000 ticks of some 1000
+  // A force held for a tick gives half of its change times the way: 6 mm in 4000 ticks at some 1000
   // N/m.
   EXPECT_NEAR(meter.work(), 0.0, 2e-5);
 }
@@ -78,14 +78,14 @@ TEST(TissueWalls, AMaxwellBranchIsARampAndARelaxation) {
     EXPECT_NEAR(hand.to(Vec3(0.0, 0.0, z)).force.z,
                 -500.0 * z + held * std::exp(-i * Drive::kTick / 0.02), 1e-9);
   }
-  // Drawn back quickly it does not hold on to the hand.
+  // Drawn back quickly, the wall does not hold on to the hand.
   for (double up = z; up < 0.5e-3; up += 0.2e-3) {
     EXPECT_GE(hand.to(Vec3(0.0, 0.0, up)).force.z, 0.0);
   }
 }
 
-// Lifted fast, the branch slackens where it would pull as hard as the wall's own spring pushes: it
-// takes up from there.
+// When the hand is lifted fast, the branch slackens where it would pull as hard as the wall's own
+// spring pushes; from there on it acts again.
 TEST(TissueWalls, AMaxwellBranchSlackensRatherThanPull) {
   constexpr double kOwn = 500.0;      // [N/m]
   constexpr double kBranch = 2000.0;  // [N/m]
@@ -96,10 +96,10 @@ TEST(TissueWalls, AMaxwellBranchSlackensRatherThanPull) {
   };
   (void)press(-1e-3, 1e-3);
   (void)press(2e-3, 1e-3);
-  // Relaxed: its dashpot gave way by all of the depth.
+  // Relaxed: its dashpot has given way by the whole depth.
   EXPECT_NEAR(press(2e-3, 1e6), kOwn * 2e-3, 1e-9);
   EXPECT_NEAR(press(0.1e-3, 1e-6), 0.0, 1e-9);
-  // From where both were in balance, kBranch x -0.025 mm, by 0.9 mm.
+  // From the state where both were in balance, kBranch x -0.025 mm, by 0.9 mm.
   EXPECT_NEAR(press(1e-3, 1e-6), kOwn * 1e-3 + kBranch * (0.9e-3 - kOwn * 0.1e-3 / kBranch), 1e-6);
 }
 
@@ -137,15 +137,14 @@ TEST(TissueWalls, AFrictionRatioIsTheRatioAtEveryRate) {
         highest = std::max(highest, -r.force.x / r.force.z);
       }
       EXPECT_NEAR(-r.force.x / r.force.z, 0.3, 1e-6) << dt << spring;
-      // It breaks away at the static ratio, seen to within a tick's way.
+      // It breaks away at the static ratio, measured to within a tick's way.
       EXPECT_NEAR(highest, 0.5, speed * dt / depth + 1e-6) << dt << spring;
       EXPECT_LE(highest, 0.5 + 1e-6);
     }
   }
 }
 
-// The same motion asks for the same force, however often a second it is asked for: nothing in it is
-// an impulse.
+// The same motion gives the same force at any tick rate: nothing in it is an impulse.
 TEST(TissueWalls, TheForceOfAMotionDoesNotDependOnTheTick) {
   const ScenePtr scene = sceneNamed("slab");
   const auto run = [&](double dt) {
@@ -167,7 +166,7 @@ TEST(TissueWalls, TheForceOfAMotionDoesNotDependOnTheTick) {
   for (std::size_t i = 0; i < coarse.size(); ++i) {
     if (glm::distance(coarse[i], fine[i]) > 1e-9) ++differ;
   }
-  // Only right after a puncture, whose tick is found to within a tick.
+  // They differ only right after a puncture, whose time is known only to within a tick.
   EXPECT_LE(differ, 3);
 }
 

@@ -1,4 +1,5 @@
-// A wall whose stiffness differs from place to place gives back what it was given, and no more.
+// A wall whose stiffness differs from place to place gives back the energy that it was given, and
+// no more.
 
 #include <cmath>
 #include <numbers>
@@ -15,7 +16,7 @@ namespace {
 
 using testing::FunctionMap;
 
-/// 600 N/m, and 300 N/m up and down over some centimeters, along all axes.
+/// 600 N/m, varying by 300 N/m over some centimeters along all axes.
 MaterialMapPtr hills() {
   return std::make_shared<FunctionMap>(
       [](const Vec3& p) {
@@ -57,12 +58,12 @@ ScenePtr sceneOf(const Shape& shape, const Parameter& stiffness, const Friction&
 }
 
 struct Loop {
-  double corrected = 0.0;  ///< [J] work on the hand over the closed way, of the force felt
-  double plain = 0.0;      ///< [J] the same of the spring alone, stiffness * (proxy - hip)
-  double stored = 0.0;     ///< [J] most that the spring held on the way
+  double corrected = 0.0;  ///< [J] work of the actual force on the hand over the closed path
+  double plain = 0.0;      ///< [J] the same for the spring alone, stiffness * (proxy - hip)
+  double stored = 0.0;     ///< [J] largest energy of the spring on the way
 };
 
-/// Work by the trapezium rule: its own error falls with the square of the step.
+/// Work by the trapezoidal rule: its error falls with the square of the step.
 Loop goRound(const Shape& shape, const MaterialMapPtr& map, const Friction& friction, int ticks) {
   Drive hand(sceneOf(shape, map, friction));
   Loop loop;
@@ -114,7 +115,7 @@ std::vector<Shape> shapes() {
          return r * Vec3(std::cos(a) * std::cos(0.4 * std::sin(a)),
                          std::sin(a) * std::cos(0.4 * std::sin(a)), std::sin(0.4 * std::sin(a)));
        }},
-      {"groove",  // two walls of one stiffness hold the proxy in an edge, between the walls alone
+      {"groove",  // two walls of the same stiffness hold the proxy in their edge
        {halfSpace(Vec3(0.0), glm::normalize(Vec3(0.8, 0, 1))),
         halfSpace(Vec3(0.0), glm::normalize(Vec3(-0.9, 0, 1)))},
        "outside",
@@ -132,11 +133,12 @@ TEST(VaryingStiffness, AClosedWayCostsAndGivesNothing) {
     const Loop coarse = goRound(shape, map, {}, 4000);
     const Loop fine = goRound(shape, map, {}, 16000);
     EXPECT_GT(fine.stored, 2e-4);
-    // Without the term the way gives or takes energy, and a finer trace changes nothing of it.
+    // Without the gradient term the path gives or takes energy, and a finer trace does not change
+    // that.
     EXPECT_GT(std::fabs(fine.plain), 0.02 * fine.stored);
     EXPECT_NEAR(coarse.plain, fine.plain, 0.02 * std::fabs(fine.plain));
-    // With it only what the sum over ticks leaves: less than 1e-5 of what was stored, and 4 x 4
-    // times less for steps 4 times shorter where nothing but the rule's error is left.
+    // With it, only the error of the sum over ticks is left: less than 1e-5 of the stored energy,
+    // and 4 x 4 times less for steps 4 times shorter where the rule's error is the only one.
     EXPECT_LT(std::fabs(fine.corrected), 1e-5 * fine.stored);
     EXPECT_LT(std::fabs(fine.corrected), 1e-3 * std::fabs(fine.plain));
   }
@@ -152,8 +154,8 @@ TEST(VaryingStiffness, FrictionOnlyTakes) {
 }
 
 TEST(VaryingStiffness, StickingAndSlidingPassIntoEachOtherWithoutAStep) {
-  // A plane, 2 mm deep: 5e4 N/m per m lean with 0.1 N. To and fro, it sticks at every turn and
-  // slides between.
+  // A plane, 2 mm deep: a gradient of 5e4 N/m per m pulls with 0.1 N. Drawn back and forth, the
+  // proxy sticks at every turn and slides in between.
   const MaterialMapPtr map = testing::linearMap(1000.0, {5e4, 0, 0}, {100.0, 1900.0});
   Drive hand(sceneOf(shapes()[0], map, {0.1, 0.1}));
   (void)hand.to({0.0, 0.0, 0.001});
@@ -173,13 +175,13 @@ TEST(VaryingStiffness, StickingAndSlidingPassIntoEachOtherWithoutAStep) {
   }
   EXPECT_GT(stuck, 2000);
   EXPECT_GT(slid, 2000);
-  // One stride on a spring of at most 1150 N/m, and the height's part of it.
+  // One stride on a spring of at most 1150 N/m, plus the height's part of it.
   EXPECT_LT(worst, 1.2 * 1150.0 * stride);
 }
 
 TEST(VaryingStiffness, WithFrictionTheLeanIsFeltThroughTheLag) {
-  // Drawn up and down the slope of the stiffness, the friction that is felt is the cone's about the
-  // lean: its mean over both ways is that of a wall without friction.
+  // Drawn up and down the gradient of the stiffness, the friction is that of the cone centered on
+  // the frictionless rest: its mean over both directions is the force of a wall without friction.
   const double depth = 2e-3;
   const double slope = 2e4;
   const MaterialMapPtr map = testing::linearMap(1000.0, {slope, 0, 0}, {100.0, 1900.0});
@@ -190,7 +192,7 @@ TEST(VaryingStiffness, WithFrictionTheLeanIsFeltThroughTheLag) {
     (void)hand.to({-way * 2e-3, 0.0, -depth});
     TickResult out;
     for (int i = 0; i <= 1000; ++i) out = hand.to({way * (-2e-3 + 2e-6 * i), 0.0, -depth});
-    // The proxy lags behind the hand by 0.2 mm on either way.
+    // The proxy lags behind the hand by 0.2 mm in both directions.
     sum += out.force.x;
     EXPECT_NEAR(std::fabs(out.force.x), 0.2, 0.05);
   }
@@ -207,8 +209,8 @@ TEST(VaryingStiffness, TheTermIsHalfTheSquareOfTheDepthTimesTheSlope) {
 }
 
 TEST(VaryingStiffness, GradientByHandFollowsTheClosestPoint) {
-  // Of f = v . x, x the closest point of a ball of radius R to the hand at R - d from its middle,
-  // along the surface: v R / (R - d) outside it, R / (R + d) from within.
+  // For f = v . x, with x the closest point of a ball of radius R to the hand at R - d from its
+  // middle, along the surface: v R / (R - d) outside it, R / (R + d) from inside.
   const FieldPtr ball = sphere(Vec3(0.0), 0.02);
   const Vec3 x(0.02, 0, 0);
   const Vec3 v(3.0, 1.0, -2.0);

@@ -1,4 +1,5 @@
-// Published renderers, each with one property or figure that its publication or a derivation gives.
+// Published renderers, each with one property or figure that its publication or a derivation
+// states.
 
 #include "support/rivals/rivals.h"
 
@@ -56,7 +57,7 @@ TEST(ClosestPoint, APlateHoldsHalfItsThicknessAndThenPushesOn) {
       EXPECT_NEAR(force, -kSpring * (0.5e-3 + z), 1e-9);
     }
   }
-  // 1 mm, 1000 N/m: 0.5 N, and it is through.
+  // 1 mm, 1000 N/m: 0.5 N at the most, and then the hand is through.
   EXPECT_NEAR(most, 0.5, 1e-3);
 }
 
@@ -79,8 +80,9 @@ TEST(PotentialField, WhereTwoSolidsOverlapTheStiffnessDoubles) {
 }
 
 TEST(TangentTracking, LagsOnASphereAsDerived) {
-  // The contact point keeps an angle a behind the probe with a' = a (1 - 1 / (1 - kd)) + v T / (R -
-  // d) at rest: a = (v T / (R - d)) kd / (1 - kd), k = 1 / R; and behind by the sign of the step.
+  // The contact point lags behind the probe by an angle a with a' = a (1 - 1 / (1 - kd)) + v T / (R
+  // - d); at rest a = (v T / (R - d)) kd / (1 - kd), k = 1 / R; it is behind in the direction of
+  // the step.
   constexpr double kRadius = 0.05;
   const ScenePtr scene = sceneOf(ball(50.0));
   for (const auto& [depth, degrees] : {std::pair(1e-3, 0.0048), {25e-3, 0.458}}) {
@@ -94,14 +96,14 @@ TEST(TangentTracking, LagsOnASphereAsDerived) {
       const Vec3 p = r * Vec3(std::sin(step * k), 0.0, std::cos(step * k));
       off = angleBetween(tick(*renderer, p).proxy, p);
     }
-    // Of second order in the step.
+    // Errors of second order in the step.
     EXPECT_NEAR(off, expected, 0.01 * expected);
   }
 }
 
 TEST(TangentTracking, BuzzesInAHollowThatIsPressedDeeperThanItsRadius) {
-  // From within a ball, d beyond its wall: a -> a - atan((1 + kd) sin a), so above kd = 1 it swings
-  // between +a and -a with 2 cos a / cos 2a = 1 + kd.
+  // From inside a ball, d beyond its wall: a -> a - atan((1 + kd) sin a), so for kd above 1 it
+  // oscillates between +a and -a with 2 cos a / cos 2a = 1 + kd.
   constexpr double kRadius = 0.02;
   const ScenePtr scene =
       compile(parseScene("palpate: 1\nlength: mm\nmaterials:\n  wall: {stiffness: 1000 "
@@ -137,9 +139,9 @@ TriangleMesh foldOf(double fold) {
 }
 
 TEST(GodObject, AConvexFoldCostsEnergyAndJumps) {
-  // Face A lets go at the edge, face B at d tan(phi) before it: between them the force is that of
-  // the face come from. Directions differ by phi, lengths are K d and, at the edge, K d cos(phi); a
-  // loop loses K d^2 (sin^2 + tan^2)(phi) / 2.
+  // Face A releases the proxy at the edge, face B at d tan(phi) before it: between them the force
+  // is that of the face it came from. Directions differ by phi, lengths are K d and, at the edge, K
+  // d cos(phi); a loop loses K d^2 (sin^2 + tan^2)(phi) / 2.
   constexpr double kFold = 15.0 * kDegree;
   constexpr double kDepth = 1e-3;
   const auto renderer = godObject(sceneOf(ball(5.0)), foldOf(kFold));
@@ -174,12 +176,12 @@ TEST(GodObject, AConvexFoldCostsEnergyAndJumps) {
   const double t = std::tan(kFold);
   const double lost = 0.5 * kSpring * kDepth * kDepth * (s * s + t * t);
   EXPECT_NEAR(lost, 0.0694e-3, 0.0001e-3);
-  // Two steps of the force are held for a tick each.
+  // The two jumps of the force are each held for a tick.
   EXPECT_NEAR(meter.work(), -lost, 5e-7);
 }
 
 TEST(GodObject, ThreeFacetsHoldItInACorner) {
-  // The inside of a corner of a room, of three facets; the hand far behind all of them.
+  // The inside corner of a room, of three facets; the hand is far behind all of them.
   TriangleMesh mesh;
   mesh.points = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
   mesh.normals.assign(4, Vec3(1.0, 0.0, 0.0));
@@ -192,10 +194,10 @@ TEST(GodObject, ThreeFacetsHoldItInACorner) {
 }
 
 TEST(ForceShading, AStrokeAcrossAFacetGivesEnergyAndTheWayBackTakesIt) {
-  // The interpolated normal of a facet leans by x / R at x. At rest the proxy q is where the plane
-  // through it with that normal has the hand's foot: q - h = d tan(q / R). In at h = 0, a stroke,
-  // and out: the force along it, K d tan(q / R), has W = K d R ln(1 / cos a) - K d^2 tan^2(a) / 2
-  // between a = 0 and a = q / R.
+  // The interpolated normal of a facet is tilted by x / R at x. At rest, the proxy q is where the
+  // plane through it with that normal contains the hand's foot: q - h = d tan(q / R). In at h = 0,
+  // a stroke, and out: the force along it, K d tan(q / R), does the work W = K d R ln(1 / cos a) -
+  // K d^2 tan^2(a) / 2 between a = 0 and a = q / R.
   constexpr double kRadius = 0.05;
   constexpr double kLength = 0.01;
   constexpr double kDepth = 2e-3;
@@ -220,22 +222,22 @@ TEST(ForceShading, AStrokeAcrossAFacetGivesEnergyAndTheWayBackTakesIt) {
         meter.add(p, tick(*renderer, p).force);
       }
     };
-    // The facet begins at 0: a hair within.
+    // The facet begins at 0, so begin slightly inside.
     const Vec3 begin(forward ? 1e-6 : 5e-3, 0.01, 1e-5);
     const Vec3 end(forward ? 5e-3 : 1e-6, 0.01, 1e-5);
     const Vec3 down(0.0, 0.0, -kDepth - 1e-5);
     go(begin, begin + down);
     go(begin + down, end + down);
     go(end + down, end);
-    // The normal is interpolated along a chord, not along the arc: 0.3 %; and forces are held for a
-    // tick.
+    // The normal is interpolated along a chord, not along the arc (0.3 %), and forces are held for
+    // a tick.
     EXPECT_NEAR(meter.work(), forward ? expected : -expected, 0.01 * expected) << forward;
   }
 }
 
 TEST(SlowPlane, StepsByTheAngleThatTheHandWentInAPeriod) {
-  // On a ball at depth d, phi = v T_s / (R - d) from plane to plane: from d' = R - (R - d)
-  // cos(phi') deep in the old one, a tick before the new one comes, to d in the new one.
+  // On a ball at depth d, phi = v T_s / (R - d) between planes: the depth changes from d' = R - (R
+  // - d) cos(phi') in the old plane, a tick before the new one comes, to d in the new one.
   constexpr double kRadius = 0.02;
   constexpr double kDepth = 1e-3;
   const ScenePtr scene = sceneOf(ball(20.0));
@@ -290,8 +292,8 @@ TEST(Rivals, AllHoldOnASphereAndAreFreeBesideIt) {
       force = tick(*renderer, Vec3(0.0, 0.0, 0.021 - 3e-6 * k)).force;
     }
     EXPECT_EQ(guard.violations(), 0) << name;
-    // Facets of 1 mm on 20 mm lie up to 1 mm^2 / (4 R) inside; voxels say their depth to a few
-    // hundredths of one.
+    // Facets of 1 mm on 20 mm are up to 1 mm^2 / (4 R) inside the surface; voxels report their
+    // depth to a few hundredths of a voxel.
     EXPECT_NEAR(force.z, 2.0, 0.06) << name;
     EXPECT_LT(angleBetween(force, Vec3(0.0, 0.0, 1.0)), 0.06) << name;
     renderer->reset();
@@ -310,7 +312,7 @@ TEST(TriangleMesh, IsClosedAndOnTheSurface) {
     volume += glm::dot(mesh.points[t[0]], glm::cross(mesh.points[t[1]], mesh.points[t[2]])) / 6.0;
   }
   for (const Vec3& p : mesh.points) EXPECT_NEAR(field->value(p), 0.0, 1e-12);
-  // Chords of 2 mm cut off a little of the ball.
+  // Chords of 2 mm cut off a small part of the ball.
   const double whole = 4.0 / 3.0 * std::numbers::pi * 8e-6;
   EXPECT_LT(volume, whole);
   EXPECT_GT(volume, 0.99 * whole);

@@ -16,13 +16,13 @@ struct Spread {
   double most = 0.0;  ///< [degree]
 };
 
-/// [degree] A gradient of zero says nothing of the direction: 90.
+/// [degree] The angle; 90 for a zero gradient, which has no direction.
 double angleOf(const Vec3& g, const Vec3& n) {
   if (g == Vec3(0.0)) return 90.0;
   return std::atan2(glm::length(glm::cross(g, n)), glm::dot(g, n)) * 180.0 / std::numbers::pi;
 }
 
-/// Angles between the gradient and the normal of flat surfaces of random directions, at random
+/// Angles between the gradient and the normal of flat surfaces with random directions, at random
 /// places on them.
 Spread anglesOf(double ramp, Voxels::Gradient gradient) {
   std::mt19937 random(5);
@@ -51,8 +51,8 @@ Spread anglesOf(double ramp, Voxels::Gradient gradient) {
   return out;
 }
 
-/// [degree] rms of central differences, without a grid: with the nearest voxel r from a point of
-/// the plane (even in a unit cube), axis i has a step if |n . r| < |n_i|.
+/// [degree] rms error of central differences, computed without a grid: with the nearest voxel r
+/// from a point of the plane (uniform in a unit cube), axis i has a step if |n . r| < |n_i|.
 double centralByFormula() {
   std::mt19937 random(6);
   std::normal_distribution<double> any(0.0, 1.0);
@@ -79,14 +79,14 @@ TEST(VoxelGrid, DirectionsAreOffAsMuchAsTheGradientSees) {
   const Spread sobel = anglesOf(0.0, Voxels::Gradient::kSobel);
   const Spread ramp = anglesOf(2.0, Voxels::Gradient::kInterpolated);
   const Spread wide = anglesOf(4.0, Voxels::Gradient::kCentral);
-  // 2000 random directions: the rms of angles that spread by some 10 degrees is sure to 0.3 or so.
+  // 2000 random directions: the rms of angles that spread by some 10 degrees is accurate to about
+  // 0.3.
   EXPECT_NEAR(central.rms, centralByFormula(), 0.5);
-  // The others as a simulation that was written apart from this one has them: 13 to 14, 8.5
-  // and 2.3.
+  // The others agree with a separately written simulation: 13 to 14, 8.5 and 2.3.
   EXPECT_NEAR(interpolated.rms, 14.0, 1.0);
   EXPECT_NEAR(sobel.rms, 8.3, 0.5);
   EXPECT_NEAR(ramp.rms, 2.3, 0.2);
-  // All that central differences see is within the ramp; values are 32-bit floats.
+  // All samples of the central differences are within the ramp; values are 32-bit floats.
   EXPECT_LT(wide.most, 1e-4);
 }
 

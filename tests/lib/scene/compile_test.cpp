@@ -1,4 +1,4 @@
-// What compile() refuses, and what it makes of the rest: walls, reachability, shared labels.
+// What compile() refuses, and the result of what it accepts: walls, reachability, shared labels.
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ struct Refused {
   const char* told;  ///< part of the message or hint
 };
 
-// A scene file refuses these where they stand; a description from code has no place.
+// A scene file is refused with the place of such a value; a description from code has no place.
 TEST(Compile, RefusesTexturesThatAreTooSteep) {
   const auto code = [](const Texture& texture) {
     SceneDescription description = onion();
@@ -247,7 +247,7 @@ TEST(Compile, TouchAndReachability) {
 }
 
 TEST(Compile, APortMayLeadInFromSeveralRegions) {
-  // Beside one another on the x axis: a, b and c; b touches both, and outside.
+  // Side by side on the x axis: a, b and c; b touches both, and outside.
   SceneDescription s;
   s.layers = {layer("a", ball(0, 0.5)), layer("c", ball(1.6, 0.5)), layer("b", ball(0.8, 0.5))};
   s.ports = {port("in", "a, c", "b"), port("all", "a, o*", "b, c")};
@@ -255,7 +255,7 @@ TEST(Compile, APortMayLeadInFromSeveralRegions) {
   EXPECT_EQ(scene->ports()[0].from, (std::vector<RegionId>{1, 2}));
   EXPECT_EQ(scene->ports()[1].from, (std::vector<RegionId>{0, 1}));
   EXPECT_EQ(scene->ports()[1].to, (std::vector<RegionId>{2, 3}));
-  // One pair that touches is enough, but each must be there.
+  // One pair that touches is sufficient, but each name must exist.
   s.ports = {port("in", "a, b", "c")};
   EXPECT_NO_THROW((void)compile(s));
   s.ports = {port("in", "a, d", "b")};
@@ -275,7 +275,7 @@ TEST(Compile, SmallAndThinNeighborsAreStillFound) {
   for (const Region& region : scene->regions()) EXPECT_TRUE(region.has_seed) << region.name;
 }
 
-/// A half-space that counts how often it is asked.
+/// A half-space that counts its evaluations.
 class CountedHalfSpace final : public Field {
  public:
   CountedHalfSpace(const Vec3& point, const Vec3& normal, std::size_t& asked)
@@ -299,7 +299,8 @@ class CountedHalfSpace final : public Field {
 };
 
 TEST(Compile, ManyThinSlabsAreLookedThroughWithoutAskingEveryFaceEverywhere) {
-  // A stack of 40 slabs of 0.5 mm, a millimeter apart, in a block; each slab has faces without end.
+  // A stack of 40 slabs of 0.5 mm, a millimeter apart, in a block; the faces of each slab are
+  // unbounded planes.
   constexpr int kSlabs = 40;
   std::size_t asked = 0;
   const auto face = [&](double x, double to) {
@@ -322,8 +323,8 @@ TEST(Compile, ManyThinSlabsAreLookedThroughWithoutAskingEveryFaceEverywhere) {
     for (RegionId b = 2; b < a; ++b) EXPECT_FALSE(scene->touches(a, b));
   }
   EXPECT_TRUE(scene->touches(kOutside, 1));
-  // Some 8000 lines of 128 steps; all 80 faces at each would be 80 million, and as many at the
-  // halvings.
+  // Some 8000 lines of 128 steps; evaluating all 80 faces at each would be 80 million, and as many
+  // again while bisecting.
   EXPECT_LT(asked, 16'000'000U);
 }
 
@@ -370,7 +371,7 @@ TEST(LabelGroup, PointsGoToTheSmallestFieldWithNoGapAndNoOverlap) {
     shared += (values[0] < 0.0) + (values[1] < 0.0) + (values[2] < 0.0) > 1 ? 1 : 0;
   }
   EXPECT_GT(shared, 500);
-  // At the wall between a and b each field is the other's negative, value and slope.
+  // At the wall between a and b each field is the other's negative, in value and gradient.
   const Field& own = *scene->regions()[1].field;
   const Field& other = *scene->regions()[2].field;
   for (double y = -0.01; y < -0.001; y += 0.001) {
@@ -400,8 +401,8 @@ TEST(LabelGroup, ThatIsOneOrApartIsLeftAlone) {
 }
 
 TEST(LabelGroup, LayersWithALabelInCommonDoNotLimitEachOther) {
-  // A part within the whole it belongs to: it is later and has its points, though the whole is
-  // deeper there.
+  // A part inside the whole it belongs to: as the later layer it owns its points, although the
+  // whole is deeper there.
   SceneDescription s;
   s.layers = {layer("whole", ball(0, 0.03)), layer("part", ball(0.005, 0.01)),
               layer("next", ball(0.05, 0.025))};
@@ -417,7 +418,7 @@ TEST(LabelGroup, LayersWithALabelInCommonDoNotLimitEachOther) {
 }
 
 std::vector<FieldCase> sharedCases() {
-  // The share of one label, put through the contract of all fields.
+  // One label's share, checked against the contract of all fields.
   const auto made = [] {
     SceneDescription s;
     s.layers = {layer("a", ball(-0.012, 0.02)), layer("b", ball(0.012, 0.025))};

@@ -72,7 +72,7 @@ TEST(Document, ByteOrderMarkAndWindowsLineEndsChangeNothing) {
 TEST(Document, ColumnsCountCharactersInPlaces) {
   const auto document = parseDocument("{\"\xC3\xA9\xC3\xA9\": x, b: y}", "test.yaml");
   EXPECT_EQ(document->place(document->root.find("b")->mark).column, 14);
-  // Three columns of the caret's own indent stand before the excerpt's first character.
+  // The caret line's own indent of three columns precedes the excerpt's first character.
   const Error error = document->error(document->root.find("b")->mark, "code", "what");
   EXPECT_NE(std::string(error.what()).find("\n" + std::string(15, ' ') + "^"), std::string::npos)
       << error.what();
@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "names"}),
     refusalName);
 
-// Deep nesting is refused before the parser's own recursion goes deep, however it is written.
+// Deep nesting is refused before the parser's own recursion gets deep, however it is written.
 TEST(Document, BombsAreRefused) {
   for (const std::string level : {"[", "{a: ", "- ", "? ", "[? ", "{a: [", "- ? ", "{{"}) {
     std::string bomb;

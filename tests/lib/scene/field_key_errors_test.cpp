@@ -1,4 +1,5 @@
-// Wrong values of the newer keys of scene files: one clear error each, with its place and remedy.
+// Wrong values of the newer keys of scene files: each gives one clear error with its place and
+// remedy.
 
 #include <gtest/gtest.h>
 

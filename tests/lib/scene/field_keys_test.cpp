@@ -23,7 +23,7 @@ struct KindCase {
 
 std::ostream& operator<<(std::ostream& out, const KindCase& kind) { return out << kind.name; }
 
-// A length as the reader makes it: mm are divided by 1000, not multiplied by 0.001.
+// A length as the reader converts it: mm are divided by 1000, not multiplied by 0.001.
 double in(double u, double number) { return u < 1.0 ? number / (1.0 / u) : number * u; }
 Vec3 in(double u, double x, double y, double z) { return {in(u, x), in(u, y), in(u, z)}; }
 
@@ -164,8 +164,8 @@ TEST_P(FieldKeys, MakeTheLibrarysField) {
 INSTANTIATE_TEST_SUITE_P(Kinds, FieldKeys, ::testing::ValuesIn(kindCases()),
                          [](const auto& made) { return std::string(made.param.name); });
 
-// Coefficients belong to positions in the scene's unit; the zero set is what must agree, and the
-// field to rounding, since the library divides by its slope anyway.
+// Coefficients refer to positions in the scene's unit. The zero set must agree, and the field up to
+// rounding, since the library divides by its slope anyway.
 TEST(FieldKeysQuadric, CountsInTheScenesUnit) {
   const std::string text =
       "{quadric: {center: [1, 2, 3], xx: 1, yy: 2, zz: -0.5, xy: 0.1, xz: 0.2, yz: 0.3, x: 4, "
@@ -213,11 +213,11 @@ TEST(FieldKeysQuadric, CountsInTheScenesUnit) {
 TEST(FieldKeysQuadric, ReachesHalfAMeterIfNotTold) {
   const FieldPtr plane = fieldIn("mm", "{quadric: {center: [0, 0, 0], z: 1}}");
   EXPECT_EQ(plane->lipschitzDomain().hi.x, 0.5);
-  // The slope is made a trillionth less than 1, to be sure of the bound.
+  // The slope is made a trillionth less than 1, so that the bound surely holds.
   EXPECT_NEAR(plane->value(Vec3(0.0, 0.0, 0.01)), 0.01, 1e-13);
 }
 
-// One leaf for a blend; the faces of the operand, made anew, for scale and offset.
+// A blend is one leaf; scale and offset make new faces for those of the operand.
 TEST(FieldKeys, KeepWhatContactHolds) {
   const auto structure = [](const std::string& text) { return fieldIn("mm", text)->structure(); };
   using Kind = FieldStructure::Kind;

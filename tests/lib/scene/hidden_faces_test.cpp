@@ -1,4 +1,4 @@
-// Which faces a port can be on, once blends, scale, offset and shell have made new ones.
+// Which faces a port can name after blends, scale, offset and shell have made new ones.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// A bowl and its brim, joined to the liquid by `inside`, with a mouth that is `on` a field.
+// A bowl and its brim, combined into the liquid by `inside`, with a mouth that is `on` a field.
 std::string text(const std::string& inside, const std::string& on) {
   return "palpate: 1\nlength: mm\nfields:\n"
          "  bowl: {sphere: {center: [0, 0, 0], radius: 40}}\n"
@@ -36,7 +36,7 @@ TEST(HiddenFaces, AreExplained) {
   for (const Case& c :
        {Case{"{smooth_intersection: {fields: [bowl, brim], radius: 3}}", "brim",
              "smooth_intersection"},
-        // Through a name that was read before.
+        // Through a name that was defined before.
         Case{"{scale: {field: cup, factor: 2}}", "brim", "scale"},
         Case{"{offset: {field: {complement: {complement: cup}}, distance: 1}}", "brim", "offset"},
         Case{"{smooth_union: {fields: [cup, bowl], radius: 3}}", "cup", "smooth_union"}}) {
@@ -58,7 +58,7 @@ TEST(HiddenFaces, WhatIsNowhereIsNotExplainedAway) {
   EXPECT_EQ(problem.code, "scene.unknown_field");
 }
 
-// The fields that can be named: the whole of what was made, and the outer faces of a shell.
+// The fields that can be named: the whole result, and the outer faces of a shell.
 TEST(HiddenFaces, TheWholeCanBeNamed) {
   for (const std::string inside :
        {"{smooth_intersection: {fields: [bowl, brim], radius: 3}}",
@@ -84,7 +84,7 @@ TEST(HiddenFaces, ABlendIsOneLeaf) {
   EXPECT_EQ(shell->partition().leaves().size(), 4U);
 }
 
-// One name in and out of a blend: the face that is still there is found.
+// One name both inside and outside a blend: the face that still exists is found.
 TEST(HiddenFaces, AFieldUsedTwiceKeepsItsOwnFace) {
   const ScenePtr scene = compile(parseScene(
       text("{intersection: [brim, {smooth_union: {fields: [cup, bowl], radius: 3}}]}", "brim"),

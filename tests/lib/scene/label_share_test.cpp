@@ -1,5 +1,5 @@
-// Labels of one image share its points: what the shared fields promise, on planes whose values are
-// not distances.
+// Labels of one image share its points: the guarantees of the shared fields, tested on planes whose
+// values are not distances.
 
 #include "scene/label_share.h"
 
@@ -38,7 +38,7 @@ TEST(LabelShare, BoundsOfSharedFieldsHoldAndAreNotWiderThanTheyMustBe) {
   const auto steep = std::make_shared<SteepPlane>(Vec3(-3.0, 0.0, 0.0), 0.01);
   const SharedLabels shared = shareLabels({{flat, {1}}, {steep, {2}}});
   ASSERT_EQ(shared.fields.size(), 2U);
-  // (f_0 - f_1) / 2 rises by (1 + 3) / 2; f_1 itself by 3.
+  // The slope of (f_0 - f_1) / 2 is (1 + 3) / 2; that of f_1 itself is 3.
   EXPECT_EQ(shared.fields[0]->lipschitz(), 2.0);
   EXPECT_EQ(shared.fields[1]->lipschitz(), 3.0);
   EXPECT_EQ(shared.fields[0]->featureSize(), 0.01);

@@ -1,4 +1,4 @@
-// Layers beside a layer that is a complement, which every place far away belongs to.
+// Layers next to a layer that is a complement, to which every place far away belongs.
 
 #include <gtest/gtest.h>
 

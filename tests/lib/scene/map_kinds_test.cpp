@@ -1,4 +1,4 @@
-// The reader of a map learns which parameter it is for, in which unit, and whether values below 0
+// The reader of a map receives the parameter that it is for, the unit, and whether negative values
 // have a meaning.
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(MapKinds, AReaderIsToldWhatItsMapIsOf) {
   expect_kind("D", "damping", Dimension::kDamping, false);
   expect_kind("mu", "static", std::nullopt, false);
   expect_kind("B", "viscosity", Dimension::kDamping, false);
-  // A medium may flow either way.
+  // A medium may flow in both directions.
   expect_kind("vx", "flow", Dimension::kVelocity, true);
   expect_kind("vz", "flow", Dimension::kVelocity, true);
 }

@@ -56,7 +56,7 @@ TEST(Suggest, CaseAndSeparatorsAreSlipsToo) {
 }
 
 TEST(Suggest, ASwapCountsOnce) {
-  // Two swaps in six letters: within a third of the length only if each counts once.
+  // Two swaps in six letters: within a third of the length only if each swap counts once.
   const std::vector<std::string_view> names = {"abcdef"};
   EXPECT_EQ(suggest("bacdfe", names), "abcdef");
 }
@@ -71,7 +71,7 @@ TEST(Suggest, TheNearestWinsAndNothingFarIsOffered) {
   EXPECT_EQ(suggest(std::string(100000, 'a'), names), "");
 }
 
-// The definition itself, without the bookkeeping.
+// The definition itself, without optimization.
 bool matchesByDefinition(std::string_view glob, std::string_view name) {
   if (glob.empty()) return name.empty();
   if (glob[0] == '*') {
@@ -82,7 +82,7 @@ bool matchesByDefinition(std::string_view glob, std::string_view name) {
          matchesByDefinition(glob.substr(1), name.substr(1));
 }
 
-// Every text over `letters` up to `longest` long.
+// Every text of `letters` that is at most `longest` long.
 std::vector<std::string> allTexts(std::string_view letters, std::size_t longest) {
   std::vector<std::string> texts{""};
   for (std::size_t i = 0; i < texts.size(); ++i) {

@@ -1,5 +1,5 @@
-// What a scene does not need is not made: beyond the device's workspace, and where no probe ever
-// comes.
+// What a scene does not need is not made: layers beyond the device's workspace, and those that a
+// probe never reaches.
 
 #include "scene/need.h"
 
@@ -17,8 +17,8 @@
 namespace palpate {
 namespace {
 
-/// A registry whose `costly: {center, radius}` is a ball that takes work, and counts how often it
-/// is made.
+/// A registry whose `costly: {center, radius}` is a ball that counts as costly; it counts how often
+/// it is made.
 class Need : public ::testing::Test {
  protected:
   Need() {
@@ -52,7 +52,7 @@ class Need : public ::testing::Test {
   int made_ = 0;
 };
 
-/// Bone with marrow and a nail in it; both are closed in unless a port leads there.
+/// Bone with marrow and a nail in it; both are enclosed unless a port leads there.
 std::string bone(const std::string& more = {}) {
   return "layers:\n"
          "  - {name: bone, inside: {costly: {center: [0, 0, 0], radius: 40}}}\n"
@@ -82,7 +82,7 @@ TEST_F(Need, APortOrAnAbsentWallIntoItMakesIt) {
     EXPECT_EQ(leftOut(*compile(read(bone(way)))), "") << way;
     EXPECT_EQ(made_, 2) << way;
   }
-  // One way only, and that the wrong one: it still cannot be entered.
+  // A one-way port in the wrong direction: the layer still cannot be entered.
   made_ = 0;
   const SceneDescription one_way =
       read(bone("ports: [{name: p, between: [outside, bone], direction: out}]\n"));
@@ -97,7 +97,7 @@ TEST_F(Need, APortThatNamesSeveralRegionsMakesThem) {
 }
 
 TEST_F(Need, WhatOnlyPortsThatAreNeverDueLeadIntoIsNotMade) {
-  // A hall and, after the way back out of it, the bone: outside nothing is passed any more.
+  // A hall that must be left to get to the bone: outside, no port counts as passed any more.
   const auto rooms = [&](const std::string& memory) {
     return read(memory +
                 bone("  - {name: hall, inside: {sphere: {center: [100, 0, 0], radius: 9}}}\n"
@@ -117,7 +117,7 @@ TEST_F(Need, WhatSticksOutIsMade) {
                      "  - {name: bone, inside: {costly: {center: [0, 0, 0], radius: 40}}}\n"
                      "  - {name: marrow, inside: {costly: {center: [" +
                      std::to_string(x) + ", 0, 0], radius: 20}}}\n"));
-    // Its box's corners reach sqrt(20^2 + 20^2 + (x + 20)^2) from the middle: 48 mm for x = 19.
+    // The corners of its box are sqrt(20^2 + 20^2 + (x + 20)^2) from the middle: 48 mm for x = 19.
     EXPECT_EQ(leftOut(*scene), "") << x;
   }
   made_ = 0;
@@ -140,7 +140,7 @@ TEST_F(Need, ATunnelThatComesNearItMakesIt) {
 }
 
 TEST_F(Need, FromWithinOnlyWhatIsNearCounts) {
-  // Started in a closed room, the probe never feels the house next door.
+  // A probe that starts in a closed room never feels the house next door.
   const ScenePtr scene =
       compile(read("layers:\n"
                    "  - {name: room, inside: {costly: {center: [0, 0, 0], radius: 40}}}\n"
@@ -168,13 +168,14 @@ TEST_F(Need, BeyondTheDevicesWorkspaceNothingIsMade) {
   EXPECT_EQ(leftOut(*scene("device: {scale: 6, " + box + "}\n")), "");
   EXPECT_EQ(leftOut(*scene("device: {offset: [300, 0, 0], " + box + "}\n")), "near");
   EXPECT_EQ(leftOut(*scene("device: {clutch: true, " + box + "}\n")), "");
-  // The port into what was left out leads nowhere; the other one keeps its number.
+  // The port into a layer that was left out leads nowhere; the other port keeps its number.
   const ScenePtr made = scene("device: {" + box + "}\n");
   ASSERT_EQ(made->ports().size(), 2U);
   EXPECT_TRUE(made->passages().portsOf(kOutside).size() == 1);
   EXPECT_EQ(made->passages().portsOf(kOutside)[0], 1);
   EXPECT_EQ(made->device().reach().hi.x, 0.05);
-  // A workspace that is long along the device's z, which a turn makes the world's x.
+  // A workspace that is long along the device's z axis, which a rotation maps to the world's x
+  // axis.
   const std::string tall = "workspace: {box: {center: [0, 0, 150], size: [100, 100, 400]}}";
   EXPECT_EQ(leftOut(*scene("device: {" + tall + "}\n")), "far");
   EXPECT_EQ(leftOut(*scene("device: {rotate: {axis: [0, 1, 0], degrees: 90}, " + tall + "}\n")),
@@ -195,14 +196,14 @@ TEST_F(Need, WhatIsFeltThroughAClosedWallIsMade) {
   };
   EXPECT_EQ(leftOut(*compile(read(body(35.0)))), "");
   EXPECT_EQ(leftOut(*compile(read(body(5.0)))), "marrow");
-  // Nor is it left out beyond the workspace, if that is reached through the wall.
+  // Nor is it left out beyond the workspace, if it is felt through the wall.
   const std::string device =
       "device: {workspace: {box: {center: [0, 0, 55], size: [10, 10, 40]}}}\n";
   EXPECT_EQ(leftOut(*compile(read(body(35.0) + device))), "");
 }
 
-/// A registry whose `parts: {center, radius}` is a ball that can be made in part, and tells of
-/// which box.
+/// A registry whose `parts: {center, radius}` is a ball that can be made in part, and that records
+/// the requested box.
 class NeedInPart : public ::testing::Test {
  protected:
   NeedInPart() {
@@ -254,7 +255,7 @@ TEST_F(NeedInPart, OnlyWhatTheDeviceReachesIsAskedFor) {
 }
 
 // In the workspace the force is the same, bit for bit; on its border too, for a hand that presses
-// no deeper than is kept beyond it: 4.4 mm here.
+// no deeper than the margin kept beyond it: 4.4 mm here.
 TEST_F(NeedInPart, TheTraceIsThatOfTheWhole) {
   const ScenePtr felt = compile(read(kHalfInReach));
   const ScenePtr all = compile(read(kHalfInReach), {}, Purpose::kShow);
@@ -306,7 +307,7 @@ TEST_F(Need, ToBeShownAllIsMade) {
   EXPECT_EQ(made_, 2);
 }
 
-// What is felt is the same, bit for bit, with and without what was left out.
+// The force is the same, bit for bit, with and without the layers that were left out.
 TEST_F(Need, TheForceIsTheSame) {
   const ScenePtr felt = compile(read(bone()));
   const ScenePtr all = compile(read(bone()), {}, Purpose::kShow);

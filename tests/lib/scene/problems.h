@@ -1,5 +1,5 @@
 #pragma once
-/// What scene tests share: the problem that a text is refused with.
+/// Shared by scene tests: the problem with which a text is refused.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// A text, and the one error it must be refused with.
+/// A text, and the one error with which it must be refused.
 struct Refusal {
   const char* name;
   std::string text;
@@ -45,7 +45,7 @@ inline void expectRefusal(const Refusal& refusal, const Problem& problem) {
   EXPECT_NE(problem.hint.find(refusal.hint), std::string::npos) << shown;
 }
 
-/// The refusal of `text` at the place where an '@' stands in it.
+/// The refusal of `text`, at the place marked by an '@' in it.
 inline Refusal marked(const char* name, std::string text, std::string code, std::string message,
                       std::string hint) {
   const std::size_t at = text.find('@');

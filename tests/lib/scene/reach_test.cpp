@@ -1,4 +1,4 @@
-// Which regions can ever be entered: the search of states and transitions, against a long random
+// Which regions can ever be entered: the search over states and transitions, against a long random
 // walk and against cases whose answer is known.
 
 #include "scene/reach.h"
@@ -18,7 +18,8 @@ std::string answersOf(const std::vector<Reach>& all) {
   return text;
 }
 
-/// outside, a and b in a row, and c beside a: in (outside, a), ab one way, ba one way back, ac.
+/// outside, a and b in a row, and c beside a. Ways: in (outside, a); ab, one way; ba, one way back;
+/// ac.
 ReachTable rooms() {
   ReachTable table;
   table.regions = 4;
@@ -40,7 +41,7 @@ TEST(Reach, APortThatLeadsBackCanComeBeforeAnother) {
 }
 
 TEST(Reach, WhatIsTakenBackOnTheWayDoesNotCount) {
-  // One way out of b, and that is back through the port that c asks for.
+  // The only way out of b leads back through the port that c requires.
   ReachTable table = rooms();
   table.ways = {
       {0, 1, 0, true}, {1, 0, 0, false}, {1, 2, 1, true}, {2, 1, 1, false}, {1, 3, 3, true}};
@@ -51,7 +52,7 @@ TEST(Reach, WhatIsTakenBackOnTheWayDoesNotCount) {
 }
 
 TEST(Reach, TwoThatExcludeEachOtherAreNotBothPassed) {
-  // From a by x to b or by y to c, both one way; d opens from b and c, after x and y.
+  // From a through x to b or through y to c, both one-way; d opens from b and c, after x and y.
   ReachTable table;
   table.regions = 5;
   table.ways = {
@@ -65,7 +66,7 @@ TEST(Reach, TwoThatExcludeEachOtherAreNotBothPassed) {
 }
 
 TEST(Reach, OutsideClearsWhatWasPassed) {
-  // A room behind each of two doors from outside; the second asks for the first.
+  // A room behind each of two doors from outside; the second door requires the first.
   ReachTable table;
   table.regions = 3;
   table.ways = {{0, 1, 0, true}, {1, 0, 0, false}, {0, 2, 1, true}, {2, 0, 1, false}};
@@ -77,8 +78,8 @@ TEST(Reach, OutsideClearsWhatWasPassed) {
 }
 
 TEST(Reach, AnAbsentWallBackTakesAPassingBack) {
-  // a to b by a port, back where there is no wall: the room that asks for the port opens from a
-  // only.
+  // From a to b by a port, and back where there is no wall: the room that requires the port opens
+  // only from a.
   ReachTable table = rooms();
   table.ways = {{0, 1, 0, true}, {1, 2, 1, true}, {2, 1, -1, false}, {1, 3, 3, true}};
   table.after[3] = {1};
@@ -96,7 +97,7 @@ TEST(Reach, ADoubtfulWayIsUndecidedAndSoIsWhatNeedsIt) {
 }
 
 TEST(Reach, ManyRoomsWithAMemoryThatKeepsAreNotManyStates) {
-  // Sixty rooms around a hall, each door after the one before: 2^60 sets of doors passed.
+  // Sixty rooms around a hall, each door requiring the one before: 2^60 sets of doors passed.
   ReachTable table;
   table.keeps_memory = true;
   table.regions = 61;
@@ -110,7 +111,7 @@ TEST(Reach, ManyRoomsWithAMemoryThatKeepsAreNotManyStates) {
   EXPECT_EQ(answersOf(reach(table).regions), std::string(61, 'y'));
 }
 
-/// Regions that a random walk by the rules gets into.
+/// The regions that a random walk by the rules enters.
 std::vector<bool> walked(const ReachTable& table, int steps, std::uint64_t seed) {
   std::vector<bool> met(table.regions, false);
   std::mt19937_64 random(seed);
@@ -129,7 +130,7 @@ std::vector<bool> walked(const ReachTable& table, int steps, std::uint64_t seed)
       }
       if (is_due) open.push_back(way);
     }
-    // Now and then begin anew: the walk may be caught.
+    // Now and then start again: the walk may be trapped.
     if (open.empty() || random() % 200 == 0) {
       here = table.start;
       std::fill(net.begin(), net.end(), 0);
@@ -181,7 +182,7 @@ TEST(Reach, NeverSaysNoOfWhatAWalkGetsIntoAndDecidesNearlyAlways) {
       }
       undecided += said.regions[i] == Reach::kUndecided ? 1 : 0;
       refuted += said.regions[i] == Reach::kNo ? 1 : 0;
-      // What is said to be reachable is met by a walk of so many steps, in tables so small.
+      // In tables this small, a walk of this many steps enters every region reported as reachable.
       if (said.regions[i] == Reach::kYes) {
         ASSERT_TRUE(met[i]) << "table " << trial << ", region " << i;
         ++confirmed;

@@ -10,13 +10,13 @@ namespace {
 
 const std::string kHead = "palpate: 1\nlength: mm\n";
 
-// `text` below two head lines: its first line is line 3.
+// `text` after two header lines: its first line is line 3.
 std::string scene(const std::string& text) { return kHead + text; }
 
 std::string field(const std::string& value) { return scene("fields:\n  f: " + value + "\n"); }
 std::string material(const std::string& value) { return scene("materials:\n  m: " + value + "\n"); }
 
-// Two layers and a port's line 9: columns below count from its start.
+// Two layers and a port whose line is 9: columns below count from its start.
 std::string port(const std::string& rest) {
   return scene(
       "fields:\n"
@@ -475,7 +475,8 @@ TEST(SceneWithoutReaders, SaysThatItReadsNoMaps) {
   expectRefusal({"", "", 3, 31, "scene.no_reader", "maps of parameters", "palpate::vdb"}, problem);
 }
 
-// A chain of names costs stack when it is read and when it is felt; doubling names cost time.
+// A chain of names uses stack when it is read and when it is evaluated; names that double take
+// time.
 TEST(SceneBombs, LongChainsOfNamesAreRefusedInEitherOrder) {
   const auto chain = [](bool forward) {
     std::string text = "fields:\n  f0: {sphere: {center: [0, 0, 0], radius: 1}}\n";

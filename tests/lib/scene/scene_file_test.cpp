@@ -1,4 +1,4 @@
-// What a scene file means once it is read.
+// The meaning of a scene file after it is read.
 
 #include "palpate/scene/scene_file.h"
 
@@ -144,7 +144,7 @@ TEST(SceneFile, LengthsAreInTheUnitNamed) {
     EXPECT_EQ(scene.length_unit, unit);
     EXPECT_NEAR(scene.fields[0].source->get()->value(Vec3(0.0)), -3.0 * meters, 1e-15) << unit;
   }
-  // A length with a unit of its own does not care.
+  // A length with its own unit does not depend on the file's unit.
   EXPECT_NEAR(fieldOf("{sphere: {center: [0, 0, 0], radius: 3 cm}}")->value(Vec3(0.0)), -0.03,
               1e-15);
   EXPECT_NEAR(fieldOf("{sphere: {center: [1 cm, 0, 0], radius: 1}}")->value(Vec3(0.01, 0.0, 0.0)),
@@ -152,7 +152,7 @@ TEST(SceneFile, LengthsAreInTheUnitNamed) {
 }
 
 TEST(SceneFile, EveryKindOfField) {
-  // Distances at a point where each is simple; in meters.
+  // Distances at a point where each formula is simple; in meters.
   const Vec3 p(0.010, 0.0, 0.0);
   const auto value = [&](const std::string& text) { return fieldOf(text)->value(p); };
   EXPECT_NEAR(value("{half_space: {point: [0, 0, 0], normal: [2, 0, 0]}}"), 0.010, 1e-15);
@@ -167,8 +167,8 @@ TEST(SceneFile, EveryKindOfField) {
   EXPECT_NEAR(value("{intersection: [" + a + ", " + b + "]}"), 0.006, 1e-15);
   EXPECT_NEAR(value("{difference: [" + b + ", " + a + "]}"), 0.003, 1e-15);
   EXPECT_NEAR(value("{complement: " + a + "}"), -0.006, 1e-15);
-  // Turned about the origin first, then shifted: (0, 10, 0) turns to (-10, 0, 0), shifts to (4, 0,
-  // 0).
+  // Rotated about the origin first, then shifted: (0, 10, 0) is rotated to (-10, 0, 0) and shifted
+  // to (4, 0, 0).
   const std::string away = "{sphere: {center: [0, 10, 0], radius: 4}}";
   EXPECT_NEAR(value("{transform: {field: " + away +
                     ", rotate: {axis: [0, 0, 3], degrees: 90}, translate: [14, 0, 0]}}"),
@@ -219,7 +219,7 @@ TEST(SceneFile, WhatCostsWorkIsMadeOnlyWhenAskedFor) {
   const FieldPtr whole = moved.get();
   EXPECT_EQ(made, 1);
   EXPECT_TRUE(bone.isMade());
-  // Made from the very objects that the names give, and made once.
+  // Made from the same objects that the names refer to, and made once.
   const FieldPtr half = whole->structure().operands[0];
   EXPECT_EQ(half, scene.fields[2].source->get());
   EXPECT_EQ(half->structure().operands[0], bone.get());
@@ -249,7 +249,7 @@ TEST(SceneFile, WorkHandsProgressDownAndItsErrorsUp) {
                Error);
   EXPECT_EQ(calls, 1);
   EXPECT_FALSE(source.isMade());
-  EXPECT_NO_THROW((void)source.get());  // stopped once, it can be asked again
+  EXPECT_NO_THROW((void)source.get());  // after it was stopped once, it can be asked again
 }
 
 TEST(SceneFile, NothingMadeIsAnError) {
@@ -349,7 +349,7 @@ TEST(SceneFile, ReadsTheFileItIsGiven) {
   EXPECT_EQ(problem.file, folder.path("other.yaml"));
 }
 
-// The analytic scenes of the project hold together: every port joins neighbors, every region is
+// The project's analytic scenes are consistent: every port joins neighbors, and every region is
 // reached.
 TEST(SceneFile, TheProjectsScenesCompile) {
   for (const std::string name : {"container", "csg_part", "valve_tube", "sponge", "flag"}) {

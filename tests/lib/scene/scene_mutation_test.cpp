@@ -1,4 +1,4 @@
-// Damaged scenes are refused or read, and nothing else: no crash, no other exception, no hang.
+// Damaged scenes are either refused or read: no crash, no other exception, no hang.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// Every key, and every form a value can take.
+// Every key, and every form that a value can take.
 constexpr std::string_view kScene = R"(# comment
 palpate: 1
 length: mm
@@ -62,7 +62,8 @@ sheets:
 start: {region: outside}
 )";
 
-// Read, or refused with a place: anything else leaves this function by an exception or a crash.
+// True if it is read, false if it is refused with a place: anything else leaves this function by an
+// exception or a crash.
 bool reads(std::string_view text, const SceneRegistry& registry) {
   try {
     (void)parseScene(text, "test.yaml", registry);
@@ -86,7 +87,8 @@ TEST(DamagedScene, EveryTruncation) {
   for (std::size_t length = 0; length < kScene.size(); ++length) {
     if (!reads(kScene.substr(0, length), registry)) ++refused;
   }
-  // What is left may well be a scene (lines cut off at the end of the file), but rarely.
+  // The remaining text may well be a scene (if lines at the end of the file were cut off), but
+  // rarely.
   EXPECT_GT(refused, kScene.size() * 8 / 10);
 }
 
@@ -104,7 +106,8 @@ TEST(DamagedScene, EveryByteReplacedByWhatYamlCaresAbout) {
   constexpr std::string_view kCared("[]{}:,-?*&!|>'\"%@`#~ \n\t\0\\0\xFF", 27);
   std::string text(kScene);
   for (std::size_t i = 0; i < kScene.size(); ++i) {
-    // Two of them at each place, in turn: all at each take half a minute and never found more.
+    // Two mutations at each place, in turn: all of them at each place take half a minute and never
+    // found more.
     for (const std::size_t k : {2 * i, 2 * i + 1}) {
       text[i] = kCared[k % kCared.size()];
       (void)reads(text, registry);

@@ -1,6 +1,6 @@
 #pragma once
-/// Readers in place of those of palpate::vdb, which lib's tests do not link: they read the same
-/// keys and give spheres.
+/// Replacements for the readers of palpate::vdb, which lib's tests do not link: they read the same
+/// keys and return spheres.
 
 #include <memory>
 #include <string>
@@ -88,7 +88,7 @@ inline SceneRegistry standInReaders() {
     return SceneRegistry::LayerSurface{later("threshold of " + file, reader.lengthOr("voxel", 1.0)),
                                        ""};
   };
-  // Low enough for the height of a texture.
+  // Low enough to be the height of a texture.
   registry.maps["grid"] = [](MapReader& outer, const ParameterKind&) {
     MapReader reader(outer.loader(), outer.require("grid"), "'grid'");
     (void)reader.requireText("file");
@@ -102,7 +102,7 @@ inline SceneRegistry standInReaders() {
     (void)reader.optional("tolerance");
     return testing::flatMap(1e-4);
   };
-  // Nothing is worth a grid.
+  // No field is worth a grid.
   registry.choose_grids = [](const FieldSourcePtr& field, const SceneRegistry::GridChoice&) {
     return field;
   };

@@ -1,4 +1,4 @@
-// What a scene file may not say of tissue and needles, and what code may not.
+// Invalid tissue and needle parameters, in scene files and in code.
 
 #include <gtest/gtest.h>
 
@@ -109,7 +109,7 @@ TEST(TissueMaterials, AreReadAsWritten) {
   }
 }
 
-// Materials made in code are held to the same.
+// Materials made in code must follow the same rules.
 TEST(TissueMaterials, MadeInCodeAreChecked) {
   const auto refused = [](const std::function<void(Material&)>& spoil) {
     SceneDescription description;

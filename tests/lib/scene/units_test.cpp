@@ -83,7 +83,7 @@ TEST(Quantities, EveryUnitInSi) {
            Case{"7 N.s/m^2", Dimension::kDamping2, 7.0},
            Case{"7 Ns/m^2", Dimension::kDamping2, 7.0},
            Case{"7 N.s/mm^2", Dimension::kDamping2, 7e6},
-           // No space, several, a sign, an exponent.
+           // No space, several spaces, a sign, an exponent.
            Case{"3mm", Dimension::kLength, 0.003},
            Case{"3   mm", Dimension::kLength, 0.003},
            Case{"+3 mm", Dimension::kLength, 0.003},
@@ -96,7 +96,7 @@ TEST(Quantities, EveryUnitInSi) {
 }
 
 TEST(Quantities, WholeMillimetersAreTheDoubleNearestToTheMeters) {
-  // 35 * 0.001 is not 0.035: a third of the whole numbers would be off in the last place.
+  // 35 * 0.001 is not 0.035: a third of the whole numbers would be wrong in the last digit.
   for (int i = 0; i < 20000; ++i) {
     std::array<char, 32> meters{};
     std::snprintf(meters.data(), meters.size(), "%d.%03d", i / 1000, i % 1000);

@@ -1,6 +1,5 @@
-// The reader, the schema and the reference page know the same words. What palpate::vdb adds is
-// checked against the schema by its own tests; here readers that stand in for it read the same
-// keys.
+// The reader, the schema and the reference page know the same words. The words that palpate::vdb
+// adds are checked against the schema by its own tests; here stand-in readers read the same keys.
 
 #include <gtest/gtest.h>
 #include <regex.h>
@@ -134,14 +133,14 @@ TEST(Vocabulary, EveryMapOfTheSchemaIsProbed) {
       return probe.definition == definition.key;
     });
     EXPECT_TRUE(probed) << definition.key;
-    // A map that allows any key would accept every slip.
+    // A map that allows any key would accept every misspelled key.
     const Node* others = definition.value.find("additionalProperties");
     ASSERT_NE(others, nullptr) << definition.key;
     EXPECT_EQ(others->text, "false") << definition.key;
   }
 }
 
-// A pattern of the schema. They keep to what POSIX and ECMAScript mean the same by.
+// A pattern of the schema. Patterns are limited to what POSIX and ECMAScript interpret alike.
 class Pattern {
  public:
   explicit Pattern(const std::string& definition) {
@@ -176,7 +175,7 @@ TEST(Vocabulary, TheSchemasQuantitiesAreTheReaders) {
                                             ".",  "",    "inf", "nan", "1 2", "--1", "1.2.3"};
   std::vector<std::string> units = {"", "x", "N.m"};
   for (const auto& [name, dimension] : quantities) {
-    // "N/m (also N/mm, N/cm)" -> each unit.
+    // Splits "N/m (also N/mm, N/cm)" into the units.
     std::string help(unitHelp(dimension));
     for (const std::string_view part : {"(also ", ",", ")"}) {
       for (std::size_t at = help.find(part); at != std::string::npos; at = help.find(part)) {
@@ -241,7 +240,7 @@ TEST(Vocabulary, TheReferenceNamesEveryKeyAndUnit) {
   }
 }
 
-// The page's examples build up one scene: blocks that begin with `palpate:` stand for themselves.
+// The page's examples add up to one scene; blocks that begin with `palpate:` are complete scenes.
 TEST(Vocabulary, TheReferencesExamplesAreRead) {
   const SceneRegistry registry = standInReaders();
   const std::string page = referencePage();

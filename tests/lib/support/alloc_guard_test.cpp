@@ -14,7 +14,7 @@
 namespace palpate::testing {
 namespace {
 
-/// Keeps the optimizer from leaving out a pair of new and delete.
+/// Keeps the optimizer from removing a pair of new and delete.
 template <typename T>
 void use(T* pointer) {
   asm volatile("" : : "g"(pointer) : "memory");
