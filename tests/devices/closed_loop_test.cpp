@@ -1,5 +1,5 @@
-// The whole program in a closed loop: device, hand, session and renderer on a flat wall. Where does
-// it become unstable?
+// The whole program in a closed loop: device, hand, session and renderer on a flat wall. It must
+// become unstable where the theory says so.
 
 #include <gtest/gtest.h>
 
@@ -45,10 +45,10 @@ LoopModel linearLoop(const std::string& name, const std::string& hand, double pe
   return loop;
 }
 
-constexpr double kDepth = 2e-3;  // [m] how deep the device rests in the wall
+constexpr double kDepth = 2e-3;  // [m] depth at which the device rests in the wall
 
-/// Where a hand goes that presses the device so deep: there within a second, so slowly that nothing
-/// is set going, but for the last percent, which it goes at once.
+/// The path of a hand that presses the device to that depth: it gets there within a second, so
+/// slowly that no oscillation starts, except for the last percent, which it covers at once.
 Path pressPath(const LoopModel& loop, const WallModel& wall, double kick, double end) {
   const HandModel& hand = *loop.hand;
   const double springs =
@@ -66,20 +66,21 @@ Path pressPath(const LoopModel& loop, const WallModel& wall, double kick, double
   return path;
 }
 
-/// [-] By how much an oscillation about rest grows in a tick, in a run of the whole program: the
-/// least-squares fit of x[k+1] = a1 x[k] + a2 x[k-1] to its last half; of two conjugate roots -a2
-/// is the square of their size.
+/// [-] The factor by which an oscillation about the rest position grows in a tick, in a run of the
+/// whole program: from the least-squares fit of x[k+1] = a1 x[k] + a2 x[k-1] to the run's last
+/// half; for two conjugate roots, -a2 is the square of their magnitude.
 double growthInARun(const LoopModel& loop, const WallModel& wall) {
   SimulationSettings settings{
       .device = loop.device, .hand = loop.hand, .rate = 1.0 / loop.period, .delay = loop.delay};
-  // A hand's own modes have to die out first: the slowest, 14 / s of a relaxed hand, has done so to
-  // 1e-6 within a second. What grows faster than that need not be waited for.
+  // A hand's own modes must decay first: the slowest, 14 / s for a relaxed hand, falls to 1e-6
+  // within a second. If the oscillation grows faster than that, the run need not be so long.
   const double tenfold = std::log(10.0) / std::fabs(std::log(growthOf(loop, wall)));
   const double longest = loop.hand ? std::max(1000.0, 2.0 / loop.period) : 1000.0;
   const int ticks = static_cast<int>(std::clamp(tenfold, 1000.0, longest));
   const int before = loop.hand ? static_cast<int>(std::lround(1.0 / loop.period)) : 0;
   const double end = (before + ticks - 0.5) * loop.period;
-  // 1 % off where it would rest: contact is not lost while that grows by less than 100 times.
+  // It starts 1 % off the rest position: contact is not lost while that grows by less than 100
+  // times.
   Path path = {{0.0, Vec3(0.0, 0.0, -0.99 * kDepth)}, {end, Vec3(0.0, 0.0, -kDepth)}};
   if (loop.hand) {
     path = pressPath(loop, wall, before * loop.period, end);
@@ -120,7 +121,7 @@ struct Loop {
   std::string hand;
   double period;
   int delay;
-  double damping;  // [N s/m] of the wall
+  double damping;  // [N s/m] damping of the wall
 };
 
 void expectTheLimit(const Loop& each) {
@@ -166,7 +167,7 @@ TEST(ClosedLoop, AWallsDampingMovesTheLimitAsTheExactOneDoes) {
 }
 
 TEST(ClosedLoop, OneSampleOfDelayMoreThanSaidWouldShow) {
-  // What the limit of one sample more would be is a third: at twice that the run must not grow.
+  // With one more sample of delay the limit would be a third: at twice that the run must not grow.
   const LoopModel loop = linearLoop("falcon", "none", 1e-3, 0);
   LoopModel later = loop;
   later.delay = 1;

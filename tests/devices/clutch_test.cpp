@@ -1,4 +1,4 @@
-// A hand that lets go of the world and takes hold of it elsewhere.
+// A hand that releases the world by the clutch and takes hold of it elsewhere.
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kTick = 1e-3;  // [s]
 
-/// A wall below z = 0 with friction, which breaks loose without a jump, and damping, under a bath
-/// that drags.
+/// A wall below z = 0 with friction, which breaks away without a jump, and damping, under a viscous
+/// bath.
 ScenePtr wallUnderOil() {
   return compile(parseScene(R"(
 palpate: 1
@@ -30,7 +30,7 @@ layers:
                             "clutch.yaml"));
 }
 
-/// Feeds a session of that scene, one reading a millisecond.
+/// Feeds readings to a session of that scene, one each millisecond.
 class Hand {
  public:
   explicit Hand(const ScenePtr& scene) : session_(scene) {}
@@ -44,7 +44,7 @@ class Hand {
   int n_ = 0;
 };
 
-/// Presses and strokes: 1.8 mm deep at the most, at up to 37 mm/s and 0.23 m/s^2. [m, device]
+/// Presses and strokes: at most 1.8 mm deep, at up to 37 mm/s and 0.23 m/s^2. [m, device]
 Vec3 stroke(int n) {
   const double t = n * kTick;
   return {0.006 * std::sin(6.0 * t), 0.002 * t, -0.0009 * (1.0 - std::cos(9.0 * t))};
@@ -61,7 +61,7 @@ TEST(Clutch, NothingJumpsWhereAMovingHandEngagesOrLetsGo) {
       for (int n = 0; n < engaged + for_ticks + 200; ++n) {
         const bool held = n >= engaged && n < engaged + for_ticks;
         const SessionTick tick = with.to(stroke(n), held);
-        // The reading that engages it is felt as if there were no clutch.
+        // The reading that engages the clutch is felt as if there were none.
         if (n <= engaged) {
           const SessionTick free = without.to(stroke(n), false);
           EXPECT_LT(glm::length(tick.force - free.force), 1e-12);
@@ -72,9 +72,9 @@ TEST(Clutch, NothingJumpsWhereAMovingHandEngagesOrLetsGo) {
         }
         if (n > 250) largest = std::max(largest, glm::length(tick.force));
         if (n > engaged) {
-          // From one tick to the next what is felt changes by at most 1.5 of itself in kFade; drag
-          // and damping, 4 N s/m, by the world's 0.46 m/s^2 and by the same fade of its 0.08 m/s;
-          // the springs, 800 N/m, by that speed. Without the fades drag alone would leap by 0.3 N.
+          // In a tick the force changes by at most: 1.5 of itself in kFade; drag and damping, 4 N
+          // s/m, times the world's 0.46 m/s^2 and the same fade of its 0.08 m/s; the springs, 800
+          // N/m, times that speed. Without the fades drag alone would jump by 0.3 N.
           const double fade = 1.5 * kTick / Clutch::kFade;
           const double most =
               fade * largest + 4.0 * (0.46 * kTick + fade * 0.08) + 800.0 * 0.08 * kTick;
@@ -92,7 +92,7 @@ TEST(Clutch, AHandThatIsHeldForLongLetsGoOfNothingAndTakesHoldOfTheSame) {
   const ScenePtr scene = wallUnderOil();
   Hand hand(scene);
   for (int n = 0; n <= 400; ++n) (void)hand.to(stroke(n), false);
-  // It rests, so that springs and friction alone are felt.
+  // The hand rests, so that only springs and friction are felt.
   Vec3 device = stroke(400);
   SessionTick before;
   for (int n = 0; n < 100; ++n) before = hand.to(device, false);
@@ -113,7 +113,7 @@ TEST(Clutch, AHandThatIsHeldForLongLetsGoOfNothingAndTakesHoldOfTheSame) {
   EXPECT_LT(glm::length(let_go.force - tick.force), 1e-12);
   for (int n = 0; n < 200; ++n) tick = hand.to(device, false);
   EXPECT_LT(glm::length(tick.force - before.force), 1e-9);
-  // And moves by the scale from there.
+  // And from there it moves by the scale.
   tick = hand.to(device + Vec3(0.0, 0.0, 1e-4), false);
   EXPECT_LT(glm::length(tick.hip.position - before.hip.position - Vec3(0.0, 0.0, 2e-4)), 1e-15);
 }

@@ -1,5 +1,5 @@
-// A hand in the loop with what is not a wall: a puncture at its threshold, a lattice at the hand's
-// resonance, a needle that is held by its shaft.
+// A hand in the loop with contents and ports: a puncture at its threshold, a lattice at the hand's
+// resonance, a needle held by its shaft.
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ TEST(ContentLoops, APunctureAtItsThresholdOpensOnceOrNotAtAll) {
                   "[100, 100, 100]}}, wall: wall}\nports:\n  - {name: skin, between: [outside, "
                   "block], opens_at: 2 N}\n"));
       for (const double share : {0.6, 1.6}) {
-        // Friction of the device may take a part of what the hand gives, in either direction.
+        // The device's friction may take a part of the hand's force, in either direction.
         const double force = share * 2.0 + (share > 1.0 ? 1.0 : -1.0) * 0.3 * loop.device.friction;
         const Vec3 up(0.0, 0.0, 1.0);
         const LoopSetting setting{
@@ -112,7 +112,8 @@ TEST(ContentLoops, ALatticeAtTheHandsResonanceSwingsAsItsClosedFormDoes) {
 }
 
 TEST(ContentLoops, ANeedleHeldByItsShaftComesToRest) {
-  // 1e4 N/m for each meter of shaft, 20 mm of it in the tissue: 200 N/m, far below every budget.
+  // 1e4 N/m for each meter of shaft, with 20 mm of it in the tissue: 200 N/m, far below every
+  // budget.
   const auto renderer = makeLoopRenderer(
       "constraint",
       sceneOf("materials:\n  skin: {stiffness: 400 N/m}\n  tissue: {stiffness: 400 N/m, cutting: "
@@ -132,18 +133,18 @@ TEST(ContentLoops, ANeedleHeldByItsShaftComesToRest) {
   }
 }
 
-/// A hand that is dictated goes round once a second, and what it met may change on the way.
+/// A hand on a prescribed path makes one round a second; the contents may change on the way.
 struct Round {
   std::string name;
   std::string text;     ///< of the scene
   Vec3 center{0.0};     ///< [m]
   Vec3 radii{0.0};      ///< [m] along x and z; it begins at center + radii.z along z
-  double steepest = 0;  ///< [N/m] of all that pushes by place
-  double drag = 0;      ///< [N s/m] of all that pushes by speed
-  /// At a quarter and at three quarters of the way.
+  double steepest = 0;  ///< [N/m] of all forces that depend on the position
+  double drag = 0;      ///< [N s/m] of all forces that depend on the speed
+  /// The changes at a quarter and at three quarters of the way.
   ContentChange first = {};
   ContentChange second = {};
-  /// [J] that a change puts in, a change `index` with the hand at `p` [m].
+  /// [J] The energy that change `index` adds with the hand at `p` [m].
   std::function<double(int index, const Vec3& p)> given = {};
 };
 
@@ -160,8 +161,8 @@ std::vector<Round> rounds() {
       "wall, content: content}\nstart: {region: block}\n";
   constexpr double kWave = 5e-3;
   std::vector<Round> all;
-  // In by the port, over its rim within the block, and out through it again; and the other way
-  // about.
+  // In by the port, over its rim inside the block, and out through it again; and in the opposite
+  // direction.
   for (const double side : {1.0, -1.0}) {
     all.push_back({side > 0.0 ? "round a rim" : "round a rim, the other way",
                    plain + block + "}\n" + hole + "}\n", Vec3(5e-3, 0.0, 0.0),
@@ -203,8 +204,9 @@ std::vector<Round> rounds() {
 }
 
 TEST(ContentLoops, WhatADictatedHandGetsByPortsAndContentsFallsWithThePeriod) {
-  // A force that is held for a tick gives at most K |dx|^2 / 2 more than the continuous one; what
-  // drags never gives. In the limit nothing is given but what a change of the content puts in.
+  // A force that is held for a tick gives at most K |dx|^2 / 2 more energy than the continuous one;
+  // drag never gives any. In the limit of short ticks, only the energy that a change of the content
+  // adds is left.
   for (const Round& round : rounds()) {
     const ScenePtr scene = sceneOf(round.text);
     const auto renderer = makeLoopRenderer("constraint", scene);
@@ -218,7 +220,7 @@ TEST(ContentLoops, WhatADictatedHandGetsByPortsAndContentsFallsWithThePeriod) {
       Vec3 before(0.0);
       Vec3 force(0.0);
       const int ticks = static_cast<int>(std::lround(1.0 / period));
-      // What was changed in the last round is as it was.
+      // Restore what was changed in the last round.
       for (RegionId region = 0; region < scene->regions().size(); ++region) {
         (void)renderer->setContent(region, {});
       }
@@ -242,7 +244,8 @@ TEST(ContentLoops, WhatADictatedHandGetsByPortsAndContentsFallsWithThePeriod) {
         before = p;
         force = renderer->update({p, velocity, period}).force;
       }
-      // The renderer counts what a change puts in, not what another one takes out again.
+      // The renderer counts the energy that a change adds, but not the energy that another one
+      // removes.
       const double sources = round.given ? given : renderer->sourceWork();
       got.push_back(work - sources);
       most.push_back(0.5 * (1.5 * round.steepest + round.drag / period) * squares);
@@ -250,7 +253,7 @@ TEST(ContentLoops, WhatADictatedHandGetsByPortsAndContentsFallsWithThePeriod) {
     }
     std::printf("%s: %.3g J at 1 kHz, %.3g J at 8 kHz, sampling may give %.2g and %.2g J\n",
                 round.name.c_str(), got.front(), got.back(), most.front(), most.back());
-    // Where friction or a fall takes energy, sampling must not give it back either.
+    // Where friction or a fall takes energy, sampling must not give it back.
     for (std::size_t i = 0; i < got.size(); ++i) {
       EXPECT_LE(got[i] - got.back(), most[i] + 1e-9) << round.name << ", run " << i;
     }

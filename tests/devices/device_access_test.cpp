@@ -1,4 +1,4 @@
-// What the command tells a user about the devices that are plugged in.
+// What the command reports about the devices that are plugged in.
 
 #include "palpate/devices/device_access.h"
 

@@ -1,4 +1,5 @@
-// A scene that is edited while a hand touches it: Session::offer() takes what was felt with it.
+// A scene that is edited while a hand touches it: Session::offer() carries the present contact
+// over.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@
 namespace palpate::devices {
 namespace {
 
-/// A bowl of glass, open above, with syrup in it. Each line is one that an edit may change.
+/// A bowl of glass, open at the top, with syrup in it. Each line may be changed by an edit.
 std::vector<std::string> bowlLines(double radius = 40.0, double stiffness = 800.0) {
   return {"palpate: 1",
           "length: mm",
@@ -38,12 +39,12 @@ ScenePtr sceneOf(const std::vector<std::string>& lines) {
   return compile(parseScene(text, "bowl.yaml"));
 }
 
-/// A servo thread that feels one place after the other, in simulated time and as fast as it can.
+/// A servo thread that touches one place after the other, in simulated time and as fast as it can.
 class Hand {
  public:
   static constexpr double kTick = 1e-3;     // [s]
   static constexpr double kSlew = 100.0;    // [N/s]
-  static constexpr double kSpeed = 0.2e-3;  // [m] a tick
+  static constexpr double kSpeed = 0.2e-3;  // [m] in a tick
 
   explicit Hand(ScenePtr scene, RendererSettings settings = {})
       : session_(std::move(scene), {.renderer = settings}) {}
@@ -73,8 +74,8 @@ class Hand {
   Vec3 goal_{0.0, 0.0, 0.03};
 };
 
-// Within the syrup, through the mouth: in a bowl that is a little larger the probe is in the syrup
-// still. A probe that began anew would be outside, and be pushed out.
+// In the syrup, through the mouth: when the bowl becomes slightly larger, the probe is still in the
+// syrup. A probe that began anew would be outside, and be pushed out.
 TEST(EditedScene, TheProbeGoesOnInItsRegion) {
   Hand hand(sceneOf(bowlLines()));
   ASSERT_EQ(hand.to({0, 0, -0.030}).result.region, 1);
@@ -97,8 +98,8 @@ TEST(EditedScene, TheProbeGoesOnInItsRegion) {
   EXPECT_GT(hand.to({0, 0, -0.044}).force.z, 1.0);
 }
 
-// The probe goes through the mouth all the time: whatever region it is in when the state is taken,
-// and in whatever it is when the scene is, it is where its place is.
+// The probe goes through the mouth all the time: whichever regions it is in when the state is taken
+// and when the scene is swapped, its region agrees with its place afterwards.
 TEST(EditedScene, WhoPassesAPortMeanwhileHasPassedIt) {
   Hand hand(sceneOf(bowlLines()));
   std::atomic<bool> is_over{false};
@@ -122,7 +123,7 @@ TEST(EditedScene, WhoPassesAPortMeanwhileHasPassedIt) {
   EXPECT_GT(passed, 10);
 }
 
-/// An edit of one line, and whether a scene comes of it.
+/// An edit of one line, and whether the result is a valid scene.
 struct Edit {
   std::vector<std::string> lines;
   int line = 0;  ///< from 1
@@ -133,20 +134,20 @@ Edit randomEdit(std::mt19937_64& random) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   Edit edit{bowlLines(38.0 + 4.0 * share(random), 300.0 + 900.0 * share(random))};
   switch (std::uniform_int_distribution<int>(0, 7)(random)) {
-    case 0:  // a key that nobody knows
+    case 0:  // an unknown key
       edit.lines[6] = "  glass: {stiffnes: 800 N/m}";
       return {edit.lines, 7, false};
-    case 1:  // a quantity of another kind
+    case 1:  // a quantity of another dimension
       edit.lines[7] = "  syrup: {viscosity: 1 N}";
       return {edit.lines, 8, false};
-    case 2:  // a wall of a material that is not there
+    case 2:  // a wall with an unknown material
       edit.lines[9] =
           "  - {name: liquid, inside: {intersection: [bowl, brim]}, content: syrup, wall: glas}";
       return {edit.lines, 10, false};
     case 3:  // not even YAML
       edit.lines[3] = "  bowl: {sphere: {center: [0, 0, 0], radius: 40";
       return {edit.lines, 0, false};
-    case 4:  // the layer has another name: the probe begins anew
+    case 4:  // the layer has another name, so the probe begins anew
       edit.lines[9] = "  - {name: water, inside: {intersection: [bowl, brim]}, wall: glass}";
       edit.lines[11] = "  - {name: mouth, between: [outside, water], on: brim}";
       return edit;
@@ -189,8 +190,8 @@ TEST(EditedScene, FiftyEditsWhileAHandTouches) {
     }
     is_over = true;
   });
-  // Strokes along the glass. The limit of growth holds for the renderer's force; the fade after an
-  // edit, from 0 to 1 in kSwapFade, adds to it what it brings back of that.
+  // Strokes along the glass. The slew rate limits the renderer's force; the fade after an edit,
+  // from 0 to 1 in kSwapFade, adds the growth of its factor.
   const double limit = (Hand::kSlew + kMost / Session::kSwapFade) * Hand::kTick + 1e-9;
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -203,7 +204,7 @@ TEST(EditedScene, FiftyEditsWhileAHandTouches) {
     }
     const SessionTick tick = hand.step();
     ASSERT_TRUE(isFinite(tick.force));
-    // It may drop at once, but comes back slowly.
+    // The force may drop at once, but grows slowly.
     ASSERT_LE(glm::length(tick.force), glm::length(last) + limit);
     last = tick.force;
     peak = std::max(peak, glm::length(last));

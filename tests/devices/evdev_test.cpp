@@ -1,5 +1,5 @@
-// What an input device's events do to a position: closed forms, and random events against a model
-// of their own. That the kernel's interface is used as it should be is seen in tests/evdev.
+// The effect of an input device's events on a position: closed forms, and random events against a
+// separate model. The use of the kernel's interface is tested in tests/evdev.
 
 #include "palpate/devices/evdev.h"
 
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kMilli = 1'000'000;
-constexpr double kRounding = 1e-12;  // [m], [-] of some thousand additions
+constexpr double kRounding = 1e-12;  // [m], [-] rounding of some thousand additions
 
 Capabilities withKeys(std::initializer_list<int> keys) {
   Capabilities has;
@@ -70,7 +70,7 @@ Capabilities mouse() {
   return has;
 }
 
-/// A hand whose time begins at 0, and a report at a time.
+/// A hand whose time begins at 0; it takes one report at a time.
 class Hand {
  public:
   struct Input {
@@ -114,7 +114,7 @@ TEST(InputMap, TellsDevicesByWhatTheyHave) {
 }
 
 TEST(InputMap, ASpaceMouseMovesAndTurnsAboutTheFramesAxes) {
-  // To the right, towards the hand, down: the same of its two kinds.
+  // To the right, towards the hand, down: the same for both kinds of SpaceMouse.
   const std::vector<Vec3> directions = {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0)};
   for (const bool is_older : {false, true}) {
     const Capabilities has = is_older ? olderSpaceMouse() : spaceMouse();
@@ -130,7 +130,7 @@ TEST(InputMap, ASpaceMouseMovesAndTurnsAboutTheFramesAxes) {
       turned.report(0, {{type, REL_RX + axis, 350}});
       turned->advance(40 * kMilli);
       EXPECT_EQ(turned->position(), Vec3(0.0));
-      // By 0.4 about u: u stays, and what is across it turns by the right-hand rule.
+      // By 0.4 about u: u stays, and vectors perpendicular to it turn by the right-hand rule.
       const Vec3 u = directions[static_cast<std::size_t>(axis)];
       const Vec3 across(u.y, u.z, u.x);
       expectNear(turned->orientation() * u, u);
@@ -145,7 +145,8 @@ TEST(InputHand, ADeflectionIsASpeedBeyondTheDeadZone) {
     int value;
     double dead_zone, share;
   };
-  // Range -350 to 350: the share of full speed grows from 0 at the zone's edge to 1 at the end.
+  // For a range of -350 to 350 the share of full speed grows from 0 at the edge of the dead zone to
+  // 1 at the end.
   const std::vector<Case> cases = {{350, 0.1, 1.0},    {-350, 0.1, -1.0},     {35, 0.1, 0.0},
                                    {-35, 0.1, 0.0},    {0, 0.0, 0.0},         {7, 0.0, 0.02},
                                    {175, 0.2, 0.375},  {-280, 0.5, -0.6},     {700, 0.1, 1.0},
@@ -159,8 +160,8 @@ TEST(InputHand, ADeflectionIsASpeedBeyondTheDeadZone) {
 }
 
 TEST(InputHand, TheKernelsFlatRangeCountsWhereItIsWider) {
-  // 4096 of half of 65535 counts is an eighth: at the edge of it nothing moves, at the end
-  // everything.
+  // The flat zone of 4096, over half of 65535 counts, is an eighth: at its edge nothing moves, at
+  // the end the speed is full.
   Hand hand(gamepad(), {.max_speed = 0.05, .dead_zone = 0.01});
   hand.report(0, {{EV_ABS, ABS_X, 4095}});
   hand->advance(kSecond);
@@ -173,7 +174,7 @@ TEST(InputHand, TheKernelsFlatRangeCountsWhereItIsWider) {
 TEST(InputHand, AGamepadsTriggersLiftAndLowerAndRestAtTheirLeastValue) {
   Hand hand(gamepad(), {.max_speed = 0.05, .dead_zone = 0.0});
   for (const int trigger : {ABS_Z, ABS_RZ}) {
-    hand->setAxis(static_cast<std::uint16_t>(trigger), 0);  // as the kernel says at open
+    hand->setAxis(static_cast<std::uint16_t>(trigger), 0);  // as the kernel reports it at open
   }
   hand.report(0, {{EV_ABS, ABS_RZ, 255}});
   hand.report(kSecond, {{EV_ABS, ABS_RZ, 0}, {EV_ABS, ABS_Z, 51}});
@@ -191,11 +192,11 @@ TEST(InputHand, OppositeInputsDoNotGoFasterThanOne) {
 TEST(InputHand, ARelativeAxisThatIsSilentIsAtRest) {
   Hand hand(spaceMouse(), {.max_speed = 0.1, .dead_zone = 0.0});
   hand.report(0, {{EV_REL, REL_X, 350}, {EV_REL, REL_RX, 350}});
-  // Of a report the kernel leaves out the axes that are 0.
+  // The kernel leaves axes that are 0 out of a report.
   hand.report(10 * kMilli, {{EV_REL, REL_Y, 350}});
   hand->advance(5 * kSecond);
   expectNear(hand->position(), Vec3(0.001, 0, 0.1e-9 * InputHand::kHold));
-  // The turn had a report of its own, which no other has ended.
+  // The rotation had its own report, and no later report has ended it.
   expectNear(hand->orientation() * Vec3(0, 1, 0),
              Vec3(0, std::cos(1e-9 * InputHand::kHold), std::sin(1e-9 * InputHand::kHold)));
 }
@@ -229,7 +230,7 @@ TEST(InputHand, NothingCountsBeforeItsReportAndTimesNeverGoBack) {
   hand->advance(kSecond);
   EXPECT_EQ(hand->position(), Vec3(0.0));
   EXPECT_EQ(hand->buttons(), 0U);
-  // An event of the past counts from now on.
+  // An event with a time in the past counts from now on.
   (void)hand.take(EV_SYN, SYN_REPORT, 0, kMilli);
   EXPECT_EQ(hand->buttons(), 1U);
   hand->advance(kSecond + 100 * kMilli);
@@ -259,7 +260,7 @@ TEST(InputHand, AfterLostEventsTheDeviceIsAskedAndWhatWasHalfToldIsForgotten) {
   EXPECT_EQ(hand->buttons(), 4U);
   hand->advance(300 * kMilli);
   expectNear(hand->position(), Vec3(0.02, -0.01, 0.0));
-  // From then on events count again.
+  // From here on events count again.
   EXPECT_FALSE(hand.report(300 * kMilli, {{EV_KEY, BTN_SOUTH, 1}}));
   EXPECT_EQ(hand->buttons(), 5U);
 }
@@ -273,7 +274,7 @@ TEST(InputHand, AfterLostEventsARelativeAxisIsAtRestUntilItIsToldAgain) {
   expectNear(hand->position(), Vec3(0.001, 0, 0));
 }
 
-/// Adds up what each axis of a gamepad does, report by report, out of a list of all events.
+/// Adds up the effect of each axis of a gamepad, report by report, from a list of all events.
 class GamepadModel {
  public:
   explicit GamepadModel(const EvdevSettings& settings) : settings_(settings) {}
@@ -293,7 +294,7 @@ class GamepadModel {
   [[nodiscard]] const Vec3& at() const { return at_; }
 
  private:
-  /// Piecewise straight: 0 up to the edge of the dead zone, then up to 1.
+  /// Piecewise linear: 0 up to the edge of the dead zone, then up to 1.
   [[nodiscard]] static double ramp(double counts, double edge, double full) {
     if (counts <= edge) return 0.0;
     return counts >= full ? 1.0 : (counts - edge) / (full - edge);
@@ -360,7 +361,7 @@ TEST(InputHand, RandomEventsOfAGamepadGoWhereAModelSays) {
       ASSERT_LE(glm::length(hand->position() - model.at()), kRounding)
           << "round " << round << ", event " << event;
       ASSERT_TRUE(settings.workspace.contains(hand->position()));
-      // A rotation, whatever came: its rows are unit vectors at right angles.
+      // The orientation is still a rotation: its rows are unit vectors at right angles.
       const Mat3 square = hand->orientation() * glm::transpose(hand->orientation());
       for (int i = 0; i < 3; ++i) ASSERT_LE(glm::length(square[i] - Mat3(1.0)[i]), kRounding);
     }

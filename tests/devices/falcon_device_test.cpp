@@ -1,5 +1,5 @@
-// The Falcon's driver against a device that is not there, through the libusb that everybody uses.
-// fault_matrix_test.cpp has the faults that come while a hand is pushed, in the device's own time.
+// The Falcon's driver against an emulated device, through the usual libusb. fault_matrix_test.cpp
+// has the faults that happen while a hand is pushed, in the device's own time.
 
 #include "falcon/falcon_device.h"
 
@@ -80,7 +80,8 @@ TEST(FalconDevice, ReadsWhereTheGripIs) {
     (void)rig.turn(state);
     ASSERT_EQ(rig.turn(state), DeviceStatus::kOk);
     ASSERT_EQ(rig.turn(state), DeviceStatus::kOk);
-    // Half a count of each arm: at most 0.1 mm, where a count is worst.
+    // Half a count for each arm: at most 0.1 mm, at the place where a count moves the grip
+    // farthest.
     EXPECT_LT(glm::length(state.position - (place - Vec3(0.0, 0.0, 0.125))), 1e-4);
     EXPECT_EQ(state.buttons, 5U);
     EXPECT_TRUE(state.is_homed);
@@ -101,8 +102,9 @@ TEST(FalconDevice, AForceMovesTheGripItsWay) {
     const Vec3 begin = rig.emulator.position();
     for (int i = 0; i < 30; ++i) (void)rig.turn(state, force);
     const Vec3 way = rig.emulator.position() - begin;
-    // 0.2 kg, 2 Ns/m: about F t^2 / 2 m in the first 30 ms. The direction is the force's to a few
-    // parts in a hundred: a motor's command has 1e-4 Nm, and the arms are taken where they were.
+    // 0.2 kg, 2 Ns/m: about F t^2 / 2 m in the first 30 ms. The direction is that of the force to a
+    // few percent: a motor's command has steps of 1e-4 Nm, and the arms' pose is that of the last
+    // reading.
     EXPECT_GT(glm::dot(way, force), 0.99 * glm::length(way) * glm::length(force));
     EXPECT_GT(glm::length(way), 1e-3);
   }
@@ -180,7 +182,8 @@ TEST(FalconDevice, ALoopGivesNoForceUntilItIsHomedAndThenRamps) {
   const auto length = [&](std::size_t i) {
     return std::hypot(motors[i][0], motors[i][1], motors[i][2]);
   };
-  // Half a second to the full force, in steps of at most one part in 500 and a count of each motor.
+  // Half a second up to the full force, in steps of at most one part in 500 plus a count of each
+  // motor.
   for (std::size_t i = homed_at; i + 1 < 1400; ++i) {
     ASSERT_LE(length(i + 1), length(i) + length(1400) / 500.0 + 2.0) << i;
   }
@@ -189,7 +192,7 @@ TEST(FalconDevice, ALoopGivesNoForceUntilItIsHomedAndThenRamps) {
   EXPECT_EQ(report.state, SafetyState::kActive);
 }
 
-/// Zero force in the end, and nothing left with the kernel.
+/// Checks that the last force is zero, and that the kernel holds no transfer.
 void expectLetGo(Rig& rig) {
   EXPECT_EQ(rig.emulator.motors, (std::array<int, 3>{}));
   EXPECT_EQ(rig.usb.pending(), 0);
@@ -210,7 +213,7 @@ TEST(FalconFaults, UnpluggedAtEveryStepOfOpenItSaysSoAndLeavesNothing) {
     rig.usb.fault = [&, n = 0](UsbfsEmulation::Step) mutable { return n++ == at ? ENODEV : 0; };
     try {
       rig.device.open();
-      // The last steps are asked ahead: the next reading knows.
+      // Reads are requested ahead, so the next reading reports it.
       DeviceState state;
       EXPECT_EQ(rig.turn(state), DeviceStatus::kDisconnected) << at;
     } catch (const Error& error) {
@@ -228,7 +231,7 @@ TEST(FalconFaults, FirmwareThatIsLostOnTheWayIsLoadedAgainAndInTheEndGivenUp) {
     rig.emulator.has_firmware = false;
     int lost = 0;
     rig.usb.fault = [&](UsbfsEmulation::Step step) {
-      // Once some of it was sent, a piece is lost: no echo comes.
+      // After some of the firmware was sent, a piece is lost, and no echo comes.
       const bool is_lost = step == UsbfsEmulation::Step::kReapOut && rig.emulator.loaded >= 200 &&
                            (goes_on || lost == 0);
       lost += is_lost ? 1 : 0;
@@ -248,7 +251,7 @@ TEST(FalconFaults, FirmwareThatIsLostOnTheWayIsLoadedAgainAndInTheEndGivenUp) {
 }
 
 TEST(FalconFaults, ADeviceThatThisUserMayNotOpenNamesTheRemedy) {
-  constexpr int kAccess = -3;  // LIBUSB_ERROR_ACCESS: no emulation of a descriptor leads there
+  constexpr int kAccess = -3;  // LIBUSB_ERROR_ACCESS, which an emulated descriptor cannot cause
   const Problem problem = usb::openError(kAccess, "open the device").problem();
   EXPECT_EQ(problem.code, "device.access");
   EXPECT_NE(problem.hint.find("udev"), std::string::npos);
@@ -265,10 +268,10 @@ TEST(FalconFaults, AClaimThatIsRefusedNamesTheRemedy) {
   }
 }
 
-/// Runs a loop, and lets `world` happen at reply number `at` or at a step of the kernel.
+/// Runs a loop, and lets `world` intervene at reply number `at` or at a step of the kernel.
 struct FaultRun {
   ServoReport report;
-  std::vector<double> forces;  ///< [N] of each tick, as written
+  std::vector<double> forces;  ///< [N] written in each tick
 };
 
 FaultRun runWith(Rig& rig, const std::function<void(Rig&)>& prepare, std::uint64_t most = 3000) {

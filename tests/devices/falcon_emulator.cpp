@@ -10,8 +10,8 @@ namespace {
 constexpr int kSubsteps = 20;
 constexpr double kZero = 35.0 * std::numbers::pi / 180.0;
 
-/// The thigh's angle of leg `i` at `p`, by bisection: the lower leg's length grows as the thigh
-/// turns outward.
+/// The angle of the thigh of leg `i` at `p`, by bisection: the lower leg's length grows as the
+/// thigh turns outward.
 double thighAngle(int i, const Vec3& p) {
   const double azimuth = (105.0 - 120.0 * i) * std::numbers::pi / 180.0;
   const double u = std::cos(azimuth) * p.x + std::sin(azimuth) * p.y - 0.0400 + 0.01443;
@@ -20,7 +20,8 @@ double thighAngle(int i, const Vec3& p) {
   const auto excess = [&](double angle) {
     return std::hypot(u - 0.060 * std::cos(angle), p.z - 0.060 * std::sin(angle)) - lower;
   };
-  // The knee stands outward of the line to the grip: from that line on, outward, the excess grows.
+  // The knee is on the outer side of the line to the grip: from that line outward, the excess
+  // grows.
   const double line = std::atan2(p.z, u);
   double near = line;
   double far = line - std::numbers::pi;
@@ -70,10 +71,10 @@ void FalconEmulator::encode() {
 }
 
 void FalconEmulator::move(double seconds) {
-  // Virtual work, by differences: the force along an axis is the torque times what the thighs turn
-  // along it.
+  // Virtual work, by differences: the force along an axis is the torque times the angle by which
+  // the thighs turn along it.
   constexpr double kStep = 1e-6;          // [m]
-  constexpr double kNewtonMeter = -1e-4;  // [Nm] of a count
+  constexpr double kNewtonMeter = -1e-4;  // [Nm] per count
   Vec3 push(0.0);
   quantum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -91,8 +92,8 @@ void FalconEmulator::move(double seconds) {
   for (int n = 0; n < kSubsteps; ++n) {
     Vec3 force = push - damping * velocity_;
     if (hand) force += hand(position_);
-    // The mean of the two speeds: exact for a force that is held, so that the emulation has no
-    // delay of its own.
+    // The mean of the two speeds: exact for a held force, so that the emulation adds no delay of
+    // its own.
     const Vec3 before = velocity_;
     velocity_ += force * (dt / mass);
     position_ += 0.5 * dt * (before + velocity_);
@@ -134,7 +135,7 @@ void FalconEmulator::boot(std::uint8_t byte) {
     to_host_.push_back(byte);
     image_.push_back(byte);
     ++loaded;
-    // The table: key, eight words, entry, blocks until one of size 0.
+    // The boot table: key, eight words, entry, and blocks up to one of size 0.
     std::size_t at = 2 * 11;
     while (at + 2 <= image_.size()) {
       const std::size_t count = image_[at] + 256U * image_[at + 1];
@@ -191,7 +192,7 @@ std::vector<std::uint8_t> FalconEmulator::in() {
     out.push_back(to_host_.front());
     to_host_.pop_front();
   }
-  // The chip's timer: without data it says so once a millisecond.
+  // The chip's timer: without data it sends its state once a millisecond.
   if (out.size() == 2) now_ += 1'000'000;
   return out;
 }

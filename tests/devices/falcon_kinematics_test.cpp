@@ -14,7 +14,7 @@ namespace {
 const Geometry kGeometry;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// A place of the workspace: what the device reaches of the +-50 mm about 0.125 m.
+/// A random place of the workspace: the reachable part of +-50 mm about 0.125 m.
 template <class Random>
 Vec3 place(Random& random) {
   std::uniform_real_distribution<double> across(-0.05, 0.05);
@@ -25,8 +25,8 @@ Vec3 place(Random& random) {
   }
 }
 
-/// A place of the nominal workspace, 0.1 m across, about its middle: no arm is close to stretched
-/// there, as some are in the corners of the cube.
+/// A random place of the nominal workspace, 0.1 m across, about its middle: there no arm is close
+/// to stretched, as some are in the corners of the cube.
 template <class Random>
 Vec3 nominalPlace(Random& random) {
   while (true) {
@@ -35,7 +35,7 @@ Vec3 nominalPlace(Random& random) {
   }
 }
 
-/// The grip's place by walking along the links of leg `i`: thigh, hinge, parallelogram, hinge,
+/// The grip's position found by following the links of leg `i`: thigh, hinge, parallelogram, hinge,
 /// grip. `shin` and `tilt` are the parallelogram's angles.
 Vec3 chain(int i, double thigh, double shin, double tilt) {
   const Geometry& g = kGeometry;
@@ -57,8 +57,8 @@ TEST(FalconKinematics, EachLegsChainOfLinksEndsAtTheGrip) {
     const auto arms = armsAt(p);
     ASSERT_TRUE(arms);
     for (int i = 0; i < 3; ++i) {
-      // The parallelogram's two angles are free: those that reach p are found from where the knee
-      // is.
+      // The parallelogram's two angles are free: those that reach p follow from the knee's
+      // position.
       const double azimuth = (90.0 - 120.0 * i + kGeometry.turn) * kDegree;
       const double u = std::cos(azimuth) * p.x + std::sin(azimuth) * p.y - kGeometry.radius;
       const double v = -std::sin(azimuth) * p.x + std::cos(azimuth) * p.y - kGeometry.shift;
@@ -72,7 +72,7 @@ TEST(FalconKinematics, EachLegsChainOfLinksEndsAtTheGrip) {
 }
 
 TEST(FalconKinematics, OnTheAxisTheAnglesAreThoseOfThePublishedTable) {
-  // devices in the public sources: z [m], thigh [degrees].
+  // Devices measured in the public sources: z [m], thigh [degrees].
   const double table[][2] = {{0.090, -1.1}, {0.110, 16.2}, {0.125, 27.7}, {0.150, 47.2}};
   for (const auto& row : table) {
     const auto arms = armsAt(Vec3(0.0, 0.0, row[0]));
@@ -104,7 +104,7 @@ TEST(FalconKinematics, FromTheLastPoseAtMostFourIterations) {
   const unsigned seed = 18;
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
-  // 1 mm from tick to tick: a hand of 1 m/s.
+  // 1 mm in a tick: a hand at 1 m/s.
   std::uniform_real_distribution<double> part(-1.0, 1.0);
   int most = 0;
   double sum = 0.0;
@@ -138,7 +138,7 @@ TEST(FalconKinematics, TheSlopeIsThatOfFiniteDifferences) {
       const auto less = armsAt(p - d);
       if (!more || !less) continue;
       const Vec3 slope = (more->angles - less->angles) / (2.0 * kStep);
-      // Close to a stretched arm the slope is large, and so is what the differences leave out.
+      // Close to a stretched arm the derivative is large, and so is the error of the differences.
       const double scale = 1.0 + glm::dot(slope, slope) / 400.0;
       ASSERT_LT(glm::length(slope - arms->slope[k]), 1e-5 * scale) << n;
     }

@@ -1,5 +1,5 @@
-// A Falcon in a closed loop, through the libusb that everybody uses: how stiff a wall it holds, and
-// the whole way through a scene.
+// A Falcon in a closed loop, through the usual libusb: the stiffest wall it holds, and a complete
+// path through a scene.
 
 #ifdef PALPATE_LIBUSB
 
@@ -22,15 +22,15 @@ namespace {
 
 const std::atomic<bool> kNeverStop{false};
 
-/// Zero force in the end, and nothing left with the kernel.
+/// Checks that the last force is zero, and that the kernel holds no transfer.
 void expectLetGo(Rig& rig) {
   EXPECT_EQ(rig.emulator.motors, (std::array<int, 3>{}));
   EXPECT_EQ(rig.usb.pending(), 0);
 }
 
-/// [N/m] of a wall at which a mass neither comes to rest nor swings up: the exact discrete system,
-/// in which a force that is computed from the reading at the end of one turn is held over the next,
-/// has a determinant of 1.
+/// [N/m] of a wall at which a mass neither comes to rest nor oscillates with growing amplitude:
+/// there the exact discrete system, in which the force computed from the reading at the end of one
+/// turn is held over the next turn, has a determinant of 1.
 double limitOf(double mass, double damping) {
   constexpr double kPeriod = 1e-3;  // [s]
   const double e = std::exp(-damping * kPeriod / mass);
@@ -44,7 +44,7 @@ TEST(FalconLoop, AWallIsHeldWithoutAHiddenSample) {
   constexpr double kMass = 0.02;    // [kg]
   constexpr double kDamping = 0.2;  // [Ns/m]
   const double limit = limitOf(kMass, kDamping);
-  // Another sample of delay would make it a third of that: b / (T / 2 + T).
+  // One more sample of delay would make it a third of that: b / (T / 2 + T).
   std::printf("growth changes sign at %.1f N/m; b / (T / 2): %.1f N/m\n", limit, kDamping / 0.5e-3);
   EXPECT_NEAR(limit, kDamping / 0.5e-3, 0.02 * limit);
   for (const double share : {0.98, 1.02}) {
@@ -72,14 +72,14 @@ TEST(FalconLoop, AWallIsHeldWithoutAHiddenSample) {
       if (i >= 100 && i < 300) early = std::max(early, size);
       if (i >= 1800) late = std::max(late, size);
     }
-    // About 0.1 / s.
+    // The rate is about 0.1 / s.
     EXPECT_EQ(late > early, share > 1.0) << share << ": " << early << " then " << late << " m";
   }
 }
 
-/// [m] The largest swing about its mean of the grip, which a hand pushes steadily against a wall of
-/// `stiffness` [N/m]: early and late, by scene, session, servo loop, driver and libusb. It is
-/// displaced by 2 mm once the push is there.
+/// [m] The largest excursion of the grip about its mean, while a hand pushes it steadily against a
+/// wall of `stiffness` [N/m]: early and late in a run with scene, session, servo loop, driver and
+/// libusb. The grip is displaced by 2 mm when the push is there.
 std::pair<double, double> swingAt(double stiffness, double mass, double damping) {
   SceneDescription scene = parseScene(
       "{palpate: 1, length: m, materials: {wall: {stiffness: " + std::to_string(stiffness) +
@@ -94,7 +94,7 @@ std::pair<double, double> swingAt(double stiffness, double mass, double damping)
   rig.emulator.mass = mass;
   rig.emulator.damping = damping;
   rig.emulator.place(Vec3(0.0, 0.0, 0.125));
-  // The push comes slowly, after the ramp of the force; it holds the grip 5 mm deep, so that it
+  // The push grows slowly, after the ramp of the force; it holds the grip 5 mm deep, so that it
   // never leaves the wall.
   rig.emulator.hand = [&](const Vec3&) {
     const double t = 1e-9 * static_cast<double>(rig.emulator.now());
@@ -133,8 +133,8 @@ TEST(FalconLoop, AWallOfASceneGrowsFromTheExactLimitOnThroughTheWholeChain) {
 }
 
 TEST(FalconLoop, TheWholeChainInByTheMouthAlongTheWallAndOut) {
-  // data/scenes/container.yaml, in the device's own space: 30 mm above the bowl's center, down to
-  // its bottom, and back.
+  // data/scenes/container.yaml, in the device's own space: from 30 mm above the bowl's center down
+  // to its bottom, and back.
   const ScenePtr scene = compile(readScene(test::sourceFolder() + "/data/scenes/container.yaml"));
   Session session(scene);
   Rig rig;
@@ -167,8 +167,8 @@ TEST(FalconLoop, TheWholeChainInByTheMouthAlongTheWallAndOut) {
   };
   const ServoReport report = runServo(rig.device, tick, {}, stop, [&](const ServoTurn& turn) {
     const double off = glm::length(rig.emulator.felt - turn.written);
-    // Half a count of each motor is 0.5e-4 Nm, at 20 to 30 rad/m; and the arms are taken where the
-    // encoders say, which turns a force by less than two parts in a thousand.
+    // Half a count of each motor is 0.5e-4 Nm, at 20 to 30 rad/m; and the arms' pose comes from the
+    // encoders, which changes a force by less than two parts in a thousand.
     const double allowed = 3e-3 + 2e-3 * glm::length(turn.written);
     worst = std::max(worst, off / allowed);
   });
@@ -182,7 +182,7 @@ TEST(FalconLoop, TheWholeChainInByTheMouthAlongTheWallAndOut) {
     if (regions.empty() || regions.back() != name) regions.push_back(name);
   }
   EXPECT_EQ(regions, (std::vector<std::string>{"outside", "liquid", "outside"}));
-  // The same hand by the virtual device: the same forces, bit for bit.
+  // The same hand with the virtual device: the same forces, bit for bit.
   Session again(scene);
   VirtualDevice device(path, DeviceFrame::kDevice);
   std::size_t at = 0;

@@ -1,4 +1,4 @@
-// Packets of the Falcon: every value there and back, and garbage between them.
+// Packets of the Falcon: every value encoded and decoded, and garbage between packets.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace palpate::devices::falcon {
 namespace {
 
-/// The reply of a device, written down anew: letters of nibbles, the lowest first.
+/// A device's reply, encoded independently: the nibbles as letters, the lowest first.
 std::vector<std::uint8_t> replyBytes(const std::array<int, 3>& counts, unsigned flags) {
   std::vector<std::uint8_t> out = {'<'};
   for (const int count : counts) {
@@ -112,8 +112,8 @@ TEST(FalconPacket, AByteThatCannotBeMakesAPacketNone) {
   }
 }
 
-/// Bytes as a line may bring them: packets, damaged ones, and garbage. Without memory of the heap,
-/// which sanitizers watch dearly.
+/// Bytes as they may come over a line: packets, damaged ones, and garbage. Does not allocate, which
+/// would be slow under the sanitizers.
 class AnyBytes {
  public:
   explicit AnyBytes(unsigned seed) : random_(seed) {}
@@ -142,7 +142,7 @@ class AnyBytes {
   std::array<std::uint8_t, 20> bytes_{};
 };
 
-/// The last 16 bytes or fewer, from the last '<' on: whether they are a packet.
+/// Keeps the bytes from the last '<' on, at most 16, and tells whether they are a packet.
 class Window {
  public:
   bool completes(std::uint8_t byte) {
@@ -173,14 +173,15 @@ TEST(FalconPacket, OfTenMillionInputsNoWholePacketIsLostAndNoneInvented) {
   constexpr int kInputs = 10'000'000;
   for (int i = 0; i < kInputs; ++i) {
     for (const std::uint8_t byte : any.next()) {
-      // A window of 16 bytes that is a packet is one, as no sound packet holds another's beginning.
+      // A reply must come exactly where the window is a packet, since no sound packet contains the
+      // beginning of another.
       const auto reply = parser.push(byte);
       if (reply.has_value() != window.completes(byte)) FAIL() << "input " << i;
       read += reply ? 1 : 0;
       ++bytes;
     }
   }
-  // But for a packet that has begun.
+  // Except for a packet that has only begun.
   EXPECT_LE(parser.dropped() + 16 * read, bytes);
   EXPECT_GT(parser.dropped() + 16 * read + 16, bytes);
   EXPECT_GT(read, kInputs / 5U);
@@ -195,7 +196,7 @@ TEST(FalconPacket, OfTenMillionCommandsEachIsAPacketThatReadsBackAsItWasClamped)
   for (int i = 0; i < kInputs; ++i) {
     Command command;
     for (int& motor : command.motors) {
-      // Of all sizes, to the ends of the range.
+      // Values of all sizes, up to the ends of the range.
       motor = static_cast<std::int32_t>(random()) >> (random() % 32);
     }
     command.homes = random() % 2 == 0;

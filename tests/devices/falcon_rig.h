@@ -1,5 +1,5 @@
 #pragma once
-// A driver on an emulated Falcon, through the libusb that everybody uses.
+// A driver with an emulated Falcon, through the usual libusb.
 
 #include <utility>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace palpate::devices {
 
-/// In the device's own time.
+/// It runs in the device's own time.
 struct Rig {
   FalconEmulator emulator;
   UsbfsEmulation usb{emulator};
@@ -20,7 +20,7 @@ struct Rig {
       : device([this] { return usb::openUsb({.descriptor = usb.descriptor()}); },
                std::move(firmware), c, [this] { return emulator.now(); }) {}
 
-  /// Reads and writes until a reading comes; its status.
+  /// Reads and writes until a reading comes; returns its status.
   DeviceStatus turn(DeviceState& state, const Vec3& force = Vec3(0.0)) {
     DeviceStatus status = DeviceStatus::kStale;
     for (int i = 0; i < 10 && status == DeviceStatus::kStale; ++i) {

@@ -1,4 +1,4 @@
-// Faults while a Falcon behind the libusb that everybody uses pushes a hand, in the device's own
+// Faults while a Falcon, behind the usual libusb, pushes a hand, in the device's own
 // time: each leads to its state, its text, and zero force in time; plugged in again, the device is
 // homed and ramped. Faults of opening are in falcon_device_test.cpp, of a record in
 // replay_device_test.cpp and tools/touch_record_test.cpp, of signals in
@@ -25,19 +25,19 @@ using Step = UsbfsEmulation::Step;
 using Reply = std::vector<std::uint8_t>;
 
 constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
-constexpr std::uint64_t kBegins = 1000;  // the command at which it goes wrong, the ramp over
+constexpr std::uint64_t kBegins = 1000;  // the command at which the fault begins, after the ramp
 const Vec3 kPush(0.0, 0.0, 1.0);         // [N]
 
-/// One case: the mischief of the world, and how the device fared.
+/// One case: the fault, and the device's behavior.
 struct World {
   VirtualClock clock;
   std::function<int(Step)> kernel;    ///< errno of a step of libusb's, from kBegins on
   std::function<void(Reply&)> reply;  ///< damages a reply, from kBegins on
-  std::function<Vec3()> tick;         ///< [N] instead of kPush, from kBegins on
+  std::function<Vec3()> tick;         ///< [N] used instead of kPush, from kBegins on
   std::atomic<bool> stop{false};
-  std::int64_t since = -1;    ///< [ns] when it began
-  std::int64_t zero_at = -1;  ///< [ns] the first command of zero force from then on; below 0: none
-  bool is_over = false;       ///< commands that come now belong to closing
+  std::int64_t since = -1;    ///< [ns] when the fault began
+  std::int64_t zero_at = -1;  ///< [ns] the first command of zero force after that; negative: none
+  bool is_over = false;       ///< further commands belong to closing
 
   explicit World(Rig& rig) : clock(rig.emulator) {}
 };
@@ -49,24 +49,24 @@ struct Fault {
   SafetyState state;
   SafetyFault why;
   const char* text;
-  double zero_within;  ///< [ms] of the device's time until its motors are zero; below 0: no command
-                       ///< reaches it any more
+  double zero_within;  ///< [ms] of its time until its motors are zero; negative: no command
+                       /// < reaches it any more
 };
 
 std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
 
-/// A fault of the kernel's that stays.
+/// A lasting fault of the kernel.
 std::function<void(World&, Rig&)> failing(Step at, int error) {
   return
       [=](World& world, Rig&) { world.kernel = [=](Step step) { return step == at ? error : 0; }; };
 }
 
-/// Damage to each reply.
+/// Damages each reply.
 std::function<void(World&, Rig&)> replying(std::function<void(Reply&)> damage) {
   return [damage = std::move(damage)](World& world, Rig&) { world.reply = damage; };
 }
 
-/// The same for the first `times` replies.
+/// Damages the first `times` replies.
 std::function<void(World&, Rig&)> replying(int times, const std::function<void(Reply&)>& damage) {
   return replying([times, damage, n = 0](Reply& reply) mutable {
     if (n++ < times) damage(reply);
@@ -76,7 +76,7 @@ std::function<void(World&, Rig&)> replying(int times, const std::function<void(R
 void jump(Reply& reply) { reply[3] = static_cast<std::uint8_t>('A' + (reply[3] - 'A' + 2) % 16); }
 void loseOrigin(Reply& reply) { reply[13] = static_cast<std::uint8_t>('A' + 16 * 5); }
 
-/// The loop stands still for so long [ms], and until the motors were let go.
+/// The loop hangs for this long [ms], and until the motors were released.
 std::function<void(World&, Rig&)> hanging(int duration) {
   return [=](World& world, Rig& rig) {
     world.tick = [&world, &rig, duration, has_hung = false]() mutable {
@@ -84,7 +84,7 @@ std::function<void(World&, Rig&)> hanging(int duration) {
       has_hung = true;
       world.since = rig.emulator.now();
       const std::uint64_t before = rig.usb.outs();
-      // A little beyond the 20 ms: what is left passes once the other thread has acted.
+      // Slightly more than the 20 ms; the rest passes after the other thread has acted.
       rig.emulator.pass(21 * kMillisecond);
       EXPECT_TRUE(testing::waitUntil([&] { return rig.usb.outs() != before; }));
       rig.emulator.pass((duration - 21) * kMillisecond);
@@ -99,11 +99,11 @@ constexpr const char* kGoneText = "the device reported a fault";
 constexpr const char* kSilentText = "the device gave no valid reply for too long";
 constexpr const char* kNothing = "no fault";
 
-// Zero force comes with the next command, 1 ms. In silence it comes after 10 ms and the wait of the
-// reading that is under way, of four packets at most, 1 ms each; and the command takes 1 ms.
+// Zero force comes with the next command, 1 ms. In silence it comes after 10 ms plus the wait of
+// the present reading, at most four packets of 1 ms each; and the command takes 1 ms.
 constexpr double kNext = 1.0;
 constexpr double kSilence = 10.0 + 4.0 + 1.0;
-// The thread that watches cuts 20 ms after the last turn, which was up to 1 ms before.
+// The watching thread cuts the force 20 ms after the last turn, which was up to 1 ms earlier.
 constexpr double kHang = 20.0 + 1.0 + 1.0;
 constexpr double kNever = -1.0;
 
@@ -161,8 +161,8 @@ std::vector<Fault> faults() {
       {"TheHandIsTooFast",
        [](World& world, Rig& rig) {
          world.reply = [&rig, n = 0](Reply&) mutable {
-           // 2.5 m/s over 80 mm; it counts as too fast once the filter of 10 ms has seen 2 m/s of
-           // it, after 16 ms.
+           // 2.5 m/s over 80 mm; it counts as too fast when the filter of 10 ms has reached 2 m/s,
+           // after 16 ms.
            rig.emulator.place(Vec3(0.0, 0.0, 0.085 + 2.5e-3 * std::min(n++, 32)));
          };
          rig.emulator.place(Vec3(0.0, 0.0, 0.085));
@@ -196,8 +196,8 @@ std::vector<Fault> faults() {
 
 class FaultMatrix : public ::testing::TestWithParam<Fault> {};
 
-/// Between two runs the device lost its origin: no force until it is homed, and then by the ramp of
-/// half a second.
+/// Between two runs the device lost its origin: no force until it is homed, and then a ramp of half
+/// a second.
 void expectHomingAndARamp(Rig& rig) {
   const VirtualClock clock(rig.emulator);
   rig.usb.plugIn();
@@ -219,7 +219,7 @@ void expectHomingAndARamp(Rig& rig) {
   ASSERT_GE(sizes.size(), 900U);
   for (std::size_t i = 0; i <= kHomed; ++i) ASSERT_EQ(sizes[i], 0.0) << i;
   for (std::size_t i = kHomed; i < 900; ++i) {
-    // Each motor is rounded to a count; a turn takes a little more than a millisecond.
+    // Each motor is rounded to a count, and a turn takes slightly more than a millisecond.
     const double share = std::min(1.0, static_cast<double>(i - kHomed) / 490.0);
     ASSERT_LE(sizes[i], share * sizes[899] + 2.0) << i;
   }
@@ -274,8 +274,8 @@ TEST_P(FaultMatrix, LeadsToItsStateItsTextAndZeroForceInTime) {
       EXPECT_EQ(rig.emulator.motors, (std::array<int, 3>{}));
     } else {
       std::printf("  %-32s the loop ended after %.1f ms: %s\n", fault.name, over, fault.text);
-      // At once, or when the next command is sent, which waits for two readings of up to 4 ms; or
-      // when the silence is over.
+      // At once; or when the next command is sent, which waits for two readings of up to 4 ms; or
+      // after the silence limit.
       EXPECT_LE(over, fault.why == SafetyFault::kDevice ? 2.0 * 4.0 + 2.0 : 100.0 + 10.0);
     }
   }

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kTick = 1e-3;  // [s]
 
-/// Touched from above at the origin. `device`: what the scene asks of the loop.
+/// A scene touched from above at the origin. `device`: the guards that the scene asks for.
 ScenePtr sceneOf(const std::string& shape, double stiffness, const std::string& device = {}) {
   std::ostringstream text;
   text.precision(17);
@@ -48,17 +48,17 @@ LoopModel loopOf(const std::string& device, int delay = 0) {
 }
 
 struct Felt {
-  double to_hand = 0.0;     ///< [J] most that came out at the hand
+  double to_hand = 0.0;     ///< [J] largest energy given to the hand so far
   double tick_cost = 0.0;   ///< [J] K (v T)^2 + F v T of the largest speed and force so far
-  double beyond = 0.0;      ///< [J] by how much to_hand was above that at any tick
+  double beyond = 0.0;      ///< [J] largest excess of `to_hand` over that at any tick
   double chatter = 0.0;     ///< [N] peak to peak along the normal, in the last half second
-  double stiffness = 0.0;   ///< [N/m] mean force over mean depth, in the same
-  double most_added = 0.0;  ///< [N] by the controller
+  double stiffness = 0.0;   ///< [N/m] mean force over mean depth, in the same time
+  double most_added = 0.0;  ///< [N] largest force by the controller
   std::int64_t violations = 0;
 };
 
-/// A relaxed hand presses to about 3 N, within a second or (`taps`) at 0.5 m/s, and holds for one
-/// or more.
+/// A relaxed hand presses with about 3 N, reached within a second or (`taps`) at 0.5 m/s, and holds
+/// for a second or more.
 Felt press(const ScenePtr& scene, double stiffness, const LoopModel& loop, bool taps = false) {
   SimulationSettings settings{
       .device = loop.device, .hand = loop.hand, .rate = 1.0 / loop.period, .delay = loop.delay};
@@ -104,7 +104,8 @@ Felt press(const ScenePtr& scene, double stiffness, const LoopModel& loop, bool 
   return out;
 }
 
-/// Both ways of a loop, as the device is and its linear part, where no friction hides what grows.
+/// Two versions of a loop: with the device as it is, and with its linear part, where no friction
+/// hides a growing oscillation.
 std::vector<LoopModel> loopsOf(const std::string& device) {
   std::vector<LoopModel> both(2, loopOf(device));
   both[1].device.friction = 0.0;
@@ -113,8 +114,7 @@ std::vector<LoopModel> loopsOf(const std::string& device) {
   return both;
 }
 
-/// Calls `each` with a wall `times` as stiff as the budget, of a plane or a ball, pressed or
-/// tapped.
+/// Calls `each` with a wall `times` as stiff as the budget, a plane or a ball, pressed or tapped.
 template <class Each>
 void eachWall(const LoopModel& loop, const std::vector<double>& times, const Each& each) {
   for (const std::string* shape : {&kFlat, &kBall}) {
@@ -146,12 +146,12 @@ TEST(GuardedLoop, ACouplingHoldsTenTimesTheBudget) {
             coupled.stiffness / wall, feltStiffness(wall, coupling) / wall);
         for (const Felt* felt : {&coupled, &both}) {
           EXPECT_EQ(felt->violations, 0) << what;
-          // Less than the tick's own cost: nothing at all.
+          // Less than one tick's own cost: no energy at all.
           EXPECT_LE(felt->to_hand, 1e-9) << what;
           EXPECT_LE(felt->beyond, 1e-9) << what;
-          // Friction holds the device still. Without it a coupling below the limit rings down, the
-          // slower the heavier the device: an Excalibur's damping of 5 N s/m on 1.5 kg leaves 0.08
-          // N of 8 after a second.
+          // Friction holds the device still. Without friction, a coupling below the limit rings
+          // down, more slowly for a heavier device: an Excalibur, with a damping of 5 N s/m on 1.5
+          // kg, still has 0.08 N of 8 N after a second.
           EXPECT_LE(felt->chatter, is_linear ? 0.1 : 1e-6) << what;
           if (shape == kFlat) {
             EXPECT_NEAR(felt->stiffness, feltStiffness(wall, coupling),
@@ -184,7 +184,7 @@ TEST(GuardedLoop, TheControllerKeepsTheEnergyOfATick) {
             felt.stiffness / wall, held / wall, felt.most_added);
         EXPECT_EQ(felt.violations, 0) << what;
         EXPECT_LE(felt.beyond, PassivityObserver::kSeed) << what;
-        // The settled stiffness is the wall's, or what the controller makes of it.
+        // The settled stiffness is the wall's, or the controller's limit.
         EXPECT_NEAR(felt.stiffness, held, 0.06 * held) << what;
         EXPECT_LE(felt.chatter, 0.01) << what;
         if (is_linear) {
@@ -196,7 +196,7 @@ TEST(GuardedLoop, TheControllerKeepsTheEnergyOfATick) {
 }
 
 TEST(GuardedLoop, BelowTheBudgetOfTheDeviceAloneNothingIsAdded) {
-  // 2 b / T, and no friction or encoder: the device takes whatever the wall gives.
+  // At 2 b / T, without friction or encoder, the device dissipates whatever the wall gives.
   LoopModel loop = loopOf("falcon");
   loop.device.encoder = 0.0;
   const double wall = 0.9 * 2.0 * loop.device.damping / kTick;
@@ -207,8 +207,8 @@ TEST(GuardedLoop, BelowTheBudgetOfTheDeviceAloneNothingIsAdded) {
 }
 
 TEST(GuardedLoop, ASceneScaleActsOnTheWallAndNotOnTheCoupling) {
-  // The same wall at the hand: half as large a world, four times as stiff, forces back half as
-  // large.
+  // The same wall at the hand: in a world half as large, four times as stiff, with forces mapped
+  // back at half size.
   const LoopModel loop = loopOf("omega_3");
   const std::string coupling = "coupling: {stiffness: 800 N/m, damping: 4 N.s/m}";
   const Felt plain = press(sceneOf(kFlat, 5000.0, "device: {" + coupling + "}\n"), 5000.0, loop);
@@ -246,7 +246,7 @@ TEST(GuardedLoop, ACheckpointKeepsTheGuards) {
 }
 
 TEST(HandGuards, OfTheSettingsGoBeforeTheScenes) {
-  // The scene's need a device, which nobody named.
+  // The scene's guards need a device, and none was named.
   SessionSettings how;
   how.passivity = PassivitySettings{.mass = 0.2};
   how.coupling = CouplingSettings{800.0, 4.0};

@@ -1,8 +1,7 @@
-// A hand in the loop on hard cases, below the budget of its device: as calm as it is with a
-// brute-force oracle. And hands that are dictated: what a sampled world gives falls with the
-// period.
+// A hand in the loop on hard cases, below the budget of its device: as calm as with a brute-force
+// oracle. And hands on prescribed paths: the energy given by a sampled world falls with the period.
 //
-// One scene by its name: PALPATE_HARD_SCENE=corner-out.
+// To run one scene by its name: PALPATE_HARD_SCENE=corner-out.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +23,7 @@
 namespace palpate::loops {
 namespace {
 
-/// Whether a scene is to be run.
+/// Whether the scene is to be run.
 bool isAsked(const HardScene& scene) {
   const char* const only = std::getenv("PALPATE_HARD_SCENE");
   return only == nullptr || scene.name == only;
@@ -32,8 +31,8 @@ bool isAsked(const HardScene& scene) {
 
 bool isSlow() { return std::getenv("PALPATE_SLOW_TESTS") != nullptr; }
 
-/// Coulomb's cone about a flat wall at z = 0, in closed form: the proxy sticks while the spring to
-/// it lies in the cone.
+/// Coulomb's cone for a flat wall at z = 0, in closed form: the proxy sticks while the spring to it
+/// lies in the cone.
 class FrictionWall final : public rivals::RivalRenderer {
  public:
   FrictionWall(ScenePtr scene, double coefficient)
@@ -50,7 +49,7 @@ class FrictionWall final : public rivals::RivalRenderer {
       return untouched(hip);
     }
     const Vec3 above(hip.position.x, hip.position.y, 0.0);
-    // It begins where the hand came through the wall.
+    // It begins where the hand passed through the wall.
     if (!std::exchange(is_held_, true)) {
       proxy_ = before + before.z / (before.z + depth) * (hip.position - before);
     }
@@ -62,15 +61,15 @@ class FrictionWall final : public rivals::RivalRenderer {
 
   double coefficient_;
   Vec3 proxy_{0.0, 0.0, 0.0};  ///< [m]
-  Vec3 hand_{0.0, 0.0, 0.0};   ///< [m] of the last tick
+  Vec3 hand_{0.0, 0.0, 0.0};   ///< [m] at the last tick
   bool is_held_ = false;
 };
 
-/// Null where there is neither a closed form nor an oracle.
+/// The reference renderer; null if there is neither a closed form nor an oracle.
 std::unique_ptr<HapticRenderer> truthOf(const HardScene& scene, const ScenePtr& compiled) {
   if (scene.name == "texture") return nullptr;  // its height is not in the closed form
-  // Half a micrometer beside an open port, and beside an edge, an oracle that looks that far goes
-  // over it where that is nearer. Nothing pushes the hand aside.
+  // Half a micrometer beside an open port, or beside an edge, an oracle with a larger search radius
+  // crosses over if that is nearer. Nothing pushes the hand aside, so a flat wall is the reference.
   if (scene.name == "rim" || scene.name == "corner-out")
     return std::make_unique<FrictionWall>(compiled, 0.0);
   if (scene.friction > 0.0) return std::make_unique<FrictionWall>(compiled, scene.friction);
@@ -127,16 +126,16 @@ TEST(HardCases, BelowTheBudgetAHandComesToRest) {
       }
     }
   }
-  // A frictionless ball may be slid off; no other hard case is.
+  // A frictionless ball may let the hand slide off; no other hard case does.
   EXPECT_GE(2 * felt, runs);
 }
 
-/// How a loop is run beside its oracle's.
+/// How a loop is run in parallel with the oracle's.
 struct Beside {
   double rate = 1000.0;  ///< [Hz]
   int delay = 0;         ///< [samples]
   Motion motion = Motion::kPress;
-  bool is_noisy = false;  ///< readings jump by an encoder's step
+  bool is_noisy = false;  ///< readings change by an encoder's step
 };
 
 std::vector<Beside> allBeside() {
@@ -145,7 +144,7 @@ std::vector<Beside> allBeside() {
   for (const double rate : {1000.0, 4000.0, 10000.0}) {
     for (const int delay : {0, 1}) {
       all.push_back({rate, delay, Motion::kPress, false});
-      // With noise no hand ever rests, and the oracle takes a minute for what takes a second.
+      // With noise the hand never rests, and the oracle takes a minute instead of a second.
       if (rate == 1000.0) all.push_back({rate, delay, Motion::kPress, true});
     }
     all.push_back({rate, 0, Motion::kTap, false});
@@ -168,7 +167,7 @@ TEST(HardCases, TheLoopIsAsCalmAsWithAnOracle) {
     for (const std::string& device :
          isSlow() ? fourDevices() : std::vector<std::string>{"falcon"}) {
       for (const Beside& how : allBeside()) {
-        // The hand has to stay where the wall is.
+        // The hand must stay where the wall is.
         if (scene.name == "rim" && (how.is_noisy || how.motion == Motion::kDrag)) continue;
         const devices::LoopModel loop =
             loopModelOf({scene.name, "constraint", device, "relaxed", how.rate, how.delay});
@@ -185,7 +184,7 @@ TEST(HardCases, TheLoopIsAsCalmAsWithAnOracle) {
         ++count;
         if (scene.name == "two-balls" && ours.touches && !theirs.touches) {
           // All readings in the plane between the balls are free, and the oracle goes from one to
-          // the next through the point where the balls touch. A hand cannot.
+          // the next through the point where the balls touch. A real proxy cannot.
           ++through;
           continue;
         }
@@ -199,8 +198,8 @@ TEST(HardCases, TheLoopIsAsCalmAsWithAnOracle) {
 }
 
 TEST(HardCases, HollowsAreHeldDeeperThanTheirRadius) {
-  // Curvature times depth 0.5 to 1.2: pressed by as much as a wall of 0.8 times the budget needs,
-  // where the motors have it.
+  // Curvature times depth from 0.5 to 1.2: pressed with the force that a wall of 0.8 times the
+  // budget needs, if the motors have it.
   int count = 0;
   for (const double radius : {0.5e-3, 1e-3, 2e-3}) {
     const HardScene scene = ballScene(radius, true);
@@ -210,7 +209,7 @@ TEST(HardCases, HollowsAreHeldDeeperThanTheirRadius) {
       const devices::LoopModel loop = loopModelOf({scene.name, "constraint", device});
       for (const double bend : {0.5, 0.9, 1.2}) {
         const double most = 0.8 * devices::budgetOf(loop).stiffness();
-        const double force = std::min(2.0, most * bend * radius);  // [N] below what all motors have
+        const double force = std::min(2.0, most * bend * radius);  // [N] less than all motors have
         const double stiffness = force / (bend * radius);
         const double depth = depthOfForce(loop, stiffness, force);
         LoopSetting setting{.loop = loop, .hand = pressOn(scene.at, scene.out, depth, 1.3)};
@@ -218,7 +217,7 @@ TEST(HardCases, HollowsAreHeldDeeperThanTheirRadius) {
         const LoopOutcome out = runLoop(*renderer, setting, kHardStiffness);
         EXPECT_TRUE(out.isQuiet()) << scene.name << " on " << device << ", kd " << bend << ": "
                                    << out.chatter << " N, before " << out.before << " N";
-        // The encoder's step and friction are all that a settled force is off by.
+        // The settled force is off only by the encoder's step and friction.
         EXPECT_NEAR(out.mean, force,
                     loop.device.friction + stiffness * loop.device.encoder + 0.02 * force)
             << scene.name << " on " << device << ", kd " << bend;
@@ -231,8 +230,8 @@ TEST(HardCases, HollowsAreHeldDeeperThanTheirRadius) {
 
 TEST(HardCases, AHandIsPushedOffABallByTheForceOverItsRadius) {
   // Frictionless and convex: sideways the contact is a spring of -F / (R - d), which the hand's own
-  // has to hold. That is physics, and of no wall or renderer: the threshold is the same at every
-  // rate.
+  // spring must compensate. That is physics, independent of the wall and the renderer: the
+  // threshold is the same at every rate.
   constexpr double kRadius = 10e-3;
   HardScene scene = ballScene(kRadius, false);
   const ScenePtr compiled = compileHardScene(scene);
@@ -252,18 +251,19 @@ TEST(HardCases, AHandIsPushedOffABallByTheForceOverItsRadius) {
       setting.gain = stiffness / kHardStiffness;
       return runLoop(*renderer, setting, kHardStiffness).depth;
     };
-    // Held: moved to 1 / (1 - share) of the 0.02 mm, and in by d. Pushed off: beside the ball.
+    // Held: moved to 1 / (1 - share) of the 0.02 mm, and pressed in by d. Pushed off: beside the
+    // ball.
     EXPECT_LT(away(0.9), 0.1 * kRadius) << rate;
     EXPECT_GT(away(1.1), kRadius) << rate;
   }
 }
 
 TEST(HardCases, WhatADictatedHandGetsFallsWithThePeriod) {
-  // In, along, and out again, closed. A force held for a tick gives (f_{k-1} - f_k) . dx / 2 more
-  // than the continuous one: where the force changes by no more than K per meter, K v^2 T^2 / 2 a
-  // tick, and so half as much in all at twice the rate.
+  // A closed path in, along, and out again. A force held for a tick gives (f_{k-1} - f_k) . dx / 2
+  // more energy than the continuous one: where the force changes by at most K per meter, K v^2 T^2
+  // / 2 a tick, and so half as much in total at twice the rate.
   for (const HardScene& scene : hardScenes()) {
-    if (scene.friction > 0.0) continue;  // it takes more than sampling gives
+    if (scene.friction > 0.0) continue;  // dissipates more than sampling gives
     const ScenePtr compiled = compileHardScene(scene);
     const auto renderer = makeLoopRenderer("constraint", compiled);
     const Vec3 along = unitOr(glm::cross(scene.out, Vec3(0.0, 1.0, 0.0)), Vec3(1.0, 0.0, 0.0));
@@ -285,15 +285,15 @@ TEST(HardCases, WhatADictatedHandGetsFallsWithThePeriod) {
         before = p;
         force = renderer->update({p, Vec3(0.0), period}).force;
       }
-      // Where the surface bends away, the force turns faster than a flat wall's: up to 1 / (1 - kd)
-      // times, here below 1.5.
+      // On a convex surface the force turns faster than on a flat wall: up to 1 / (1 - kd) times as
+      // fast, here below 1.5.
       EXPECT_LE(work, 1.5 * 0.5 * kHardStiffness * squares) << scene.name << " at " << period;
       if (period == 1e-3) first = work;
       last = work;
     }
     std::printf("%s: %.3g J at 1 kHz, %.3g J at 8 kHz\n", scene.name.c_str(), first, last);
-    // An eighth, but for what a contact's first tick is late; below 1e-8 J there is nothing to
-    // fall.
+    // An eighth, except for the delay of a contact's first tick; below 1e-8 J there is nothing left
+    // to fall.
     EXPECT_LT(last, 0.2 * std::max(first, 0.0) + 1e-8) << scene.name;
   }
 }

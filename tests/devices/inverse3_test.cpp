@@ -1,4 +1,4 @@
-// The Inverse3's driver against a service of our own, over WebSocket on the loopback.
+// The Inverse3's driver against a mock service, over WebSocket on the loopback.
 
 #ifdef PALPATE_INVERSE3
 
@@ -29,20 +29,20 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 using Json = nlohmann::json;
 
-/// One connection: says where the device is, then answers each message with one.
+/// One connection: sends the device's state, then answers each message with one.
 class MockService {
  public:
-  /// What it says first; and what it answers to message `n` (from 0), empty: hangs up.
+  /// The first message, and the answer to message `n` (from 0); empty: hang up.
   std::function<std::string(int)> answer = [](int n) { return state(n); };
   std::string greeting = state(0);
-  bool is_silent = false;  // it does not greet
+  bool is_silent = false;  // it does not send the first message
 
   MockService()
       : acceptor_(context_, asio::ip::tcp::endpoint(asio::ip::address_v4::loopback(), 0)) {}
   ~MockService() {
     boost::system::error_code ignored;
     if (thread_.joinable()) {
-      // A server that still waits for somebody is let go by somebody.
+      // Connects once, so that a server which still waits for a connection can end.
       asio::ip::tcp::socket poke(context_);
       poke.connect(acceptor_.local_endpoint(), ignored);
       poke.close(ignored);

@@ -1,4 +1,4 @@
-// A session that another thread looks at, and to which it hands another scene.
+// A session that another thread observes, and to which it hands another scene.
 
 #include <gtest/gtest.h>
 

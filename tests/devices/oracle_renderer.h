@@ -1,5 +1,6 @@
 #pragma once
-/// The brute-force oracle's proxy as a renderer, to be put into the same loop as ours.
+/// The brute-force oracle's proxy as a renderer, to be used in the same loop as the constraint
+/// renderer.
 
 #include <utility>
 #include <vector>
@@ -9,7 +10,8 @@
 
 namespace palpate::loops {
 
-/// The spring to the oracle's proxy, as stiff as the scene's first solid. Slow, and allocates.
+/// The spring to the oracle's proxy, with the stiffness of the scene's first solid. Slow, and
+/// allocates.
 class OracleRenderer final : public rivals::RivalRenderer {
  public:
   /// The proxy stays outside all solids of the scene.
@@ -31,7 +33,7 @@ class OracleRenderer final : public rivals::RivalRenderer {
   [[nodiscard]] TickResult step(const HipState& hip) noexcept override {
     const bool has_begun = std::exchange(has_begun_, true);
     if (!has_begun) proxy_ = hip.position;
-    // Where the hand rests, the proxy is at its minimum already.
+    // While the hand rests, the proxy is at its minimum already.
     if (!has_begun || hip.position != hand_) {
       proxy_ = oracle::solveOracle(set_, proxy_, hip.position).proxy;
     }
@@ -42,7 +44,7 @@ class OracleRenderer final : public rivals::RivalRenderer {
 
   oracle::FeasibleSet set_;
   Vec3 proxy_{0.0, 0.0, 0.0};  ///< [m]
-  Vec3 hand_{0.0, 0.0, 0.0};   ///< [m] of the last tick
+  Vec3 hand_{0.0, 0.0, 0.0};   ///< [m] at the last tick
   bool has_begun_ = false;
 };
 

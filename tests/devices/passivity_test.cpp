@@ -25,8 +25,8 @@ constexpr double kTick = 1e-3;  // [s]
 PassivitySettings settings() { return {.mass = 0.2, .damping = 0.5, .period = kTick}; }
 
 TEST(PassivityObserver, TheWorkOfAHeldForceIsTheForceTimesTheWay) {
-  // The motor's own account, integrated beside it. Random forces, so that no velocity of a tick
-  // says anything of the next.
+  // The motor's work, integrated in parallel. The forces are random, so that the velocity of one
+  // tick tells nothing about the next.
   std::mt19937 random(1);
   std::uniform_real_distribution<double> force(-5.0, 5.0);
   for (int delay = 0; delay <= 3; ++delay) {
@@ -39,7 +39,7 @@ TEST(PassivityObserver, TheWorkOfAHeldForceIsTheForceTimesTheWay) {
     double size = 0.0;
     for (int k = 0; k < 2000; ++k) {
       observer.add(Vec3(0.0, 0.0, plant.position()), kTick, 0.0);
-      // Rounding: of sums of some 1e-3 J.
+      // Rounding of sums of some 1e-3 J.
       EXPECT_NEAR(observer.given(), plant.work(), 1e-13 + 1e-15 * size);
       const double wanted = force(random);
       observer.hold(Vec3(0.0, 0.0, wanted));
@@ -52,9 +52,9 @@ TEST(PassivityObserver, TheWorkOfAHeldForceIsTheForceTimesTheWay) {
 }
 
 TEST(PassivityObserver, TheVelocityOfTheTickThatComputesAForceSaysNothingOfItsWork) {
-  // A sampled spring: sum f_k . v_k T, with the backward velocity, is lower by K times the sum of
-  // the squared steps than what the motors gave: a loop that gave energy passes for one that took
-  // it.
+  // A sampled spring: sum f_k . v_k T, with the backward velocity, is K times the sum of the
+  // squared steps lower than the energy that the motors gave: a loop that gave energy would count
+  // as one that took it.
   constexpr double kSpring = 10000.0;  // [N/m]
   PassivityObserver observer(settings());
   double naive = 0.0;
@@ -69,8 +69,8 @@ TEST(PassivityObserver, TheVelocityOfTheTickThatComputesAForceSaysNothingOfItsWo
     last = x;
     observer.hold(Vec3(f, 0.0, 0.0));
   }
-  // Closed: the path ends where it began. Half of the squares is given by one, and taken by the
-  // other.
+  // Closed: the path ends where it began. One of the two gives half of the squares, and the other
+  // takes it.
   EXPECT_NEAR(observer.given(), 0.5 * kSpring * squares, 1e-12);
   EXPECT_NEAR(naive, -0.5 * kSpring * squares, 1e-12);
   EXPECT_GT(observer.given(), 0.0);
@@ -78,7 +78,7 @@ TEST(PassivityObserver, TheVelocityOfTheTickThatComputesAForceSaysNothingOfItsWo
 }
 
 TEST(PassivityObserver, WhatTheDeviceTakesIsNeverCountedTooHigh) {
-  // Against the integral of b v^2 of the true motion, for any force.
+  // Against the integral of b v^2 over the true motion, for any force.
   std::mt19937 random(2);
   std::uniform_real_distribution<double> force(-5.0, 5.0);
   PassivityObserver observer(settings());
@@ -118,7 +118,7 @@ TEST(PassivityObserver, FrictionAndAnEncoderCountAsTheyAreSure) {
   observer.add(Vec3(0.0), kTick, 0.0);
   observer.hold(Vec3(0.0, 1.0, 0.0));
   observer.add(Vec3(1e-3, 0.0, 0.0), kTick, 0.0);
-  // The way may be one step shorter along each axis.
+  // The way may be one encoder step shorter along each axis.
   EXPECT_NEAR(observer.reserve(), PassivityObserver::kSeed + 0.5 * (1e-3 - std::sqrt(3.0) * 1e-5),
               1e-15);
   EXPECT_DOUBLE_EQ(observer.doubt(), 0.5e-5);
@@ -136,7 +136,7 @@ TEST(PassivityObserver, AForceLongerThanTheMotorsHoldCountsAsItIsHeld) {
 }
 
 /// A hand that presses slowly on a wall and holds, or taps on it, through a device of 0.2 kg and
-/// 0.5 N s/m; hand 300 N/m, 2 N s/m. Its largest stable stiffness is 5011 N/m.
+/// 0.5 N s/m; the hand has 300 N/m, 2 N s/m. The largest stable stiffness is 5011 N/m.
 struct Pressed {
   double wall = 0.0;  ///< [N/m]
   bool taps = false;
@@ -145,17 +145,17 @@ struct Pressed {
 };
 
 struct Felt {
-  double to_hand = 0.0;   ///< [J] most that came out at the hand so far
-  double by_motor = 0.0;  ///< [J] most that the motor gave so far
-  double chatter = 0.0;   ///< [N] rms of the held force about its mean, in the last half second
-  double share = 0.0;     ///< [-] mean force over mean depth over the wall's stiffness, in the same
+  double to_hand = 0.0;     ///< [J] largest energy given to the hand so far
+  double by_motor = 0.0;    ///< [J] largest energy given by the motor so far
+  double chatter = 0.0;     ///< [N] rms of the held force about its mean, in the last half second
+  double share = 0.0;       ///< [-] mean force over mean depth and the stiffness, in the same time
   double most_added = 0.0;  ///< [N]
   double tick_cost = 0.0;   ///< [J] K (v T)^2 + F v T, with the largest speed and force so far
 };
 
 constexpr double kBudget = 5011.0;  // [N/m]
-/// [N] rms while 3 N are held. Without the controller it is 4 N and more; a simulation that was
-/// written apart from this one left 0.16 N at most with it.
+/// [N] rms while 3 N are held. Without the controller it is 4 N and more; in a separately written
+/// simulation it was at most 0.16 N with the controller.
 constexpr double kQuiet = 0.17;
 
 Felt press(const Pressed& how) {
@@ -207,7 +207,7 @@ Felt press(const Pressed& how) {
 
 TEST(PassivityController, WithoutItTheLoopGivesEnergyAboveTheBudgetOnly) {
   const Felt below = press({.wall = 0.8 * kBudget});
-  // The budget counts the hand's own damper, which takes what the motor gives it.
+  // The budget includes the hand's own damper, which dissipates what the motor gives it.
   EXPECT_LE(below.to_hand, 1e-4);
   EXPECT_LT(below.chatter, 0.01);
   EXPECT_NEAR(below.share, 1.0, 1e-3);
@@ -229,7 +229,7 @@ TEST(PassivityController, ItHoldsTenTimesTheBudget) {
           "%g x budget, %s: hand %.2g J, motor %.2g J, chatter %.2g N, share %.3f, added %.3g N\n",
           times, taps ? "tap" : "press", felt.to_hand, felt.by_motor, felt.chatter, felt.share,
           felt.most_added);
-      // It acts once energy was given: what one tick costs is left.
+      // The controller acts only after energy was given: the cost of one tick remains.
       EXPECT_LT(felt.to_hand, felt.tick_cost);
       EXPECT_LT(felt.to_hand, 1e-4);
       if (taps) continue;
@@ -240,7 +240,8 @@ TEST(PassivityController, ItHoldsTenTimesTheBudget) {
 }
 
 TEST(PassivityController, WithADelayItNeedsTheLimitOfItsDamping) {
-  // Of what it holds: the budget of d ticks is 1 / (1 + 2 d) of that of none.
+  // Relative to the stiffness it holds: the budget with d ticks is 1 / (1 + 2 d) of that without
+  // delay.
   for (int delay = 1; delay <= 2; ++delay) {
     PassivitySettings how = settings();
     how.delay = delay;
@@ -265,7 +266,7 @@ TEST(PassivityController, ItsDamperCalmsAMassWithAnyDelay) {
     PassivityController guard(how);
     TinyPlant plant({.mass = how.mass, .damping = 0.0}, kTick, 0.0, 0.1);
     std::vector<double> line(static_cast<std::size_t>(delay), 0.0);
-    // An account that is never made good, so that it damps as much as it may.
+    // An account that stays negative, so that the controller damps as much as it may.
     double source = -1e6;
     for (int k = 0; k < 2000; ++k) {
       const Vec3 at(0.0, plant.position(), 0.0);
@@ -274,14 +275,14 @@ TEST(PassivityController, ItsDamperCalmsAMassWithAnyDelay) {
       plant.step(line.front(), 0.0);
       line.erase(line.begin());
     }
-    // Slower than 1e-6 m/s it is left alone.
+    // Below 1e-6 m/s it does not act.
     EXPECT_LT(std::fabs(plant.velocity()), 1e-5) << delay;
   }
 }
 
 TEST(PassivityController, TheBoundGivesNothingBeforeItIsThere) {
-  // With no income counted the motor never gives more than the seed, whatever the wall, as long as
-  // the hand keeps to its force.
+  // With no dissipation credited the motor never gives more than the seed, for any wall, as long as
+  // the hand's force stays within its bound.
   for (const double times : {0.8, 2.0, 5.0, 10.0}) {
     for (const double hand : {1.0, 5.0}) {
       PassivitySettings how = settings();
@@ -304,7 +305,8 @@ TEST(PassivityController, TheBoundGivesNothingBeforeItIsThere) {
 }
 
 TEST(PassivityController, WhatItsDamperCannotHoldIsSoftened) {
-  // Below the exact limit of the sampled loop with the most damping, nobody holding the device.
+  // It is below the exact limit of the sampled loop with the largest damping, when nobody holds the
+  // device.
   for (int delay = 0; delay <= 8; ++delay) {
     PassivitySettings how = settings();
     how.delay = delay;
@@ -328,10 +330,11 @@ TEST(PassivityController, WhatItsDamperCannotHoldIsSoftened) {
   const double wall = 4.0 * guard.mostStiffness();
   const Vec3 force(0.0, 3.0, 0.0);
   EXPECT_EQ(guard.step(Vec3(0.0), kTick, force, wall, 0.0).force, 0.25 * force);
-  // A source's work is as much less: all of it was given, so that nothing counts.
+  // The work of a source is subtracted: it accounts for all of the energy given, so nothing is
+  // counted.
   (void)guard.step(Vec3(0.0, 2e-5, 0.0), kTick, force, 0.0, 3.0 * 2e-5);
   EXPECT_NEAR(guard.observer().given(), 0.0, 1e-18);
-  // Of an unknown stiffness, and one that may be.
+  // With an unknown stiffness, and with a permitted one.
   EXPECT_EQ(guard.step(Vec3(0.0, 2e-5, 0.0), kTick, force, 0.0, 0.0).force, force);
   EXPECT_EQ(guard.step(Vec3(0.0, 2e-5, 0.0), kTick, force, 1000.0, 0.0).force, force);
 }
@@ -347,19 +350,20 @@ TEST(PassivityController, OnceItDampedItDampsUntilTheForceEnds) {
   EXPECT_EQ(step(-1e-3, 100.0), 0.0);
   EXPECT_NEAR(step(-0.9e-3, 100.0), -most * 0.09, 1e-9);  // 10 mJ was given
   for (int k = 1; k <= 40; ++k) {
-    EXPECT_NEAR(step(-0.9e-3 - 1e-4 * k, 100.0), most * 0.09, 1e-9);  // more than that was taken
+    EXPECT_NEAR(step(-0.9e-3 - 1e-4 * k, 100.0), most * 0.09,
+                1e-9);  // that was dissipated
   }
   EXPECT_GT(guard.observer().reserve(), 0.3);
   EXPECT_NEAR(step(-4.8e-3, 100.0), -most * 0.09, 1e-9);
-  EXPECT_EQ(step(-4.791e-3, 100.0), 0.0);     // less than a step of the encoder
-  EXPECT_EQ(step(-1.791e-3, 100.0), -100.0);  // never turned around
+  EXPECT_EQ(step(-4.791e-3, 100.0), 0.0);     // shorter than an encoder's step
+  EXPECT_EQ(step(-1.791e-3, 100.0), -100.0);  // never reversed
   EXPECT_GT(guard.observer().reserve(), 0.0);
   EXPECT_EQ(step(-1.9e-3, 0.0), 0.0);
   EXPECT_EQ(step(-1.8e-3, 100.0), 0.0);
 }
 
 TEST(PassivityController, AForceThatGivesNothingIsLeftAsItIs) {
-  // Random hands on a wall far below what the device's own damping covers, 2 b / T.
+  // Random hands on a wall far below 2 b / T, the limit that the device's own damping covers.
   std::mt19937 random(3);
   std::normal_distribution<double> push(0.0, 1.0);
   PassivityController guard(settings());

@@ -16,7 +16,7 @@ constexpr double kRate = 1000.0;
 // Positions are of order 0.1 m and come from a handful of operations.
 constexpr double kRounding = 1e-15;
 
-/// Rows at i / rate, exactly; this is what makes a path the same on every machine.
+/// Rows are at i / rate, exactly, so that a path is the same on every machine.
 void expectSampled(const Path& path, double rate) {
   for (std::size_t i = 0; i < path.size(); ++i) {
     ASSERT_EQ(path[i].t, static_cast<double>(i) / rate);
@@ -41,7 +41,7 @@ TEST(PressPath, FollowsItsFormula) {
   press.speed = 0.05;
   press.hold = 0.2;
   const Path path = generate(press, kRate);
-  // 7 mm at 50 mm/s is 140 ms each way, and 200 ms of hold between.
+  // 7 mm at 50 mm/s take 140 ms each way, plus 200 ms of hold.
   ASSERT_EQ(path.size(), 481U);
   expectSampled(path, kRate);
   for (const PathPoint& point : path) {
@@ -54,7 +54,7 @@ TEST(PressPath, FollowsItsFormula) {
   }
   EXPECT_EQ(path.front().position, Vec3(0.01, 0.02, 0.03 + 0.005));
   EXPECT_EQ(path.back().position, path.front().position);
-  // In the hold, the position is the deepest point to the last bit, not a rounding of it.
+  // During the hold, the position is the deepest point to the last bit, without rounding.
   EXPECT_EQ(path[240].position, Vec3(0.01, 0.02, 0.03 - 0.002));
   EXPECT_NEAR(fastest(path), 0.05, 1e-9);
 }
@@ -83,7 +83,7 @@ TEST(StrokePath, GoesThereAndBackAtConstantSpeed) {
   for (const PathPoint& point : path) {
     const double along = std::fabs(std::remainder(0.1 * point.t, 0.1)) / 0.05;
     const Vec3 expected = stroke.from + along * (stroke.to - stroke.from);
-    // The remainder of a traveled way of 0.3 m is rounded at 0.3 m.
+    // The remainder after a way of 0.3 m is rounded at 0.3 m.
     EXPECT_LT(glm::length(point.position - expected), 1e-15 * 10) << point.t;
   }
   EXPECT_EQ(path.front().position, stroke.from);
@@ -204,8 +204,8 @@ TEST(Generators, RefuseParametersOutOfRange) {
 
 TEST(Generators, RefuseAPathTooLongToHold) { expectRefused(PressPath{.speed = 1e-12}); }
 
-// What is computed row by row is what is kept in memory, bit for bit, and a hand that follows it is
-// the same hand.
+// The rows computed one by one equal those kept in memory, bit for bit, and a hand that follows
+// them is the same.
 TEST(PathFormula, IsThePathThatIsGenerated) {
   const auto compare = [](const auto& shape, double rate) {
     const Path path = generate(shape, rate);

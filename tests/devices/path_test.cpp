@@ -21,7 +21,7 @@ Path read(std::string_view text) {
   return readPath(folder.file("path.csv", text)).points;
 }
 
-/// What readPath() says of `text`.
+/// The error that readPath() throws for `text`.
 Problem problemOf(std::string_view text) {
   const TempFolder folder;
   const std::string file = folder.file("path.csv", text);
@@ -92,7 +92,7 @@ TEST(ReadPath, LineEndsMayBeCrlfAndTheLastMayBeMissing) {
 }
 
 TEST(ReadPath, EveryNumberIsReadExactlyAndPiecesMeetWithoutASeam) {
-  // About 4 MB of rows of uneven length, so that the reader's pieces end anywhere in a row.
+  // About 4 MB of rows of varying length, so that the reader's pieces end anywhere in a row.
   std::mt19937_64 random(3);
   std::string text = "t,x,y,z\n";
   Path expected;

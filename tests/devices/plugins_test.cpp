@@ -1,4 +1,4 @@
-// Makers' libraries, stood for by small ones of our own.
+// Drivers for makers' libraries, tested with small fake libraries.
 
 #include "palpate/devices/plugins.h"
 
@@ -18,7 +18,7 @@ std::string fakeLibrary(const std::string& name) {
   return test::buildFolder() + "/tests/libpalpate_fake_" + name + ".so";
 }
 
-/// As in tests/fakes/fake_hd.cpp.
+/// Same layout as in tests/fakes/fake_hd.cpp.
 struct FakeHd {
   std::array<double, 3> position_mm;
   std::array<double, 3> velocity_mm;
@@ -28,7 +28,7 @@ struct FakeHd {
   int is_absent, is_running, is_open, force_is_enabled, frames, torn_frames;
 };
 
-/// As in tests/fakes/fake_dhd.cpp.
+/// Same layout as in tests/fakes/fake_dhd.cpp.
 struct FakeDhd {
   std::array<double, 3> position;
   std::array<double, 3> velocity;
@@ -36,7 +36,7 @@ struct FakeDhd {
   int button, answer, set_answer, is_absent, is_open, force_is_enabled;
 };
 
-/// The library itself, so that a test may look at it before and after the driver.
+/// Access to the fake library, so that a test can inspect it before and after the driver.
 template <typename State>
 class Fake {
  public:

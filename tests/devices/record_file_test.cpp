@@ -1,5 +1,5 @@
-// Records in files: what is written is read back, full disks leave whole rows, and no damage makes
-// more of a file than is in it.
+// Records in files: the written data are read back, full disks leave whole rows, and a damaged file
+// never yields more than it contains.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -24,7 +24,7 @@ namespace {
 
 using testing::TempFolder;
 
-/// Any bits that a tick may have; row n has the number n.
+/// Random bits for everything in a tick; row n has the number n.
 RecordedTick randomTick(std::mt19937& random, std::uint64_t number) {
   const auto any = [&] { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); };
   const auto vector = [&] { return Vec3(any(), any(), any()); };
@@ -83,7 +83,7 @@ TEST(RecordFile, WhatIsWrittenIsReadBack) {
         written.push_back(rowOf(tick));
         if (random() % 1000 != 0) continue;
         rows.flush();
-        // At any time the file is one that can be read, all of it.
+        // At any time the file can be read completely.
         RecordReader now(file);
         EXPECT_EQ(now.promised(), now.size());
         ASSERT_EQ(now.size(), written.size());
@@ -109,7 +109,7 @@ TEST(RecordFile, WhatIsWrittenIsReadBack) {
   }
 }
 
-/// No file of this process grows beyond `bytes` while it lives.
+/// While this exists, no file of this process can grow beyond `bytes`.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) {
@@ -164,7 +164,7 @@ TEST(RecordFile, AFullDiskLeavesWholeRowsAndIsReported) {
   }
 }
 
-/// Cuts, changes, adds to or moves bytes.
+/// Truncates, changes, appends or moves bytes.
 std::string damaged(std::string bytes, std::mt19937& random, std::size_t most_at) {
   const auto at = [&] { return random() % std::min(bytes.size(), most_at); };
   switch (random() % 5) {
@@ -275,7 +275,7 @@ TEST(RecordFile, OnlyWholeStatesOfThisBuildAndRecordAreGiven) {
   }
   EXPECT_GT(refused, 60);
   EXPECT_GT(fewer, 20);
-  // Of another build: the error names both builds.
+  // From another build: the error names both builds.
   std::string other = good;
   other.replace(other.find("palpate "), 9, "palpate 9");
   const std::uint64_t sum = checksum({other.data(), 208});

@@ -1,5 +1,5 @@
-// What goes into the recorder comes out of it, in order and without a wait of the loop, whatever
-// its sinks do.
+// Everything that goes into the recorder comes out of it, in order and without making the loop
+// wait, whatever its sinks do.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace palpate::devices {
 namespace {
 
-/// What identifies a tick of the tests: each part is made from its number.
+/// A tick whose contents all derive from its number, so that it can be identified.
 SessionTick tickOf(std::uint64_t number) {
   SessionTick tick;
   tick.number = number;
@@ -105,7 +105,7 @@ TEST(Recorder, ARealTimeLoopNeverWaitsAndWhatIsDroppedIsCounted) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
     Collector all;
-    all.blocks = true;  // as a disk that does not answer
+    all.blocks = true;  // like a disk that does not answer
     const std::size_t room = std::size_t{1} << (1 + random() % 6);
     Recorder recorder({&all}, {.ticks = room, .entries = 4, .states = 2});
     const std::uint64_t count = room + 1 + random() % 200;

@@ -1,4 +1,4 @@
-// A record that fails on cue: each fault leads to its state, its text and zero force.
+// A record that fails on request: each fault leads to its state, its text and zero force.
 
 #include "palpate/devices/replay_device.h"
 
@@ -18,7 +18,7 @@ namespace {
 const std::atomic<bool> kNeverStop{false};
 const Vec3 kPush(0.0, 0.0, 1.0);
 
-/// A hand that goes to and fro for 2 s.
+/// A hand that moves back and forth for 2 s.
 std::vector<DeviceState> rows() {
   std::vector<DeviceState> out;
   for (int i = 0; i < 2000; ++i) {
@@ -70,7 +70,8 @@ struct Case {
 TEST(ReplayDevice, EachFaultLeadsToItsStateAndZeroForce) {
   using K = InjectedKind;
   const Case cases[] = {
-      // Nine turns without a reading are felt with the last one; then zero until one comes.
+      // In nine turns without a reading the last one is used; then the force is zero until a
+      // reading comes.
       {{1000, K::kStale, 1}, ServoExit::kEnd, SafetyFault::kNone, 2001},
       {{1000, K::kStale, 50}, ServoExit::kEnd, SafetyFault::kNone, 2009},
       {{1000, K::kStale, 200}, ServoExit::kFault, SafetyFault::kSilence, 1009},

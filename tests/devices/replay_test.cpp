@@ -1,6 +1,6 @@
-// A random session, whatever its device, clutch, estimator, limits, changes and faults: felt anew
-// from its record, from the start and from each state, it is the same bit for bit; and what is not
-// the same is found.
+// A random session with any device, clutch, estimator, limits, changes and faults: replayed from
+// its record, from the start and from each state, it is the same bit for bit; and a difference is
+// found.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,8 @@
 namespace palpate::devices {
 namespace {
 
-/// `opens`: of the skin's port; empty for one that stands open, as the paper's renderer wants it.
+/// `opens`: the opening force of the skin's port; empty for an open port, as the paper's renderer
+/// requires.
 SceneDescription describe(double stiffness,
                           const std::string& opens = ", opens_at: 0.7 N, back: 0.3 N") {
   return parseScene(R"(
@@ -39,7 +40,7 @@ ports:
                     "replay.yaml");
 }
 
-/// Gives readings that were made beforehand, faults among them.
+/// Returns readings that were made beforehand, including faults.
 class Readings final : public Device {
  public:
   Readings(std::vector<DeviceState> readings, std::vector<DeviceStatus> statuses, DeviceFrame frame)
@@ -199,7 +200,7 @@ TEST(Replay, WhatIsNotTheSameIsFoundWithItsSize) {
   const ReplayReport report = replay(record, session, drawn.frame);
   ASSERT_TRUE(report.first);
 
-  // By hand: both sessions side by side.
+  // Without replay(): both sessions side by side.
   Session before(drawn.scene, drawn.settings);
   Session after(other, drawn.settings);
   record.seek(0);
@@ -219,7 +220,7 @@ TEST(Replay, WhatIsNotTheSameIsFoundWithItsSize) {
 }
 
 TEST(Replay, RegionsAndPortsAreComparedByTheirNames) {
-  // Two balls, each with a port that stands open, in either order and under other names.
+  // Two balls, each with an open port, in either order and under other names.
   const auto balls = [](const std::string& first, const std::string& second, double second_at) {
     const auto layer = [](const std::string& name, double x) {
       return "  - {name: " + name + ", inside: {sphere: {center: [" + std::to_string(x) +
@@ -261,7 +262,7 @@ TEST(Replay, RegionsAndPortsAreComparedByTheirNames) {
   const ScenePtr swapped = balls("two", "one", 0.0);
   EXPECT_EQ(compared(swapped, names).different, 0U);
   EXPECT_GT(compared(swapped, {}).regions, 200U);
-  // Under other names they have the same numbers.
+  // Under other names they have the same numbers, and no names match.
   const ScenePtr renamed = balls("uno", "due", 100.0);
   const ReplayReport report = compared(renamed, names);
   EXPECT_GT(report.regions, 200U);
@@ -277,7 +278,7 @@ TEST(Replay, RegionsComeIntoAndCheckpointsAreCompared) {
   RecordReader record(file);
   const std::string other = folder.path("other.npy");
   {
-    // The same ticks with wrong counts of regions come into.
+    // The same ticks with wrong counts of entered regions.
     Session session(drawn.scene, drawn.settings);
     RowFile rows(other, other);
     TickRecord row;

@@ -1,4 +1,4 @@
-// The limits that stand between a force and a hand, and the states that a device goes through.
+// The limits between a force and a hand, and the states of a device.
 
 #include "palpate/devices/safety.h"
 
@@ -25,7 +25,7 @@ DeviceState at(const Vec3& position, bool is_homed = true) {
   return out;
 }
 
-/// Opened, homed, and believed at `time` [ns].
+/// A device that was opened, homed, and has a believed position at `time` [ns].
 Safety opened(const SafetyLimits& limits, double max_force = 10.0) {
   Safety safety(limits, max_force, kWatchdog, 0, kTurn);
   safety.open(0);
@@ -33,7 +33,7 @@ Safety opened(const SafetyLimits& limits, double max_force = 10.0) {
   return safety;
 }
 
-/// What the table says, thought anew: from the meaning of each state.
+/// The table, derived again from the meaning of each state.
 SafetyState meant(SafetyState state, SafetyEvent event) {
   const bool is_open = state != SafetyState::kClosed;
   const bool is_fault = state == SafetyState::kFault;
@@ -119,7 +119,7 @@ TEST(Safety, ZeroUntilHomedAndAFaultWhenTheOriginIsLost) {
   EXPECT_EQ(safety.state(), SafetyState::kUncalibrated);
   EXPECT_FALSE(safety.ticks());
   EXPECT_EQ(safety.ask(Vec3(1.0), lost).force, Vec3(0.0));
-  // The origin that is found moves the position by more than a hand can: that is not a jump.
+  // Finding the origin moves the position farther than a hand can: that is not a jump.
   const DeviceState homed = at(Vec3(0.05));
   EXPECT_EQ(safety.read(2 * kTurn, DeviceStatus::kOk, homed), ReadingVerdict::kSound);
   EXPECT_EQ(safety.state(), SafetyState::kIdle);
@@ -250,33 +250,33 @@ TEST(Safety, TheMotorsHeatIsThatOfTheContinuousForceAtMost) {
     ASSERT_LE(safety.heat(), 1.0 + 1e-9);
     full += felt == 8.0 ? 1 : 0;
   }
-  // Of a load of 16 the heat is 16 (1 - exp(-t)). 8 N are left out once the permitted force is
-  // below: at the heat h with 2 + 8 (1 - h) / 0.2 = 8, that is h = 0.85, after -ln(1 - 0.85 / 16)
-  // = 54.6 ms.
+  // At a load of 16 the heat is 16 (1 - exp(-t)). A force of 8 N is reduced when the permitted
+  // force falls below it: at the heat h with 2 + 8 (1 - h) / 0.2 = 8, that is h = 0.85, after -ln(1
+  // - 0.85 / 16) = 54.6 ms.
   EXPECT_NEAR(full, 55, 1);
   (void)safety.read(20'000 * kTurn, DeviceStatus::kOk, here);
   EXPECT_NEAR(safety.ask(push, here).force.x, 2.0, 1e-3);
 }
 
-/// The nearest way from a share of the last force.
+/// The distance to the nearest share of the last force.
 double growth(const Vec3& last, const Vec3& now) {
   const double square = glm::dot(last, last);
   const double share = square > 0.0 ? std::clamp(glm::dot(now, last) / square, 0.0, 1.0) : 0.0;
   return glm::length(now - share * last);
 }
 
-/// What a hand may be sure of, from all that has happened so far, thought anew with the clock of
-/// the test.
+/// The guarantees for a hand, derived again from everything that has happened so far, with the
+/// test's clock.
 struct Promise {
   SafetyLimits limits;
   std::int64_t longest;  // [ns] silence
   double max_force;
-  std::int64_t sound = -1;  // of the last sound reading
+  std::int64_t sound = -1;  // time of the last sound reading
   std::int64_t reply = 0;
-  std::int64_t broken = 0;  // when the force last had to begin anew
+  std::int64_t broken = 0;  // time at which the ramp last had to begin anew
   Vec3 last{0.0};
   double heat = 0.0;       // [-] of the motors
-  std::int64_t asked = 0;  // when a force was last asked for
+  std::int64_t asked = 0;  // time at which a force was last asked for
   bool is_homed = false;
 };
 
@@ -298,7 +298,7 @@ TEST(Safety, KeepsItsPromisesWhateverHappens) {
     p.limits.thermal_time = uniform(0.05, 1.0);
     p.max_force = uniform(4.0, 12.0);
     p.longest = std::llround(1e9 * p.limits.silence);
-    const double mischief = std::pow(10.0, uniform(-4.0, -0.5));  // share of turns
+    const double mischief = std::pow(10.0, uniform(-4.0, -0.5));  // share of turns with a fault
     Safety safety(p.limits, p.max_force, kWatchdog, 0, kTurn);
     safety.open(0);
     std::int64_t now = 0;
@@ -363,10 +363,10 @@ TEST(Safety, KeepsItsPromisesWhateverHappens) {
         ASSERT_EQ(force, Vec3(0.0)) << nameOf(safety.state());
       }
       ASSERT_EQ(length > 0.0 && !permitsForce(safety.state()), false);
-      // It grows no faster than permitted: 1 ms at most counts.
+      // It grows no faster than permitted: at most 1 ms counts.
       ASSERT_LE(growth(p.last, force), p.limits.max_growth * 1e-3 + 1e-9);
-      // The motors' heat is that of the forces that were held, and hot motors get what they hold
-      // forever.
+      // The motors' heat follows from the forces that were held, and hot motors get only the
+      // continuous force.
       const double forever = p.limits.continuous_force;
       const double load = glm::dot(p.last, p.last) / (forever * forever);
       p.heat +=
@@ -377,8 +377,8 @@ TEST(Safety, KeepsItsPromisesWhateverHappens) {
       ASSERT_LE(length, std::max(p.max_force * cold + forever * (1.0 - cold), forever) + 1e-9);
       p.asked = now;
       if (is_broken || !may) p.broken = now;
-      // The ramp: no more than its share of the maximum since the force last had to begin anew. It
-      // lasts whole nanoseconds.
+      // The ramp: at most its share of the maximum since it last had to begin anew. Its duration is
+      // in whole nanoseconds.
       const double since = 1e-9 * static_cast<double>(now - p.broken + 1);
       ASSERT_LE(length, p.max_force * std::min(1.0, since / p.limits.ramp) + 1e-9);
       p.last = force;

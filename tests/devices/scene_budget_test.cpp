@@ -1,4 +1,5 @@
-// What of a scene a device can hold: every kind of thing that is felt, and cures that cure.
+// The parts of a scene that a device can hold: every kind of item that can be felt, and remedies
+// that suffice.
 
 #include "palpate/devices/scene_budget.h"
 
@@ -73,7 +74,7 @@ TEST(SceneBudget, FindsAllThatIsFeltAsStiffAsItGets) {
   expect("flesh", "shaft", 1e5 * length, 20.0 * length);
   expect("flesh", "shaft.lateral", 3e4 * length, 0.0);
   expect("syrup", "viscosity", 0.0, 400.0);
-  // From inside the safe nothing is felt: no port leads there.
+  // From inside, the safe cannot be felt: no port leads there.
   EXPECT_EQ(find(items, "syrup", "viscosity")->places, std::vector<std::string>{"pot"});
   EXPECT_EQ(find(items, "hard", "stiffness")->places,
             (std::vector<std::string>{"box | outside", "outside | box"}));
@@ -109,7 +110,7 @@ layers:
   ASSERT_EQ(items.size(), 1U);
   EXPECT_EQ(items[0].material, "skin");
   EXPECT_EQ(items[0].parameter, "composite");
-  // Through the skin the stiffest wall of all may be felt.
+  // Through the skin, the stiffest wall of all may be felt.
   EXPECT_EQ(items[0].most.stiffness, 4000.0);
 }
 
@@ -168,7 +169,7 @@ TEST(SceneBudget, ASessionWarnsAtSetUpAndChangesNothing) {
   const ScenePtr felt = scene();
   SessionSettings settings;
   settings.loop = touchLoop();
-  settings.loop->period = 1.0;  // the session's own counts
+  settings.loop->period = 1.0;  // is replaced by the session's own
   const Session warned(felt, settings);
   ASSERT_FALSE(warned.overBudget().empty());
   EXPECT_EQ(warned.overBudget().front().item.material, "hard");

@@ -1,5 +1,5 @@
 #pragma once
-// A device that fails on cue.
+// A device that fails as scripted.
 
 #include <cstddef>
 #include <limits>
@@ -10,14 +10,14 @@
 
 namespace palpate::devices {
 
-/// Answers read k with `reads[k]` and write k with `writes[k]` (kOk beyond its end), and remembers
-/// all that was asked of it. Position k is (k, 0, 0) [m]; a stale read leaves garbage in its
-/// argument, as a careless driver might.
+/// Answers read k with `reads[k]` and write k with `writes[k]` (kOk beyond the end), and records
+/// all calls. Position k is (k, 0, 0) [m]; a stale read leaves garbage in its argument, as a
+/// careless driver might.
 class ScriptedDevice final : public Device {
  public:
   std::vector<DeviceStatus> reads;
   std::vector<DeviceStatus> writes;
-  std::vector<std::size_t> nan_positions;  ///< reads that report a NaN position
+  std::vector<std::size_t> nan_positions;  ///< indices of reads that report a NaN position
   bool fails_to_open = false;
   double max_force = 10.0;  ///< [N]
 

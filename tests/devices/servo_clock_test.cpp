@@ -1,4 +1,4 @@
-// What the servo loop changes of its thread, and that it does so only when asked.
+// Which settings of its thread the servo loop changes, and that it does so only when asked.
 
 #include <gtest/gtest.h>
 #include <pthread.h>
@@ -15,7 +15,7 @@ namespace {
 
 const std::atomic<bool> kNeverStop{false};
 
-/// [ns] by which the kernel may wake this thread late.
+/// [ns] The delay with which the kernel may wake this thread.
 int slack() { return prctl(PR_GET_TIMERSLACK, 0, 0, 0, 0); }
 
 /// The slack within a tick of a loop with these settings.
@@ -31,7 +31,7 @@ int slackDuring(const ServoSettings& settings) {
 }
 
 TEST(ServoClock, ALoopByTheClockSleepsExactlyAndGivesTheSlackBack) {
-  // A slack of its own, which only threads without a real-time priority have.
+  // Set a slack, which only threads without a real-time priority have.
   const sched_param none{};
   ASSERT_EQ(pthread_setschedparam(pthread_self(), SCHED_OTHER, &none), 0);
   constexpr int kSlack = 70'000;  // [ns]

@@ -23,7 +23,7 @@ const Vec3 kPush(0.0, 0.0, 1.0);
 
 Vec3 push(const DeviceState& /*state*/) { return kPush; }
 
-/// Every way out of the loop leaves the device like this.
+/// Every end of the loop leaves the device in this state.
 void expectAtRest(const ScriptedDevice& device) {
   ASSERT_FALSE(device.written.empty());
   EXPECT_EQ(device.written.back(), Vec3(0.0));
@@ -152,7 +152,8 @@ TEST(RunServo, AForceBeyondTheDevicesMaximumIsShortenedAndKeepsItsDirection) {
   EXPECT_EQ(device.written[0], forces[0]);
   EXPECT_NEAR(device.written[1].y, -6.0, 1e-14);
   EXPECT_NEAR(device.written[1].z, 8.0, 1e-14);
-  EXPECT_LE(glm::length(device.written[2]), 10.0);  // its square overflows: at most the maximum
+  EXPECT_LE(glm::length(device.written[2]),
+            10.0);  // its square overflows: at most the maximum
   expectAtRest(device);
 }
 
@@ -239,8 +240,7 @@ TEST(RunServo, TheLoopIsFreeOfAllocationsLocksAndThrows) {
     };
     ServoReport report;
     const testing::AllocGuard guard;
-    // The watchdog waits for long: on a machine that is busy with other things a turn may come
-    // late.
+    // The watchdog's time is long: on a busy machine a turn may come late.
     report = runServo(device, tick, {.realtime = realtime, .rate = 10000.0, .watchdog = 100.0},
                       kNeverStop);
     EXPECT_EQ(guard.violations(), 0);
@@ -275,7 +275,8 @@ TEST(RunServo, ElevationIsReportedAndUndone) {
         return Vec3(0.0);
       },
       {.elevate = Elevate::kPrefer}, kNeverStop);
-  // What is allowed depends on who runs the test; what is reported must be what happened.
+  // What is allowed depends on the user who runs the test; the report must agree with what
+  // happened.
   EXPECT_EQ(during, report.has_priority ? SCHED_FIFO : policy);
   EXPECT_EQ(report.elevated, report.has_priority && report.has_locked_memory);
   int policy_after = -1;
@@ -286,8 +287,8 @@ TEST(RunServo, ElevationIsReportedAndUndone) {
 }
 
 TEST(RunServo, WhatIsRequiredIsGrantedOrTheLoopDoesNotRun) {
-  // What is allowed depends on who runs the test: the one or the other, as the system says when it
-  // is asked.
+  // What is allowed depends on the user who runs the test: the test accepts both results, whichever
+  // the system states.
   ScriptedDevice device;
   device.reads = {DeviceStatus::kOk, DeviceStatus::kOk};
   VirtualDevice asked({{0.0, Vec3(0.0)}});

@@ -1,5 +1,4 @@
-// What the servo loop does when readings stop, when the device's limits make no sense, and while it
-// sleeps.
+// The servo loop when readings stop, when the device's limits are invalid, and while it sleeps.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +33,7 @@ TEST(ServoSafety, TwentyMillisecondsWithoutAReadingAndTheForceIsZero) {
   ScriptedDevice device;
   script(device, 500, 0);
   const ServoReport report = runServo(device, push, {}, kNeverStop);
-  ASSERT_EQ(device.written.size(), 502U);  // one a turn, and the last zero
+  ASSERT_EQ(device.written.size(), 502U);  // one each turn, and the final zero
   // A turn stands for 1 ms: the reading is 19 ms old at turn 19, and 20 ms at turn 20.
   for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(device.written[i], kPush) << i;
   for (std::size_t i = 20; i < 502; ++i) EXPECT_EQ(device.written[i], Vec3(0.0)) << i;
@@ -46,7 +45,7 @@ TEST(ServoSafety, AnObserverSeesWhatBecameOfEachForce) {
   ScriptedDevice device;
   script(device, 30, 200);
   device.nan_positions = {40};
-  device.max_force = 4.0;  // of the 5 N that are asked for
+  device.max_force = 4.0;  // less than the 5 N that are asked for
   std::vector<ServoTurn> turns;
   turns.reserve(1000);
   const auto observe = [&](const ServoTurn& turn) { turns.push_back(turn); };
@@ -93,7 +92,7 @@ TEST(ServoSafety, WhenReadingsComeAgainTheForceGrowsFromZero) {
   EXPECT_EQ(device.written[back - 1], Vec3(0.0));
   EXPECT_EQ(device.written[back], Vec3(0.0));
   for (std::size_t i = 0; i < 200; ++i) {
-    // 5 N within 0.1 s.
+    // 5 N are reached within 0.1 s.
     EXPECT_NEAR(device.written[back + i].z, std::min(5.0, 0.05 * static_cast<double>(i)), 1e-12)
         << i;
   }
@@ -119,8 +118,8 @@ TEST(ServoSafety, SilenceWhileItRecoversBeginsAnew) {
 }
 
 TEST(ServoSafety, RealtimeWatchesTheClock) {
-  // Readings stop for 300 turns of 0.2 ms. The turns that are left after 20 ms write zero, on a
-  // machine that is late too: late turns only make the reading older.
+  // Readings stop for 300 turns of 0.2 ms. All turns after 20 ms write zero, on a slow machine too:
+  // late turns only make the reading older.
   ScriptedDevice device;
   script(device, 300, 0);
   const ServoReport report = runServo(device, push, {.realtime = true, .rate = 5000.0}, kNeverStop);

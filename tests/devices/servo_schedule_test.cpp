@@ -11,7 +11,7 @@ TEST(ServoSchedule, PunctualTicksAreOnePeriodApartForGood) {
   ServoSchedule schedule(500, kPeriod);
   for (std::int64_t k = 0; k < 1000; ++k) {
     EXPECT_EQ(schedule.due(), 500 + k * kPeriod);
-    schedule.begin(schedule.due() + k % 10);  // late, but never the later for it
+    schedule.begin(schedule.due() + k % 10);  // late, but that does not delay the next tick
     schedule.end(schedule.due() + 700);
   }
   EXPECT_EQ(schedule.overruns(), 0U);

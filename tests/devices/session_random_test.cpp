@@ -1,6 +1,6 @@
-// Whatever mapping, clutch, estimator and readings come together, a session says what a few lines
-// of arithmetic say: the probe's way summed up from the hand's, turned by Rodrigues' formula; the
-// velocity from its definition; the force of one plane wall.
+// For any combination of mapping, clutch, estimator and readings, a session's results equal those
+// of a few lines of arithmetic: the probe's way summed from the hand's, rotated by Rodrigues'
+// formula; the velocity from its definition; the force of one plane wall.
 
 #include <gtest/gtest.h>
 
@@ -24,9 +24,9 @@ class RandomSession {
  public:
   explicit RandomSession(unsigned seed) : random_(seed) {}
 
-  /// [m] The deepest that the hand felt itself in the floor.
+  /// [m] The deepest that the hand was in the floor.
   [[nodiscard]] double deepest() const { return deepest_; }
-  /// A case and all of its readings; stops at the first failure.
+  /// Runs a case with all its readings; stops at the first failure.
   void run() {
     draw();
     Session session(scene_, settings_);
@@ -47,7 +47,7 @@ class RandomSession {
   }
   bool chance(double share) { return any(0.0, 1.0) < share; }
 
-  /// `v` turned about axis_ by angle_: Rodrigues.
+  /// `v` rotated about axis_ by `angle`: Rodrigues' formula.
   [[nodiscard]] Vec3 turned(const Vec3& v, double angle) const {
     return v * std::cos(angle) + glm::cross(axis_, v) * std::sin(angle) +
            axis_ * (glm::dot(axis_, v) * (1.0 - std::cos(angle)));
@@ -89,12 +89,12 @@ layers:
       description.device.force = force_;
     }
     scene_ = compile(description);
-    // Above the floor, by some millimeters of the world.
+    // Above the floor, by some millimeters in the world.
     hand_ = turned(Vec3(0.0, 0.0, 0.004) - offset_, -angle_) / scale_;
   }
 
-  /// The hand wanders toward places of which half are in the floor; buttons are pressed and let go
-  /// for a while.
+  /// The hand wanders towards places of which half are in the floor; buttons are pressed and
+  /// released for a while.
   DeviceState next(int n) {
     if (n % 40 == 0) way_ = Vec3(any(-1.0, 1.0), any(-1.0, 1.0), any(-1.0, 1.0)) * 1e-4;
     if (has_probe_ && probe_.z > 0.006) way_ = turned(Vec3(0.0, 0.0, -1e-4), -angle_);
@@ -110,7 +110,7 @@ layers:
     return out;
   }
 
-  /// [m/s, device] by the estimator's definition, of all readings since the last broken one.
+  /// [m/s, device] By the estimator's definition, from all readings since the last broken one.
   [[nodiscard]] Vec3 velocityNow() const {
     const std::size_t last = history_.size() - 1;
     if (last == 0) return Vec3(0.0);
@@ -130,7 +130,7 @@ layers:
     }
     return out;
   }
-  /// Normal equations about the middle of the readings.
+  /// By the normal equations, with the mean of the readings as origin.
   [[nodiscard]] double slopeOfLine(std::size_t begin, int axis) const {
     double t = 0.0;
     double x = 0.0;
@@ -147,8 +147,8 @@ layers:
     }
     return tx / tt;
   }
-  /// Of the chord that every shorter one leads up to, none left by a reading by more than the
-  /// noise.
+  /// Slope of the longest chord for which no reading is farther than the noise from it or from any
+  /// shorter chord.
   [[nodiscard]] double slopeOfChord(std::size_t begin, int axis) const {
     const std::size_t last = history_.size() - 1;
     double slope = 0.0;
@@ -184,7 +184,7 @@ layers:
     history_.emplace_back(reading.time, reading.position);
     const Vec3 velocity = scale_ * turned(velocityNow(), angle_);
 
-    // The clutch as it was left by the reading before decides what becomes of the way since then.
+    // The clutch's state after the previous reading decides how the way since then counts.
     const double level = std::min(1.0, since / Clutch::kFade);
     shown_ = std::clamp(shown_ + (was_held_ ? -level : level), 0.0, 1.0);
     since_turn_ = std::min(1.0, since_turn_ + level);
@@ -203,9 +203,9 @@ layers:
     }
     was_held_ = held;
 
-    // Sums of 600 ways of rounding of 0.1 m.
+    // Rounding of sums of 600 ways of about 0.1 m.
     ASSERT_LT(glm::length(tick.hip.position - probe_), 1e-13);
-    // The same over the shortest intervals, 0.2 ms.
+    // The same divided by the shortest interval, 0.2 ms.
     ASSERT_LT(glm::length(tick.hip.velocity - wanted_velocity),
               1e-9 * (1.0 + glm::length(velocity)));
     const double depth = std::max(0.0, -probe_.z);
@@ -233,7 +233,7 @@ layers:
   double time_ = 3.0;
   unsigned buttons_ = 0;
 
-  // What the arithmetic knows.
+  // The state of the arithmetic.
   std::vector<std::pair<double, Vec3>> history_;
   bool has_time_ = false;
   double last_time_ = 0.0;

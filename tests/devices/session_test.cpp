@@ -1,4 +1,4 @@
-// A hand in a scene, by a device with axes, a scale and a clutch of its own.
+// A hand in a scene, with a device that has its own axes, scale and clutch.
 
 #include "palpate/devices/session.h"
 
@@ -32,7 +32,7 @@ layers:
                             "session.yaml"));
 }
 
-/// A hand that wanders about the ball, in the coordinates of a device: [m].
+/// A hand that wanders around the ball, in a device's coordinates [m].
 std::vector<Vec3> wanderings(int ticks, double scale) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -63,7 +63,7 @@ TEST(Session, AMappedDeviceFeelsTheWorldThroughScaleAndTurn) {
   int n = 0;
   for (const Vec3& device : wanderings(4000, 0.25)) {
     const double t = n * kTick;
-    // By hand: x and y change places in a turn by 90 degrees about z.
+    // By hand: a rotation by 90 degrees about z maps x to y and y to -x.
     const Vec3 world = Vec3(0.001, -0.002, 0.0005) + 0.25 * Vec3(-device.y, device.x, device.z);
     const SessionTick a = mapped.step({.time = t, .position = device}, DeviceFrame::kDevice);
     const SessionTick b = plain.step({.time = t, .position = world}, DeviceFrame::kWorld);
@@ -110,7 +110,7 @@ TEST(Session, ContentsChangeWhenTheirTimeComes) {
     // Beside the ball, at 10 mm/s.
     const SessionTick tick = session.step(
         {.time = n * kTick, .position = Vec3(0.03, -1e-5 * n, -0.01)}, DeviceFrame::kWorld);
-    if (n < 20) continue;  // until the content is felt whole
+    if (n < 20) continue;  // until the content has faded in
     EXPECT_NEAR(tick.force.y, (n >= 50 && n < 100 ? 6.0 : 2.0) * 0.01, 1e-12) << n;
   }
   const auto code = [&](const std::vector<ContentEvent>& changes) {

@@ -1,5 +1,5 @@
-// A device with dynamics against closed forms, a fine Runge-Kutta integration and the balance of
-// energy.
+// A device with dynamics against closed forms, a fine Runge-Kutta integration and the energy
+// balance.
 
 #include "palpate/devices/simulated_device.h"
 
@@ -18,7 +18,7 @@
 namespace palpate::devices {
 namespace {
 
-/// A hand that stays where it is.
+/// A hand that rests at one place.
 Path still(double seconds, const Vec3& at = Vec3(0.0)) { return {{0.0, at}, {seconds, at}}; }
 
 SimulationSettings bare(double mass, double damping, double friction = 0.0) {
@@ -29,7 +29,7 @@ SimulationSettings bare(double mass, double damping, double friction = 0.0) {
   return settings;
 }
 
-/// Reads, then writes the force that `force` gives, for `ticks` ticks.
+/// Reads, then writes the force that `force` returns, for `ticks` ticks.
 template <typename Force>
 void run(SimulatedDevice& device, int ticks, const Force& force) {
   DeviceState reading;
@@ -88,8 +88,8 @@ TEST(SimulatedDevice, AHandThatIsAskedMeanwhileGoesAsOneWhosePathIsKnown) {
 }
 
 TEST(SimulatedDevice, FrictionStopsItWhenAndWhereTheClosedFormSays) {
-  // Pushed for 20 ms with 1 N against 0.3 N of friction, then let go: it stops within a tick and
-  // stays.
+  // Pushed for 20 ms with 1 N against 0.3 N of friction, then released: it stops within a tick and
+  // stays at rest.
   const double m = 0.2;
   const double b = 0.5;
   const double f = 0.3;
@@ -146,11 +146,11 @@ TEST(SimulatedDevice, ALagFollowsItsCommandByTheClosedForm) {
   run(device, 50, [](int) { return Vec3(0.0, 0.0, 1.0); });
   const double t = 0.05;
   const double tau = 2e-3;
-  // F = 1 - e^(-t / tau), twice integrated.
+  // F = 1 - e^(-t / tau), integrated twice.
   const double gone = -std::expm1(-t / tau);
   const double expected = (0.5 * t * t - tau * t + tau * tau * gone) / 0.2;
   EXPECT_NEAR(device.position().z, expected, 1e-14);
-  // The work of a force that is not held: all of it is motion.
+  // The work of a force that is not constant: all of it becomes motion.
   const double v = (t - tau * gone) / 0.2;
   EXPECT_NEAR(device.work().motor, 0.5 * 0.2 * v * v, 1e-14);
 }
@@ -189,7 +189,7 @@ TEST(SimulatedDevice, ReadingsAreMultiplesOfTheEncodersStep) {
   }
 }
 
-/// One axis of the same device, by Runge and Kutta's method in very short steps.
+/// One axis of the same device, by the Runge-Kutta method in very short steps.
 class FineAxis {
  public:
   FineAxis(const SimulationSettings& settings, double x) : s_(settings), z_{x, 0.0, x, 0.0, 0.0} {}
@@ -203,7 +203,8 @@ class FineAxis {
       decide(command, p, path_rate);
       step(command, p, path_rate, h);
       if (s_.device.friction == 0.0 || way_ == 0 || z_[1] * way_ > 0.0) continue;
-      // It stops within the step: there, by the secant, and from there on anew.
+      // It stops within the step: the place is found by the secant, and integration restarts from
+      // there.
       const double there = h * before[1] / (before[1] - z_[1]);
       z_ = before;
       step(command, p, path_rate, there);
@@ -222,7 +223,7 @@ class FineAxis {
     for (std::size_t i = 0; i < 5; ++i) out[i] += h * slope[i];
     return out;
   }
-  /// At rest: sticks or slips.
+  /// At rest: decides whether it sticks or slips.
   void decide(double command, double p, double rate) {
     const double net = force(z_, command, p, rate);
     if (way_ == 0 && std::fabs(net) > s_.device.friction) way_ = net > 0.0 ? 1 : -1;
@@ -234,7 +235,7 @@ class FineAxis {
     const State d = slope(plus(z_, c, h), command, p + h * rate, rate);
     for (std::size_t i = 0; i < 5; ++i) z_[i] += h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
   }
-  /// [N] on the device but for Coulomb friction.
+  /// [N] on the device, without Coulomb friction.
   [[nodiscard]] double force(const State& z, double, double p, double rate) const {
     double sum = z[4] - s_.device.damping * z[1];
     if (!s_.hand) return sum;
@@ -296,15 +297,16 @@ TEST(SimulatedDevice, FollowsAFineIntegrationThroughStickAndSlip) {
       const double rate = (path[row + 1].position.x - path[row].position.x) * settings.rate;
       fine.go(force, path[row].position.x, rate, 1.0 / settings.rate, 5000);
     }
-    // The fine steps are up to 0.8 us. A stop is found to the square of one, some um/s^2 times it;
-    // and a slip begins up to one late, which is of the second order too.
+    // The fine steps are up to 0.8 us. A stop is found with an error of second order in the step,
+    // times some um/s^2; and a slip begins up to one step late, which is an error of second order
+    // too.
     EXPECT_LT(worst, settings.device.friction > 0.0 ? 1e-9 : 1e-12) << n;
   }
 }
 
 TEST(SimulatedDevice, EnergyBalances) {
-  // No formula here says anything of a rigid hand at rest: motor = friction + viscous + kinetic
-  // + what the hand got, and what it got is the integral of its own force, summed finely.
+  // No formula here covers a rigid hand at rest: motor = friction + viscous + kinetic + the hand's
+  // share, and that share is the integral of the hand's own force, summed finely.
   SimulationSettings settings = bare(0.2, 0.8, 0.25);
   settings.push = Vec3(0.1, 0.0, 0.0);
   SimulatedDevice device(settings, still(10.0));
@@ -328,15 +330,15 @@ TEST(SimulatedDevice, EnergyBalances) {
     most = std::max(most, std::fabs(work.motor));
     ASSERT_NEAR(work.motor, motor, 1e-12 * (1.0 + most)) << k;
     ASSERT_NEAR(work.push, push, 1e-12 * (1.0 + most)) << k;
-    // Nobody holds it: nothing is given.
+    // Nobody holds the device: no energy is given.
     ASSERT_NEAR(work.given(), 0.0, 1e-11 * (1.0 + most)) << k;
   }
   EXPECT_GT(device.work().friction, 0.1);
   EXPECT_GT(device.work().viscous, 0.1);
 }
 
-// A hand that presses slowly holds a device where friction and force are equal but for rounding:
-// there each look found what the next one did not, and reading went on for hours.
+// A hand that presses slowly holds a device where friction and force are equal except for rounding.
+// There each search for an event found what the next one did not, and reading went on for hours.
 TEST(SimulatedDevice, WhereFrictionAndForceAreEqualButForRoundingItGoesOn) {
   std::mt19937 random(11);
   const auto any = [&](double lo, double hi) {
@@ -349,7 +351,7 @@ TEST(SimulatedDevice, WhereFrictionAndForceAreEqualButForRoundingItGoesOn) {
     settings.device = presets[static_cast<std::size_t>(i) % presets.size()].model();
     settings.hand = handPreset(hands[static_cast<std::size_t>(i) % hands.size()].name);
     SCOPED_TRACE(std::to_string(i));
-    // Onto a bowl of 30 mm from within, at some height of it.
+    // Onto a bowl of 30 mm from inside, at some height.
     const double stiffness = any(200.0, 1500.0);
     const Vec3 to(any(-0.05, 0.05), any(-0.05, 0.05), any(-0.05, 0.05));
     SimulatedDevice device(settings, Path{{0.0, Vec3(0.0)}, {any(0.3, 1.0), to}, {1.1, to}});
@@ -379,7 +381,7 @@ TEST(SimulatedDevice, AHandBringsItWhereItIsToldToBe) {
   run(device, 2900, [](int) { return Vec3(0.0); });
   EXPECT_LT(glm::length(device.position() - goal), 1e-9);
   EXPECT_LT(glm::length(device.handPosition() - goal), 1e-9);
-  // It gave no more than it had: what it lost came from the hand.
+  // It gave no more energy than it had: the energy it lost came from the hand.
   EXPECT_LT(device.work().given(), 0.0);
 }
 
@@ -426,8 +428,8 @@ TEST(SimulatedDevice, InRealTimeReadingsAreOfWhenTheyWereAskedFor) {
   EXPECT_EQ(report.exit, ServoExit::kEnd);
   EXPECT_FALSE(falls);
   EXPECT_LE(last, 0.05 + 1e-6);
-  // Between the reading and its answer nothing moves: each step is by what was held, however long
-  // it took.
+  // Between the reading and its answer nothing moves: each step depends on the force that was held,
+  // however long it took.
   EXPECT_LT(worst, 1e-12);
 }
 
@@ -479,7 +481,7 @@ TEST(DevicePresets, AreFoundByNameAndSayWhatIsKnown) {
       EXPECT_GT(quantity.value, 0.0) << each.name;
       EXPECT_FALSE(quantity.source.empty()) << each.name;
     }
-    // No source gives the damping of any of them.
+    // No source states the damping of any of them.
     EXPECT_EQ(markOf(each.damping.known), " (assumed)") << each.name;
   }
   const DeviceModel excalibur = devicePreset("excalibur").model();

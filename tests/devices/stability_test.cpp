@@ -26,14 +26,14 @@ LoopModel bare(double mass, double damping, double period, int delay = 0) {
 }
 
 TEST(Stability, WithoutDelayAndOwnDampingTheLimitIsTheClosedForm) {
-  // A mass alone before a spring and a damper by backward difference: (2 B / T) (2 - B') / (2 +
+  // A mass alone against a spring and a damper by backward difference: (2 B / T) (2 - B') / (2 +
   // B'), B' = B T / m.
   for (const double ratio : {0.001, 0.01, 0.1, 0.5, 0.828, 1.5, 1.99}) {
     for (const double mass : {0.045, 1.5}) {
       for (const double period : {1e-3, 1e-4}) {
         const double damping = ratio * mass / period;
         const double expected = 2.0 * damping / period * (2.0 - ratio) / (2.0 + ratio);
-        // 1e-6: near 1 a double root moves by the square root of rounding.
+        // 1e-6: near 1, rounding moves a double root by its square root.
         EXPECT_NEAR(largestStiffness(bare(mass, 0.0, period), damping), expected, 1e-6 * expected)
             << ratio << " " << mass << " " << period;
       }
@@ -64,7 +64,7 @@ struct Row {
 };
 
 TEST(Stability, WithDelayTheLimitDependsOnTheRatiosAlone) {
-  // Of simulations, to the digits given.
+  // From simulations, to the digits given.
   constexpr std::array kWall = {Row{0.01, {0.0198, 0.0066, 0.0039, 0.0028}},
                                 Row{0.1, {0.1810, 0.0592, 0.0342, 0.0233}},
                                 Row{0.5, {0.6000, 0.1397, 0.0185, 0.0}}};
@@ -101,7 +101,7 @@ TEST(Stability, PresetsHaveTheLimitsThatSimulationsFound) {
   struct Case {
     const char* name;
     std::array<double, 4> by_delay;  // [N/m] nobody holds it, 1 ms
-    double held;                     // [N/m] by a relaxed hand's grip, no delay
+    double held;                     // [N/m] held with a relaxed hand's grip, no delay
   };
   constexpr std::array kCases = {Case{"excalibur", {10006, 3336, 2003, 1431}, 25925},
                                  Case{"falcon", {1000, 334, 200, 143}, 9296},
@@ -123,7 +123,7 @@ TEST(Stability, PresetsHaveTheLimitsThatSimulationsFound) {
     }
     loop.delay = 0;
     loop.period = 2.5e-4;
-    // To 0.1 % as the rate, but for the rounding of the numbers above.
+    // It is proportional to the rate to 0.1 %, except for the rounding of the numbers above.
     const double faster = 4.0 * each.by_delay[0];
     EXPECT_NEAR(largestStiffness(loop), faster, 2.1 + 1e-3 * faster) << each.name;
     loop.period = 1e-3;
@@ -190,7 +190,7 @@ TEST(Stability, WeightsOfVelocitiesAreWhatTheTrackerMakesOfReadings) {
 }
 
 TEST(Stability, SlowerVelocitiesLowerTheLimit) {
-  // Simulated: m = b = 0.1, T = 1 ms, damping 2 and 10 N s/m.
+  // Simulated with m = b = 0.1, T = 1 ms, damping 2 and 10 N s/m.
   LoopModel loop = bare(0.1, 0.1, 1e-3);
   EXPECT_NEAR(largestStiffness(loop, 2.0), 4118.0, 1.0);
   EXPECT_NEAR(largestStiffness(loop, 10.0), 18280.0, 2.0);
@@ -208,7 +208,8 @@ TEST(Stability, PassivityIsTheConditionOfColgateAndSchenkel) {
                 1e-6);
   }
   EXPECT_EQ(passiveStiffness(bare(0.1, 0.5, 1e-3), 0.6), 0.0);
-  // With delay the spring's share is T / 2 times 1 + 2 cos(wT) + ... + 2 cos(d wT): most at w = 0.
+  // With delay the spring's share is T / 2 times 1 + 2 cos(wT) + ... + 2 cos(d wT), which is
+  // largest at w = 0.
   for (int delay = 1; delay < 4; ++delay) {
     const double expected = 2.0 * 0.5 / (1e-3 * (1.0 + 2.0 * delay));
     EXPECT_NEAR(passiveStiffness(bare(0.1, 0.5, 1e-3, delay)), expected, 1e-5 * expected);
@@ -227,7 +228,7 @@ TEST(Stability, ATapIsQuietUpToTheSpeedThatFrictionCovers) {
   for (const Case& each : kCases) {
     LoopModel loop;
     loop.device = devicePreset(each.name).model();
-    // 3 %: the numbers have two digits, and are of the approximate limit.
+    // 3 %: the numbers have two digits, and belong to the approximate limit.
     EXPECT_NEAR(quietSpeed(loop, {1000.0, 0.0}), each.without, 0.03 * each.without + 0.005);
     loop.delay = 1;
     EXPECT_NEAR(quietSpeed(loop, {1000.0, 0.0}), each.with, 0.03 * each.with + 0.005);
@@ -235,7 +236,7 @@ TEST(Stability, ATapIsQuietUpToTheSpeedThatFrictionCovers) {
   LoopModel quiet;
   quiet.device = devicePreset("excalibur").model();
   EXPECT_EQ(quietSpeed(quiet, {1000.0, 0.0}), kInfinity);
-  quiet.device.friction = 0.0;  // damping alone does
+  quiet.device.friction = 0.0;  // damping alone suffices
   EXPECT_EQ(quietSpeed(quiet, {1000.0, 0.0}), kInfinity);
 }
 
@@ -262,7 +263,7 @@ TEST(Stability, TheBudgetIsTheLesserOfItsTermsAndSaysWhich) {
   EXPECT_EQ(free.stiffness(), 0.8 * free.linear);
   EXPECT_NEAR(free.passive, 2.0 * 0.01 / 1e-3, 1e-6);
   loop.device.friction = 0.0;
-  EXPECT_EQ(budgetOf(loop).stiffness(), 0.0);  // chatters by the encoder's step on any wall
+  EXPECT_EQ(budgetOf(loop).stiffness(), 0.0);  // the encoder's step causes chatter on any wall
   loop.device.encoder = 0.0;
   EXPECT_EQ(budgetOf(loop).friction, kInfinity);
 }

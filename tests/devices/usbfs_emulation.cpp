@@ -20,7 +20,8 @@
 namespace palpate::devices {
 namespace {
 
-// Device, configuration, interface 0 with bulk IN 0x81 and bulk OUT 0x02 of 64 bytes.
+// Descriptors of the device, the configuration, and interface 0 with bulk IN 0x81 and bulk OUT 0x02
+// of 64 bytes.
 constexpr std::array<std::uint8_t, 18> kDevice = {18,   1,    0x00, 0x02, 0,    0, 0, 64, 0x03,
                                                   0x04, 0x48, 0xcb, 0x00, 0x06, 0, 0, 0,  1};
 constexpr std::array<std::uint8_t, 32> kConfiguration = {
@@ -43,7 +44,7 @@ class UsbfsEmulation::Kernel {
         *static_cast<usbdevfs_connectinfo*>(argument) = {4, 0};
         return 0;
       case USBDEVFS_CONTROL: {
-        // libusb asks for the configuration when it wraps a descriptor.
+        // libusb requests the configuration when it wraps a descriptor.
         auto* ask = static_cast<usbdevfs_ctrltransfer*>(argument);
         if (ask->bRequestType != 0x80 || ask->bRequest != 8 || ask->wLength < 1) return fail(EPIPE);
         *static_cast<std::uint8_t*>(ask->data) = 1;
@@ -137,8 +138,8 @@ class UsbfsEmulation::Kernel {
     return 0;
   }
 
-  /// Answers a request for a string: of index 0 the languages, of others the serial number. Its
-  /// length with the setup.
+  /// Answers a request for a string: for index 0 the languages, for others the serial number.
+  /// Returns its length including the setup packet.
   int describe(usbdevfs_urb* urb) const {
     auto* bytes = static_cast<std::uint8_t*>(urb->buffer);
     constexpr std::size_t kSetup = 8;
@@ -198,7 +199,7 @@ class UsbfsEmulation::Kernel {
 
 namespace {
 
-// One device at a time.
+// Only one device can be emulated at a time.
 std::atomic<int> the_descriptor{-1};
 std::atomic<ino_t> the_file{0};
 std::atomic<UsbfsEmulation::Kernel*> the_kernel{nullptr};
@@ -255,7 +256,7 @@ bool UsbfsEmulation::wasClaimed() const noexcept { return kernel_->wasClaimed();
 
 }  // namespace palpate::devices
 
-/// Stands before the C library's for the whole process: what is not the emulation's goes to the
+/// Replaces the C library's ioctl() for the whole process: requests for other descriptors go to the
 /// kernel.
 extern "C" int ioctl(int fd, unsigned long request, ...) {
   va_list list;

@@ -1,5 +1,5 @@
 #pragma once
-// The kernel's side of a USB device, for the libusb that everybody uses.
+// The kernel's side of a USB device, for use by the usual libusb.
 
 #include <functional>
 #include <memory>
@@ -9,10 +9,10 @@
 
 namespace palpate::devices {
 
-/// While it lives, `descriptor()` is what the device's node would be when opened: the test
-/// executable defines ioctl(), which libusb then calls, and answers for it. Everything between the
-/// driver and the kernel is the real thing. Transfers end when they are reaped; libusb asks again
-/// and again meanwhile, as the descriptor is always ready.
+/// While it exists, `descriptor()` acts as the opened node of the device: the test executable
+/// defines ioctl(), which libusb then calls, and answers for it. Everything between the driver and
+/// the kernel is real. Transfers end when they are reaped; libusb polls again and again meanwhile,
+/// as the descriptor is always ready.
 class UsbfsEmulation {
  public:
   explicit UsbfsEmulation(FalconEmulator& falcon);
@@ -21,26 +21,27 @@ class UsbfsEmulation {
   UsbfsEmulation& operator=(const UsbfsEmulation&) = delete;
 
   [[nodiscard]] int descriptor() const noexcept;
-  /// A copy of descriptor() that is to be the node instead.
+  /// Makes `copy`, a copy of descriptor(), the node instead.
   void answerFor(int copy) noexcept;
-  /// From now on each descriptor of this file is the node. @throws std::runtime_error if it is not
-  /// there.
+  /// From now on each descriptor of this file acts as the node. @throws std::runtime_error if the
+  /// file does not exist.
   void answerForNode(const std::string& file);
 
-  std::string serial;  ///< that string descriptors of any index give
+  std::string serial;  ///< answer to requests for string descriptors of any index
 
-  /// Which request of the kernel's comes next: counted from 0, for unplugging at each.
+  /// The kind of request that the kernel gets next. Requests are counted from 0, so that a test can
+  /// unplug at each.
   enum class Step { kClaim, kControl, kSubmitIn, kSubmitOut, kReapIn, kReapOut, kRelease };
-  /// Asked at each step; what is not 0 is the errno that the kernel answers (a finished transfer's
-  /// status).
+  /// Called at each step; a nonzero result is the errno that the kernel answers (for a finished
+  /// transfer, its status).
   std::function<int(Step)> fault;
-  /// As if the cable was pulled.
+  /// Acts as if the cable was pulled.
   void unplug() noexcept;
-  /// The cable is in again; the device has power of its own, and kept its firmware.
+  /// The cable is plugged in again; the device has its own power, and has kept its firmware.
   void plugIn() noexcept;
-  [[nodiscard]] int steps() const noexcept;           ///< so far
-  [[nodiscard]] std::uint64_t outs() const noexcept;  ///< packets that the device got
-  [[nodiscard]] int pending() const noexcept;         ///< transfers that the kernel holds
+  [[nodiscard]] int steps() const noexcept;           ///< number so far
+  [[nodiscard]] std::uint64_t outs() const noexcept;  ///< number of packets sent to the device
+  [[nodiscard]] int pending() const noexcept;         ///< number of transfers that the kernel holds
   [[nodiscard]] bool wasClaimed() const noexcept;
 
   class Kernel;

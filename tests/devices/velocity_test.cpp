@@ -29,15 +29,15 @@ TEST(VelocityTracker, EvenMotionIsExactForAll) {
     EXPECT_EQ(tracker.add(0.0, Vec3(1.0)).value, Vec3(0.0));
     for (int n = 1; n < 200; ++n) {
       const double t = n * kTick;
-      // Rounding of positions of a meter, over one interval.
+      // Rounding of positions of a meter, divided by one interval.
       EXPECT_LT(glm::length(tracker.add(t, Vec3(1.0) + t * v).value - v), 1e-12);
     }
   }
 }
 
 TEST(VelocityTracker, ItIsTheVelocityAsLongAgoAsItSays) {
-  // x = a t^2 / 2: the slope of a chord, and of the least-squares line through even times, is a
-  // times the time of their middle.
+  // x = a t^2 / 2: the slope of a chord, and that of the least-squares line through equally spaced
+  // times, is a times the time of their middle.
   constexpr double kA = 2.0;  // [m/s^2]
   for (const VelocityEstimator estimator : kAll) {
     VelocityTracker tracker = trackerOf(estimator, 0.02, 1e-5);
@@ -76,10 +76,10 @@ TEST(VelocityTracker, TheAdaptiveWindowIsLongOnASlowHandAndShortWhereItTurns) {
     worst_adaptive = std::max(worst_adaptive, std::fabs(of_adaptive - 2e-3));
     worst_back = std::max(worst_back, std::fabs(of_back - 2e-3));
   }
-  // One step over a tick against one step over the whole window.
+  // One encoder step over a tick, and one encoder step over the whole window.
   EXPECT_NEAR(worst_back, kStep / kTick - 2e-3, 1e-9);
   EXPECT_LT(worst_adaptive, 1.001 * kStep / 0.06);
-  // The hand leaps to another speed: within ten readings the window begins behind the turn.
+  // The hand changes its speed suddenly: within ten readings the window begins after the change.
   const double turn = 0.4;
   Velocity now;
   for (int n = 400; n < 411; ++n) {
@@ -95,7 +95,7 @@ TEST(VelocityTracker, GapsRepeatedTimesAndBrokenReadings) {
     VelocityTracker tracker = trackerOf(estimator, 0.005, 1e-9);
     for (int n = 0; n < 20; ++n) (void)tracker.add(n * kTick, Vec3(0.1 * n * kTick, 0.0, 0.0));
     const Velocity before = tracker.add(0.020, Vec3(0.1 * 0.020, 0.0, 0.0));
-    // The same time again says nothing new, whatever the position.
+    // The same time again brings nothing new, whatever the position.
     EXPECT_EQ(tracker.add(0.020, Vec3(5.0)).value, before.value);
     EXPECT_EQ(tracker.add(0.010, Vec3(5.0)).value, before.value);
     // After a gap longer than the window only the last interval is left.
@@ -110,8 +110,8 @@ TEST(VelocityTracker, GapsRepeatedTimesAndBrokenReadings) {
 }
 
 TEST(VelocityTracker, AWrongTimeStampIsForgottenWhateverItIs) {
-  // A hand moves at 0.1 m/s until one stamp is wrong, or the clock is set for good, and then rests.
-  // The window is over 10 ms later.
+  // A hand moves at 0.1 m/s until one time stamp is wrong, or the clock is changed for good, and
+  // then rests. 10 ms later the window contains only rest.
   const double inf = std::numeric_limits<double>::infinity();
   for (const VelocityEstimator estimator : kAll) {
     for (const double wrong : {-inf, -1e300, -5.0, 0.1, 0.3, 3.0, 1000.0, 1e300, inf}) {
@@ -127,7 +127,7 @@ TEST(VelocityTracker, AWrongTimeStampIsForgottenWhateverItIs) {
         EXPECT_EQ(now.value, Vec3(0.0)) << wrong << (is_for_good ? " for good" : " once");
       }
     }
-    // A gap that no hand's way is known across makes a first reading.
+    // After a gap during which the hand's motion is unknown, a reading counts as a first one.
     VelocityTracker tracker = trackerOf(estimator, 100.0);
     (void)tracker.add(0.0, Vec3(0.0));
     EXPECT_GT(tracker.add(VelocityTracker::kLongestGap, Vec3(1.0)).value.x, 0.0);
@@ -146,7 +146,7 @@ TEST(VelocityTracker, LeastSquaresIsTheLineThatNormalEquationsGive) {
     const double x = any(random);
     all.emplace_back(t, x);
     const double slope = tracker.add(t, Vec3(0.0, x, 0.0)).value.y;
-    // Sums over the readings of the last 10.1 ms, two at least.
+    // Sums over the readings of the last 10.1 ms, at least two.
     double count = 0.0;
     double st = 0.0;
     double sx = 0.0;

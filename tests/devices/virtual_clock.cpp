@@ -11,7 +11,7 @@ namespace palpate::devices {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;  // [ns]
-constexpr std::int64_t kLook = 500;              // [ns] that a look at the clock takes
+constexpr std::int64_t kLook = 500;              // [ns] that reading the clock takes
 
 std::int64_t realTime() {
   timespec now{};
@@ -35,7 +35,7 @@ VirtualClock::~VirtualClock() { falcon_of_time = nullptr; }
 
 }  // namespace palpate::devices
 
-/// Stands before the C library's for the whole process.
+/// Replaces the C library's clock_gettime() for the whole process.
 extern "C" int clock_gettime(clockid_t id, timespec* out) {
   using namespace palpate::devices;
   const FalconEmulator* const falcon = falcon_of_time;

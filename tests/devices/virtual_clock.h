@@ -1,13 +1,13 @@
 #pragma once
-// The monotonic clock of this process, told by an emulated device.
+// The monotonic clock of this process, driven by an emulated device.
 
 #include "devices/falcon_emulator.h"
 
 namespace palpate::devices {
 
-/// While it lives, CLOCK_MONOTONIC goes on from where it was by the emulation's time, and by half a
-/// microsecond for each look, so that nobody waits forever. Sleeps take real time all the same. One
-/// at a time.
+/// While it exists, CLOCK_MONOTONIC advances from its last value by the emulation's time, and by
+/// half a microsecond for each reading of the clock, so that no wait lasts forever. Sleeps still
+/// take real time. Only one may exist at a time.
 class VirtualClock {
  public:
   explicit VirtualClock(const FalconEmulator& falcon);

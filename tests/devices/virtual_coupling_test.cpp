@@ -43,7 +43,7 @@ TEST(VirtualCoupling, InFreeMotionTheToolIsAtTheHandAndNothingIsFelt) {
   for (int k = 0; k < 1000; ++k) {
     const Vec3 hand(any(random), any(random), any(random));
     const ToolMotion tool = coupling.reach(hand, kTick);
-    // Rounding of positions of 0.1 m, carried on from tick to tick by the damper.
+    // Rounding of positions of 0.1 m, which the damper carries on from tick to tick.
     EXPECT_LT(glm::length(tool.position - hand), 1e-14);
     EXPECT_LT(glm::length(coupling.push({})), 1e-10);
   }
@@ -63,7 +63,7 @@ TEST(VirtualCoupling, AWallAtRestIsASpringInSeries) {
 }
 
 TEST(VirtualCoupling, InContactWithAFlatWallItIsBackwardEulerToRounding) {
-  // The same equation solved by hand, for random motions within the wall.
+  // The same equation solved by hand, for random motions inside the wall.
   std::mt19937 random(2);
   std::normal_distribution<double> push(0.0, 1.0);
   int judged = 0;
@@ -81,8 +81,8 @@ TEST(VirtualCoupling, InContactWithAFlatWallItIsBackwardEulerToRounding) {
       z += 1e-5 * push(random);
       const ToolForce answer = wall(coupling.reach(Vec3(0.0, 0.0, z), kTick), k, b);
       const double force = coupling.push(answer).z;
-      // The wall's damper never pulls: where it would, this tick or the last, the two are not
-      // alike.
+      // The wall's damper never pulls: in a tick in which it would pull, or after one, the two
+      // solutions differ.
       const bool was_pressed = std::exchange(is_pressed, answer.force.z > 0.0);
       if (n >= 100 && is_pressed && was_pressed) {
         const double x = (kc * z + bc / kTick * (tool + z - before) + b / kTick * tool) /
@@ -107,10 +107,10 @@ TEST(VirtualCoupling, ItNeverPulls) {
 }
 
 TEST(VirtualCoupling, ItIsTheSameWhereverTheWallIs) {
-  // A hand that taps on a flat wall, 1 km up and 1 km down: also at the ticks at which it lets go,
-  // the scene is asked at the same places beside the wall.
+  // A hand that taps on a flat wall, at the origin and 1 km up or down: the scene is asked at the
+  // same places relative to the wall, also at the ticks at which the hand lets go.
   constexpr double kFar = 1024.0;     // [m]
-  constexpr double kRounding = 1e-9;  // [m] some ticks of 2e-13 each, that the spring adds up
+  constexpr double kRounding = 1e-9;  // [m] some ticks of 2e-13 each, which the spring adds up
   for (const double moved : {-kFar, kFar}) {
     VirtualCoupling here({800.0, 5.0});
     VirtualCoupling there({800.0, 5.0});
@@ -122,15 +122,15 @@ TEST(VirtualCoupling, ItIsTheSameWhereverTheWallIs) {
       other.position -= shift;
       ASSERT_LT(glm::length(other.position - tool.position), kRounding) << k;
       const Vec3 force = here.push(wall(tool, 3000.0, 2.0));
-      // 3000 N/m of the rounding, and as much of the coupling's spring and damper.
+      // 3000 N/m times the rounding, and as much again for the coupling's spring and damper.
       ASSERT_LT(glm::length(there.push(wall(other, 3000.0, 2.0)) - force), 1e4 * kRounding) << k;
     }
   }
 }
 
 TEST(VirtualCoupling, DragThicknessDoesNotMatter) {
-  // A steady motion through something thick: of the device's velocity the drag is in series with
-  // the coupling's damper at first, and all of it once the spring has stretched.
+  // A steady motion through a viscous medium: at first its drag is in series with the coupling's
+  // damper, and after the spring has stretched the drag has the whole velocity of the device.
   for (const double viscosity : {1.0, 100.0, 1e4}) {
     VirtualCoupling coupling({200.0, 1.0});
     double force = 0.0;
@@ -172,7 +172,8 @@ TEST(CouplingDesign, ForAnySceneAsTheFrequencyResponseHasIt) {
     const double ticks = 1.0 + delay;
     EXPECT_DOUBLE_EQ(stiffestForAnyScene(loop(delay), 0.0), 2.0 * b / kTick / (ticks * ticks));
   }
-  // With a damper that helps: 0.769, 0.483, 0.354 b / T, at 0.3 to 0.4 b. Without delay none does.
+  // With an optimal damper: 0.769, 0.483, 0.354 b / T, at 0.3 to 0.4 b. Without delay no damper
+  // helps.
   EXPECT_EQ(couplingForAnyScene(loop(0)).damping, 0.0);
   const double best[] = {0.769, 0.483, 0.354};
   for (int delay = 1; delay <= 3; ++delay) {
@@ -184,7 +185,7 @@ TEST(CouplingDesign, ForAnySceneAsTheFrequencyResponseHasIt) {
   EXPECT_EQ(stiffestForAnyScene(loop(0), 1.01 * b), 0.0);
 }
 
-/// Largest deflection of the last quarter over that of the second, of a device alone on coupling
+/// Largest deflection in the last quarter over that in the second, for a device alone on coupling
 /// and spring.
 double growth(const LoopModel& loop, const CouplingSettings& c, double spring) {
   TinyPlant plant({.mass = loop.device.mass, .damping = loop.device.damping}, loop.period, 1.0);
@@ -203,7 +204,7 @@ double growth(const LoopModel& loop, const CouplingSettings& c, double spring) {
     line.push_back(slope * (tool - loose));
     plant.step(line.front(), 0.0);
     line.erase(line.begin());
-    // A measure that does not swing with the phase.
+    // An amplitude that does not depend on the phase.
     const double size = std::hypot(plant.position(), 0.01 * plant.velocity());
     if (k >= kTicks / 4 && k < kTicks / 2) early = std::max(early, size);
     if (k >= 3 * kTicks / 4) late = std::max(late, size);
@@ -213,7 +214,7 @@ double growth(const LoopModel& loop, const CouplingSettings& c, double spring) {
 
 double worstGrowth(const LoopModel& loop, const CouplingSettings& c) {
   double worst = 0.0;
-  // Softer springs swing too slowly for 4 s, and are far from the limit for these devices.
+  // Softer springs oscillate too slowly for 4 s, and are far from the limit for these devices.
   for (double power = -1.5; power <= 4.0; power += 0.5) {
     worst = std::max(worst, growth(loop, c, c.stiffness * std::pow(10.0, power)));
   }
@@ -232,7 +233,8 @@ TEST(CouplingDesign, ForSpringsTheWorstIsNotTheRigidWall) {
             << mass << " " << delay << " " << share;
         EXPECT_GT(worstGrowth(loop, {1.05 * most, damper}), 1.0)
             << mass << " " << delay << " " << share;
-        // A rigid wall alone would allow more where the damper is above the device's own.
+        // With a rigid wall alone, a stiffer coupling would be stable where the damper is above the
+        // device's own.
         if (damper > 3.0 * damping) {
           EXPECT_LT(growth(loop, {1.05 * most, damper}, 1e9), 1.0);
         }
