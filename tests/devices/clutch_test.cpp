@@ -72,9 +72,10 @@ TEST(Clutch, NothingJumpsWhereAMovingHandEngagesOrLetsGo) {
         }
         if (n > 250) largest = std::max(largest, glm::length(tick.force));
         if (n > engaged) {
-          // In a tick the force changes by at most: 1.5 of itself in kFade; drag and damping, 4 N
-          // s/m, times the world's 0.46 m/s^2 and the same fade of its 0.08 m/s; the springs, 800
-          // N/m, times that speed. Without the fades drag alone would jump by 0.3 N.
+          // In a tick the force changes at most by the sum of three parts: 1.5 times itself per
+          // kFade; drag and damping, 4 N s/m, times the world's 0.46 m/s^2 plus the fade of its
+          // 0.08 m/s; and the springs, 800 N/m, times that speed. Without the fades drag alone
+          // would jump by 0.3 N.
           const double fade = 1.5 * kTick / Clutch::kFade;
           const double most =
               fade * largest + 4.0 * (0.46 * kTick + fade * 0.08) + 800.0 * 0.08 * kTick;

@@ -217,7 +217,7 @@ TEST(InputHand, ThePositionBeginsInTheMiddleOfItsWorkspaceAndNeverLeavesIt) {
   hand.report(0, {{EV_ABS, ABS_X, 350}});
   hand->advance(kSecond);
   EXPECT_EQ(hand->position().x, 0.01);
-  // It leaves the wall at once.
+  // When the stick is reversed, the position leaves the workspace's border at once.
   hand.report(kSecond, {{EV_ABS, ABS_X, -350}});
   hand->advance(kSecond + 5 * kMilli);
   expectNear(hand->position(), Vec3(0.005, 0.0, 0.015));

@@ -49,8 +49,8 @@ struct Fault {
   SafetyState state;
   SafetyFault why;
   const char* text;
-  double zero_within;  ///< [ms] of its time until its motors are zero; negative: no command
-                       /// < reaches it any more
+  /// [ms] of its time until its motors are zero; negative: no command reaches it any more
+  double zero_within;
 };
 
 std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }

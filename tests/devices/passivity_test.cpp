@@ -148,7 +148,7 @@ struct Felt {
   double to_hand = 0.0;     ///< [J] largest energy given to the hand so far
   double by_motor = 0.0;    ///< [J] largest energy given by the motor so far
   double chatter = 0.0;     ///< [N] rms of the held force about its mean, in the last half second
-  double share = 0.0;       ///< [-] mean force over mean depth and the stiffness, in the same time
+  double share = 0.0;       ///< [-] mean force / (mean depth * stiffness), in the same time
   double most_added = 0.0;  ///< [N]
   double tick_cost = 0.0;   ///< [J] K (v T)^2 + F v T, with the largest speed and force so far
 };
@@ -350,8 +350,7 @@ TEST(PassivityController, OnceItDampedItDampsUntilTheForceEnds) {
   EXPECT_EQ(step(-1e-3, 100.0), 0.0);
   EXPECT_NEAR(step(-0.9e-3, 100.0), -most * 0.09, 1e-9);  // 10 mJ was given
   for (int k = 1; k <= 40; ++k) {
-    EXPECT_NEAR(step(-0.9e-3 - 1e-4 * k, 100.0), most * 0.09,
-                1e-9);  // that was dissipated
+    EXPECT_NEAR(step(-0.9e-3 - 1e-4 * k, 100.0), most * 0.09, 1e-9);  // more was dissipated
   }
   EXPECT_GT(guard.observer().reserve(), 0.3);
   EXPECT_NEAR(step(-4.8e-3, 100.0), -most * 0.09, 1e-9);

@@ -152,8 +152,7 @@ TEST(RunServo, AForceBeyondTheDevicesMaximumIsShortenedAndKeepsItsDirection) {
   EXPECT_EQ(device.written[0], forces[0]);
   EXPECT_NEAR(device.written[1].y, -6.0, 1e-14);
   EXPECT_NEAR(device.written[1].z, 8.0, 1e-14);
-  EXPECT_LE(glm::length(device.written[2]),
-            10.0);  // its square overflows: at most the maximum
+  EXPECT_LE(glm::length(device.written[2]), 10.0);  // its square overflows: at most 10 N
   expectAtRest(device);
 }
 
@@ -275,7 +274,7 @@ TEST(RunServo, ElevationIsReportedAndUndone) {
         return Vec3(0.0);
       },
       {.elevate = Elevate::kPrefer}, kNeverStop);
-  // What is allowed depends on the user who runs the test; the report must agree with what
+  // The permitted priority depends on the user who runs the test; the report must agree with what
   // happened.
   EXPECT_EQ(during, report.has_priority ? SCHED_FIFO : policy);
   EXPECT_EQ(report.elevated, report.has_priority && report.has_locked_memory);
@@ -287,8 +286,8 @@ TEST(RunServo, ElevationIsReportedAndUndone) {
 }
 
 TEST(RunServo, WhatIsRequiredIsGrantedOrTheLoopDoesNotRun) {
-  // What is allowed depends on the user who runs the test: the test accepts both results, whichever
-  // the system states.
+  // The permission depends on the user who runs the test: both results are accepted, whichever the
+  // system states.
   ScriptedDevice device;
   device.reads = {DeviceStatus::kOk, DeviceStatus::kOk};
   VirtualDevice asked({{0.0, Vec3(0.0)}});

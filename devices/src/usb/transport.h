@@ -58,8 +58,8 @@ struct Choice {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
   std::string serial = {};  ///< empty: the first device
-  int descriptor = -1;      ///< 0 or more: an open file descriptor of the device's node; the other
-                            ///< members are then ignored
+  /// 0 or more: an open file descriptor of the device's node; the other members are then ignored
+  int descriptor = -1;
 };
 
 /// A function that opens a device. @throws Error (kDevice).

@@ -68,8 +68,8 @@ FieldPtr torus(const Vec3& center, const Vec3& axis, double radius, double tube)
   fields::checkPoint("torus", "center", center);
   const Vec3 unit = fields::checkedDirection("torus", "axis", axis);
   fields::checkLength("torus", "radius", radius);
-  // If the tube is closer to the radius than this, the hole closes and the two walls no longer
-  // bound a solid.
+  // If the tube's radius is closer to `radius` than this, the hole closes and the two walls no
+  // longer bound a solid.
   fields::checkRange("torus", "tube", tube, fields::kSmallestLength, radius * (1.0 - 1e-6));
   return std::make_shared<fields::Revolved<TorusProfile>>(center, unit, TorusProfile{radius, tube});
 }

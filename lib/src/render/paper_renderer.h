@@ -71,7 +71,7 @@ class PaperRenderer final : public RendererBase {
 
   PaperParameters parameters_;
   std::vector<Layer> layers_;                        ///< by layer, outermost first
-  std::vector<std::vector<RegionId>> free_ways_of_;  ///< by region: those without a wall between
+  std::vector<std::vector<RegionId>> free_ways_of_;  ///< by region: reached without a wall
 
   // Values of this tick.
   std::array<PortCrossing, TickResult::kMaxEvents> crossings_{};

@@ -225,8 +225,8 @@ class ProxySolver {
   int batches_left_ = 0;
   Crossed crossed_;
   int hops_ = 0;  ///< steps cut short in this tick because the full step ended in free space
-  double nearest_ = kInfinity;  ///< [m^2] smallest squared distance from the aim before or after a
-                                ///< step of this tick
+  /// [m^2] smallest squared distance from the aim before or after a step of this tick
+  double nearest_ = kInfinity;
   std::array<Vec3, limits::kPlaces> before_{};  ///< [m] where the last steps of this tick began
   bool is_nearest_ = false;  ///< the last step of this tick ended at that distance, within rounding
   int idle_steps_ = 0;       ///< number of steps in a row that led nowhere (limits::kIdleSteps)

@@ -239,7 +239,7 @@ class Search {
 
 Reached reach(const ReachTable& table) {
   const Search search(table);
-  // What is impossible even by the least strict rules is impossible.
+  // If even the least strict rules do not reach a place, nothing does.
   const Found possible = search.fixpoint(true);
   Found most = possible;
   Found certain;

@@ -150,8 +150,8 @@ class Surveyor {
   }
 
   void walk(const Vec3& from, const Vec3& to) {
-    pollStop();  // with hundreds of labels a line takes milliseconds, and there are thousands of
-                 // lines
+    // with hundreds of labels a line takes milliseconds, and there are thousands of lines
+    pollStop();
     line_.begin(from, to);
     Vec3 last = from;
     RegionId region = line_.at(from);

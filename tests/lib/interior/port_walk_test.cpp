@@ -37,8 +37,8 @@ struct Told {
 
 /// The kind of wall in front of the probe.
 struct Verdict {
-  char what = 'w';  ///< w: wall, n: nothing there, a: absent, o: open port, f: wall that gives way
-                    ///< to a force
+  /// w: wall, n: nothing there, a: absent, o: open port, f: wall that gives way to a force
+  char what = 'w';
   int port = -1;
   bool inward = false;
   double force = 0.0;

@@ -35,9 +35,10 @@ class Loop {
 };
 
 struct Lap {
-  double given = 0.0;  ///< [J] to the hand, beyond the energy that the wall stored at the lap's
-                       ///< beginning and lost by its end
-  int leaps = 0;       ///< jumps of the proxy off a wall, where energy is lost
+  /// [J] to the hand, beyond the energy that the wall stored at the lap's beginning and lost by its
+  /// end
+  double given = 0.0;
+  int leaps = 0;  ///< jumps of the proxy off a wall, where energy is lost
   long contacts = 0;
 };
 

@@ -130,8 +130,8 @@ TEST(Contrasts, TheForceIsWhatTheEnergyOverThePatchFallsBy) {
     const Vec3 expected =
         fallOf([&](const Vec3& p) { return energyAt(stiffness, p, contrast); }, hip, kStep);
     for (int axis = 0; axis < 3; ++axis) {
-      // Rounding of the energy, a millijoule, is 1e-13, over the step 1e-8 N. The position of the
-      // wall is exact to 1e-9 m.
+      // The energy is about a millijoule, rounded at 1e-13 J at most; divided by the step that is
+      // 1e-8 N. The position of the wall is exact to 1e-9 m.
       EXPECT_NEAR(force[axis], expected[axis], 1e-5) << axis << " " << hip.z;
     }
   }

@@ -1,5 +1,5 @@
-// What the source paper's algorithm does wrong and the constraint renderer does not: it drifts, and
-// it oscillates in hollows; and what it does right: the crossing point of its figure 2.1.
+// Faults of the source paper's algorithm that the constraint renderer does not have: it drifts, and
+// it oscillates in hollows. And its merit: the crossing point of its figure 2.1.
 
 #include <gtest/gtest.h>
 

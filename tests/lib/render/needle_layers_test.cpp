@@ -45,8 +45,8 @@ struct Expected {
   int region = 0;      // 0: outside
   double force = 0.0;  // [N] against going in
   bool contact = false;
-  double margin = kInfinity;  // [N] the smallest difference between a force and the force at which
-                              // a wall ruptures
+  // [N] the smallest difference between a force and the force at which a wall ruptures
+  double margin = kInfinity;
 };
 
 /// A needle that moves along one axis.

@@ -1,5 +1,5 @@
-// What a scene does not need is not made: layers beyond the device's workspace, and those that a
-// probe never reaches.
+// Layers that a scene does not need are not made: those beyond the device's workspace, and those
+// that a probe never reaches.
 
 #include "scene/need.h"
 

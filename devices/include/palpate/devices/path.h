@@ -50,9 +50,10 @@ struct RecordedPath {
 
 /// The rows that a path may contain.
 enum class PathRules : std::uint8_t {
-  kSound,       ///< finite positions, at increasing times
-  kAsRecorded,  ///< whatever a device may have reported: positions and times that are not numbers,
-                /// < times that do not increase
+  kSound,  ///< finite positions, at increasing times
+  /// whatever a device may have reported: positions and times that are not numbers, times that do
+  /// not increase
+  kAsRecorded,
 };
 
 /// CSV with the header `t,x,y,z` (s, m), or `t,device_x,device_y,device_z` for a device's own

@@ -240,8 +240,8 @@ class PALPATE_EXPORT StateReader {
   std::vector<std::uint64_t> ticks_;
 };
 
-/// What states depend on: the version, the compiler, the size and the layout. Builds that differ in
-/// this refuse each other's states.
+/// A text with everything that states depend on: the version, the compiler, the size and the
+/// layout. Builds with different texts refuse each other's states.
 [[nodiscard]] PALPATE_EXPORT std::string stateBuild();
 
 /// A 64-bit FNV-1a checksum: it detects damage, but not deliberate changes.
@@ -258,8 +258,8 @@ struct ReplayReport {
     std::string what;  ///< columns of TickRecord, separated by ", "
   };
   std::optional<First> first;  ///< the first tick that is different
-  double most_force = 0.0;  ///< [N] largest difference between forces after their limits; infinite:
-                            ///< one is not finite
+  /// [N] largest difference between forces after their limits; infinite: one is not finite
+  double most_force = 0.0;
   std::uint64_t most_force_tick = 0;
   double most_proxy = 0.0;  ///< [m] largest difference between proxies
   std::uint64_t most_proxy_tick = 0;

@@ -28,8 +28,8 @@ struct SafetyLimits {
   /// [s] of real time without a turn of the loop after which another thread writes zero force
   /// (Device::cut())
   double hang = kInfinity;
-  double hang_fault = kInfinity;  ///< [s] of real time without a turn after which it is a fault,
-                                  ///< once the loop goes on
+  /// [s] of real time without a turn after which it is a fault, once the loop goes on
+  double hang_fault = kInfinity;
 
   /// [s] time constant of the filter for the speed that is compared with max_speed.
   static constexpr double kSpeedFilter = 0.01;

@@ -82,8 +82,8 @@ struct SessionSettings {
   RendererSettings renderer = {};
   VelocitySettings velocity = {};
   ServoSettings servo = {};
-  int clutch_button = 0;  ///< bit of DeviceState::buttons, 0 to 31, that engages the clutch, if
-                          /// < the scene allows one
+  /// bit of DeviceState::buttons, 0 to 31, that engages the clutch, if the scene allows one
+  int clutch_button = 0;
   std::vector<ContentEvent> changes = {};  ///< in the order of time
   /// Both act at the hand, in the device's frame. No value: as the scene's `device` asks for,
   /// completed with numbers from `loop` (hand_guards.h); off if the scene does not ask for it.

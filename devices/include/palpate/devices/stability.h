@@ -65,7 +65,7 @@ struct WallModel {
 /// the linear loop is stable.
 [[nodiscard]] PALPATE_EXPORT double quietSpeed(const LoopModel& loop, const WallModel& wall);
 
-/// What decides.
+/// The limit that decides.
 enum class BudgetTerm : std::uint8_t {
   kLinear,    ///< the sampled loop: mass, damping, hand, rate and delay
   kFriction,  ///< the encoder's step in relation to friction

@@ -12,8 +12,8 @@
 
 namespace palpate {
 
-using Vec3 = glm::dvec3;  ///< Point, displacement or force; the comment beside each use names unit
-                          ///< and frame.
+/// Point, displacement or force; the comment beside each use names unit and frame.
+using Vec3 = glm::dvec3;
 using Mat3 = glm::dmat3;  ///< Column major, as GLM has it: m[column][row].
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();

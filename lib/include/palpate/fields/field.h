@@ -16,8 +16,9 @@ namespace palpate {
 struct FieldSample {
   double value = 0.0;            ///< [m] negative inside, zero on the surface, positive outside
   Vec3 gradient{0.0, 0.0, 0.0};  ///< [-] d value / d position, in the frame of the query
-  bool in_band = true;           ///< false: |value| is only a lower bound of the distance with the
-                                 ///< right sign, and the gradient is zero (grids, far away)
+  /// false: |value| is only a lower bound of the distance with the right sign, and the gradient is
+  /// zero (grids, far away)
+  bool in_band = true;
 };
 
 /// A sample with its curvature.
@@ -57,8 +58,9 @@ struct FieldStructure {
     kIntersection,  ///< max of the operands
     kComplement,    ///< minus the operand
     kTransform,     ///< the operand, moved
-    kFaces,  ///< inside where inside all operands, which are smooth; the field's own value is
-             ///< better than their max (a box: its exact distance, and six half-spaces)
+    /// inside where inside all operands, which are smooth; the field's own value is better than
+    /// their max (a box: its exact distance, and six half-spaces)
+    kFaces,
   };
   Kind kind = Kind::kLeaf;
   std::span<const FieldPtr> operands{};  ///< none for a leaf; one for complement and transform

@@ -51,17 +51,18 @@ struct PALPATE_EXPORT Port {
   std::string name;
   std::vector<RegionId> from;  ///< the first of `between`, resolved; empty in a sheet
   std::vector<RegionId> to;    ///< the second of `between`, resolved; empty in a sheet
-  int sheet = -1;  ///< the sheet of the scene that it opens, with one region on both sides; -1: it
-                   ///< opens a wall
+  /// the sheet of the scene that it opens, with one region on both sides; -1: it opens a wall
+  int sheet = -1;
   std::vector<LeafId> on;  ///< open only on facets of these leaves; empty: on any facet
   int mask = -1;           ///< open only within this mask of the partition; -1: everywhere
   PortDirection direction = PortDirection::kBoth;
   std::vector<PassedBefore> after;  ///< ports that must have been passed before
   int slot = -1;  ///< index in PassedPorts, assigned by Passages; -1: no `after` names this port
-  Parameter opens_at;  ///< [N] elastic normal force that opens it; 0: always open. A map is read
-                       /// < at the point touched; where the map is 0, the lightest touch opens
-  Parameter back;      ///< [N] the same for coming back
-  RuptureRate rate;    ///< how `opens_at` and `back` depend on the speed that presses the wall
+  /// [N] elastic normal force that opens it; 0: always open. A map is read at the point touched;
+  /// where the map is 0, the lightest touch opens
+  Parameter opens_at;
+  Parameter back;    ///< [N] the same for coming back
+  RuptureRate rate;  ///< how `opens_at` and `back` depend on the speed that presses the wall
   double hole_radius = 0.0;  ///< [m] of the hole left when force opens the port; 0: no hole
   /// [N] Within such a hole the port opens at this force, in place of opens_at and back where these
   /// are larger. A map is read at the point where the wall gave way.

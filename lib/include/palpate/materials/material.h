@@ -118,10 +118,10 @@ struct Lattice {
 /// sticks.
 struct ShaftFriction {
   struct Way {
-    Parameter static_force;   ///< [N/m] D: the largest force while it sticks
-    Parameter kinetic_force;  ///< [N/m] C: while it slides; counts as `static_force` where a map
-                              ///< exceeds that
-    Parameter damping;        ///< [N s/m^2] b: while it slides, on top, times the speed
+    Parameter static_force;  ///< [N/m] D: the largest force while it sticks
+    /// [N/m] C: while it slides; counts as `static_force` where a map exceeds that
+    Parameter kinetic_force;
+    Parameter damping;  ///< [N s/m^2] b: while it slides, on top, times the speed
   };
   Way in;                  ///< while the needle goes in
   Way out;                 ///< while it is drawn out
@@ -200,17 +200,18 @@ struct Material {
   Friction friction = {};
   Texture texture = {};
   Composite composite = {};
-  double shading = 0.0;  ///< [m] the force follows the normal averaged over this radius, so that
-                         ///< the facets of a coarse mesh feel round; 0: off
-  Parameter viscosity;   ///< [N s/m] Bv of the drag -Bv V while inside
-  Flow flow = {};        ///< velocity of the medium: drag is -Bv (V - flow)
+  /// [m] the force follows the normal averaged over this radius, so that the facets of a coarse
+  /// mesh feel round; 0: off
+  double shading = 0.0;
+  Parameter viscosity;  ///< [N s/m] Bv of the drag -Bv V while inside
+  Flow flow = {};       ///< velocity of the medium: drag is -Bv (V - flow)
 
   // Of tissue and needles. In a content, the tip is pressed with the material's own stiffness.
-  SpringCurve curve = {};    ///< of a wall
-  Maxwell maxwell = {};      ///< of a wall
-  Lattice lattice = {};      ///< of a content
-  Parameter cutting = {};    ///< [N] of a content: the force that pushes a tip on into material not
-                             ///< yet cut; 0: nothing
+  SpringCurve curve = {};  ///< of a wall
+  Maxwell maxwell = {};    ///< of a wall
+  Lattice lattice = {};    ///< of a content
+  /// [N] of a content: the force that pushes a tip on into material not yet cut; 0: nothing
+  Parameter cutting = {};
   ShaftFriction shaft = {};  ///< of a content
 };
 

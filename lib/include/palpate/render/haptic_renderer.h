@@ -41,9 +41,10 @@ struct PortCrossing {
   RegionId from = kOutside;
   RegionId to = kOutside;
   How how = How::kOpen;
-  Vec3 point{0.0, 0.0, 0.0};   ///< [m, world] where the surface was crossed
-  Vec3 normal{0.0, 0.0, 0.0};  ///< [-, world] of the surface there, pointing back to where the
-                               ///< proxy came from; zero where the surface has none
+  Vec3 point{0.0, 0.0, 0.0};  ///< [m, world] where the surface was crossed
+  /// [-, world] of the surface there, pointing back to where the proxy came from; zero where the
+  /// surface has none
+  Vec3 normal{0.0, 0.0, 0.0};
   double force = 0.0;  ///< [N] elastic normal force that it gave way to; 0 where it stood open
 };
 

@@ -255,7 +255,7 @@ struct PortDescription {
   std::optional<Parameter> back = {};  ///< [N]; not given: as opens_at
   RuptureRate rate = {};               ///< of both `opens_at` and `back`
   double hole_radius = 0.0;            ///< [m] 0: force that opens it leaves no hole
-  Parameter reopens_at = 0.0;          ///< [N] in a hole
+  Parameter reopens_at = 0.0;          ///< [N] in a hole, in place of `opens_at`
   double rearm = 0.0;                  ///< [m]
   SourcePlace place = {};
 };

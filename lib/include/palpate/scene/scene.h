@@ -35,11 +35,11 @@ struct Region {
   bool wall_absent = false;
   Reach reach = Reach::kYes;  ///< by ports and absent walls from the start region
   bool reachable = true;      ///< unless reach is kNo
-  FieldPtr field;  ///< the layer's whole field (cut to its share of the label group); null for
-                   ///< outside and
-                   /// < for layers that were left out
-  std::string left_out;      ///< why the layer was not made (its space then belongs to its
-                             ///< surroundings); else empty
+  /// the layer's whole field (cut to its share of the label group); null for outside and for layers
+  /// that were left out
+  FieldPtr field;
+  /// why the layer was not made (its space then belongs to its surroundings); else empty
+  std::string left_out;
   std::string source;        ///< what it was made from; empty if analytic
   Vec3 seed{0.0, 0.0, 0.0};  ///< [m] a point of the region; meaningless unless has_seed
   bool has_seed = false;     ///< false: no point of it was found (an empty or dropped region)
@@ -111,9 +111,9 @@ using ScenePtr = std::shared_ptr<const Scene>;
 
 /// The purpose that a scene is compiled for.
 enum class Purpose {
-  kTouch,  ///< to be felt: costly parts that the probe certainly cannot feel are left out
-           ///< (Region::left_out)
-  kShow,   ///< to be looked at: with all of its layers
+  /// to be felt: costly parts that the probe certainly cannot feel are left out (Region::left_out)
+  kTouch,
+  kShow,  ///< to be looked at: with all of its layers
 };
 
 /// Checks a description against itself and its geometry, makes its fields, and builds the scene. If

@@ -142,7 +142,7 @@ struct ParameterKind {
   bool is_signed = false;                   ///< negative values have a meaning, as for a velocity
 };
 
-/// The view of the file being read that an extension of the loader needs.
+/// Access to the file being read, for extensions of the loader.
 class PALPATE_EXPORT SceneLoader {
  public:
   virtual ~SceneLoader() = default;

@@ -36,15 +36,16 @@ class SoftKinds {
 struct SeriesForce {
   Vec3 force{0.0, 0.0, 0.0};  ///< [N] on the hand, for constant laws and a constant proxy
   Vec3 place{0.0, 0.0, 0.0};  ///< [m] point between the stop and the walls (z below)
-  Vec3 rise{0.0, 0.0, 0.0};   ///< [N] gradient of the energy by the proxy's place, through the laws
-                              /// < that change with it, ...
+  /// [N] gradient of the energy by the proxy's place, through the laws that change with it ...
+  Vec3 rise{0.0, 0.0, 0.0};
   Vec3 by_press{0.0, 0.0,
                 0.0};  ///< [N] ... and by the press (see overPatch()); neither is part of `force`
-  Vec3 turn{0.0, 0.0, 0.0};  ///< [N] gradient of the energy by the proxy's place, through walls
-                             /// < that change with it; not part of `force`
-  double energy = 0.0;       ///< [J] stored
-  bool varies = false;       ///< `rise` or `by_press` may be nonzero
-  bool settled = false;      ///< false: Newton's steps ran out; the force is that of the last one
+  /// [N] gradient of the energy by the proxy's place, through walls that change with it; not part
+  /// of `force`
+  Vec3 turn{0.0, 0.0, 0.0};
+  double energy = 0.0;   ///< [J] stored
+  bool varies = false;   ///< `rise` or `by_press` may be nonzero
+  bool settled = false;  ///< false: Newton's steps ran out; the force is that of the last one
 };
 
 /// The stop, a spring of `stop` [N/m], connects the hand to a point z. Each kind of wall m connects

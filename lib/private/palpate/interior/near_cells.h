@@ -37,9 +37,9 @@ struct NearSide {
 /// Scratch of one solver. Real-time safe except for the constructor.
 class NearCells {
  public:
-  static constexpr std::size_t kMaxNear = 32;   ///< bits of NearCell
-  static constexpr std::size_t kMaxCells = 24;  ///< more are left out, which is safe: cells are
-                                                /// < places where the point may go
+  static constexpr std::size_t kMaxNear = 32;  ///< bits of NearCell
+  /// more are left out, which is safe: cells are places where the point may go
+  static constexpr std::size_t kMaxCells = 24;
 
   NearCells(const Partition& partition, const Passages& passages);
 

@@ -49,8 +49,8 @@ class Insertion {
   };
   struct Force {
     Vec3 tip{0.0, 0.0, 0.0};  ///< [N] on the hand, from cutting and from friction along the shaft
-    Vec3 lateral{0.0, 0.0, 0.0};  ///< [N] on the proxy, perpendicular to the shaft: minus the
-                                  ///< gradient of the stored energy
+    /// [N] on the proxy, perpendicular to the shaft: minus the gradient of the stored energy
+    Vec3 lateral{0.0, 0.0, 0.0};
   };
 
   [[nodiscard]] Force step(const Contents& contents, const Tick& tick) noexcept;
