@@ -81,8 +81,8 @@ TEST(CarriedState, GoesOnAsIfTheEditedSceneHadBeenThereFromTheStart) {
       const TickResult now = edited.renderer().update({path[i], velocity});
       const TickResult then = wanted.to(path[i]);
       ASSERT_EQ(now.region, then.region) << "edited at " << edit << ", tick " << i;
-      // Carried states go on except for rounding: 1.5 kN/m times the difference between two ways of
-      // meeting a wall.
+      // A carried state may differ by rounding: 1.5 kN/m times the distance between two roundings
+      // of the same wall.
       ASSERT_TRUE(isNear(now.force, then.force, 1e-8)) << "edited at " << edit << ", tick " << i;
       ASSERT_EQ(now.event_count, then.event_count) << "edited at " << edit << ", tick " << i;
       passed += now.event_count;

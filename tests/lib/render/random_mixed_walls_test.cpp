@@ -307,7 +307,7 @@ TEST(RandomMixedWalls, GiveNoEnergy) {
     }
     const EnergyGiven given =
         energyGiven(sceneOf(made.text), mm(0, 0, 8), loop, is_long ? 64'000 : 16'000);
-    // In a lap the force jumps where an edge is reached, so it converges slowly.
+    // In a lap the force jumps where an edge is reached, so the sum converges slowly.
     EXPECT_LE(given.work, 1e-9 + 3.0 * given.change) << "seed " << seed << "\n" << made.text;
     worst = std::max(worst, given.work - 3.0 * given.change);
   }

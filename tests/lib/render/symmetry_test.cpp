@@ -77,8 +77,8 @@ struct Difference {
 };
 
 /// Each run may be off the minimum by 1e-6 of the depth; walls are met to a billionth of their
-/// feature sizes, and to the rounding of coordinates, of which a field's value has about ten. In a
-/// wedge all of this grows by 1 / sine.
+/// feature sizes, and to about ten roundings of the coordinates, which a field's value accumulates.
+/// In a wedge all of this grows by 1 / sine.
 double boundOf(double on_surface, const Elsewhere& other, double depth, double blunt) {
   const double rounding = 16.0 * kEps * glm::length(other.shift) / other.scale + 16.0 * kEps * 0.05;
   return 2e-6 * depth + (8.0 * on_surface + rounding) / std::max(blunt, 1e-3);

@@ -71,8 +71,8 @@ class PALPATE_EXPORT VirtualCoupling {
   double per_time_ = 0.0;     ///< [1/s] 1 / T of this tick
   double slope_ = 0.0;        ///< [N/m] K_c + B_c / T
   double give_ = 0.0;         ///< [m/N] 1 / slope_
-  double share_ = 0.0;        ///< [-] of the slope that is the damper's
-  Vec3 hand_{0.0, 0.0, 0.0};  ///< [-] share of the slope that is due to the damper
+  double share_ = 0.0;        ///< [-] share of the slope that is due to the damper
+  Vec3 hand_{0.0, 0.0, 0.0};  ///< [m]
   Vec3 free_{0.0, 0.0, 0.0};  ///< [m] where the tool would be without the scene's force
   Vec3 tool_{0.0, 0.0, 0.0};  ///< [m] after the last tick
   ToolMotion asked_;          ///< the last result of reach()

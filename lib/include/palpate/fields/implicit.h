@@ -53,8 +53,8 @@ enum class FallOff {
 
 struct Metaball {
   Vec3 center{0.0, 0.0, 0.0};  ///< [m]
-  double radius = 0.0;         ///< [-] negative: makes a dent
-  double strength = 1.0;       ///< [-] negative: a dent
+  double radius = 0.0;         ///< [m] of influence, not of a surface
+  double strength = 1.0;       ///< [-] negative: makes a dent
 };
 
 /// The points where the sum of strength * fall-off is above `iso` (0 < iso). Outside bounds(), at

@@ -206,7 +206,7 @@ struct Material {
   Parameter viscosity;  ///< [N s/m] Bv of the drag -Bv V while inside
   Flow flow = {};       ///< velocity of the medium: drag is -Bv (V - flow)
 
-  // Of tissue and needles. In a content, the tip is pressed with the material's own stiffness.
+  // For tissue and needles. In a content, the tip is pressed with the material's own stiffness.
   SpringCurve curve = {};  ///< of a wall
   Maxwell maxwell = {};    ///< of a wall
   Lattice lattice = {};    ///< of a content

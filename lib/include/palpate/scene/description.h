@@ -23,9 +23,9 @@ namespace palpate {
 /// value take the device's.
 struct PassivityRequest {
   bool controls = true;                   ///< false: the energy is only counted
-  std::optional<double> mass = {};        ///< [kg] the device's smallest
-  std::optional<double> damping = {};     ///< [N s/m] the device's smallest
-  std::optional<double> friction = {};    ///< [N] the device's smallest
+  std::optional<double> mass = {};        ///< [kg] smallest mass of the device
+  std::optional<double> damping = {};     ///< [N s/m] smallest damping of the device
+  std::optional<double> friction = {};    ///< [N] smallest friction of the device
   std::optional<double> encoder = {};     ///< [m] one encoder step
   std::optional<double> hand_force = {};  ///< [N] the hand's largest
   friend bool operator==(const PassivityRequest&, const PassivityRequest&) = default;
