@@ -10,9 +10,9 @@ namespace palpate::devices::plant {
 
 /// The entries of z, by index. Entries that do not apply (no grip, no lag) have rows of zeros.
 enum : int {
-  kX,         ///< [m] of the device
+  kX,         ///< [m] position of the device
   kV,         ///< [m/s]
-  kHandX,     ///< [m] of the hand, if it has a grip
+  kHandX,     ///< [m] position of the hand, if it has a grip
   kHandV,     ///< [m/s]
   kForce,     ///< [N] of the motor
   kPath,      ///< [m] where the hand wants to be

@@ -275,7 +275,7 @@ struct Promise {
   std::int64_t reply = 0;
   std::int64_t broken = 0;  // time at which the ramp last had to begin anew
   Vec3 last{0.0};
-  double heat = 0.0;       // [-] of the motors
+  double heat = 0.0;       // [-] of the motors, 1 at most
   std::int64_t asked = 0;  // time at which a force was last asked for
   bool is_homed = false;
 };

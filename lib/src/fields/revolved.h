@@ -70,9 +70,9 @@ concept Profile = requires(const T profile, double rho, double height) {
   { profile.featureSize() } -> std::same_as<double>;
 };
 
-/// Let `d` be a difference from the center and `height` its part along the axis. Subtracting that
-/// part gives the part across the axis accurately if this returns true; otherwise it is mostly
-/// rounding.
+/// True if a difference from the center, of the length `size` across the axis and `height` along
+/// it, is far enough from the axis that its part across can be computed by subtraction. Otherwise
+/// the result would be mostly rounding.
 [[nodiscard]] inline bool isClearOfAxis(double size, double height) noexcept {
   return size > 1e-3 * std::fabs(height);
 }

@@ -58,7 +58,7 @@ void CellWalker::standWith(const CellWalker& other) noexcept {
 }
 
 void CellWalker::resume() noexcept {
-  // Far enough on that no leaf counts as one whose jet was asked for a slide ago.
+  // Advance the counter so far that no leaf's jet counts as asked for a slide ago.
   stay_ += limits::kStaysOfSlide + 1;
   ++state_;
   travel_ = 0.0;

@@ -87,8 +87,8 @@ class CellWalker {
   void know(LeafId leaf, const FieldJet& jet) noexcept { jets_[leaf] = {jet, stay_}; }
   [[nodiscard]] LeafId blockedBy() const noexcept { return blocked_by_; }
 
-  /// Calls f(leaf) for each leaf whose surface may come within `radius` [m], plus a few of its
-  /// tolerances, of the point, or that the point is beyond.
+  /// Calls f(leaf) for each leaf that the point is beyond, or whose surface may come within
+  /// `radius` [m] (plus a few of its tolerances) of the point.
   template <typename F>
   void forWithin(double radius, F&& f) noexcept {
     refresh(radius);

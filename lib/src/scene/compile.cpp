@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// Of the wall of a layer that names none (documented in tools/docs/scene.md).
+/// Stiffness of a wall whose layer names no material (documented in tools/docs/scene.md).
 constexpr double kDefaultStiffness = 1000.0;  // [N/m]
 
 std::vector<FieldPtr> layerFields(const SceneDescription& description, const Box3& needed,

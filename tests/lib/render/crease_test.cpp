@@ -21,7 +21,8 @@ constexpr double kK = 1000.0;  // [N/m], the default wall
 /// Bound of |x - z| / |z - P| at a crease of a black box.
 constexpr double kCrease = 1e-4;
 
-/// Largest |x - z| / |z - P| against the oracle along a path; also feasibility and force.
+/// Largest |x - z| / |z - P| along a path, z by the oracle; also compares whether x is permitted,
+/// and the force.
 struct Worst {
   double error = 0.0;
   double sunk = 0.0;  ///< [m]
@@ -37,7 +38,7 @@ Worst follow(Drive& drive, const FieldPtr& open, const std::vector<Vec3>& path, 
   for (const Vec3& p : path) {
     const TickResult& out = drive.to(p);
     worst.sunk = std::max(worst.sunk, -set.value(out.proxy));
-    // 1e-12 N is rounding, for a hand at the crease.
+    // 1e-12 N allows for rounding where the hand is at the crease.
     EXPECT_TRUE(
         isNear(out.force, kK * (out.proxy - p), 1e-4 * kK * glm::length(out.proxy - p) + 1e-12))
         << "tick " << i;

@@ -58,7 +58,7 @@ TEST(ForceGuard, TheRampAndTheSlewRateDoNotFeedOnEachOther) {
   ForceGuard guard({.max_growth = 50.0, .ramp = 1.0});
   double force = 0.0;
   for (int i = 0; i <= 500; ++i) force = guard.apply(push(2.0), kTick).x;
-  EXPECT_NEAR(force, 1.0, 1e-12);  // 501 additions of a double's rounding
+  EXPECT_NEAR(force, 1.0, 1e-12);  // rounding of 501 additions of doubles
   for (int i = 501; i <= 1001; ++i) force = guard.apply(push(2.0), kTick).x;
   EXPECT_EQ(force, 2.0);
   // The ramp does not make a slow rise slower: 1 N/s from the start.
@@ -173,7 +173,7 @@ struct Model {
     if (length > limits.max_force) force = force * limits.max_force / length;
     return limits.ramp > 0.0 ? force * std::min(1.0, age / limits.ramp) : force;
   }
-  /// Distance from `force` to the nearest share of the last force.
+  /// Distance from `force` to the nearest multiple (0 to 1) of the last force.
   [[nodiscard]] double away(const Vec3& force) const {
     double nearest = kInfinity;
     for (int i = 0; i <= 2000; ++i) {

@@ -138,8 +138,8 @@ TEST(HardRim, SlidingAlongItFromBothSidesDoesNotChatter) {
                                   std::cos(rim + off) * std::sin(around), std::sin(rim + off)) +
                        random.uniform(0.0, 20e-6) * random.direction();
         events += drive.to(p).event_count;
-        // It crosses the edge when its angle passes that of the rim, and through the mouth if the
-        // hand is in the mouth.
+        // The way crosses the edge when the hand's angle passes that of the rim, and when the hand
+        // itself goes through the mouth.
         if (off * was < 0.0) ++over;
         if (i > 0 && crossesMouth(last, p)) ++over;
         was = off;

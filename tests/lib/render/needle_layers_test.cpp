@@ -25,7 +25,7 @@ struct Tissue {
   Kind kind = Kind::kPierced;
   double stiffness = 0.0, stiffening = 0.0;  // [N/m], [N/m^2]
   double opens_at = 0.0, back = 0.0;         // [N]
-  double ratio = 1.0, speed = 0.0;           // of the rate
+  double ratio = 1.0, speed = 0.0;           // of the RuptureRate
   bool has_hole = false;
   double reopens_at = 0.0;                       // [N]
   double cutting = 0.0;                          // [N]
@@ -37,8 +37,8 @@ struct Tissue {
 struct Expected {
   struct Entry {
     int to = 0;
-    double depth = 0.0;  // [m] of the wall
-    double force = 0.0;  // [N] at which it ruptured
+    double depth = 0.0;  // [m] depth of the wall that was passed
+    double force = 0.0;  // [N] force at which it ruptured
   };
   std::vector<Entry> entries;
   double tip = 0.0;    // [m] depth
@@ -126,7 +126,7 @@ class Machine {
     for (std::size_t i = 0; i < tissues_.size(); ++i) {
       const Tissue& t = tissues_[i];
       const double bottom = i + 1 < tissues_.size() ? tissues_[i + 1].top : kInfinity;
-      // On the wall by which it came in, the tip is still inside by a tiny length.
+      // On the wall by which it came in, the tip still counts as inside, by a tiny length.
       const double length = static_cast<int>(i) < region_
                                 ? std::max(std::clamp(tip_, t.top, bottom) - t.top, 1e-15)
                                 : 0.0;

@@ -56,7 +56,7 @@ layers:
   for (int i = 0; i <= 4000; ++i) {
     (void)renderer->update({loop.at(i / 4000.0), Vec3(0.0)});
   }
-  // That does happen, twice in this lap, as deep as 1.4 mm.
+  // The energy is added suddenly twice in this lap, at up to 1.4 mm of depth, and is counted.
   EXPECT_GT(renderer->sourceWork(), 1e-4);
 }
 

@@ -76,7 +76,7 @@ inline bool isExplained(const Scene& scene, RegionId from, const TickResult& out
 struct Bag {
   const char* name;
   ScenePtr scene;
-  double stiffness;          ///< [N/m] of all walls, which have no friction and no damping
+  double stiffness;  ///< [N/m] stiffness of all walls, which have no friction and no damping
   int rare = kTicks / 1000;  ///< ticks in which the proxy may still be on its way
   int ticks = kTicks;
   /// [N] largest force at rest outside, if every wall ruptures above a force: the sum of two of

@@ -107,7 +107,7 @@ layers: [{name: floor, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]
   // nanometers above the plane, and the wave in z adds K 2 pi amplitude / wavelength / 3 of that.
   EXPECT_NEAR(hand.walk(mm(2, 2, -2)).force.z, 1000 * (0.002 + 0.0003 * 2 / 3), 1e-7);
   EXPECT_NEAR(hand.walk(mm(6, 6, -2)).force.z, 1000 * (0.002 - 0.0003 * 2 / 3), 1e-7);
-  // At most half of the force of a light touch.
+  // Under a light press, a crest adds at most half of the depth: 0.05 mm to the 0.1 mm here.
   EXPECT_NEAR(hand.walk(mm(2, 2, -0.1)).force.z, 1000 * 0.00015, 1e-9);
 }
 

@@ -12,7 +12,7 @@ namespace palpate::test {
 
 struct SlabTissue {
   double top, bottom;  // [m]
-  double stiffness;    // [N/m] that the tip presses against before it cuts
+  double stiffness;    // [N/m] stiffness against which the tip presses before it cuts
   double cutting;      // [N]
   double shaft;        // [N/m^2]
   double in_static, in_kinetic, in_damping;
@@ -23,7 +23,7 @@ struct SlabWall {
   double at;          // [m]
   double a1, a2;      // [N/m], [N/m^2]: at depth d the force is a1 d + a2 d^2
   double opens_at;    // [N] the first time
-  double reopens_at;  // [N] after that, in both directions
+  double reopens_at;  // [N] once it was opened, in both directions
   bool open = false;
 };
 

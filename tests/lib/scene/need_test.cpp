@@ -196,7 +196,7 @@ TEST_F(Need, WhatIsFeltThroughAClosedWallIsMade) {
   };
   EXPECT_EQ(leftOut(*compile(read(body(35.0)))), "");
   EXPECT_EQ(leftOut(*compile(read(body(5.0)))), "marrow");
-  // Nor is it left out beyond the workspace, if it is felt through the wall.
+  // Nor is it left out if it is beyond the workspace but felt through the wall.
   const std::string device =
       "device: {workspace: {box: {center: [0, 0, 55], size: [10, 10, 40]}}}\n";
   EXPECT_EQ(leftOut(*compile(read(body(35.0) + device))), "");

@@ -61,11 +61,11 @@ struct DeviceMapping {
   [[nodiscard]] Vec3 toWorld(const Vec3& device) const noexcept {
     return offset + scale * (rotation * device);
   }
-  /// [m/s, world] of [m/s, device]
+  /// Converts a velocity [m/s, device] to the world's frame [m/s, world].
   [[nodiscard]] Vec3 velocityToWorld(const Vec3& device) const noexcept {
     return scale * (rotation * device);
   }
-  /// [N, device] at the hand, of [N, world]
+  /// Converts a force [N, world] to the force at the hand [N, device].
   [[nodiscard]] Vec3 forceToDevice(const Vec3& world) const noexcept {
     return force * (glm::transpose(rotation) * world);
   }
@@ -114,7 +114,7 @@ struct PaperParameters {
   /// with epsilon times the slope of S.
   std::optional<double> epsilon = {};
   std::optional<int> max_halvings =
-      {};  ///< MAX_N: number of parts of the segment on which the surface is searched; 1 to 1000
+      {};  ///< MAX_N: halvings of the segment on which the surface is searched; 1 to 1000
   std::optional<double> alpha = {};  ///< [-] share of the nudge; 0 or more
   std::optional<AlphaForm> alpha_form = {};
   std::optional<PaperInterior> interior = {};

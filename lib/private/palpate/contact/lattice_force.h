@@ -6,8 +6,9 @@
 namespace palpate {
 
 struct LatticePush {
-  Vec3 force{0.0, 0.0, 0.0};  ///< [N] minus the gradient of `energy`, its amplitude's included
-  double energy = 0.0;        ///< [J] 0 or more; 0 at the origin
+  /// [N] minus the gradient of `energy`, including that of its amplitude
+  Vec3 force{0.0, 0.0, 0.0};
+  double energy = 0.0;  ///< [J] 0 or more; 0 at the origin
 };
 
 /// At `p` [m, world]; `amplitude` is the lattice's force parameter there, or a replacement for it.

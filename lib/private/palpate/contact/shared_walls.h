@@ -35,7 +35,7 @@ struct SharedWall {
 /// shares. A single wall has the share 1. A value type; real-time safe.
 class SharedWalls {
  public:
-  /// The most walls; of more, those with the smallest shares are left out.
+  /// The largest number of walls; if there are more, those with the smallest shares are left out.
   static constexpr std::size_t kMost = 4;
 
   /// Adds a wall that bears `share` [-] of the press; `by_place` [1/m] is the gradient of the share
