@@ -104,7 +104,8 @@ TEST(TapPath, IsACosineBetweenClearanceAndDepth) {
   expectSampled(path, kRate);
   for (const PathPoint& point : path) {
     const double height = 0.002 + 0.004 * std::cos(2.0 * std::numbers::pi * 4.0 * point.t);
-    // The test's own phase of up to 100 rad is rounded at 100 rad; the path's is below 2 pi.
+    // Here the phase grows to 100 rad, with the rounding of such a number; the path's stays below 2
+    // pi.
     EXPECT_NEAR(0.1 - point.position.y, height, 1e-15 * 100) << point.t;
   }
   EXPECT_EQ(path.front().position, Vec3(0.0, 0.1 - 0.006, 0.0));

@@ -258,7 +258,7 @@ TEST(Safety, TheMotorsHeatIsThatOfTheContinuousForceAtMost) {
   EXPECT_NEAR(safety.ask(push, here).force.x, 2.0, 1e-3);
 }
 
-/// The distance to the nearest share of the last force.
+/// Distance from `now` to the nearest multiple (0 to 1) of the last force.
 double growth(const Vec3& last, const Vec3& now) {
   const double square = glm::dot(last, last);
   const double share = square > 0.0 ? std::clamp(glm::dot(now, last) / square, 0.0, 1.0) : 0.0;

@@ -14,8 +14,8 @@ namespace {
 /// time.
 constexpr double kFarthestMeeting = 30.0;
 constexpr int kMeetingSteps = 12;
-/// kMet is relative to that farthest distance: this close to both walls is where they meet.
-/// kFlattest is the smallest squared sine of the angle between them.
+/// A place counts as common to two walls if its distances from them add up to at most kMet of that
+/// farthest distance. kFlattest is the smallest squared sine of the angle between them.
 constexpr double kMet = 1e-6;
 constexpr double kFlattest = 1e-3;
 /// Relative to the way to a wall and to the coordinates: rounding.

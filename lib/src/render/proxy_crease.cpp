@@ -20,7 +20,7 @@ struct CreaseWall {
   WallThere there;
   Vec3 normal{0.0, 0.0, 0.0};  ///< [-] on the free side
   double gap = 0.0;            ///< [m]
-  double left = 0.0;           ///< [m] of the gap, to the proxy's resting position
+  double left = 0.0;           ///< [m] from the proxy to where it rests at this wall
   Mat3 bend{0.0};              ///< [1/m] positive towards the free side
   double bend_size = 0.0;      ///< [1/m]
 

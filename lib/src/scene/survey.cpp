@@ -132,7 +132,7 @@ class Line {
   double length_ = 0.0;
   std::vector<Candidate> candidates_;
   Signs signs_;
-  double fixed_from_ = kInfinity;  ///< [m] along the line: no sign changes in between
+  double fixed_from_ = kInfinity;  ///< [m] along the line: no sign changes from here to fixed_to_
   double fixed_to_ = -kInfinity;
   bool is_known_ = false;
   RegionId region_ = kOutside;

@@ -45,8 +45,7 @@ class Judge {
       : drive_(std::move(scene)),
         set_(std::move(set)),
         stiffness_(stiffness),
-        wall_slack_(4e-9 * set_.feature()) {
-  }  // 4e-9 of the smallest feature size; a leaf may have a larger one
+        wall_slack_(4e-9 * set_.feature()) {}  // of the smallest feature size
   Judge(const FieldPtr& field, bool from_within)
       : Judge(sceneOfSolid(field, from_within), heldBy(field, from_within)) {}
 

@@ -229,8 +229,8 @@ TEST(RandomWorlds, AnyKeysTogetherKeepToTheRules) {
         work += done;
         moved += std::fabs(done);
         // Where the force jumps within a tick, because a wall ruptures or a content begins or ends,
-        // the error of the trapezoidal rule is up to that. In world 81 it falls from 20 mN of a
-        // lattice to zero: 28 nJ at 1 kHz, -16 nJ at 8 kHz.
+        // the trapezoidal rule errs by up to half of the jump times the way. In world 81 the force
+        // falls from 20 mN of a lattice to zero: 28 nJ at 1 kHz, -16 nJ at 8 kHz.
         const double change = glm::length(r.force - force);
         const bool steps = change > 1e4 * glm::length(way) || !renderer->entries().empty();
         if (steps) slack += 0.5 * change * glm::length(way);

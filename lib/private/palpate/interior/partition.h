@@ -159,8 +159,8 @@ class Partition {
   /// The last layer that contains the cell, or outside.
   [[nodiscard]] RegionId regionOf(const Signs& signs) const noexcept;
 
-  /// The expression for where `region`'s own layer is (`holds`), or where it is not. Not for
-  /// outside.
+  /// The steps that evaluate whether a cell is in `region`'s own layer (`holds`), or is not in it.
+  /// `region` must not be outside.
   [[nodiscard]] std::span<const SideStep> layerSides(RegionId region, bool holds) const noexcept {
     return sides_[region - 1U][holds ? 1 : 0];
   }
