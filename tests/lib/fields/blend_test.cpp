@@ -169,7 +169,8 @@ TEST(Bands, MustReachAsFarAsWhatIsMadeOfThem) {
   EXPECT_EQ(code([&] { return offset(scale(grid, 2.0), 0.009); }), "field.band_too_narrow");
 }
 
-/// A ball whose band is too narrow beyond a plane z [m] only.
+/// A ball whose distance is known in its bounding box below z [m]; elsewhere, as outside a narrow
+/// band, only the side is known.
 class BandedCap final : public Field {
  public:
   explicit BandedCap(double z) : z_(z) {}
@@ -189,7 +190,7 @@ class BandedCap final : public Field {
 };
 
 TEST(Bands, AreLookedAtUpToTheLastLayerOfTheBox) {
-  // 33 layers of places, 1 mm apart: the last one lies on the box.
+  // The box is sampled in 33 layers, 1 mm apart; the last one lies on its face.
   EXPECT_NO_THROW((void)offset(std::make_shared<BandedCap>(0.0161), 0.005));
   EXPECT_THROW((void)offset(std::make_shared<BandedCap>(0.0155), 0.005), Error);
 }

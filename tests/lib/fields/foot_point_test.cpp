@@ -62,8 +62,8 @@ TEST(FootPoint, HasTheSurfacesCurvatures) {
 }
 
 TEST(FootPoint, HasAnEllipsoidsCurvaturesAnywhere) {
-  // With S = x^2 / a^4 + y^2 / b^4 + z^2 / c^4 and P = a b c: sum (a^2 + b^2 + c^2 - |x|^2) / (P^2
-  // S^1.5), product 1 / (P S)^2.
+  // With S = x^2 / a^4 + y^2 / b^4 + z^2 / c^4 and P = a b c, the principal curvatures have the sum
+  // (a^2 + b^2 + c^2 - |x|^2) / (P^2 S^1.5) and the product 1 / (P S)^2.
   const Vec3 radii(9e-3, 6e-3, 7e-3);
   const FieldPtr field = implicitEllipsoid(kCenter, radii);
   const Vec3 squares = radii * radii;

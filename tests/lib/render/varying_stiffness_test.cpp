@@ -209,8 +209,9 @@ TEST(VaryingStiffness, TheTermIsHalfTheSquareOfTheDepthTimesTheSlope) {
 }
 
 TEST(VaryingStiffness, GradientByHandFollowsTheClosestPoint) {
-  // For f = v . x, with x the closest point of a ball of radius R to the hand at R - d from its
-  // middle, along the surface: v R / (R - d) outside it, R / (R + d) from inside.
+  // The hand is at distance R - d from the middle of a ball of radius R (R + d when felt from
+  // inside), its closest point is x. The gradient of v . x by the hand is the part of v along the
+  // surface, times R / (R - d) or R / (R + d).
   const FieldPtr ball = sphere(Vec3(0.0), 0.02);
   const Vec3 x(0.02, 0, 0);
   const Vec3 v(3.0, 1.0, -2.0);
