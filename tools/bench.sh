@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes anew what the documents say of grids, on this machine:
-#   README.md (its table of accuracy) and tools/docs/accuracy.svg, by `palpate accuracy`
+#   tools/docs/accuracy.md (its table), accuracy.svg, and the rows of 1 mm in README.md, by `palpate accuracy`
 #   data/bench/CPU.json, named after the processor: sampling beside OpenVDB's and NanoVDB's samplers, in one run
 #   data/bench/CPU-baking.json: baking beside OpenVDB's tools, in one run
 # A quiet machine is best; the shortest times count.
@@ -32,11 +32,11 @@ use_ccache
 tell 'building'
 cmake --build build/release --target palpate_command palpate_sampler_bench palpate_bake_bench
 
-# The table between the two comments in README.md: a row for each voxel size and sampler.
-write_table() { # CSV
+# The table between the two comments of a page: a row for each sampler and voxel size, or this size only.
+write_table() { # CSV PAGE [MM]
   local table
-  table=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
-    $at["near_edges"] == 1 { next }
+  table=$(awk -F, -v only="${3:-}" 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+    $at["near_edges"] == 1 || (only != "" && 1e3 * $at["voxel_m"] != only) { next }
     { printf "| %g | %s | %.2g | %.2g | %.2g | %.2g | %.3g | %.0f | %.0f | %.1f | %.1f |\n", 1e3 * $at["voxel_m"],
       $at["sampler"], 1e3 * $at["value_rms_m"], 1e3 * $at["value_max_m"], $at["normal_rms_degrees"],
       $at["normal_max_degrees"], $at["jitter_max"] / $at["true_jitter_max"], $at["independent_ns"],
@@ -45,8 +45,8 @@ write_table() { # CSV
     /<!-- accuracy: begin/ { skip = 1
       print "| voxel mm | sampler | distance mm, RMS | max | normal degree, RMS | max | jitter / true | ns | ns, dependent | us, cold | MB |"
       print "|---|---|---|---|---|---|---|---|---|---|---|"
-      print table }' README.md > README.md.tmp
-  mv README.md.tmp README.md
+      print table }' "$2" > "$2.tmp"
+  mv "$2.tmp" "$2"
 }
 
 csv=$(mktemp --suffix=.csv)
@@ -54,7 +54,8 @@ trap 'rm -f "$csv"' EXIT
 tell 'accuracy of samplers, some 60 s'
 build/release/bin/palpate accuracy data/scenes/reference.yaml --field torus --ladder 2,1,0.5,0.25 \
   --repeat 30 --svg tools/docs/accuracy.svg --csv "$csv" --force
-write_table "$csv"
+write_table "$csv" tools/docs/accuracy.md
+write_table "$csv" README.md 1
 
 mkdir -p data/bench
 tell 'times of samplers, some 60 s, told at the end'
