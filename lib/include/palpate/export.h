@@ -3,4 +3,5 @@
 /// since the modules are compiled with -fvisibility=hidden. Static libraries use the same macro, so
 /// that both kinds are made of the same objects.
 
+/// Makes a class, function or variable visible outside of its library.
 #define PALPATE_EXPORT __attribute__((visibility("default")))

@@ -35,10 +35,13 @@ struct Problem {
 /// The one exception type that the library throws on purpose.
 class PALPATE_EXPORT Error : public std::runtime_error {
  public:
+  /// what() is formatProblem() of `problem`.
   Error(ErrorKind kind, Problem problem)
       : std::runtime_error(formatProblem(problem)), kind_(kind), problem_(std::move(problem)) {}
 
+  /// Who or what is at fault.
   [[nodiscard]] ErrorKind kind() const noexcept { return kind_; }
+  /// Place, value and remedy, each on its own.
   [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
 
  private:

@@ -32,9 +32,13 @@ struct FieldJet {
 /// Points whose values are asked for together, so that the work on them can share instructions: a
 /// cube of 4^3 voxels, for example. Unused entries may be any finite point.
 struct PointBatch {
+  /// Number of points.
   static constexpr std::size_t kCount = 64;
-  std::array<double, kCount> x, y, z;  ///< [m] the field's frame
+  std::array<double, kCount> x,  ///< [m] the field's frame
+      y,                         ///< [m] the same
+      z;                         ///< [m] the same
 
+  /// [m] Point `n`, from 0, in the field's frame.
   [[nodiscard]] Vec3 operator[](std::size_t n) const noexcept { return {x[n], y[n], z[n]}; }
 };
 using ValueBatch = std::array<double, PointBatch::kCount>;  ///< [m]
@@ -52,6 +56,7 @@ using FieldPtr = std::shared_ptr<const Field>;  ///< shared and unchanging, neve
 /// How a field is put together, so that CSG can be taken apart into its smooth leaves. The span
 /// `operands` points into the field that was asked and is valid as long as that field lives.
 struct FieldStructure {
+  /// The operation at the root of the field.
   enum class Kind {
     kLeaf,          ///< smooth, or not to be taken apart
     kUnion,         ///< min of the operands
@@ -62,7 +67,7 @@ struct FieldStructure {
     /// their max (a box: its exact distance, and six half-spaces)
     kFaces,
   };
-  Kind kind = Kind::kLeaf;
+  Kind kind = Kind::kLeaf;               ///< how the operands are combined
   std::span<const FieldPtr> operands{};  ///< none for a leaf; one for complement and transform
   Pose pose{};                           ///< transform only: operand frame -> this field's frame
 };
@@ -93,6 +98,7 @@ class PALPATE_EXPORT Field {
   /// A box that holds every point with value <= 0 [m]; may be infinite.
   [[nodiscard]] virtual Box3 bounds() const noexcept = 0;
 
+  /// How to read the field's value; never changes.
   [[nodiscard]] virtual Metric metric() const noexcept = 0;
 
   /// L with |S(a) - S(b)| <= L |a - b| for a, b in lipschitzDomain(). 1 for exact and bound fields.

@@ -21,10 +21,16 @@ namespace palpate {
 /// Coefficients of a polynomial of second degree in x, y, z [m] about its center. They may be given
 /// in any common scale: the field is divided by its steepest slope in lipschitzDomain().
 struct QuadricCoefficients {
-  double xx = 0.0, yy = 0.0, zz = 0.0;  ///< of x^2, y^2, z^2
-  double xy = 0.0, xz = 0.0, yz = 0.0;  ///< of x y, x z, y z (each once, not twice)
-  double x = 0.0, y = 0.0, z = 0.0;     ///< of x, y, z
-  double constant = 0.0;
+  double xx = 0.0,        ///< of x^2
+      yy = 0.0,           ///< of y^2
+      zz = 0.0;           ///< of z^2
+  double xy = 0.0,        ///< of x y (once, not twice)
+      xz = 0.0,           ///< of x z (once)
+      yz = 0.0;           ///< of y z (once)
+  double x = 0.0,         ///< of x
+      y = 0.0,            ///< of y
+      z = 0.0;            ///< of z
+  double constant = 0.0;  ///< the value at the center, in the same scale
 };
 
 /// The points where the polynomial is negative. lipschitz() is 1; it holds in the bounds grown by
@@ -51,6 +57,7 @@ enum class FallOff {
   kInverseSquare,  ///< 1 / (1 + q^2)
 };
 
+/// One ball of a metaball field.
 struct Metaball {
   Vec3 center{0.0, 0.0, 0.0};  ///< [m]
   double radius = 0.0;         ///< [m] of influence, not of a surface
@@ -75,8 +82,10 @@ struct UserFunction {
   double feature_size = 0.0;         ///< [m] steps of finite differences are small shares of it
   double lipschitz = 1.0;            ///< see Field::lipschitz()
   Box3 lipschitz_domain = Box3::everything();  ///< [m]
-  Metric metric = Metric::kImplicit;
+  Metric metric = Metric::kImplicit;  ///< kExact and kBound promise a distance, kImplicit does not
 };
+/// The field of `function`. @throws Error (kInput, field.*) for no function, a `feature_size` that
+/// is not positive and finite, or a `lipschitz` outside 1e-12 to 1e12.
 [[nodiscard]] PALPATE_EXPORT FieldPtr userField(UserFunction function);
 
 }  // namespace palpate

@@ -14,8 +14,9 @@ namespace palpate {
 using RegionId =
     std::uint16_t;  ///< 0 is `outside`; layer i (from 0, outermost first) is region i + 1
 using LeafId = std::uint16_t;  ///< a smooth field whose surface separates regions
-using PortId = std::uint16_t;
+using PortId = std::uint16_t;  ///< index into Scene::ports(), in the order of the scene file
 
+/// The region that every point outside all layers belongs to.
 inline constexpr RegionId kOutside = 0;
 
 /// Which way a port lets the proxy through. `in` is from the first region named to the second.
@@ -23,9 +24,10 @@ enum class PortDirection : std::uint8_t { kBoth, kIn, kOut };
 
 /// A port that must have been passed before, and how often.
 struct PassedBefore {
-  PortId port = 0;
-  int times = 1;  ///< 1 or more
+  PortId port = 0;  ///< the port that must have been passed
+  int times = 1;    ///< 1 or more
 
+  /// `at_least` passes of port `before`; a PortId alone means one.
   PassedBefore(PortId before = 0, int at_least = 1) : port(before), times(at_least) {}
 };
 
@@ -48,15 +50,15 @@ struct RuptureRate {
 
 /// One opening. Regions may be several on each side (globs). Immutable after set-up.
 struct PALPATE_EXPORT Port {
-  std::string name;
+  std::string name;            ///< as the scene states it; reports and traces show it
   std::vector<RegionId> from;  ///< the first of `between`, resolved; empty in a sheet
   std::vector<RegionId> to;    ///< the second of `between`, resolved; empty in a sheet
   /// the sheet of the scene that it opens, with one region on both sides; -1: it opens a wall
   int sheet = -1;
   std::vector<LeafId> on;  ///< open only on facets of these leaves; empty: on any facet
   int mask = -1;           ///< open only within this mask of the partition; -1: everywhere
-  PortDirection direction = PortDirection::kBoth;
-  std::vector<PassedBefore> after;  ///< ports that must have been passed before
+  PortDirection direction = PortDirection::kBoth;  ///< which way the proxy may pass
+  std::vector<PassedBefore> after;                 ///< ports that must have been passed before
   int slot = -1;  ///< index in PassedPorts, assigned by Passages; -1: no `after` names this port
   /// [N] elastic normal force that opens it; 0: always open. A map is read at the point touched;
   /// where the map is 0, the lightest touch opens

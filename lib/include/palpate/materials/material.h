@@ -17,13 +17,15 @@ namespace palpate {
 /// sample() are real-time safe.
 class PALPATE_EXPORT MaterialMap {
  public:
+  /// The parameter at a point, with its gradient.
   struct Sample {
     double value = 0.0;            ///< [SI unit of the parameter]
     Vec3 gradient{0.0, 0.0, 0.0};  ///< [the same per m]
   };
+  /// Bounds of a parameter.
   struct Range {
-    double least = 0.0;
-    double most = 0.0;
+    double least = 0.0;  ///< [SI unit of the parameter] no value is below
+    double most = 0.0;   ///< [SI unit of the parameter] no value is above
   };
 
   virtual ~MaterialMap() = default;
@@ -41,27 +43,33 @@ class PALPATE_EXPORT MaterialMap {
  protected:
   MaterialMap() = default;
 };
-using MaterialMapPtr = std::shared_ptr<const MaterialMap>;
+using MaterialMapPtr = std::shared_ptr<const MaterialMap>;  ///< shared; null: there is no map
 
 /// A constant, or a map. Cheap to read where it is constant.
 class Parameter {
  public:
-  Parameter() = default;
+  Parameter() = default;  ///< 0 everywhere
+  /// `constant` [SI unit of the parameter] everywhere.
   Parameter(double constant) : constant_(constant) {}  // NOLINT(google-explicit-constructor)
-  Parameter(MaterialMapPtr map)                        // NOLINT(google-explicit-constructor)
+  /// As `map` states; if it is null, 0 everywhere.
+  Parameter(MaterialMapPtr map)  // NOLINT(google-explicit-constructor)
       : constant_(map ? map->value(Vec3(0.0)) : 0.0), map_(std::move(map)) {}
 
+  /// True if there is no map.
   [[nodiscard]] bool isConstant() const noexcept { return map_ == nullptr; }
   /// The same everywhere: an equal constant, or the very same map.
   friend bool operator==(const Parameter& a, const Parameter& b) noexcept {
     return a.map_ == b.map_ && (a.map_ != nullptr || a.constant_ == b.constant_);
   }
+  /// [SI unit] The value at `p` [m, world]. Real-time safe.
   [[nodiscard]] double at(const Vec3& p) const noexcept {
     return map_ ? map_->value(p) : constant_;
   }
+  /// The value at `p` [m, world] and its gradient, zero for a constant. Real-time safe.
   [[nodiscard]] MaterialMap::Sample sample(const Vec3& p) const noexcept {
     return map_ ? map_->sample(p) : MaterialMap::Sample{constant_, Vec3(0.0)};
   }
+  /// Bounds of the value over all of space.
   [[nodiscard]] MaterialMap::Range range() const noexcept {
     return map_ ? map_->range() : MaterialMap::Range{constant_, constant_};
   }
@@ -78,6 +86,7 @@ class Parameter {
 /// exponent 1: a1 d + a2 d^2 (Okamura, Simone and O'Leary 2004); 1.5: a Hertz contact with a
 /// sphere.
 struct SpringCurve {
+  /// [-] The largest exponent.
   static constexpr double kHighestExponent = 4.0;
 
   Parameter stiffening;   ///< [N/m^2] a2, 0 or more
@@ -100,6 +109,7 @@ struct Lattice {
   Vec3 wavelength{0.0, 0.0, 0.0};  ///< [m] 0: no waves along this axis
   Vec3 origin{0.0, 0.0, 0.0};  ///< [m, world] where the force is zero, and towards which it pulls
 
+  /// False: there is no force along any axis.
   [[nodiscard]] bool hasWaves() const noexcept { return wavelength != Vec3(0.0); }
   /// [N] The largest `force` allowed. Where its force changes fastest, a lattice acts like a spring
   /// of 2 pi force / wavelength. It must not be stiffer than `stiffness` [N/m], that of its own
@@ -117,6 +127,7 @@ struct Lattice {
 /// Karnopp's model as modified by Okamura, Simone and O'Leary (2004), with a spring while it
 /// sticks.
 struct ShaftFriction {
+  /// Friction while the shaft slides in one direction.
   struct Way {
     Parameter static_force;  ///< [N/m] D: the largest force while it sticks
     /// [N/m] C: while it slides; counts as `static_force` where a map exceeds that
@@ -135,7 +146,7 @@ struct ShaftFriction {
     double strength =
         kInfinity;  ///< [N/m] mean load per length at which the tissue tears; more than 0
   };
-  Lateral lateral;
+  Lateral lateral;  ///< resistance to sideways motion; none by default
 };
 
 /// Friction cone of a wall, as ratios of tangential to normal force.
@@ -171,16 +182,19 @@ struct Composite {
 /// A velocity whose components, along the axes of the world, may each differ from place to place.
 struct Flow {
   Parameter x;  ///< [m/s] any finite number, also negative
-  Parameter y;
-  Parameter z;
+  Parameter y;  ///< [m/s] the same along y
+  Parameter z;  ///< [m/s] the same along z
 
-  Flow() = default;
+  Flow() = default;  ///< at rest
+  /// `v` [m/s, world] everywhere.
   Flow(const Vec3& v) : x(v.x), y(v.y), z(v.z) {}  // NOLINT(google-explicit-constructor)
+  /// The components [m/s] along the axes of the world.
   Flow(Parameter along_x, Parameter along_y, Parameter along_z)
       : x(std::move(along_x)), y(std::move(along_y)), z(std::move(along_z)) {}
 
   /// [m/s] at `p` [m]. Real-time safe.
   [[nodiscard]] Vec3 at(const Vec3& p) const noexcept { return {x.at(p), y.at(p), z.at(p)}; }
+  /// True if each component is an equal constant or the very same map.
   friend bool operator==(const Flow& a, const Flow& b) noexcept {
     return a.x == b.x && a.y == b.y && a.z == b.z;
   }
@@ -194,12 +208,12 @@ struct Flow {
 /// energy. While friction holds the proxy where it is, K does not change and there is no such term.
 /// (The paper's renderer, which keeps to the source's force law, never has it.)
 struct Material {
-  std::string name = {};
-  Parameter stiffness;  ///< [N/m] 0 or more; a wall needs more than 0 everywhere
-  Parameter damping;    ///< [N s/m] against the probe's velocity while a wall is touched
-  Friction friction = {};
-  Texture texture = {};
-  Composite composite = {};
+  std::string name = {};     ///< by which the rest of the scene refers to it; reports show it
+  Parameter stiffness;       ///< [N/m] 0 or more; a wall needs more than 0 everywhere
+  Parameter damping;         ///< [N s/m] against the probe's velocity while a wall is touched
+  Friction friction = {};    ///< of a wall
+  Texture texture = {};      ///< of a wall
+  Composite composite = {};  ///< of a wall
   /// [m] the force follows the normal averaged over this radius, so that the facets of a coarse
   /// mesh feel round; 0: off
   double shading = 0.0;

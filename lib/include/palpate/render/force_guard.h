@@ -10,7 +10,8 @@ namespace palpate {
 /// Applies the limits tick by tick. A value type; real-time safe.
 class PALPATE_EXPORT ForceGuard {
  public:
-  ForceGuard() = default;
+  ForceGuard() = default;  ///< changes only forces that are not finite
+  /// Applies `limits` from the first tick on.
   explicit ForceGuard(const ForceLimits& limits) noexcept : limits_(limits) {}
 
   /// The force [N] that may be sent, `dt` [s] after the last. A force that is not finite becomes

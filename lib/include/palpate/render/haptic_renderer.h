@@ -32,15 +32,16 @@ struct HipState {
 
 /// How the proxy went through a port.
 struct PortCrossing {
+  /// The reason why the port let the proxy through.
   enum class How : std::uint8_t {
     kOpen,      ///< the port stood open
     kPuncture,  ///< its wall gave way to the force; a port that makes holes has made a new one here
     kHole,      ///< by a hole made before, at its reopening force
   };
-  PortId port = 0;
-  RegionId from = kOutside;
-  RegionId to = kOutside;
-  How how = How::kOpen;
+  PortId port = 0;            ///< the port passed
+  RegionId from = kOutside;   ///< the region that the proxy left
+  RegionId to = kOutside;     ///< the region that it entered
+  How how = How::kOpen;       ///< why the port let the proxy through
   Vec3 point{0.0, 0.0, 0.0};  ///< [m, world] where the surface was crossed
   /// [-, world] of the surface there, pointing back to where the proxy came from; zero where the
   /// surface has none
@@ -51,8 +52,8 @@ struct PortCrossing {
 /// How the proxy got from one region into the next: through a port, or across a wall that is
 /// absent.
 struct RegionEntry {
-  RegionId from = kOutside;
-  RegionId to = kOutside;
+  RegionId from = kOutside;   ///< the region that the proxy left
+  RegionId to = kOutside;     ///< the region that it entered
   int port = -1;              ///< PortId; -1: an absent wall
   Vec3 point{0.0, 0.0, 0.0};  ///< [m, world] of the wall, where it was crossed
   Vec3 normal{0.0, 0.0,
@@ -70,15 +71,16 @@ struct TickResult {
   static constexpr std::size_t kMaxEvents = 32;
   static_assert(kMaxEvents <= 255, "event_count counts them");
 
-  Vec3 force{0.0, 0.0, 0.0};  ///< [N, world] on the hand; always finite
-  Vec3 proxy{0.0, 0.0, 0.0};  ///< [m, world] the tip held in its region
-  RegionId region = kOutside;
-  bool contact = false;  ///< a closed wall is pressed
+  Vec3 force{0.0, 0.0, 0.0};   ///< [N, world] on the hand; always finite
+  Vec3 proxy{0.0, 0.0, 0.0};   ///< [m, world] the tip held in its region
+  RegionId region = kOutside;  ///< of the proxy, at the end of the tick
+  bool contact = false;        ///< a closed wall is pressed
   /// The proxy rests where it is closest to the hand, within the stated tolerances (the paper's
   /// renderer: always true). False: the budget of the tick ran out while the proxy was on its way
   /// there; it is at a permitted point that is not further from the hand than the last one.
   bool settled = true;
   std::uint8_t event_count = 0;  ///< crossings of this tick that passed a port, in path order
+  /// Ports passed, in path order; entries from event_count on mean nothing.
   std::array<PortId, kMaxEvents> events{};
 };
 
@@ -126,6 +128,7 @@ struct ContentChange {
 [[nodiscard]] PALPATE_EXPORT bool canChangeContent(const Scene& scene, RegionId region,
                                                    const ContentChange& change);
 
+/// The choice of a renderer and its parameters; for makeRenderer().
 struct RendererSettings {
   std::optional<RendererKind> kind = {};  ///< no value: as the scene states
   PaperParameters paper = {};  ///< paper's renderer only; takes precedence over the scene's own

@@ -13,13 +13,14 @@
 
 namespace palpate {
 
+/// One tick of a trace.
 struct TraceRow {
-  double t = 0.0;           ///< [s]
-  Vec3 hip{0.0, 0.0, 0.0};  ///< [m]
-  TickResult result = {};
+  double t = 0.0;               ///< [s]
+  Vec3 hip{0.0, 0.0, 0.0};      ///< [m]
+  TickResult result = {};       ///< force, proxy, region and events of the tick
   std::int64_t tick_ns = 0;     ///< [ns] time of the renderer's update alone
   std::size_t first_entry = 0;  ///< index in Trace::entries() of this tick's first entry
-  std::size_t entry_count = 0;
+  std::size_t entry_count = 0;  ///< number of its entries that were kept
 };
 
 /// Fixed capacity, so that adding a row never allocates.
@@ -28,6 +29,7 @@ class Trace {
   /// Room for entered regions: one a row, and kMoreEntries more.
   static constexpr std::size_t kMoreEntries = 1024;
 
+  /// Reserves memory for `capacity` rows.
   explicit Trace(std::size_t capacity) {
     rows_.reserve(capacity);
     entries_.reserve(capacity + kMoreEntries);
@@ -46,6 +48,7 @@ class Trace {
     entries_.insert(entries_.end(), kept.begin(), kept.end());
     rows_.push_back(row);
   }
+  /// The rows that were kept, in the order in which they were added.
   [[nodiscard]] std::span<const TraceRow> rows() const noexcept { return rows_; }
   /// HapticRenderer::entries() of all rows, in order.
   [[nodiscard]] std::span<const RegionEntry> entries() const noexcept { return entries_; }
@@ -53,7 +56,10 @@ class Trace {
   [[nodiscard]] std::span<const RegionEntry> entriesOf(const TraceRow& row) const noexcept {
     return std::span<const RegionEntry>(entries_).subspan(row.first_entry, row.entry_count);
   }
+  /// Number of rows for which there was no room.
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
+  /// Number of region entries for which there was no room; those of dropped rows do not
+  /// count.
   [[nodiscard]] std::uint64_t droppedEntries() const noexcept { return dropped_entries_; }
 
  private:
@@ -67,10 +73,12 @@ class Trace {
 /// traceCsv(). Names come from the scene.
 class PALPATE_EXPORT TraceText {
  public:
+  /// Copies the names of the regions and ports of `scene`.
   explicit TraceText(const Scene& scene);
   /// Names of regions, indexed by RegionId, and of ports, indexed by PortId.
   TraceText(std::span<const std::string> regions, std::span<const std::string> ports);
 
+  /// The first line, with the names of the columns and a line end.
   [[nodiscard]] static std::string_view header() noexcept;
   /// Appends the row to `text`. @throws Error (kInput) for an id that has no name.
   void add(std::string& text, const TraceRow& row) const;

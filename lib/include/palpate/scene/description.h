@@ -28,6 +28,7 @@ struct PassivityRequest {
   std::optional<double> friction = {};    ///< [N] smallest friction of the device
   std::optional<double> encoder = {};     ///< [m] one encoder step
   std::optional<double> hand_force = {};  ///< [N] the hand's largest
+  /// Compares all members.
   friend bool operator==(const PassivityRequest&, const PassivityRequest&) = default;
 };
 
@@ -38,9 +39,10 @@ struct CouplingRequest {
     kSprings,   ///< walls that do not move
     kAnyScene,  ///< any passive scene
   };
-  For design = For::kSprings;
+  For design = For::kSprings;            ///< ignored if `stiffness` has a value
   std::optional<double> stiffness = {};  ///< [N/m] at the hand
   double damping = 0.0;                  ///< [N s/m] beside `stiffness`
+  /// Compares all members.
   friend bool operator==(const CouplingRequest&, const CouplingRequest&) = default;
 };
 
@@ -58,6 +60,7 @@ struct DeviceMapping {
   std::optional<PassivityRequest> passivity = {};     ///< no value: off
   std::optional<CouplingRequest> coupling = {};       ///< no value: off
 
+  /// Converts a position [m, device] to the world's frame [m, world].
   [[nodiscard]] Vec3 toWorld(const Vec3& device) const noexcept {
     return offset + scale * (rotation * device);
   }
@@ -88,6 +91,7 @@ struct ForceRequest {
   std::optional<double> max = {};   ///< [N] more than 0; longer forces are shortened to it
   std::optional<double> slew = {};  ///< [N/s] more than 0; the rate at which the force may grow
   std::optional<double> ramp = {};  ///< [s] more than 0; time from zero to full force
+  /// Compares all members.
   friend bool operator==(const ForceRequest&, const ForceRequest&) = default;
 };
 
@@ -106,7 +110,9 @@ enum class PaperInterior : std::uint8_t {
 
 /// Members without a value are as the scene has them, or else as written here.
 struct PaperParameters {
+  /// Default of max_halvings.
   static constexpr int kMaxHalvings = 48;
+  /// [-] Default of alpha.
   static constexpr double kAlpha = 1.0;
 
   /// [m] epsilon: within this distance of the surface the contact point counts as on it; more than
@@ -115,9 +121,9 @@ struct PaperParameters {
   std::optional<double> epsilon = {};
   std::optional<int> max_halvings =
       {};  ///< MAX_N: halvings of the segment on which the surface is searched; 1 to 1000
-  std::optional<double> alpha = {};  ///< [-] share of the nudge; 0 or more
-  std::optional<AlphaForm> alpha_form = {};
-  std::optional<PaperInterior> interior = {};
+  std::optional<double> alpha = {};            ///< [-] share of the nudge; 0 or more
+  std::optional<AlphaForm> alpha_form = {};    ///< default: kByMetric
+  std::optional<PaperInterior> interior = {};  ///< default: kTogether
 
   /// These parameters; where one has no value, that of `others`.
   [[nodiscard]] PaperParameters over(const PaperParameters& others) const {
@@ -134,10 +140,10 @@ struct PaperParameters {
 /// The place in a file where something was stated, so that later errors can point at it. Line 0:
 /// none.
 struct SourcePlace {
-  std::string file = {};
-  int line = 0;
-  int column = 0;
-  std::string excerpt = {};
+  std::string file = {};     ///< as the user named it; empty: not from a file
+  int line = 0;              ///< from 1
+  int column = 0;            ///< [characters] from 1; 0: unknown
+  std::string excerpt = {};  ///< the line's text, shortened if it is very long
 };
 
 /// An error about something stated at `place`.
@@ -148,6 +154,7 @@ struct SourcePlace {
 /// for, so that a field the scene does not need is never made. Set-up thread only.
 class PALPATE_EXPORT FieldSource {
  public:
+  /// Makes the whole field; may throw Error. Called at most once, unless it throws.
   using Maker = std::function<FieldPtr(const Progress&)>;
 
   /// Makes a field that is right within the box [m], and beyond it keeps the sign that it has at
@@ -157,7 +164,10 @@ class PALPATE_EXPORT FieldSource {
   /// [m] A box around the field to be made, much cheaper than making it.
   using Measurer = std::function<Box3(const Progress&)>;
 
+  /// A field that is ready; summary() is empty.
   explicit FieldSource(FieldPtr ready) : made_(std::move(ready)) {}
+  /// A field that `maker` makes. `summary` says what it is made from; without `measurer`, bounds()
+  /// has no value until the field is made.
   FieldSource(std::string summary, Maker maker, Measurer measurer = {})
       : summary_(std::move(summary)), maker_(std::move(maker)), measurer_(std::move(measurer)) {}
   /// To make the whole field, `maker` is called with a box that is all of space.
@@ -173,6 +183,7 @@ class PALPATE_EXPORT FieldSource {
   [[nodiscard]] const FieldPtr& get(const Box3& within, const Progress& progress = {}) const;
   /// [m] A box around the field; no value if only making the field would tell.
   [[nodiscard]] std::optional<Box3> bounds(const Progress& progress = {}) const;
+  /// True if the whole field exists already, so that get() is cheap.
   [[nodiscard]] bool isMade() const noexcept { return made_ != nullptr; }
   /// The part that was made last for a box; null if none was.
   [[nodiscard]] const FieldPtr& part() const noexcept { return part_; }
@@ -188,24 +199,26 @@ class PALPATE_EXPORT FieldSource {
   mutable FieldPtr part_;
   mutable Box3 part_within_;
 };
-using FieldSourcePtr = std::shared_ptr<const FieldSource>;
+using FieldSourcePtr = std::shared_ptr<const FieldSource>;  ///< shared by all that use the field
 
+/// An entry of `fields:`.
 struct NamedField {
-  std::string name;
-  FieldSourcePtr source;
+  std::string name;       ///< by which layers, ports and other fields use it
+  FieldSourcePtr source;  ///< made when it is first asked for
 };
 
 /// The wall between a layer and its surroundings.
 struct WallDescription {
-  bool absent = false;
+  bool absent = false;        ///< true: no wall, a free crossing both ways
   std::string material = {};  ///< name; empty (and not absent): the documented default wall
 };
 
+/// A layer as a scene states it.
 struct LayerDescription {
-  std::string name;
-  FieldSourcePtr inside;
-  std::string content = {};  ///< material name; empty: nothing is felt inside
-  WallDescription wall = {};
+  std::string name;           ///< unique within the scene; not "outside"
+  FieldSourcePtr inside;      ///< negative inside the layer; later layers win where they overlap it
+  std::string content = {};   ///< material name; empty: nothing is felt inside
+  WallDescription wall = {};  ///< towards all regions for which no WallOverride says otherwise
   /// Layers with the same non-empty group come from one label image: where they meet, a point
   /// belongs to the one whose field is smallest. Their fields should overlap a little where edges
   /// meet, so that no part of the image is left over between them.
@@ -213,31 +226,35 @@ struct LayerDescription {
   /// Labels of the group's image, ascending. Two layers that share a label do not limit each other:
   /// the later layer owns points that are in both.
   std::vector<int> labels = {};
-  SourcePlace place = {};
+  SourcePlace place = {};  ///< of its name
 };
 
 /// Overrides the wall between two regions. Globs allowed.
 struct WallOverride {
-  std::string a;
-  std::string b;
-  WallDescription wall;
+  std::string a;               ///< name of a region, or a glob
+  std::string b;               ///< the same, for the other side
+  WallDescription wall;        ///< in place of the wall that belongs to the inner layer
   std::string felt_from = {};  ///< empty: from both sides; else `a` or `b`
-  SourcePlace place = {};
+  SourcePlace place = {};      ///< of the entry in `walls:`
 };
 
 /// A port that must have been passed before, and the least number of times.
 struct AfterDescription {
-  std::string port;
-  int times = 1;  ///< 1 or more
+  std::string port;  ///< name of the other port
+  int times = 1;     ///< 1 or more
 
+  /// `at_least` passes of port `before`; a name alone means one.
   AfterDescription(std::string before, int at_least = 1)
       : port(std::move(before)), times(at_least) {}
+  /// One pass of port `before`, given as a literal.
   AfterDescription(const char* before) : port(before) {}
+  /// Compares all members.
   friend bool operator==(const AfterDescription&, const AfterDescription&) = default;
 };
 
+/// A port as a scene states it.
 struct PortDescription {
-  std::string name;
+  std::string name;  ///< unique within the scene
   std::string from;  ///< region names and globs, with ", " between them
   std::string to;    ///< the same
   /// The port opens this sheet and not a wall. Then `from` and `to` are empty, there is no `on`,
@@ -249,47 +266,54 @@ struct PortDescription {
   /// this to its error. Empty: no reason is known.
   std::string on_note = {};
   FieldSourcePtr where = {};  ///< null: everywhere
-  PortDirection direction = PortDirection::kBoth;
-  std::vector<AfterDescription> after = {};
-  Parameter opens_at = 0.0;            ///< [N]
-  std::optional<Parameter> back = {};  ///< [N]; not given: as opens_at
-  RuptureRate rate = {};               ///< of both `opens_at` and `back`
-  double hole_radius = 0.0;            ///< [m] 0: force that opens it leaves no hole
-  Parameter reopens_at = 0.0;          ///< [N] in a hole, in place of `opens_at`
-  double rearm = 0.0;                  ///< [m]
-  SourcePlace place = {};
+  PortDirection direction =
+      PortDirection::kBoth;                  ///< kIn: only from `from` to `to`; kOut: only back
+  std::vector<AfterDescription> after = {};  ///< all of these must hold for it to open
+  Parameter opens_at = 0.0;                  ///< [N]
+  std::optional<Parameter> back = {};        ///< [N]; not given: as opens_at
+  RuptureRate rate = {};                     ///< of both `opens_at` and `back`
+  double hole_radius = 0.0;                  ///< [m] 0: force that opens it leaves no hole
+  Parameter reopens_at = 0.0;                ///< [N] in a hole, in place of `opens_at`
+  double rearm = 0.0;                        ///< [m]
+  SourcePlace place = {};                    ///< of its name
 };
 
 /// An open surface: the part of `on`'s zero set where `where` is negative, with the same region on
 /// both sides (a dangling edge, a plate without thickness).
 struct SheetDescription {
-  std::string name;
-  FieldSourcePtr on;
+  std::string name;           ///< unique within the scene
+  FieldSourcePtr on;          ///< the field whose zero set the sheet is part of
   FieldSourcePtr where = {};  ///< null: the whole zero set
   std::string material = {};  ///< name; empty: the documented default wall
-  SourcePlace place = {};
+  SourcePlace place = {};     ///< of its name
 };
 
 /// The renderer that a scene asks for.
-enum class RendererKind { kConstraint, kPaper };
+enum class RendererKind {
+  kConstraint,  ///< the proxy decides about contact and ports
+  kPaper        ///< the published algorithm to the letter, driven by the HIP
+};
 
+/// A whole scene as its author states it, before any check of its parts against each other;
+/// compile() makes a Scene of it.
 struct SceneDescription {
-  std::string file = {};
-  std::string length_unit = "m";  ///< as named in the file, for output that people read
-  double meters_per_unit = 1.0;   ///< [m]
-  std::vector<Material> materials = {};
-  std::vector<NamedField> fields = {};
+  std::string file = {};                 ///< for messages; empty: not from a file
+  std::string length_unit = "m";         ///< as named in the file, for output that people read
+  double meters_per_unit = 1.0;          ///< [m]
+  std::vector<Material> materials = {};  ///< in any order; the default wall is not among them
+  std::vector<NamedField> fields = {};   ///< for Scene::fields(); layers need not use them
+  /// From the outside in: where two overlap, the later one wins.
   std::vector<LayerDescription> layers = {};
-  std::vector<WallOverride> walls = {};
-  std::vector<PortDescription> ports = {};
-  std::vector<SheetDescription> sheets = {};
-  std::string start_region = "outside";
-  SourcePlace start_place = {};
+  std::vector<WallOverride> walls = {};       ///< exceptions to the layers' walls; later ones win
+  std::vector<PortDescription> ports = {};    ///< PortId is the index here
+  std::vector<SheetDescription> sheets = {};  ///< surfaces without thickness
+  std::string start_region = "outside";       ///< the region in which the proxy begins
+  SourcePlace start_place = {};               ///< of `start_region`
   bool keep_memory = false;  ///< `memory: keep`: ports passed are never taken back nor cleared
-  RendererKind renderer = RendererKind::kConstraint;
-  ForceRequest force = {};
-  PaperParameters paper = {};
-  DeviceMapping device = {};
+  RendererKind renderer = RendererKind::kConstraint;  ///< RendererSettings::kind takes precedence
+  ForceRequest force = {};                            ///< ForceLimits take precedence
+  PaperParameters paper = {};                         ///< RendererSettings::paper takes precedence
+  DeviceMapping device = {};                          ///< how the device's space lies in the world
 };
 
 }  // namespace palpate

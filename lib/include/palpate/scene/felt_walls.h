@@ -13,8 +13,8 @@ namespace palpate {
 struct FeltWall {
   std::string
       place;  ///< "from | into"; the region alone if no neighbor of it was found; or a sheet
-  int material = -1;  ///< index into Scene::materials()
-  bool is_sheet = false;
+  int material = -1;      ///< index into Scene::materials()
+  bool is_sheet = false;  ///< `place` names a sheet
 };
 
 /// The walls between regions that were found to touch, if one of the two can be reached; the own

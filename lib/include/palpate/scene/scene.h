@@ -29,10 +29,10 @@ enum class Reach : std::uint8_t {
 
 /// A region as the loop and the reports see it.
 struct Region {
-  std::string name;
-  int content = -1;  ///< index into Scene::materials(); -1: nothing is felt
-  int wall = -1;     ///< material of its own wall; -1 where absent (and for outside)
-  bool wall_absent = false;
+  std::string name;           ///< that of the layer, or "outside"
+  int content = -1;           ///< index into Scene::materials(); -1: nothing is felt
+  int wall = -1;              ///< material of its own wall; -1 where absent (and for outside)
+  bool wall_absent = false;   ///< its own wall is a free crossing (false for outside)
   Reach reach = Reach::kYes;  ///< by ports and absent walls from the start region
   bool reachable = true;      ///< unless reach is kNo
   /// the layer's whole field (cut to its share of the label group); null for outside and for layers
@@ -45,14 +45,19 @@ struct Region {
   bool has_seed = false;     ///< false: no point of it was found (an empty or dropped region)
 };
 
+/// A scene that is ready to be felt, as compile() makes it. Immutable, so that any number of
+/// renderers, in any threads, may share one.
 class PALPATE_EXPORT Scene {
  public:
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
+  /// Indexed by RegionId: outside, then the layers in the order of the description.
   [[nodiscard]] std::span<const Region> regions() const noexcept { return regions_; }
+  /// The description's materials in its order, then "default wall" for walls that name none.
   [[nodiscard]] std::span<const Material> materials() const noexcept { return materials_; }
+  /// Indexed by PortId, in the order of the description.
   [[nodiscard]] std::span<const Port> ports() const noexcept { return ports_; }
   /// Whether the port can ever be passed.
   [[nodiscard]] Reach reachOf(PortId port) const { return reach_of_port_[port]; }
@@ -60,15 +65,21 @@ class PALPATE_EXPORT Scene {
   [[nodiscard]] bool touches(RegionId a, RegionId b) const {
     return a != b && touch_[a * regions_.size() + b];
   }
+  /// The region in which the proxy begins.
   [[nodiscard]] RegionId startRegion() const noexcept { return start_; }
+  /// `memory: keep`: ports passed are never taken back nor cleared.
   [[nodiscard]] bool keepsMemory() const noexcept { return keep_memory_; }
+  /// The renderer that the scene asks for; RendererSettings::kind takes precedence.
   [[nodiscard]] RendererKind renderer() const noexcept { return renderer_; }
   /// The renderers' limits where their own settings give none.
   [[nodiscard]] const ForceRequest& forceLimits() const noexcept { return force_; }
   /// For the paper's renderer.
   [[nodiscard]] const PaperParameters& paper() const noexcept { return paper_; }
+  /// How the device's space lies in the world.
   [[nodiscard]] const DeviceMapping& device() const noexcept { return device_; }
+  /// The unit that the scene file is written in ("mm"), for output that people read.
   [[nodiscard]] const std::string& lengthUnit() const noexcept { return length_unit_; }
+  /// [m] The length of one lengthUnit().
   [[nodiscard]] double metersPerUnit() const noexcept { return meters_per_unit_; }
   /// The named fields of the description that were made, with their names, for `query`.
   [[nodiscard]] std::span<const NamedField> fields() const noexcept { return fields_; }
@@ -82,6 +93,7 @@ class PALPATE_EXPORT Scene {
 
   /// Space divided into regions, and the walls between them; for the library's own renderers.
   [[nodiscard]] const Partition& partition() const noexcept { return *partition_; }
+  /// The rules of the ports, as a table of states and transitions; for the library's own renderers.
   [[nodiscard]] const Passages& passages() const noexcept { return *passages_; }
 
  private:
@@ -107,7 +119,7 @@ class PALPATE_EXPORT Scene {
   double meters_per_unit_ = 1.0;
 };
 
-using ScenePtr = std::shared_ptr<const Scene>;
+using ScenePtr = std::shared_ptr<const Scene>;  ///< shared and immutable
 
 /// The purpose that a scene is compiled for.
 enum class Purpose {

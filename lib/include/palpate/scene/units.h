@@ -8,6 +8,7 @@
 
 namespace palpate {
 
+/// The kind of physical quantity that a text must state, with its SI unit.
 enum class Dimension {
   kLength,      ///< m
   kForce,       ///< N
@@ -27,10 +28,17 @@ enum class Dimension {
 
 /// Outcome of reading a quantity's text.
 struct Quantity {
-  enum class Status { kOk, kNotANumber, kMissingUnit, kUnknownUnit, kWrongDimension };
-  Status status = Status::kNotANumber;
-  double si = 0.0;             ///< value in SI
-  std::string_view unit = {};  ///< as written
+  /// Whether the text could be read, and if not, why.
+  enum class Status {
+    kOk,
+    kNotANumber,     ///< does not begin with a finite number
+    kMissingUnit,    ///< a number alone
+    kUnknownUnit,    ///< the text after the number is not a known unit
+    kWrongDimension  ///< the unit is known, but of another dimension
+  };
+  Status status = Status::kNotANumber;  ///< `si` has a meaning only with kOk
+  double si = 0.0;                      ///< value in SI
+  std::string_view unit = {};           ///< as written
 };
 
 /// Reads "1500 N/m", "1.5 N/mm", "4 N.s/m", "0.5 Ns/m", "2.8 N", "3 mm", "30 um".
