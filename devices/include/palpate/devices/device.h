@@ -13,6 +13,7 @@
 #include "palpate/devices/safety_state.h"
 #include "palpate/export.h"
 
+/// Devices and simulated hands, the servo loop, and the session that joins a device to a scene.
 namespace palpate::devices {
 
 /// One reading.
@@ -25,11 +26,12 @@ struct DeviceState {
   Mat3 orientation{1.0};         ///< of the handle: rotates its axes into those of the frame
 };
 
+/// The outcome of read() and write().
 enum class DeviceStatus : std::uint8_t {
-  kOk,
-  kEnd,    ///< a recorded or generated path is over; the loop ends
-  kStale,  ///< nothing new since the last call; the previous reading was returned
-  kTimeout,
+  kOk,            ///< done; read() has returned a new reading
+  kEnd,           ///< a recorded or generated path is over; the loop ends
+  kStale,         ///< nothing new since the last call; the previous reading was returned
+  kTimeout,       ///< no answer within the time that the device allows
   kDisconnected,  ///< will not recover without open()
   kFault,         ///< the device reported an error and has cut its motors
 };
@@ -40,8 +42,9 @@ enum class DeviceFrame : std::uint8_t {
   kWorld,   ///< the scene's world, as for most recorded paths
 };
 
+/// The constant description of a device.
 struct DeviceInfo {
-  std::string name;
+  std::string name;        ///< for reports and messages: "virtual", "simulated touch"
   double max_force = 0.0;  ///< [N] continuous; the servo loop never writes a longer force
   Box3 workspace;          ///< [m] in the frame
   DeviceFrame frame = DeviceFrame::kDevice;  ///< of positions, velocities, forces and the workspace
@@ -64,9 +67,12 @@ class PALPATE_EXPORT Device {
 
   virtual void open() = 0;            ///< @throws Error (kDevice)
   virtual void close() noexcept = 0;  ///< safe to call twice
+  /// Constant while the device is open; open() may change it.
   [[nodiscard]] virtual const DeviceInfo& info() const noexcept = 0;
 
   // Real time: no allocation, no lock, no exception, bounded wait.
+  /// The newest reading. Servo thread only, while the device is open. If the result is not kOk,
+  /// `out` may be unchanged.
   [[nodiscard]] virtual DeviceStatus read(DeviceState& out) noexcept = 0;
   [[nodiscard]] virtual DeviceStatus write(
       const Vec3& force) noexcept = 0;  ///< [N] in the same frame
@@ -103,7 +109,7 @@ using ServoObserver = std::function<void(const ServoTurn&)>;
 
 /// What the loop requests from the operating system.
 enum class Elevate : std::uint8_t {
-  kOff,
+  kOff,      ///< nothing
   kPrefer,   ///< try; the report lists what was refused
   kRequire,  ///< the loop does not run without it
 };
@@ -112,6 +118,7 @@ enum class Elevate : std::uint8_t {
 /// watchdog threads (99).
 inline constexpr int kServoPriority = 75;
 
+/// The settings of runServo().
 struct ServoSettings {
   bool realtime = false;  ///< false: as fast as possible, one reading after the other
   double rate =
@@ -127,24 +134,32 @@ struct ServoSettings {
   double recovery = 0.1;
 };
 
-enum class ServoExit : std::uint8_t { kEnd, kStopped, kTimeout, kDisconnected, kFault };
+/// The event that ended the servo loop.
+enum class ServoExit : std::uint8_t {
+  kEnd,           ///< the device answered DeviceStatus::kEnd
+  kStopped,       ///< `stop` became true
+  kTimeout,       ///< the device answered DeviceStatus::kTimeout
+  kDisconnected,  ///< the device answered DeviceStatus::kDisconnected
+  kFault  ///< the device answered DeviceStatus::kFault, or ServoReport::fault has the reason
+};
 
+/// The result of runServo(); counts begin with its call.
 struct ServoReport {
-  ServoExit exit = ServoExit::kEnd;
-  std::uint64_t ticks = 0;         ///< times the tick function was called
-  std::uint64_t overruns = 0;      ///< ticks that ended after the next was due (realtime only)
-  double worst_lateness = 0.0;     ///< [s] of a tick's start (realtime only)
-  bool has_priority = false;       ///< ran with a real-time priority because of `elevate`
-  bool has_locked_memory = false;  ///< ran with locked memory because of `elevate`
-  bool elevated = false;           ///< both
-  int priority_error = 0;          ///< errno of a refused priority
-  int memory_error = 0;            ///< errno of refused locked memory
-  std::uint64_t zeroed = 0;        ///< forces that were not finite and were written as zero
+  ServoExit exit = ServoExit::kEnd;  ///< event that ended the loop
+  std::uint64_t ticks = 0;           ///< times the tick function was called
+  std::uint64_t overruns = 0;        ///< ticks that ended after the next was due (realtime only)
+  double worst_lateness = 0.0;       ///< [s] of a tick's start (realtime only)
+  bool has_priority = false;         ///< ran with a real-time priority because of `elevate`
+  bool has_locked_memory = false;    ///< ran with locked memory because of `elevate`
+  bool elevated = false;             ///< both
+  int priority_error = 0;            ///< errno of a refused priority
+  int memory_error = 0;              ///< errno of refused locked memory
+  std::uint64_t zeroed = 0;          ///< forces that were not finite and were written as zero
   std::uint64_t shortened = 0;  ///< forces longer than the device's maximum, written at that length
   std::uint64_t stale = 0;  ///< turns of the loop that wrote zero because no new reading had come
   SafetyState state = SafetyState::kClosed;  ///< state in which the loop ended
-  SafetyFault fault = SafetyFault::kNone;
-  SafetyCounts safety;        ///< jumps, hangs and heat
+  SafetyFault fault = SafetyFault::kNone;    ///< kNone unless `state` is SafetyState::kFault
+  SafetyCounts safety;                       ///< jumps, hangs and heat
   LatencyHistogram lateness;  ///< of each turn's start (realtime, unless the device is the clock)
   LatencyHistogram interval;  ///< from turn to turn (realtime only)
   LatencyHistogram work;      ///< from the reading to the end of the write (realtime only)

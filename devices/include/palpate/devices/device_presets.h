@@ -19,10 +19,11 @@ enum class Known : std::uint8_t {
   kAssumed,     ///< no source gives it
 };
 
+/// A number of a preset, and how it is known. The preset states the unit.
 struct Quantity {
-  double value = 0.0;
-  Known known = Known::kAssumed;
-  std::string_view source = {};  ///< who states it; for an assumed number, the reason
+  double value = 0.0;             ///< [SI]
+  Known known = Known::kAssumed;  ///< how far to trust `value`
+  std::string_view source = {};   ///< who states it; for an assumed number, the reason
 };
 
 /// Effective mass, damping and friction are those at the tip, in the middle of the workspace.
@@ -41,13 +42,16 @@ struct DevicePreset {
   [[nodiscard]] PALPATE_EXPORT DeviceModel model() const;
 };
 
+/// A hand that can hold a simulated device.
 struct HandPreset {
-  std::string_view name;
-  HandModel model;  ///< all of it is assumed
-  std::string_view why;
+  std::string_view name;  ///< on the command line
+  HandModel model;        ///< all of it is assumed
+  std::string_view why;   ///< the hold that the numbers stand for, in words
 };
 
+/// All device presets, in the order of reports; static memory.
 [[nodiscard]] PALPATE_EXPORT std::span<const DevicePreset> devicePresets() noexcept;
+/// All hand presets, likewise.
 [[nodiscard]] PALPATE_EXPORT std::span<const HandPreset> handPresets() noexcept;
 
 /// @throws Error (kUsage, device.unknown) that lists the known names, if the name is unknown.

@@ -24,8 +24,10 @@ enum class InputKind : std::uint8_t {
   kGamepad,     ///< its sticks' and triggers' deflections are velocities
   kMouse,       ///< counts are a distance; the wheel lifts
 };
+/// "SpaceMouse", "gamepad" or "mouse".
 [[nodiscard]] PALPATE_EXPORT std::string_view nameOf(InputKind kind) noexcept;
 
+/// The settings of makeEvdev().
 struct EvdevSettings {
   std::string node = {};   ///< such as /dev/input/event5; empty: the first that fits, by InputKind
   double max_speed = 0.1;  ///< [m/s] along each axis, at full deflection

@@ -11,7 +11,9 @@
 
 namespace palpate::devices {
 
+/// The USB vendor id that a Falcon reports: that of its chip's maker, FTDI.
 constexpr std::uint16_t kFalconVendor = 0x0403;
+/// The USB product id that a Falcon reports.
 constexpr std::uint16_t kFalconProduct = 0xcb48;
 
 /// Numbers that differ from device to device, or that nobody has measured. In a file: one `name
@@ -31,15 +33,17 @@ struct FalconCalibration {
 
 /// @throws Error (kInput) if the file cannot be read, a name is unknown or a value is out of range.
 [[nodiscard]] PALPATE_EXPORT FalconCalibration readFalconCalibration(const std::string& file);
+/// The text of a file that readFalconCalibration() reads back exactly.
 [[nodiscard]] PALPATE_EXPORT std::string textOf(const FalconCalibration& calibration);
 
+/// The choice of a Falcon and its constants.
 struct FalconSettings {
   std::string serial;  ///< empty: the first one
   /// 0 or more: an open file descriptor of its node. After that, libusb no longer finds devices by
   /// itself in this process.
   int descriptor = -1;
   std::string firmware;  ///< image for a device that runs none; empty: such a device is refused
-  FalconCalibration calibration = {};
+  FalconCalibration calibration = {};  ///< the defaults unless a file was read
 };
 
 /// The device's frame: x to the right, y up, z towards the hand, from FalconCalibration::origin.

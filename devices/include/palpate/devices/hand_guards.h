@@ -14,8 +14,8 @@ namespace palpate::devices {
 
 /// For SessionSettings.
 struct HandGuards {
-  std::optional<PassivitySettings> passivity = {};
-  std::optional<CouplingSettings> coupling = {};
+  std::optional<PassivitySettings> passivity = {};  ///< no value: the scene asks for none
+  std::optional<CouplingSettings> coupling = {};    ///< no value: the scene asks for none
 };
 
 /// The settings of passivity and coupling that `asked` means in a loop of `period` [s]. Numbers

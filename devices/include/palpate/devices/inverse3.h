@@ -11,10 +11,11 @@
 
 namespace palpate::devices {
 
+/// Where the service of the Inverse3's maker listens, and which of its devices is meant.
 struct Inverse3Settings {
-  std::string host = "127.0.0.1";
-  std::uint16_t port = 10001;
-  std::string id;  ///< of the device; empty: the first that the service lists
+  std::string host = "127.0.0.1";  ///< IP address of the service, not a name
+  std::uint16_t port = 10001;      ///< TCP port of the service
+  std::string id;                  ///< of the device; empty: the first that the service lists
 };
 
 /// WebSocket and JSON live in a thread of their own; read() and write() only exchange values with

@@ -21,7 +21,9 @@ class LatencyHistogram {
     longest_ = std::max(longest_, value);
   }
 
+  /// Number of durations added.
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+  /// [ns] The longest duration added, exactly; 0 if there are none.
   [[nodiscard]] std::int64_t longest() const noexcept {
     return static_cast<std::int64_t>(longest_);
   }

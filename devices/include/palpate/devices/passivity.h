@@ -44,6 +44,7 @@ struct PassivitySettings {
 /// x_{k-1}| or more.
 class PALPATE_EXPORT PassivityObserver {
  public:
+  /// [ticks] The largest PassivitySettings::delay.
   static constexpr int kMostDelay = 64;
   /// [J] The account begins with this, and holds no more than this while no force is held.
   static constexpr double kSeed = 1e-9;
@@ -144,6 +145,7 @@ class PALPATE_EXPORT PassivityController {
   [[nodiscard]] PassivityTick step(const Vec3& position, double dt, const Vec3& force,
                                    double stiffness, double source) noexcept;
 
+  /// The account of energy that step() keeps.
   [[nodiscard]] const PassivityObserver& observer() const noexcept { return observer_; }
   /// [N/m] A stiffer wall is felt with this stiffness; infinite if nothing is controlled.
   [[nodiscard]] double mostStiffness() const noexcept { return most_stiffness_; }

@@ -15,11 +15,12 @@
 
 namespace palpate::devices {
 
+/// One row of a path.
 struct PathPoint {
   double t = 0.0;                ///< [s]
   Vec3 position{0.0, 0.0, 0.0};  ///< [m, world]; for a recording, in the frame that it names
 };
-using Path = std::vector<PathPoint>;
+using Path = std::vector<PathPoint>;  ///< in the order of time
 
 /// A path whose rows are computed when they are asked for, so that its size does not depend on its
 /// length.
@@ -30,7 +31,9 @@ class PathFormula {
   PathFormula(std::size_t last, double rate, const Vec3& end, std::function<Vec3(double)> position)
       : last_(last), rate_(rate), end_(end), position_(std::move(position)) {}
 
+  /// Number of rows, at least 1.
   [[nodiscard]] std::size_t size() const noexcept { return last_ + 1; }
+  /// Row `row`, from 0; must be below size(). The last row is the exact end point.
   [[nodiscard]] PathPoint at(std::size_t row) const {
     const double t = static_cast<double>(row) / rate_;
     return {t, row < last_ ? position_(t) : end_};
@@ -43,9 +46,10 @@ class PathFormula {
   std::function<Vec3(double)> position_;
 };
 
+/// A path out of a file.
 struct RecordedPath {
-  Path points;
-  DeviceFrame frame = DeviceFrame::kWorld;
+  Path points;                              ///< positions in `frame`
+  DeviceFrame frame = DeviceFrame::kWorld;  ///< the frame that the header of the file names
 };
 
 /// The rows that a path may contain.
@@ -96,6 +100,7 @@ struct StrokePath {
   double speed = 0.1;        ///< [m/s] above 0
   int repeats = 1;           ///< 1 or more
 };
+/// The path as rows that are computed when they are asked for, `rate` [Hz] of them in a second.
 [[nodiscard]] PALPATE_EXPORT PathFormula formula(const StrokePath& shape, double rate);
 [[nodiscard]] PALPATE_EXPORT Path generate(const StrokePath& shape,
                                            double rate);  ///< all of its rows
@@ -110,6 +115,7 @@ struct TapPath {
   double frequency = 4.0;       ///< [Hz] above 0
   int taps = 4;                 ///< 1 or more
 };
+/// The path as rows that are computed when they are asked for, `rate` [Hz] of them in a second.
 [[nodiscard]] PALPATE_EXPORT PathFormula formula(const TapPath& shape, double rate);
 [[nodiscard]] PALPATE_EXPORT Path generate(const TapPath& shape, double rate);  ///< all of its rows
 
@@ -120,8 +126,9 @@ struct InsertPath {
   std::vector<Vec3> points;  ///< [m] two or more, not all the same
   double speed = 0.05;       ///< [m/s] above 0
   double hold = 0.1;         ///< [s] at the far end, 0 or more
-  bool back = true;
+  bool back = true;          ///< true: returns along the same way after `hold`
 };
+/// The path as rows that are computed when they are asked for, `rate` [Hz] of them in a second.
 [[nodiscard]] PALPATE_EXPORT PathFormula formula(const InsertPath& shape, double rate);
 [[nodiscard]] PALPATE_EXPORT Path generate(const InsertPath& shape,
                                            double rate);  ///< all of its rows

@@ -11,6 +11,7 @@
 
 namespace palpate::devices {
 
+/// The library to load for makeOpenHaptics() or makeForceDimension().
 struct PluginSettings {
   std::string library;  ///< a path, or a name for dlopen(); empty: the maker's usual one
 };
@@ -28,6 +29,7 @@ struct PluginSettings {
 
 /// Whether the maker's library can be loaded; no device is opened.
 [[nodiscard]] PALPATE_EXPORT bool hasOpenHaptics(const PluginSettings& settings);
+/// The same for Force Dimension's library.
 [[nodiscard]] PALPATE_EXPORT bool hasForceDimension(const PluginSettings& settings);
 
 }  // namespace palpate::devices

@@ -25,8 +25,8 @@ namespace palpate::devices {
 
 /// One tick with all its inputs and outputs.
 struct RecordedTick {
-  SessionTick tick;
-  ServoTurn turn;
+  SessionTick tick;                   ///< inputs and outputs of the session
+  ServoTurn turn;                     ///< the force that the servo loop wrote for it
   std::uint32_t entry_count = 0;      ///< regions that the proxy entered
   std::uint32_t dropped_entries = 0;  ///< of these, those for which the recorder had no room
   bool has_state = false;  ///< RecordSink::addState() was called with the state before this tick
@@ -53,10 +53,11 @@ class PALPATE_EXPORT RecordSink {
   RecordSink() = default;
 };
 
+/// The sizes of a recorder's rings, and how it treats its sinks.
 struct RecorderSettings {
-  std::size_t ticks = 16384;  ///< room for ticks that were not handed on yet: 16 s at 1 kHz, 6 MB
-  std::size_t entries = 4096;
-  std::size_t states = 4;
+  std::size_t ticks = 16384;   ///< room for ticks that were not handed on yet: 16 s at 1 kHz, 6 MB
+  std::size_t entries = 4096;  ///< room for region entries of such ticks, all together
+  std::size_t states = 4;      ///< room for states of such ticks
   /// When the ring is full, add() waits until there is room instead of dropping the tick: for loops
   /// that run as fast as they can.
   bool waits = false;
@@ -65,10 +66,12 @@ struct RecorderSettings {
   std::function<void(const Error&)> on_failure = {};
 };
 
+/// The counts of a record that was finished.
 struct RecorderReport {
   std::uint64_t ticks = 0;            ///< number handed on
   std::uint64_t dropped = 0;          ///< ticks for which there was no room
   std::uint64_t dropped_entries = 0;  ///< of ticks that were handed on
+  /// States for which there was no room; their ticks were still handed on.
   std::uint64_t dropped_states = 0;
   std::vector<Error> failures = {};  ///< of sinks
 };
@@ -102,7 +105,7 @@ class PALPATE_EXPORT Recorder {
 struct TickRecord {
   /// The most ports of one tick that are stored by name; event_count counts all.
   static constexpr std::size_t kEvents = 8;
-  using Vector = std::array<double, 3>;
+  using Vector = std::array<double, 3>;  ///< x, y, z
 
   double t = 0.0;                ///< [s] of the reading
   double dt = 0.0;               ///< [s] since the reading before
@@ -124,8 +127,8 @@ struct TickRecord {
   std::uint8_t entry_count = 0;  ///< regions entered; 255: that many or more
   std::array<std::uint16_t, kEvents> events{};  ///< PortId of each that was passed, in order
   std::uint8_t contact = 0;                     ///< 0 or 1, like all that follow
-  std::uint8_t settled = 0;
-  std::uint8_t clutch = 0;      ///< it is held
+  std::uint8_t settled = 0;                     ///< TickResult::settled
+  std::uint8_t clutch = 0;                      ///< it is held
   std::uint8_t checkpoint = 0;  ///< the session's checkpoint was taken before this tick
   std::uint8_t stale = 0;       ///< the previous reading was used again
   std::uint8_t zeroed = 0;      ///< the force was not finite, or answered a reading that was not
@@ -135,6 +138,8 @@ struct TickRecord {
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 static_assert(sizeof(TickRecord) == 288, "the file has no gaps between the columns");
 
+/// Converts a tick to a row. Ports beyond the first kEvents are left out, and more than 255 region
+/// entries count as 255.
 [[nodiscard]] PALPATE_EXPORT TickRecord rowOf(const RecordedTick& recorded) noexcept;
 
 /// The device's reading at that tick.
@@ -155,6 +160,7 @@ class PALPATE_EXPORT OutFile {
   /// reason, for example a full disk.
   void append(const void* bytes, std::size_t count, std::size_t piece);
   void overwrite(std::uint64_t at, std::string_view bytes);  ///< @throws Error as append()
+  /// [bytes] Length of the file.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
  private:
@@ -228,6 +234,7 @@ class PALPATE_EXPORT StateReader {
   /// or holds those of another build or another record.
   StateReader(std::string file, std::string_view about);
 
+  /// Number of states in the file, damaged ones included.
   [[nodiscard]] std::size_t size() const noexcept { return ticks_.size(); }
   /// The ticks before which there is a state, in order.
   [[nodiscard]] const std::vector<std::uint64_t>& ticks() const noexcept { return ticks_; }
@@ -248,30 +255,32 @@ class PALPATE_EXPORT StateReader {
 [[nodiscard]] PALPATE_EXPORT std::uint64_t checksum(
     std::string_view bytes, std::uint64_t begin = 0xcbf29ce484222325U) noexcept;
 
+/// The differences between a record and its replay.
 struct ReplayReport {
   std::uint64_t ticks = 0;      ///< number that the session made
   std::uint64_t compared = 0;   ///< of these
   std::uint64_t different = 0;  ///< of these, those that are not the same bit for bit
+  /// A tick that differs.
   struct First {
-    std::uint64_t tick = 0;
-    double t = 0.0;    ///< [s]
-    std::string what;  ///< columns of TickRecord, separated by ", "
+    std::uint64_t tick = 0;  ///< TickRecord::tick
+    double t = 0.0;          ///< [s]
+    std::string what;        ///< columns of TickRecord, separated by ", "
   };
   std::optional<First> first;  ///< the first tick that is different
   /// [N] largest difference between forces after their limits; infinite: one is not finite
   double most_force = 0.0;
-  std::uint64_t most_force_tick = 0;
-  double most_proxy = 0.0;  ///< [m] largest difference between proxies
-  std::uint64_t most_proxy_tick = 0;
-  std::uint64_t regions = 0;         ///< ticks that end in different regions
-  std::uint64_t contacts = 0;        ///< ticks in which only one of the two touches
+  std::uint64_t most_force_tick = 0;  ///< the tick in which that is; 0 if no force differs
+  double most_proxy = 0.0;            ///< [m] largest difference between proxies
+  std::uint64_t most_proxy_tick = 0;  ///< the tick in which that is; 0 if no proxy differs
+  std::uint64_t regions = 0;          ///< ticks that end in different regions
+  std::uint64_t contacts = 0;         ///< ticks in which only one of the two touches
   std::optional<std::uint64_t> gap;  ///< a tick missing from the record: the replay ended before it
 };
 
 /// The names of the regions and ports of a record, by their numbers in it.
 struct RecordNames {
-  std::vector<std::string> regions;
-  std::vector<std::string> ports;
+  std::vector<std::string> regions;  ///< indexed by TickRecord::region
+  std::vector<std::string> ports;    ///< indexed by the numbers in TickRecord::events
 };
 
 /// Feeds the record's readings to `session`, from its next row on, and compares each tick whose

@@ -10,19 +10,21 @@
 
 namespace palpate::devices {
 
+/// A fault that ReplayDevice simulates.
 enum class InjectedKind : std::uint8_t {
   kStale,        ///< no new reading; the hand's next row comes later
   kShortPacket,  ///< a truncated reply: its row is lost, and the driver answers kStale
-  kTimeout,
-  kUnplug,  ///< disconnected until it is opened again
-  kNan,     ///< a position that is not a number
-  kJump,    ///< a position that is off by half a meter
+  kTimeout,      ///< read() answers DeviceStatus::kTimeout, and the row is lost
+  kUnplug,       ///< disconnected until it is opened again
+  kNan,          ///< a position that is not a number
+  kJump,         ///< a position that is off by half a meter
 };
 
+/// A row of calls of ReplayDevice::read() that go wrong.
 struct InjectedFault {
   std::uint64_t read = 0;  ///< index, from 0, of the call of read() at which it begins
-  InjectedKind kind = InjectedKind::kStale;
-  std::uint64_t count = 1;  ///< number of calls
+  InjectedKind kind = InjectedKind::kStale;  ///< how these calls go wrong
+  std::uint64_t count = 1;                   ///< number of calls
 };
 
 /// Each read() returns one row of the record, with its time, velocity and buttons; after the last

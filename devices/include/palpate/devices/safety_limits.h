@@ -18,7 +18,7 @@ struct SafetyLimits {
   /// [m/s] a reading is dropped if its distance from the last good one is more than `jump_speed`
   /// times the age of that one plus `jump_slack` [m]
   double jump_speed = kInfinity;
-  double jump_slack = 0.0;
+  double jump_slack = 0.0;  ///< [m] see `jump_speed`
   /// This many dropped or non-finite readings, or non-finite forces, in a row are a fault; 0: never
   int strikes = 0;
   double continuous_force = kInfinity;  ///< [N] that the motors can hold forever

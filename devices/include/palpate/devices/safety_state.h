@@ -11,6 +11,7 @@
 
 namespace palpate::devices {
 
+/// A state of the servo loop with its device; it decides which force may be written.
 enum class SafetyState : std::uint8_t {
   kClosed,        ///< nothing is written
   kOpen,          ///< no reply yet: zero force
@@ -20,8 +21,10 @@ enum class SafetyState : std::uint8_t {
   kActive,        ///< the requested force, within the limits
   kFault,         ///< latched: zero force until it is closed and opened again
 };
+/// Number of values of SafetyState.
 inline constexpr std::size_t kSafetyStates = 7;
 
+/// An event that may change the state.
 enum class SafetyEvent : std::uint8_t {
   kOpened,   ///< open() has succeeded
   kReply,    ///< a valid reply came
@@ -32,6 +35,7 @@ enum class SafetyEvent : std::uint8_t {
   kFailed,   ///< a fault: see SafetyFault
   kClosing,  ///< close()
 };
+/// Number of values of SafetyEvent.
 inline constexpr std::size_t kSafetyEvents = 8;
 
 /// The reason for kFault.
@@ -56,10 +60,11 @@ struct SafetyCounts {
   double heat = 0.0;  ///< [-] the highest; 1: what the continuous force makes in the long run
 };
 
+/// One change of state.
 struct SafetyRule {
-  SafetyState from;
-  SafetyEvent event;
-  SafetyState to;
+  SafetyState from;   ///< state before the event
+  SafetyEvent event;  ///< event that happens
+  SafetyState to;     ///< state after it
 };
 
 /// All changes of state. Any other event leaves the state as it is.
@@ -104,7 +109,9 @@ inline constexpr std::array<SafetyRule, 25> kSafetyRules = {{
   return state == SafetyState::kRamping || state == SafetyState::kActive;
 }
 
+/// The name of a state in tables and reports: "uncalibrated".
 [[nodiscard]] PALPATE_EXPORT std::string_view nameOf(SafetyState state) noexcept;
+/// The name of an event: "reply, not homed".
 [[nodiscard]] PALPATE_EXPORT std::string_view nameOf(SafetyEvent event) noexcept;
 /// A description for messages: "the hand was faster than is safe".
 [[nodiscard]] PALPATE_EXPORT std::string_view textOf(SafetyFault fault) noexcept;

@@ -12,16 +12,22 @@
 
 namespace palpate::devices {
 
-enum class FeltAs : std::uint8_t { kWall, kSheet, kContent, kNeedle };
+/// The part of a scene through which a material is felt.
+enum class FeltAs : std::uint8_t {
+  kWall,     ///< wall of a region
+  kSheet,    ///< open surface
+  kContent,  ///< a region's content, felt by the tip
+  kNeedle    ///< a region's content, felt by a needle's tip or shaft
+};
 
 /// One thing that can be felt, with the largest stiffness and damping that it ever has, at the
 /// hand.
 struct FeltItem {
-  FeltAs kind = FeltAs::kWall;
-  std::string material;
+  FeltAs kind = FeltAs::kWall;  ///< part of the scene that is felt
+  std::string material;         ///< name of the material
   std::string parameter;  ///< key of the material in a scene file: "stiffness", "lattice", ...
   std::vector<std::string> places;  ///< "from | into" for walls, else names of regions or sheets
-  WallModel most;
+  WallModel most;                   ///< largest stiffness [N/m] and damping [N s/m], at the hand
   double length = 0.0;  ///< [m] of shaft for which `most` holds; 0: it is not about a shaft
   std::string note;     ///< how `most` follows from the scene, if it is not the parameter itself
 };
@@ -38,7 +44,7 @@ struct FeltItem {
 
 /// An item together with what the loop can hold.
 struct BudgetItem {
-  FeltItem item;
+  FeltItem item;           ///< what is felt
   StabilityBudget budget;  ///< for the damping that the item has
   /// [-] The share of the budget that it uses: its stiffness, or if it has none its damping, over
   /// the permitted value; above 1 it is too much.
@@ -55,6 +61,7 @@ struct BudgetItem {
   std::vector<std::string> hands;  ///< presets with which it is stable, other than the loop's own
   double missing_damping = 0.0;    ///< [N s/m] missingDamping()
 
+  /// True if the loop cannot hold the item stably.
   [[nodiscard]] bool isAbove() const noexcept { return share > 1.0; }
 };
 

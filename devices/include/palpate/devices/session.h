@@ -73,21 +73,23 @@ class Recorder;
 /// From `time` on the content of `region` feels as `change` says; earlier changes of it are taken
 /// back.
 struct ContentEvent {
-  double time = 0.0;  ///< [s] of the device's clock
-  RegionId region = kOutside;
-  ContentChange change = {};
+  double time = 0.0;           ///< [s] of the device's clock
+  RegionId region = kOutside;  ///< region whose content changes
+  ContentChange change = {};   ///< replaces all earlier changes of `region`
 };
 
+/// The settings of a session, which its constructor checks.
 struct SessionSettings {
-  RendererSettings renderer = {};
-  VelocitySettings velocity = {};
-  ServoSettings servo = {};
+  RendererSettings renderer = {};  ///< renderer, and limits of the force
+  VelocitySettings velocity = {};  ///< estimator of the hand's velocity
+  ServoSettings servo = {};        ///< its `rate` also gives SessionTick::dt of the first tick
   /// bit of DeviceState::buttons, 0 to 31, that engages the clutch, if the scene allows one
   int clutch_button = 0;
   std::vector<ContentEvent> changes = {};  ///< in the order of time
   /// Both act at the hand, in the device's frame. No value: as the scene's `device` asks for,
   /// completed with numbers from `loop` (hand_guards.h); off if the scene does not ask for it.
   std::optional<PassivitySettings> passivity = {};
+  /// Spring and damper between the hand and the tool.
   std::optional<CouplingSettings> coupling = {};
   /// [ticks] Session::checkpoint() is taken before each tick whose number is a multiple of this,
   /// except tick 0; 0: never. Two sessions feel the same bit for bit only if both have the same
@@ -101,16 +103,16 @@ struct SessionSettings {
 /// All that one tick of a session leaves for the next. A value of fixed size, about 30 kB, valid
 /// only for the build that made it.
 struct SessionState {
-  RendererState renderer;
-  VelocityTracker tracker;
-  Clutch clutch;
-  std::optional<VirtualCoupling> coupling;
-  std::optional<PassivityController> passivity;
+  RendererState renderer;                        ///< as HapticRenderer::checkpoint() gives it
+  VelocityTracker tracker;                       ///< the latest readings
+  Clutch clutch;                                 ///< whether it is held, and its fading
+  std::optional<VirtualCoupling> coupling;       ///< no value: the session has no coupling
+  std::optional<PassivityController> passivity;  ///< no value: the session controls no energy
   double source_work = 0.0;       ///< [J] sourceWork() of the renderer, up to the last tick
   std::uint64_t ticks = 0;        ///< number that were made
   std::uint64_t next_change = 0;  ///< index of the first of SessionSettings::changes not yet due
   double last_time = 0.0;         ///< [s]
-  bool has_begun = false;
+  bool has_begun = false;         ///< a tick was made, so that `last_time` counts
 };
 static_assert(std::is_trivially_copyable_v<SessionState>);
 
@@ -139,8 +141,8 @@ struct SessionView {
   Vec3 proxy{0.0, 0.0, 0.0};   ///< [m, world]
   Vec3 force{0.0, 0.0, 0.0};   ///< [N, world] after the limits
   RegionId region = kOutside;  ///< of the proxy
-  std::uint32_t buttons = 0;
-  bool is_held = false;  ///< the clutch is held
+  std::uint32_t buttons = 0;   ///< DeviceState::buttons of the reading
+  bool is_held = false;        ///< the clutch is held
 };
 
 /// Owns the renderer, the velocity tracker, the clutch, the stability guards and everything that
@@ -157,7 +159,9 @@ class PALPATE_EXPORT Session {
   /// sceneBudget() for `loop`.
   explicit Session(ScenePtr scene, SessionSettings settings = {});
   ~Session();
+  /// Afterwards `other` may only be destroyed or assigned to.
   Session(Session&& other) noexcept;
+  /// Likewise; ends the session that was here before.
   Session& operator=(Session&& other) noexcept;
 
   /// One tick: device -> world by the scene's mapping (or as it is, for DeviceFrame::kWorld),
@@ -205,8 +209,11 @@ class PALPATE_EXPORT Session {
   /// hold. Empty without `loop`. It does not change what is felt.
   [[nodiscard]] const std::vector<BudgetItem>& overBudget() const noexcept { return over_budget_; }
 
+  /// The scene that is felt; immutable.
   [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
+  /// The session's own renderer, for the thread that calls step(), between its calls.
   [[nodiscard]] HapticRenderer& renderer() noexcept { return *renderer_; }
+  /// The same, read only.
   [[nodiscard]] const HapticRenderer& renderer() const noexcept { return *renderer_; }
 
  private:

@@ -13,8 +13,9 @@
 
 namespace palpate::devices {
 
+/// The settings of a simulated device.
 struct SimulationSettings {
-  DeviceModel device;
+  DeviceModel device;                  ///< masses, friction and limits of the device
   std::optional<HandModel> hand = {};  ///< none: nobody holds the device
   double rate = 1000.0;                ///< [Hz] of readings; 1 to 1e5
   /// [samples] from writing a force until the motors exert it; 0 to SimulatedDevice::kMostDelay.
@@ -60,6 +61,7 @@ struct DeviceWork {
 /// allocate, lock, throw or block.
 class PALPATE_EXPORT SimulatedDevice final : public Device {
  public:
+  /// [samples] The largest SimulationSettings::delay.
   static constexpr int kMostDelay = 64;
 
   /// `path`, `hand`: where the hand wants to go, in `frame`, at increasing times.
@@ -67,8 +69,10 @@ class PALPATE_EXPORT SimulatedDevice final : public Device {
   /// of range; (kInput, path.empty, path.time, path.not_finite) for the path.
   SimulatedDevice(const SimulationSettings& settings, Path path,
                   DeviceFrame frame = DeviceFrame::kDevice);
+  /// The same for a path that is computed row by row.
   SimulatedDevice(const SimulationSettings& settings, PathFormula path,
                   DeviceFrame frame = DeviceFrame::kDevice);
+  /// The same for a hand that decides where to go while it runs.
   SimulatedDevice(const SimulationSettings& settings, LiveHand hand,
                   DeviceFrame frame = DeviceFrame::kDevice);
   ~SimulatedDevice() override;
@@ -83,6 +87,7 @@ class PALPATE_EXPORT SimulatedDevice final : public Device {
   [[nodiscard]] Vec3 position() const noexcept;      ///< [m]
   [[nodiscard]] Vec3 velocity() const noexcept;      ///< [m/s]
   [[nodiscard]] Vec3 handPosition() const noexcept;  ///< [m] the device's own if there is no grip
+  /// Energy balance up to the last reading.
   [[nodiscard]] DeviceWork work() const noexcept;
   /// [N] The motors' command since the last write(), after delay and saturation.
   [[nodiscard]] const Vec3& heldForce() const noexcept;

@@ -14,7 +14,7 @@ namespace palpate::devices {
 /// A closed loop without the wall. Stiffness and damping below are those at the hand: the scene's,
 /// times DeviceMapping::stiffnessAtHand().
 struct LoopModel {
-  DeviceModel device;
+  DeviceModel device;                  ///< at its tip
   std::optional<HandModel> hand = {};  ///< none: nobody holds the device
   double period = 1e-3;                ///< [s] from reading to reading, more than 0
   int delay = 0;                       ///< [samples] 0 or more
@@ -71,6 +71,7 @@ enum class BudgetTerm : std::uint8_t {
   kFriction,  ///< the encoder's step in relation to friction
 };
 
+/// The stiffest wall that a loop can hold, and the limits that lead to it.
 struct StabilityBudget {
   /// [-] The share of the linear limit that may be used: at the limit itself oscillations do not
   /// decay.
@@ -83,6 +84,7 @@ struct StabilityBudget {
   [[nodiscard]] double stiffness() const noexcept {
     return ruledBy() == BudgetTerm::kLinear ? kShare * linear : friction;
   }
+  /// The limit that stiffness() keeps.
   [[nodiscard]] BudgetTerm ruledBy() const noexcept {
     return kShare * linear <= friction ? BudgetTerm::kLinear : BudgetTerm::kFriction;
   }

@@ -9,11 +9,12 @@
 
 namespace palpate::devices {
 
+/// One device on the bus.
 struct UsbDevice {
-  std::uint16_t vendor = 0;
-  std::uint16_t product = 0;
-  int bus = 0;
-  int address = 0;
+  std::uint16_t vendor = 0;    ///< idVendor
+  std::uint16_t product = 0;   ///< idProduct
+  int bus = 0;                 ///< number of the bus, as lsusb shows it
+  int address = 0;             ///< on that bus; changes when it is plugged in again
   std::string serial;          ///< empty: it has none, or there is no access
   bool is_accessible = false;  ///< this user may open it
 };
@@ -22,6 +23,7 @@ struct UsbDevice {
 /// start.
 [[nodiscard]] PALPATE_EXPORT std::vector<UsbDevice> listUsbDevices();
 
+/// Whether the build has libusb, without which listUsbDevices() finds nothing.
 [[nodiscard]] PALPATE_EXPORT bool hasLibusb() noexcept;
 
 }  // namespace palpate::devices

@@ -10,6 +10,7 @@
 
 namespace palpate::devices {
 
+/// How a velocity follows from the last readings; T is the time from reading to reading.
 enum class VelocityEstimator : std::uint8_t {
   /// The mean over the last interval. Its delay is half of that; an encoder step of q [m] adds
   /// noise of q / T.
@@ -27,8 +28,10 @@ enum class VelocityEstimator : std::uint8_t {
   kAdaptiveWindow,
 };
 
+/// The settings of VelocityTracker.
 struct VelocitySettings {
-  VelocityEstimator estimator = VelocityEstimator::kBackwardDifference;
+  VelocityEstimator estimator =
+      VelocityEstimator::kBackwardDifference;  ///< how velocities are computed
   double window = 0.01;  ///< [s] length of the window; for kAdaptiveWindow its largest length
   /// [m] kAdaptiveWindow: largest distance of readings of a uniform motion from their chord; 0 or
   /// more. For an encoder it is a whole step: each end of the chord is wrong by up to half a step,
@@ -36,6 +39,7 @@ struct VelocitySettings {
   double noise = 0.0;
 };
 
+/// An estimate and its delay.
 struct Velocity {
   Vec3 value{0.0, 0.0, 0.0};  ///< [m/s]
   Vec3 delay{0.0, 0.0, 0.0};  ///< [s] by axis: it is the velocity at this time before the reading

@@ -9,6 +9,7 @@
 
 namespace palpate::devices {
 
+/// The spring and the damper of a VirtualCoupling, at the hand.
 struct CouplingSettings {
   double stiffness = 0.0;  ///< [N/m] K_c, above 0
   double damping = 0.0;    ///< [N s/m] B_c, 0 or more
