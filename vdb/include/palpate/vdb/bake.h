@@ -28,17 +28,20 @@ enum class MeshSign : std::uint8_t {
 
 /// Metadata of a grid made by MeshSign::kUnsigned.
 inline constexpr const char* kDistanceKey = "distance";
+/// The value of kDistanceKey in such a grid.
 inline constexpr const char* kUnsignedDistance = "unsigned";
 
+/// How to bake a grid of a field, a mesh or a scan.
 struct BakeOptions {
   double voxel_size = 0.0;              ///< [m] must be positive
   double half_width = kCubicHalfWidth;  ///< [voxels] at least 2
   /// [m] where to bake; needed for unbounded fields. What reaches out of it is cut off by its
   /// faces, so that the result is closed.
   std::optional<Box3> box = {};
-  std::string name = "surface";
+  std::string name = "surface";    ///< name of the grid; a scene's layers use `<layer>/surface`
   std::string length_unit = "mm";  ///< unit that the grid's world coordinates are stored in
   std::uint64_t max_memory = 0;    ///< [bytes] 0: 80 % of the machine's
+  /// Entries for the grid's metadata: source, layer, ...
   std::map<std::string, std::string> metadata = {};
   MeshSign mesh_sign = MeshSign::kVote;  ///< of bakeMesh()
   /// [m] of bakeMesh(): if positive, the mesh is not a solid but a surface, closed or not, in the
@@ -91,13 +94,14 @@ enum class Parts {
   kWhole,     ///< one grid of everything; edges and thin parts suffer
 };
 
+/// The settings of bakeHybrid().
 struct HybridOptions {
   /// For all grids alike; the band is made as wide as the sampler needs. `name` is the name of a
   /// grid of the whole; that of part 2.1 is `name`/2.1. A `box` cuts off what reaches out of it,
   /// with exact faces.
   BakeOptions bake;
-  Parts parts = Parts::kAuto;
-  Sampler sampler = Sampler::kCubic;
+  Parts parts = Parts::kAuto;         ///< which parts become grids
+  Sampler sampler = Sampler::kCubic;  ///< how the grids will be read
   /// [m] by how much a grid may be off its part's surface; 0: a fiftieth of a voxel for the cubic
   /// sampler, a tenth for the others. Independent of it, a normal that is off by more than 1 degree
   /// (others: 10) tells an edge. Not for kWhole.
@@ -121,11 +125,12 @@ struct HybridPart {
   double grid_ns = 0.0;      ///< [ns] the same for a grid
 };
 
+/// The result of bakeHybrid().
 struct Hybrid {
   /// The same tree of unions, intersections, complements and placements. What stays analytic is the
   /// same object as before, so that ports still find it; a subtree in which nothing changed is too.
   FieldPtr field;
-  std::vector<HybridPart> parts;
+  std::vector<HybridPart> parts;  ///< all parts, those that stay analytic too
 };
 
 /// Bakes every part in its own frame, only where the whole needs it, and once if it occurs twice.

@@ -16,7 +16,7 @@ namespace palpate::vdb {
 /// Of a grid as one Sampler reads it (kAccessor: as kTrilinear). Bounds come from the spline's
 /// coefficients, not from samples.
 struct BandCertificate {
-  Sampler sampler = Sampler::kCubic;
+  Sampler sampler = Sampler::kCubic;  ///< the sampler that the numbers hold for
   double within =
       0.0;  ///< [m] every point that near to the surface answers with value and gradient
   double lipschitz =
@@ -63,8 +63,9 @@ inline constexpr double kMostRough = 0.5;
 [[nodiscard]] PALPATE_EXPORT LevelSet withCertificate(const LevelSet& grid,
                                                       const BandCertificate& certificate);
 
+/// The settings of certified().
 struct CertifyOptions {
-  Sampler sampler = Sampler::kCubic;
+  Sampler sampler = Sampler::kCubic;  ///< the sampler that will read the grid
   /// The grid was made by others, or its file may have been damaged: its voxels are held against
   /// each other, too.
   bool is_foreign = true;
@@ -74,10 +75,11 @@ struct CertifyOptions {
   std::uint64_t max_memory = 0;  ///< [bytes] of the grid and what is made of it; 0: no limit
 };
 
+/// A grid that may be felt.
 struct CertifiedGrid {
   LevelSet grid;  ///< wide enough for the sampler; distances rebuilt if those that it came with
                   ///< were wrong
-  BandCertificate certificate;
+  BandCertificate certificate;     ///< that of `grid`
   std::vector<std::string> notes;  ///< what was done to it; empty: nothing
 };
 

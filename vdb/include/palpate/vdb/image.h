@@ -28,15 +28,15 @@ using LabelColor = std::array<float, 3>;
 
 /// What is known of label values; not all that have a name need have a color.
 struct LabelTable {
-  NameTable names;
-  std::map<int, LabelColor> colors;
+  NameTable names;                   ///< by label value
+  std::map<int, LabelColor> colors;  ///< by label value
 };
 
 /// A 3-D image. Voxel (i, j, k) is values[i + nx (j + ny k)] and its center lies at affine applied
 /// to (i, j, k): RAS, [m]. Sheared, oblique and left-handed affines are kept as they are.
 struct PALPATE_EXPORT Image {
-  std::string source;
-  std::array<int, 3> size{};
+  std::string source;          ///< name of the file or folder, for messages
+  std::array<int, 3> size{};   ///< voxels along i, j, k
   std::vector<float> values;   ///< after the file's own slope and intercept
   Mat3 axes{1.0};              ///< [m per voxel] columns: step along i, j, k
   Vec3 origin{0.0, 0.0, 0.0};  ///< [m] center of voxel (0, 0, 0)
@@ -44,13 +44,16 @@ struct PALPATE_EXPORT Image {
       notes;               ///< what was assumed ("unit code 0 taken as mm"), to be reported once
   LabelTable labels = {};  ///< out of the file itself
 
+  /// The value of voxel (i, j, k). The indices are not checked.
   [[nodiscard]] float at(int i, int j, int k) const noexcept {
     return values[static_cast<std::size_t>(i) +
                   static_cast<std::size_t>(size[0]) *
                       (static_cast<std::size_t>(j) +
                        static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(k))];
   }
+  /// [m, RAS] The place of an index, which may lie between voxels or outside of the image.
   [[nodiscard]] Vec3 toWorld(const Vec3& index) const noexcept { return axes * index + origin; }
+  /// The inverse of toWorld(); needs axes that are not singular.
   [[nodiscard]] Vec3 toIndex(const Vec3& world) const noexcept {
     return glm::inverse(axes) * (world - origin);
   }
@@ -70,7 +73,7 @@ enum class AffineChoice {
 
 /// What a caller says where files leave room.
 struct ImageOptions {
-  AffineChoice affine = AffineChoice::kAuto;
+  AffineChoice affine = AffineChoice::kAuto;  ///< which of the file's transforms places the voxels
   Space space = Space::kStated;  ///< of an NRRD file whose space is not an anatomical one
   std::optional<int> frame;      ///< of a 4-D file, from 0; not given: 4-D is refused
   std::string series;            ///< DICOM: UID of the series, if a folder holds several
@@ -83,16 +86,16 @@ struct ImageOptions {
 
 /// All but the voxels.
 struct ImageInfo {
-  std::array<int, 3> size{};
+  std::array<int, 3> size{};   ///< voxels along i, j, k
   Mat3 axes{1.0};              ///< [m per voxel]
   Vec3 origin{0.0, 0.0, 0.0};  ///< [m]
-  std::string data_type;
-  std::string orientation;  ///< axis codes, "RAS"
-  std::vector<std::string> notes;
-  std::string format = {};       ///< "NIfTI-1", "NRRD", "MetaImage", "DICOM series"
-  std::string length_unit = {};  ///< of the file: "mm"
-  LabelTable labels = {};        ///< out of the file itself
-  bool is_labels = false;        ///< the file says, or has a table of names
+  std::string data_type;       ///< of the values in the file: "bit", "contours", a type of numbers
+  std::string orientation;     ///< axis codes, "RAS"
+  std::vector<std::string> notes;  ///< as Image::notes
+  std::string format = {};         ///< "NIfTI-1", "NRRD", "MetaImage", "DICOM series"
+  std::string length_unit = {};    ///< of the file: "mm"
+  LabelTable labels = {};          ///< out of the file itself
+  bool is_labels = false;          ///< the file says, or has a table of names
 };
 
 /// Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM
@@ -125,6 +128,7 @@ struct ImageInfo {
 /// affine, a detached .hdr / .img pair, ...
 [[nodiscard]] PALPATE_EXPORT Image readNifti(const std::string& path,
                                              const ImageOptions& options = {});
+/// Reads the header alone. @throws Error (kInput) as readNifti(), for all that the header shows.
 [[nodiscard]] PALPATE_EXPORT ImageInfo readNiftiInfo(const std::string& path,
                                                      const ImageOptions& options = {});
 
@@ -168,6 +172,7 @@ struct LibraryLimits {
 /// is made by fork(): locks that other threads hold stay locked in it, so read while no other
 /// thread uses these two libraries.
 PALPATE_EXPORT void setLibraryLimits(const LibraryLimits& limits) noexcept;
+/// The limits that hold now.
 [[nodiscard]] PALPATE_EXPORT LibraryLimits libraryLimits() noexcept;
 
 }  // namespace palpate::vdb

@@ -20,16 +20,18 @@ PALPATE_EXPORT void writeVdb(const std::string& path, std::span<const LevelSet> 
 
 /// One grid of a file as `info` reports it; level sets and others alike.
 struct VdbGridSummary {
-  std::string name;
+  std::string name;        ///< may be empty, or occur more than once in a file
   std::string type;        ///< "FloatGrid", ...
   std::string grid_class;  ///< "level set", "fog volume", "unknown"
   LevelSetInfo info;       ///< as far as it applies
 };
+/// All grids of a file, in its order; no voxel values are read. @throws Error (kInput, vdb.*) if
+/// the file cannot be read.
 [[nodiscard]] PALPATE_EXPORT std::vector<VdbGridSummary> listVdb(const std::string& path);
 
 /// What a grid without a class (OpenVDB's "unknown") is taken for.
 enum class UnknownClass {
-  kRefuse,
+  kRefuse,   ///< not read: readVdb() throws
   kLevelSet  ///< signed distances, negative inside: for those who know
 };
 

@@ -17,6 +17,7 @@ namespace palpate::vdb {
 /// vdb/README.md, "Kept grids", has the rules.
 [[nodiscard]] PALPATE_EXPORT bool wasKept(const LevelSetInfo& info);
 
+/// The bundle from which a scene takes its grids, or that is filled with them.
 struct BundleOptions {
   /// Where the grids are that came with the scene; they go before those of the cache. Empty:
   /// nowhere.

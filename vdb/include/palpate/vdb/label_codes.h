@@ -11,11 +11,11 @@ namespace palpate::vdb {
 
 /// What a label is by a system of codes: SCT (SNOMED CT), 272673000, Bone.
 struct LabelCode {
-  std::string scheme;
-  std::string value;
-  std::string meaning;
+  std::string scheme;   ///< system of codes: "SCT"
+  std::string value;    ///< the code: "272673000"
+  std::string meaning;  ///< in words: "Bone"
 };
-using LabelCodes = std::map<int, LabelCode>;
+using LabelCodes = std::map<int, LabelCode>;  ///< by label value
 
 /// The type of each segment of a .seg.nrrd file, a DICOM segmentation or structure set, by the
 /// label values of readImage(), where the file has one; empty for other files. @throws Error

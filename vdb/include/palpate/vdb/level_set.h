@@ -12,14 +12,16 @@
 #include "palpate/export.h"
 #include "palpate/fields/field.h"
 
+/// Grids: baked, read and written, certified, and read by the loop as fields and material maps;
+/// with the readers of meshes and scans that they are made of.
 namespace palpate::vdb {
 
 /// What is known of a level set without looking at its voxels one by one.
 struct LevelSetInfo {
-  std::string name;         ///< grid name, `<layer>/surface`
-  double voxel_size = 0.0;  ///< [m]
-  double half_width = 0.0;  ///< [voxels] of the narrow band, each side
-  std::uint64_t active_voxels = 0;
+  std::string name;                             ///< grid name, `<layer>/surface`
+  double voxel_size = 0.0;                      ///< [m]
+  double half_width = 0.0;                      ///< [voxels] of the narrow band, each side
+  std::uint64_t active_voxels = 0;              ///< those of the narrow band
   std::uint64_t memory = 0;                     ///< [bytes]
   Box3 bounds;                                  ///< [m] of the active voxels
   std::string length_unit;                      ///< of the file: "mm", "m", ...
@@ -33,9 +35,13 @@ class PALPATE_EXPORT LevelSet {
   struct Impl;  ///< holds the openvdb::FloatGrid; see palpate/vdb/openvdb_access.h
 
   LevelSet() = default;
+  /// For the code that makes grids; null gives an empty handle.
   explicit LevelSet(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  /// False for an empty handle, which has no grid.
   [[nodiscard]] explicit operator bool() const noexcept { return impl_ != nullptr; }
+  /// Must not be called on an empty handle; the same holds for impl().
   [[nodiscard]] const LevelSetInfo& info() const;
+  /// The OpenVDB grid, for code that includes openvdb_access.h.
   [[nodiscard]] const Impl& impl() const { return *impl_; }
 
   /// The same grid under another name and with more metadata.

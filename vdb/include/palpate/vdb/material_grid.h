@@ -29,13 +29,14 @@ struct Quantisation {
   double error = 0.0;  ///< [SI unit] no voxel is off by more; nor is the spline anywhere
 };
 
+/// How a material grid is stored, for reports.
 struct MaterialGridInfo {
   std::string source;         ///< what it was made from, for reports
   std::array<int, 3> size{};  ///< voxels
   double voxel_size = 0.0;    ///< [m] the shortest step from voxel to voxel
   Box3 bounds;                ///< [m] of the voxels' centers
-  Quantisation quantisation;
-  std::uint64_t memory = 0;  ///< [bytes]
+  Quantisation quantisation;  ///< how voxels are stored, and the error of that
+  std::uint64_t memory = 0;   ///< [bytes]
 };
 
 /// A map out of voxels: a quadratic B-spline whose coefficients are the voxels themselves, so that
@@ -61,6 +62,7 @@ class PALPATE_EXPORT MaterialGrid final : public MaterialMap {
   [[nodiscard]] double value(const Vec3& p) const noexcept override;
   [[nodiscard]] Range range() const noexcept override { return range_; }
 
+  /// Constant after construction.
   [[nodiscard]] const MaterialGridInfo& info() const noexcept { return info_; }
   /// The voxels as they are stored, in an image's order and place.
   [[nodiscard]] Image voxels() const;
@@ -82,7 +84,7 @@ class PALPATE_EXPORT MaterialGrid final : public MaterialMap {
   Mat3 to_world_slope_{1.0};  // the gradient by voxels to the gradient by meters
   std::unique_ptr<const Blocks> blocks_;
 };
-using MaterialGridPtr = std::shared_ptr<const MaterialGrid>;
+using MaterialGridPtr = std::shared_ptr<const MaterialGrid>;  ///< shared and unchanging
 
 /// Piecewise linear, constant beyond its ends: pairs of an image's value and the parameter's [SI
 /// unit], by rising image value.
@@ -100,9 +102,9 @@ struct MaterialGridRequest {
   std::string name;                    ///< may be empty if the file holds just one grid
   std::optional<Dimension> dimension;  ///< of the parameter; none: a ratio
   std::string unit_if_missing;         ///< of the values, where the file has no `unit`
-  std::string length_unit_if_missing;
-  double tolerance = 0.0;        ///< [SI unit]
-  std::uint64_t max_memory = 0;  ///< [bytes]
+  std::string length_unit_if_missing;  ///< of the coordinates, where the file names none
+  double tolerance = 0.0;              ///< [SI unit]
+  std::uint64_t max_memory = 0;        ///< [bytes]
 };
 
 /// A fog volume of floats; any linear transform. Where it has no active voxel the nearest ones
@@ -114,8 +116,8 @@ struct MaterialGridRequest {
 
 /// A material grid on its way into a file.
 struct NamedMaterialGrid {
-  std::string name;  ///< `<layer>/<parameter>`
-  MaterialGridPtr grid;
+  std::string name;                             ///< `<layer>/<parameter>`
+  MaterialGridPtr grid;                         ///< must not be null
   std::string unit;                             ///< of its values: an SI unit, or "1" for a ratio
   std::string length_unit;                      ///< of the file's coordinates
   std::map<std::string, std::string> metadata;  ///< layer, source, ...

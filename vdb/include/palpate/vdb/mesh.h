@@ -16,9 +16,11 @@
 
 namespace palpate::vdb {
 
+/// Triangles that share vertices; not necessarily closed or sound (see checkMesh()).
 struct Mesh {
   std::string source;          ///< file name, for messages
   std::vector<Vec3> vertices;  ///< [m]
+  /// Indices into `vertices`; counterclockwise as seen from outside if they wind outwards.
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::size_t dropped_triangles = 0;  ///< by readMesh(): two corners in one point
   Space space = Space::kRas;          ///< by readMesh(): of the file; vertices are RAS in any case
@@ -27,14 +29,15 @@ struct Mesh {
 
 /// What a look at a mesh showed.
 struct MeshReport {
-  Box3 bounds;  ///< [m]
-  std::size_t degenerate_triangles = 0;
-  std::size_t boundary_edges = 0;      ///< with one triangle
-  std::size_t non_manifold_edges = 0;  ///< with three or more
-  std::size_t flipped_edges = 0;       ///< with two triangles that run along it the same way
-  std::size_t components = 0;
-  double volume = 0.0;                 ///< [m^3] signed; positive if triangles wind outwards
-  Vec3 first_boundary{0.0, 0.0, 0.0};  ///< [m] middle of one boundary edge, if there is any
+  Box3 bounds;                           ///< [m]
+  std::size_t degenerate_triangles = 0;  ///< without an area
+  std::size_t boundary_edges = 0;        ///< with one triangle
+  std::size_t non_manifold_edges = 0;    ///< with three or more
+  std::size_t flipped_edges = 0;         ///< with two triangles that run along it the same way
+  std::size_t components = 0;            ///< pieces whose triangles hang together by vertices
+  double volume = 0.0;                   ///< [m^3] signed; positive if triangles wind outwards
+  Vec3 first_boundary{0.0, 0.0, 0.0};    ///< [m] middle of one boundary edge, if there is any
+  /// True if every edge has at least two triangles, whichever way these wind.
   [[nodiscard]] bool isClosed() const noexcept { return boundary_edges == 0; }
 };
 
@@ -61,6 +64,7 @@ struct MeshReport {
 /// @throws Error: kInput if the grid has no surface, kCancelled.
 [[nodiscard]] PALPATE_EXPORT Mesh surfaceMesh(const LevelSet& grid, const Progress& progress = {});
 
+/// A format in which meshes are written.
 enum class MeshFormat {
   kStl,  ///< binary; a float for each coordinate, no unit
   kObj,  ///< text that reads back exactly, no unit
@@ -94,6 +98,7 @@ inline constexpr std::size_t kMostFlatFaces = 64;
 [[nodiscard]] PALPATE_EXPORT FieldPtr polyhedronField(const Mesh& mesh,
                                                       std::size_t most_faces = kMostFlatFaces);
 
+/// The result of withSharpEdges().
 struct SharpField {
   FieldPtr field;                ///< the baked field itself if there is no sharp edge
   std::size_t edges = 0;         ///< sharp sides of triangles

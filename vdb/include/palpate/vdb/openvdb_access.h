@@ -12,10 +12,11 @@
 
 namespace palpate::vdb {
 
+/// What a LevelSet refers to. Immutable once the LevelSet is made.
 struct LevelSet::Impl {
   openvdb::FloatGrid::ConstPtr grid;  ///< never null; world coordinates and values in length_unit
-  LevelSetInfo info;
-  Vec3 origin{0.0, 0.0, 0.0};  ///< [m] center of voxel (0, 0, 0)
+  LevelSetInfo info;                  ///< of `grid`
+  Vec3 origin{0.0, 0.0, 0.0};         ///< [m] center of voxel (0, 0, 0)
 };
 
 /// openvdb::initialize(), once in a process and from any thread.

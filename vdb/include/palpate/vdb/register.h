@@ -21,11 +21,13 @@ struct GridRecord {
 
 /// An entry of `images:`, as it is read.
 struct ImageRecord {
-  std::string file;  ///< as this process can open it
-  ImageOptions options;
+  std::string file;        ///< as this process can open it
+  ImageOptions options;    ///< as the scene states them
   bool is_labels = false;  ///< it has names, or says that it holds labels
 };
 
+/// Reports and limits of the readers. All functions are called by the thread that reads or compiles
+/// the scene, and may be empty.
 struct RegisterOptions {
   std::function<void(const GridRecord&)> on_grid = {};  ///< told of each grid when it is ready
   std::function<void(const std::string&)> on_note =

@@ -22,6 +22,7 @@
 
 namespace palpate::vdb {
 
+/// The settings of surfaceFromThreshold().
 struct ThresholdOptions {
   double above = 0.0;                ///< inside is where the image is greater; NaN is outside
   std::optional<double> below = {};  ///< instead of `above`: inside is where the image is less
@@ -40,6 +41,7 @@ struct ThresholdOptions {
                                                            const BakeOptions& bake,
                                                            const Progress& progress = {});
 
+/// The settings of surfaceFromLabels().
 struct LabelOptions {
   std::vector<int> values;  ///< the union of these labels
   double voxel_size = 0.0;  ///< [m] 0: bake.voxel_size; 0 as well: the image's smallest spacing
@@ -111,6 +113,7 @@ struct ScanLoss {
   std::uint64_t filled = 0;   ///< outside ones that are inside now
   Vec3 place{0.0, 0.0, 0.0};  ///< [m] of the one that is furthest on the wrong side
 };
+/// Reads the loss out of a grid's metadata; all zero where nothing is lost.
 [[nodiscard]] PALPATE_EXPORT ScanLoss scanLoss(const LevelSetInfo& info);
 
 /// The same as a sentence for people, in mm; empty if nothing is lost.
