@@ -99,8 +99,8 @@ inline constexpr std::size_t kMostFlatFaces = 64;
 struct SharpField {
   FieldPtr field;                ///< the baked field itself if there is no sharp edge
   std::size_t edges = 0;         ///< sharp sides of triangles
-  std::size_t left_to_grid = 0;  ///< of these; at them a wall lies in the solid, ...
-  Vec3 place{0.0};               ///< ... [m] here for one
+  std::size_t left_to_grid = 0;  ///< of these, because a wall lies inside the solid there
+  Vec3 place{0.0};               ///< [m] of one such edge
 };
 
 /// `baked`, the field of a grid of `mesh` with voxels of `voxel` [m], except within four voxels of
