@@ -1,4 +1,4 @@
-// palpate bake where shapes have edges: what a grid of the whole loses, and that --parts keeps it.
+// palpate bake on shapes with edges: what a grid of the whole loses, and that --parts keeps it.
 
 #include <cmath>
 #include <cstdio>
@@ -10,7 +10,7 @@
 namespace palpate::testing {
 namespace {
 
-/// A turned box, a shell of one voxel, and a turned box of foam with a hole in it; in mm.
+/// A rotated box, a shell of one voxel, and a rotated box of foam with a hole in it; in mm.
 constexpr const char* kShapes = R"(palpate: 1
 length: mm
 description: "edges: kept, not baked"
@@ -36,7 +36,8 @@ const Pose kTurned{rotationAbout(Vec3(1.0, 2.0, 3.0), 40.0 * std::numbers::pi / 
                    Vec3(1.3, -0.4, 0.6)};
 const Vec3 kHalf(30.0, 20.0, 25.0);
 
-/// Within half a voxel of the surface of the turned box, and two of one of its edges.
+/// Points within half a voxel of the surface of the rotated box, and within two of one of its
+/// edges.
 std::vector<Vec3> nearEdges() {
   std::vector<Vec3> points;
   for (int i = 0; i < 300; ++i) {
