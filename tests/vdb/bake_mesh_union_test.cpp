@@ -64,7 +64,7 @@ TEST(MeshUnion, LargeFacesThroughFineBallsAreExact) {
 }
 
 TEST(MeshUnion, CubesThatShareFacesAndEdgesAreExact) {
-  // Faces in one plane, faces that overlap by half, and an edge on a face.
+  // Faces in one plane, faces that cover half of each other, and an edge on a face.
   std::vector<Mesh> parts{boxMesh(Vec3(0.0), Vec3(10e-3)),
                           boxMesh(Vec3(10e-3, 2e-3, 0.0), Vec3(10e-3)),
                           boxMesh(Vec3(3e-3, 1e-3, 8e-3), Vec3(4e-3, 5e-3, 6e-3)),

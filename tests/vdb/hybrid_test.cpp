@@ -224,7 +224,7 @@ TEST_P(HybridSamplers, AGyroidInABoxIsAGridOfTheGyroidCutByExactFaces) {
   // Queries have the error that was measured at set-up.
   EXPECT_LE(off, 1.3 * hybrid.parts[1].off);
   if (GetParam() == Sampler::kCubic) {
-    EXPECT_LE(turn, 0.05);  // the third power of 1/15 voxel per radius, in degrees
+    EXPECT_LE(turn, 0.05);  // [degrees] an error of third order, at 15 voxels per radius
   }
   EXPECT_GE(off, 0.3 * hybrid.parts[1].off);
   EXPECT_LE(turn, 1.3 * hybrid.parts[1].turn);

@@ -216,8 +216,7 @@ TEST(TrianglesMeet, AsSeparatingAxesInWholeNumbersSay) {
     } else {
       if (isFlat(p[0], p[1], p[5])) continue;
       other = {1, 5, 0};
-      // Beyond the common side they meet only if one of the other two sides of either meets the
-      // other triangle, or lies in it.
+      // They meet beyond the common side only if both lie in one plane, on one side of it.
       const Point n = cross(minus(p[1], p[0]), minus(p[2], p[0]));
       truth =
           dot(n, minus(p[5], p[0])) == 0 && dot(cross(minus(p[1], p[0]), minus(p[5], p[0])), n) > 0;
