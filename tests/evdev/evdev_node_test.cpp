@@ -185,8 +185,8 @@ TEST_F(EvdevNode, AKernelThatRefusesTheClockLeavesTheTimeOfTheReading) {
   DeviceState state;
   ASSERT_EQ(device->read(state), DeviceStatus::kOk);
   EXPECT_NEAR(state.position.x, 5e-3, kRounding);
-  EXPECT_NEAR(state.velocity.x * state.time, 5e-3,
-              kRounding);  // the time of the first reading since open()
+  // The time of the first reading since open()
+  EXPECT_NEAR(state.velocity.x * state.time, 5e-3, kRounding);
 }
 
 TEST_F(EvdevNode, AStickThatIsHeldWhenItIsOpenedMoves) {

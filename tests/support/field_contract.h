@@ -37,8 +37,8 @@ struct FieldCase {
   double distance_tolerance = 1e-6;  ///< [-] of the region's diagonal, against brute force
   double sign_margin = 1e-12;  ///< [-] of the diagonal; nearer to the surface the sign is uncertain
   double difference_step = 1e-5;  ///< [-] of featureSize(), for central differences
-  double crease_share =
-      0.1;  ///< share of the points that may be at a crease and are then not checked
+  /// Share of the points that may be at a crease and are then not checked
+  double crease_share = 0.1;
   bool unit_gradient = true;  ///< exact fields: |gradient| = 1 in the band, to 1e-9
   bool far_away = true;       ///< also try 1e300: not for a field that is a polynomial
 };

@@ -17,8 +17,8 @@ struct HalfSpaceBound {
 
 struct NearestOfPlanes {
   Vec3 point{0.0, 0.0, 0.0};
-  std::array<int, 3>
-      active{};  ///< the planes on which it lies; the first `active_count` entries count
+  /// The planes on which it lies; the first `active_count` entries count
+  std::array<int, 3> active{};
   int active_count = 0;
   bool is_allowed = true;  ///< false: the planes leave no room, or rounding let one be violated
 };

@@ -28,8 +28,8 @@ enum class Fault {
 struct Verdict {
   Fault fault = Fault::kNone;
   bool is_contact = false;
-  bool is_ambiguous =
-      false;  ///< there are several possible ends; the proxy is near one of them, or near none
+  /// There are several possible ends; the proxy is near one of them, or near none
+  bool is_ambiguous = false;
   bool is_unjudged = false;  ///< the oracle cannot decide
   bool ran_oracle = false;
   bool is_minimum = true;  ///< no allowed point near the proxy is nearer to the hand

@@ -18,8 +18,8 @@ struct RestCheck {
   bool is_judged =
       true;  ///< false: too many walls at once, or a kink that is neither convex nor concave
   int touching = 0;  ///< walls that hold it, in the worst cell
-  bool has_kink =
-      false;  ///< one of them has no normal there: an apex, or a crease of a black-box field
+  /// One of them has no normal there: an apex, or a crease of a black-box field
+  bool has_kink = false;
 };
 
 struct Rest {

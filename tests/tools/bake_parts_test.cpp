@@ -244,8 +244,8 @@ TEST_F(BakeParts, SaysWhyThereIsNothingToDo) {
       << nothing.err;
   (void)folder_.file("m.stl", "solid m\nendsolid m\n");
   EXPECT_EQ(bake({"-o", "a.vdb", "--parts", "a.yaml"}, "m.stl").exit_code, 2);
-  EXPECT_EQ(bake({"-o", "a.vdb", "--parts", "s.yaml"}).exit_code,
-            2);  // the output would overwrite the input
+  // The output would overwrite the input
+  EXPECT_EQ(bake({"-o", "a.vdb", "--parts", "s.yaml"}).exit_code, 2);
   EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"m.stl", "p.csv", "s.yaml"}));
 }
 

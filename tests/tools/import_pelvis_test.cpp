@@ -329,8 +329,8 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
   EXPECT_EQ(order[0], "outside");
   EXPECT_EQ(order[1], "soft_tissue");
   EXPECT_EQ(order[2], "muscle");
-  EXPECT_EQ(std::count(order.begin(), order.end(), "bone"),
-            0);  // the needle rests on bone, and never enters it
+  // The needle rests on bone, and never enters it
+  EXPECT_EQ(std::count(order.begin(), order.end(), "bone"), 0);
   const double stands = glm::dot(rows.back().proxy - ray.from, ray.way);
   EXPECT_NEAR(stands, ray.depth[2], ray.voxel);
 }

@@ -79,8 +79,8 @@ TEST(RayMarch, SeesThroughLayersInTheirOrder) {
 
 TEST(RayMarch, TheCutFaceIsFlatAndItsFrontIsGone) {
   Look look(kShells);
-  look.space.plane =
-      tools::planeAcross(1, 0.005, {"mm", 1e-3});  // cuts away everything in front of y = 5 mm
+  // Cuts away everything in front of y = 5 mm
+  look.space.plane = tools::planeAcross(1, 0.005, {"mm", 1e-3});
   const Camera front = look.camera({0, -1, 0}, 64);
   RayMarch march(look.space, front);
   EXPECT_EQ(march.cast(32.0, 32.0).part, 2 * 2) << "the face of the inner layer";

@@ -161,8 +161,8 @@ std::vector<std::string> offeredByFish(const std::string& line) {
   std::vector<std::string> lines =
       linesOf(printed("HOME=" + home.path() + " fish --no-config -c \"source " + kRoot +
                       "/tools/completion/palpate.fish; complete -C '" + line + "'\""));
-  for (std::string& each : lines)
-    each = each.substr(0, each.find('\t'));  // without the descriptions
+  // Without the descriptions
+  for (std::string& each : lines) each = each.substr(0, each.find('\t'));
   return lines;
 }
 

@@ -205,8 +205,8 @@ struct Touched {
   int smooth = 0;  // of these, points where the surface is smooth over four voxels
   int without_force = 0;
   double worst_force = 0.0;  // [N] error of |force| against K times the true depth
-  double worst_smooth =
-      0.0;                 // [N] error of the force against K times the vector to the true surface
+  // [N] Error of the force against K times the vector to the true surface
+  double worst_smooth = 0.0;
   double strongest = 0.0;  // [N]
 };
 

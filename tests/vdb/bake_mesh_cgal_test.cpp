@@ -24,8 +24,8 @@ using namespace palpate::vdb::test;  // NOLINT(google-build-using-namespace)
 struct Off {
   std::uint64_t voxels = 0;
   double worst = 0.0;  ///< largest error of the distance
-  double nearer =
-      0.0;  ///< largest amount by which a voxel's value is less than the distance to any triangle
+  /// Largest amount by which a voxel's value is less than the distance to any triangle
+  double nearer = 0.0;
   std::uint64_t farther = 0;  ///< number of voxels farther by more than 1e-5
   std::uint64_t wrong_sides = 0;
 };

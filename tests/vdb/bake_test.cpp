@@ -121,8 +121,8 @@ TEST_P(BakeField, EveryVoxelHoldsWhatItShould) {
     const double left = given.field->metric() == Metric::kExact ? 0.0 : 1e-6 * 1e3 * given.voxel;
     const double rounding =
         0.5 * std::ldexp(std::abs(expected), -23) + 1e3 * 1e-15 * (glm::length(p) + 1e-3) + left;
-    if (std::abs(std::abs(expected) - background) <= 2.0 * rounding)
-      continue;  // may be active or not
+    // May be active or not
+    if (std::abs(std::abs(expected) - background) <= 2.0 * rounding) continue;
     ASSERT_EQ(is_active, std::abs(expected) < background) << *at << " " << expected;
     if (is_active) {
       ASSERT_NEAR(value, expected, 1.01 * rounding) << *at;

@@ -53,8 +53,8 @@ void expectRefused(int processor) {
 
 TEST(BakeOffProcessor, NoPieceOfABakeRunsThereAndAfterwardsAllIsAsBefore) {
   const std::vector<int> before = mine();
-  if (before.size() == 1)
-    return expectRefused(before.front());  // there would be no processor left for the bake
+  // There would be no processor left for the bake
+  if (before.size() == 1) return expectRefused(before.front());
   for (const int processor : before) {
     EXPECT_EQ(piecesOn(processor), kPieces);
     for (int n = 0; n < 10; ++n) {

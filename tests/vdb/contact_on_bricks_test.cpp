@@ -121,8 +121,8 @@ TEST(ContactOnBricks, ATorusIsFeltAsTheTrueOneWhereItBendsBothWays) {
     turn = std::max(turn, angle(out.force, hip - middle));
   }
   std::printf("torus stroke at 0.5 mm: direction %.1e degree\n", turn);
-  EXPECT_LE(turn,
-            1e-3);  // the sampler's error at 16 voxels per radius, and its effect on the saddle
+  // The sampler's error at 16 voxels per radius, and its effect on the saddle
+  EXPECT_LE(turn, 1e-3);
 }
 
 TEST(ContactOnBricks, AHandFarBelowTheBandIsHeldOnTheSideItCameFrom) {

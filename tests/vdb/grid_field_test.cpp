@@ -161,8 +161,8 @@ TEST(GridField, OutOfTheBandItIsABoundWithTheRightSign) {
       ASSERT_LE(std::abs(sample.value), std::abs(distance) + slack);
       ASSERT_GE(std::abs(sample.value), rim - 2.0 * shape.voxel);
       if (std::abs(distance) < rim + shape.voxel) continue;
-      ASSERT_LE(std::abs(sample.value),
-                std::abs(distance));  // away from the rim no tolerance is needed
+      // Away from the rim no tolerance is needed
+      ASSERT_LE(std::abs(sample.value), std::abs(distance));
       deep += distance < 0.0 ? 1 : 0;
       far += distance > 0.0 ? 1 : 0;
     }

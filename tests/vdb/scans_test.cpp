@@ -42,8 +42,8 @@ TEST(Scans, NrrdAndMetaImageAreAsItkHasThem) {
   ASSERT_GE(files.size(), 8U);
   for (const std::string& file : files) {
     SCOPED_TRACE(file);
-    if (file.ends_with("Overlapping.seg.nrrd"))
-      continue;  // ITK reads it as two numbers per voxel; see below
+    // ITK reads it as two numbers per voxel; see below
+    if (file.ends_with("Overlapping.seg.nrrd")) continue;
     const bool without_place = file.ends_with("hand_lowres.nrrd");
     ImageOptions options;
     if (without_place) options.affine = AffineChoice::kSpacing;

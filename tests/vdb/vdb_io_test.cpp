@@ -183,9 +183,8 @@ TEST(VdbIo, PythonReadsIt) {
     EXPECT_EQ(rest.back() == '1', active);
   }
   EXPECT_EQ(asked, voxels_asked.size());
-  EXPECT_EQ(
-      told["names"],
-      "bone/surface,skin/surface");  // sorted by name here, because their order is not defined
+  // Sorted by name here, because their order is not defined
+  EXPECT_EQ(told["names"], "bone/surface,skin/surface");
   EXPECT_EQ(told["class"], "level set");
   EXPECT_EQ(told["type"], "FloatGrid");
   EXPECT_EQ(told["active"], std::to_string(set.info().active_voxels));

@@ -11,8 +11,8 @@ namespace palpate::tools {
 namespace {
 
 constexpr int kSide = 17;  ///< sample places along each side of a box
-constexpr double kWhole =
-    0.995;  ///< [share] less than 1, because up to half a voxel may be missing at the rim
+/// [share] Less than 1, because up to half a voxel may be missing at the rim
+constexpr double kWhole = 0.995;
 constexpr double kStrangeRatio = 50;  ///< ratio of sizes above which a unit may be wrong
 
 template <typename Visit>

@@ -15,8 +15,8 @@ struct GeneralOptions {
   bool json = false;
   bool quiet = false;
   bool force = false;  ///< only for verbs that write files
-  std::string command =
-      {};  ///< the whole command in shell syntax, for outputs that say how they were made
+  /// The whole command in shell syntax, for outputs that say how they were made
+  std::string command = {};
 };
 
 /// Facts that a scan or a mesh may not state.
@@ -81,8 +81,8 @@ struct TouchOptions {
   std::string
       coupling;  ///< "springs", "any_scene" or "STIFFNESS,DAMPING"; empty: as the scene says
   RealDeviceOptions real;
-  std::optional<double>
-      seconds;  ///< [s] for a device that a hand holds; not given: until the user stops it
+  /// [s] For a device that a hand holds; not given: until the user stops it
+  std::optional<double> seconds;
   std::string max_force;
   std::string slew;
   std::string ramp;

@@ -60,8 +60,8 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   } else {
     refuseShapeOptions(options);
   }
-  if (finds_place)
-    options.press = "0,0,0";  // a placeholder, so that the options of a press are accepted
+  // A placeholder, so that the options of a press are accepted
+  if (finds_place) options.press = "0,0,0";
   checkMotion(options);
   checkDevice(options);
   (void)forceLimits(options);  // reports errors in them before any work

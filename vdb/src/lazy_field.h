@@ -36,8 +36,8 @@ struct GridContent {
 struct MeshWays {
   std::function<FieldPtr(const Progress&)> instead =
       {};  ///< tried first; returns null where a grid is needed
-  std::function<FieldPtr(FieldPtr, const LevelSet&)> finish =
-      {};  ///< makes the final field of the grid's field
+  /// Makes the final field of the grid's field
+  std::function<FieldPtr(FieldPtr, const LevelSet&)> finish = {};
 };
 
 struct GridSource {

@@ -37,8 +37,8 @@ struct SamplerResult {
 /// One voxel size.
 struct Rung {
   double voxel = 0.0;  ///< [m]
-  std::string why =
-      {};  ///< not empty: the field cannot be baked at this size, and the members below are unset
+  /// Not empty: the field cannot be baked at this size, and the members below are unset
+  std::string why = {};
   double half_width = 0.0;  ///< [voxels]
   std::uint64_t active_voxels = 0;
   double bake_seconds = 0.0;  ///< [s]

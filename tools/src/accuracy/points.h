@@ -18,8 +18,8 @@ struct JudgedPoint {
 
 struct PointSet {
   std::vector<JudgedPoint> points;
-  std::size_t without_truth =
-      0;  ///< points that were near enough, but have no known truth; not among `points`
+  /// Points that were near enough, but have no known truth; not among `points`
+  std::size_t without_truth = 0;
 };
 
 /// `count` points, evenly distributed over the space whose true distance to the surface is at most

@@ -15,10 +15,10 @@
 
 namespace palpate::tools {
 
-inline constexpr double kApproachSpeed =
-    0.05;  ///< [m/s] largest speed on the way to the judged part
-inline constexpr double kWallStiffness =
-    1000.0;  ///< [N/m] stiffness of the only wall of every case
+/// [m/s] Largest speed on the way to the judged part
+inline constexpr double kApproachSpeed = 0.05;
+/// [N/m] Stiffness of the only wall of every case
+inline constexpr double kWallStiffness = 1000.0;
 
 /// Where the proxy should be at each tick [m]; not given where the tick is not judged.
 using Truth = std::vector<std::optional<Vec3>>;

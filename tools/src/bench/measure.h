@@ -14,8 +14,8 @@ namespace palpate::tools {
 
 struct MeasureSettings {
   int repeats = 10;  ///< hot runs of the whole path
-  int paced_ticks =
-      2000;  ///< ticks timed at the pace of the path, with the loop waiting in between; 0: none
+  /// Ticks timed at the pace of the path, with the loop waiting in between; 0: none
+  int paced_ticks = 2000;
   int cold_ticks = 30;  ///< ticks timed after other data went through the caches; 0: none
 };
 
@@ -47,8 +47,8 @@ struct Measurement {
   std::optional<OnceTimes> paced = {};
   std::optional<OnceTimes> cold = {};
   std::optional<Judgement> judgement = {};  ///< not given: no judge for this case
-  std::optional<UnsettledMeter> unsettled =
-      {};             ///< not given: the paper's renderer does not report it
+  /// Not given: the paper's renderer does not report it
+  std::optional<UnsettledMeter> unsettled = {};
   double step = 0.0;  ///< [N] largest change of the force from tick to tick
   double turn = 0.0;  ///< [degrees] largest turn of the force from tick to tick
   /// Of the true force, if every tick has one.

@@ -31,8 +31,8 @@ struct FileCheck {
 
 [[nodiscard]] FileCheck checkMeshFile(const std::string& file, const CheckOptions& options,
                                       Console& console);
-/// The answer is "no" if a grid of the level-set class cannot be touched, or if the file has no grid
-/// that can.
+/// The answer is "no" if a grid of the level-set class cannot be touched, or if the file has no
+/// grid that can.
 [[nodiscard]] FileCheck checkGridFile(const std::string& file, const CheckOptions& options,
                                       Console& console);
 

@@ -72,8 +72,8 @@ class Borders {
 
   const ImportedScan& scan_;
   std::set<std::pair<std::size_t, std::size_t>> free_;
-  std::set<std::pair<std::size_t, std::size_t>>
-      closed_;  ///< closed by a wall other than the later layer's own
+  /// Closed by a wall other than the later layer's own
+  std::set<std::pair<std::size_t, std::size_t>> closed_;
   std::map<std::pair<std::size_t, std::size_t>, double> forces_;
 };
 
@@ -253,8 +253,8 @@ class NeedleWayFinder {
   WayTarget target_;
   RegionSampler sampler_;
   double step_ = 1e-3;
-  std::map<std::size_t, int>
-      closed_;  ///< number of directions, by the region that closes them first
+  /// Number of directions, by the region that closes them first
+  std::map<std::size_t, int> closed_;
 };
 
 }  // namespace

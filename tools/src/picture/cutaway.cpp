@@ -19,8 +19,8 @@ constexpr double kEdgeShade = 0.4;
 constexpr int kBlock = 8;  // [pixels] side of a block whose rays share the march through free space
 constexpr int kBand = 32 * kBlock;         // [rows] that are drawn together ...
 constexpr int kHeld = kBand + 2 * kBlock;  // ... and traced, with their neighbors
-constexpr double kContrast =
-    0.1;  // difference of neighboring pixels above which a pixel gets finer rays
+// Difference of neighboring pixels above which a pixel gets finer rays
+constexpr double kContrast = 0.1;
 
 double differenceOf(const Color& a, const Color& b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});

@@ -13,8 +13,8 @@ constexpr double kWidth = 1.3;   // [pixels]
 constexpr double kFaint = 0.4;   // ink of a line ...
 constexpr double kDark = 0.8;    // ... and of every fifth
 constexpr double kFewest = 3.0;  // least number of pixels from line to line
-constexpr double kFlat =
-    0.05;  // slope below which the plane is parallel to the surface, so that no lines are drawn
+// Slope below which the plane is parallel to the surface, so that no lines are drawn
+constexpr double kFlat = 0.05;
 
 }  // namespace
 

@@ -23,8 +23,8 @@ struct PictureOptions {
   int height = 1000;                        ///< [pixels]
   Track track;                              ///< may be empty
   std::shared_ptr<const vdb::Image> image;  ///< gray values; may be null
-  std::map<std::string, vdb::LabelColor> colors =
-      {};                     ///< for layers that have a color of their own
+  /// For layers that have a color of their own
+  std::map<std::string, vdb::LabelColor> colors = {};
   bool anatomical = false;    ///< x, y, z run to the right, the front and up
   double line_spacing = 0.0;  ///< [m] spacing of the lines of equal distance; 0: none
   int forces = 0;             ///< number of restForces() arrows along the longer side; 0: none

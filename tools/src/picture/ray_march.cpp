@@ -14,8 +14,8 @@ constexpr double kSky = 0.12;   // share of the light: from all of the upper sid
 constexpr double kWrap = 0.25;  // share of the lamp's light that gets around the edge of a shade,
                                 // because the lamp is not a point
 constexpr int kMostSteps = 4000;
-constexpr int kMostFree =
-    500;  // most steps of rays together; rays that creep along a surface gain little from more
+// Most steps of rays together; rays that creep along a surface gain little from more
+constexpr int kMostFree = 500;
 constexpr double kFlat = 1e-9;  // below this a ray runs along the cut
 constexpr double kGone = 0.01;  // share of light below which nothing behind is seen
 

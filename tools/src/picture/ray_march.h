@@ -118,8 +118,8 @@ class RayMarch {
   std::vector<std::pair<double, std::size_t>>
       slices_;  ///< slices that the ray still has to meet, the last one first
   bool has_sheets_;
-  double begin_ =
-      0.0;  ///< [m] along a ray from the camera's plane; the whole box is behind this distance
+  /// [m] Along a ray from the camera's plane; the whole box is behind this distance
+  double begin_ = 0.0;
 };
 
 }  // namespace palpate::tools

@@ -12,12 +12,12 @@ namespace palpate::tools {
 namespace {
 
 constexpr int kHalvings = 12;
-constexpr double kSheetInk =
-    0.25;  // share of ink in the color of surfaces that belong to no region
+// Share of ink in the color of surfaces that belong to no region
+constexpr double kSheetInk = 0.25;
 constexpr int kFirstSheet =
     -2;  // `part` of a hit on the first sheet; further sheets count down from it
-constexpr int kFirstSlice =
-    kFirstSheet - static_cast<int>(kMostSheets);  // slices count down likewise
+// Slices count down likewise
+constexpr int kFirstSlice = kFirstSheet - static_cast<int>(kMostSheets);
 constexpr int kMostRegions = 65536;
 
 }  // namespace

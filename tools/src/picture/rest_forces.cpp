@@ -21,8 +21,8 @@ constexpr int kMostStrides = 400;
 constexpr int kMostRest = 200;     // [ticks] in which a hand must come to rest
 constexpr double kStill = 1e-6;    // [N] largest change of the force per tick at rest
 constexpr double kNoForce = 1e-6;  // [N]
-constexpr int kLooks =
-    200;  // number of steps along each direction, where the fields do not tell the nearest way out
+// Number of steps along each direction, where the fields do not tell the nearest way out
+constexpr int kLooks = 200;
 
 struct Extent {
   double lo_u = kInfinity, hi_u = -kInfinity, lo_v = kInfinity, hi_v = -kInfinity;

@@ -71,7 +71,7 @@ void drawFelt(Sheet& s, const std::function<Pixel(const Vec3&)>& at, double step
 void drawScaleBar(Sheet& s);  ///< in the lower left corner of `view`
 void drawAxes(Sheet& s);      ///< coordinates around the section
 void drawNames(Sheet& s);     ///< of regions and ports, where there is room
-double drawLegend(Sheet& s,
-                  double y);  ///< from `y` down in the right column; returns where it ends
+/// From `y` down in the right column; returns where it ends
+double drawLegend(Sheet& s, double y);
 
 }  // namespace palpate::tools

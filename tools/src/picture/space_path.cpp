@@ -10,8 +10,8 @@ namespace {
 constexpr int kShades = 32;
 constexpr std::size_t kMostPoints = 4000;
 constexpr double kHides = 0.5;  // opacity above which a surface hides the path
-constexpr double kMargin =
-    2.0;  // [pixels] a wall on which the tip rests does not hide it within this distance
+// [pixels] A wall on which the tip rests does not hide it within this distance
+constexpr double kMargin = 2.0;
 
 }  // namespace
 

@@ -16,8 +16,8 @@ struct TickSource {
   std::vector<std::string> ports;    ///< names by PortId
   std::uint64_t ticks = 0;
   std::optional<RecordAbout> about;  ///< only for a record
-  std::uint64_t promised =
-      0;  ///< ticks of a record by its header; if more than `ticks`, it was cut short
+  /// Ticks of a record by its header; if more than `ticks`, it was cut short
+  std::uint64_t promised = 0;
 };
 
 /// From a `touch --trace`: ids are given in the order in which names appear.

@@ -19,8 +19,8 @@ struct HardScene {
   double curvature = 0.0;
   /// [-] Static and kinetic friction of the wall.
   double friction = 0.0;
-  bool is_ours =
-      false;  ///< uses features that only the constraint renderer has: friction, texture, ports
+  /// Uses features that only the constraint renderer has: friction, texture, ports
+  bool is_ours = false;
 };
 
 /// The stiffness of every wall of hardScenes() [N/m].

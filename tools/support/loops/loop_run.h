@@ -13,8 +13,8 @@ namespace palpate::loops {
 struct LoopSetting {
   devices::LoopModel loop;
   devices::Path hand;  ///< [m, world] where the hand wants to go
-  double gain =
-      1.0;  ///< [-] device force per renderer force: makes every wall stiffer by this factor
+  /// [-] Device force per renderer force: makes every wall stiffer by this factor
+  double gain = 1.0;
   double window = 0.5;  ///< [s] at the end of the run; the part that is judged
   /// Noise of the sensor: each coordinate of a reading is one encoder step too high, too low, or
   /// right. Its seed is fixed.
@@ -26,8 +26,8 @@ struct LoopSetting {
 
 /// The result of a run.
 struct LoopOutcome {
-  double chatter =
-      0.0;  ///< [N] largest peak to peak value of a component of the force, over the window
+  /// [N] Largest peak to peak value of a component of the force, over the window
+  double chatter = 0.0;
   double before = 0.0;  ///< [N] the same over an equal time before the window
   double frequency =
       0.0;             ///< [Hz] of the force about its mean, for the component that oscillates most

@@ -178,8 +178,8 @@ Vec3 closestOnEllipsoid(const Vec3& p, const Vec3& radii) {
   Real high = pole;
   for (std::size_t i = 0; i < 3; ++i) {
     high += r[i] * q[i];  // at this t no term exceeds its share of 1
-    if (r[i] == smallest)
-      low = std::max(low, pole + r[i] * q[i]);  // at this t a single term is already 1
+    // At this t a single term is already 1
+    if (r[i] == smallest) low = std::max(low, pole + r[i] * q[i]);
   }
   high = std::max(high, low);
   std::array<Real, 3> x{};

@@ -17,11 +17,11 @@ struct OracleSettings {
 
 struct OracleResult {
   Vec3 proxy{0.0, 0.0, 0.0};  ///< [m] from the run with h / 10
-  bool ambiguous =
-      false;  ///< the runs differ: either result is right, and a test must skip the tick
+  /// The runs differ: either result is right, and a test must skip the tick
+  bool ambiguous = false;
   bool converged = false;  ///< reached a second-order stationary point, or the HIP
-  bool smooth =
-      true;  ///< false: the proxy ends at a cusp or kink, known to about 1e-7 of the depth
+  /// False: the proxy ends at a cusp or kink, known to about 1e-7 of the depth
+  bool smooth = true;
   /// How far one more step of the flow moves the proxy, as a share of that step [-].
   double residual = 0.0;
   std::size_t steps = 0;

@@ -139,8 +139,8 @@ class MeshBaker {
     range_ = voxelRange({bounds.lo * plan_.voxel, bounds.hi * plan_.voxel}, search_, options_.name);
     refuseTooLong();
     requireMemory(estimatedArea(solid_), 1.0, search_);
-    std::optional<Solid>
-        whole;  // of a solid that a flood filled: the remaining walls alone do not tell its inside
+    // Of a solid that a flood filled: the remaining walls alone do not tell its inside
+    std::optional<Solid> whole;
     if (is_solid) {
       columns_.emplace(solid_, options_.mesh_sign, progress_);
       if (options_.mesh_sign == MeshSign::kVote) requireAgreement(mesh_, solid_, *columns_, plan_);

@@ -13,11 +13,11 @@ constexpr int kCreeps = 2;
 // In voxels.
 constexpr double kLeash = 1.5;     ///< longest single step
 constexpr double kFarthest = 2.5;  ///< farthest from the start
-constexpr double kModelEnough =
-    3e-4;  ///< a step this short needs no other: the next one would be of the order of its square
+/// A step this short needs no other: the next one would be of the order of its square
+constexpr double kModelEnough = 3e-4;
 constexpr double kOnSurface = 1e-5;
-constexpr double kLeastGain =
-    2e-3;  ///< [voxels] a step along the surface has to gain more than this
+/// [voxels] A step along the surface has to gain more than this
+constexpr double kLeastGain = 2e-3;
 /// [voxels] After a step of length s, a surface of curvature k leaves an error of about k^2 s^3 /
 /// 6, if its curvature changes as fast as its direction does; where the surface looks flat,
 /// kLeastBend stands for its curvature. The error may be kMostLeft, or a tenth of the 0.037 k^3 by

@@ -101,8 +101,8 @@ void gather(const Accessor& accessor, const Coord& block, Neighborhood& to) {
 struct Part {
   Neighborhood neighborhood;
   double steepest_square = 0.0;
-  double last_square =
-      0.0;  ///< [square of the slope] bound for the last brick made, from its coefficients
+  /// [square of the slope] Bound for the last brick made, from its coefficients
+  double last_square = 0.0;
   CoordBBox negative;
   BandBounds bounds;
 };

@@ -40,8 +40,8 @@ constexpr double kLeastWorkWidth = 5.5;
 constexpr int kRounds = 3;
 constexpr double kSamePlace = 0.75;  ///< [voxels] a larger correction leads to another place
 constexpr int kNewtonSteps = 12;
-constexpr double kSmooth =
-    0.3;  ///< [voxels] a larger difference means an edge: a smooth surface bends by less
+/// [voxels] A larger difference means an edge: a smooth surface bends by less
+constexpr double kSmooth = 0.3;
 
 Vec3 vec(const Coord& at) { return {at.x(), at.y(), at.z()}; }
 

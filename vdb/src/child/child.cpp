@@ -196,8 +196,8 @@ ChildReader runInChild(const ChildTask& task, const std::function<void(ChildWrit
                   "close other programs", task.path});
   };
   if (pipe2(ends, O_CLOEXEC) != 0) throw fail("pipe");
-  std::fflush(
-      nullptr);  // otherwise the child would write the text that waits in this process's buffers
+  // Otherwise the child would write the text that waits in this process's buffers
+  std::fflush(nullptr);
   const pid_t process = fork();
   if (process < 0) {
     const Error error = fail("fork");

@@ -21,8 +21,8 @@ constexpr std::size_t kLongestLine = std::size_t{1} << 20U;
 class Fields {
  public:
   explicit Fields(const std::string& path) : path_(path) {
-    const ByteStream whole(path, "metaimage", 0,
-                           Packing::kNone);  // refuses anything but a regular file
+    // Refuses anything but a regular file
+    const ByteStream whole(path, "metaimage", 0, Packing::kNone);
     std::ifstream file(path, std::ios::binary);
     std::string line;
     for (int number = 1; std::getline(file, line); ++number) {

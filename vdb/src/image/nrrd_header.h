@@ -25,8 +25,8 @@ struct NrrdHeader {
   NrrdEncoding encoding = NrrdEncoding::kRaw;
   std::string data_path;         ///< the header's own file, or the one that it names
   std::uint64_t data_begin = 0;  ///< [bytes] in that file, after the lines to skip
-  std::int64_t byte_skip =
-      0;        ///< [bytes] of the unpacked data to skip; -1: raw data are the last of the file
+  /// [bytes] Of the unpacked data to skip; -1: raw data are the last of the file
+  std::int64_t byte_skip = 0;
   Place place;  ///< [m], RAS
   std::string length_unit;
   std::map<std::string, std::string> pairs;  ///< `key:=value` lines

@@ -18,8 +18,8 @@ struct MaterialGrid::Blocks {
   static constexpr std::uint32_t kUniform = ~std::uint32_t{0};
 
   struct Block {
-    std::uint32_t first =
-        kUniform;          // number among the stored blocks; or kUniform: all voxels are alike
+    // Number among the stored blocks; or kUniform: all voxels are alike
+    std::uint32_t first = kUniform;
     float uniform = 0.0F;  // their count (or value) if all are alike
   };
 

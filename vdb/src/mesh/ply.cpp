@@ -40,8 +40,8 @@ class Ply {
   Mesh read() {
     readHeader();
     for (const Element& element : elements_) {
-      if (element.properties.empty())
-        continue;  // such elements take no bytes, however many there are
+      // Such elements take no bytes, however many there are
+      if (element.properties.empty()) continue;
       for (std::size_t i = 0; i < element.count; ++i) {
         if (i % 1024 == 0) pollStop();
         if (is_text_) input_.skipBlanks();
@@ -167,8 +167,8 @@ class Ply {
       const double count = readScalar(*property.count);
       if (!(count >= 0.0)) refuse("a list of negative length");
       const bool wanted = property.name == "vertex_indices" || property.name == "vertex_index";
-      const auto items =
-          static_cast<std::uint64_t>(std::min(count, 1e15));  // a file with more would end first
+      // A file with more would end first
+      const auto items = static_cast<std::uint64_t>(std::min(count, 1e15));
       for (std::uint64_t n = 0; n < items; ++n) {
         const double value = readScalar(property.type);
         if (wanted) indices_.push_back(value);

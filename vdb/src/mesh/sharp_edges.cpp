@@ -33,8 +33,8 @@ struct Surface {
   std::vector<Vec3> vertices;
   std::vector<MeshTriangle> triangles;
   std::vector<Vec3> normals;  ///< for each triangle
-  std::vector<std::array<Vec3, 3>>
-      side_normals;  ///< for each triangle: at each side the mean normal of both triangles
+  /// For each triangle: at each side the mean normal of both triangles
+  std::vector<std::array<Vec3, 3>> side_normals;
   std::vector<Vec3> corner_normals;  ///< for each vertex: weighted by angle
   std::vector<std::array<std::uint32_t, 2>> sharp;
 };

@@ -19,8 +19,8 @@ constexpr int kFits = 2;
 constexpr double kFitWidth =
     4.2;  ///< [voxels] least half width of a band that a cubic spline can read at the surface
 constexpr double kFitReach = 1.5;  ///< [voxels] from the surface
-constexpr double kMostFit =
-    0.3;  ///< [voxels] a larger error means a part that the voxels do not hold
+/// [voxels] A larger error means a part that the voxels do not hold
+constexpr double kMostFit = 0.3;
 constexpr double kLeastFit = 2e-3;  ///< [voxels] a smaller error is not felt
 
 void fitOnce(const openvdb::FloatGrid::Ptr& grid, const DistanceLeaves& leaves,

@@ -76,8 +76,8 @@ struct CertifyOptions {
 };
 
 struct CertifiedGrid {
-  LevelSet
-      grid;  ///< wide enough for the sampler; distances rebuilt if the original ones were wrong
+  /// Wide enough for the sampler; distances rebuilt if the original ones were wrong
+  LevelSet grid;
   BandCertificate certificate;
   std::vector<std::string> notes;  ///< what was done to it; empty: nothing
 };

@@ -22,8 +22,8 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::size_t dropped_triangles = 0;  ///< by readMesh(): two corners in one point
   Space space = Space::kRas;  ///< set by readMesh(): the file's space; vertices are RAS in any case
-  bool space_is_stated =
-      false;  ///< set by readMesh(): the file stated its space, as 3D Slicer writes it
+  /// Set by readMesh(): the file stated its space, as 3D Slicer writes it
+  bool space_is_stated = false;
 };
 
 /// The result of checking a mesh.

@@ -26,8 +26,8 @@ namespace palpate::vdb {
 struct ThresholdOptions {
   double above = 0.0;                ///< inside is where the image is greater; NaN is outside
   std::optional<double> below = {};  ///< instead of `above`: inside is where the image is less
-  bool largest_component =
-      true;  ///< keep only the largest connected component; voxels are connected by faces
+  /// Keep only the largest connected component; voxels are connected by faces
+  bool largest_component = true;
   /// Fill cavities: all voxels that no path of outside voxels (across faces and edges) joins to the
   /// border of the image. Spaces that an air path leads into, like nose and windpipe, stay open.
   bool fill = false;

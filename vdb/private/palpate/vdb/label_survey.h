@@ -49,8 +49,8 @@ struct LabelSurvey {
     std::size_t id = 0;         ///< for changeIslands()
   };
   struct Contact {
-    std::size_t other =
-        0;              ///< a region, gap() or outside(); the image's border counts as outside()
+    /// A region, gap() or outside(); the image's border counts as outside()
+    std::size_t other = 0;
     double area = 0.0;  ///< [m2] of the surface between the two, approximately
   };
   struct Region {
